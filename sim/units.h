@@ -1,0 +1,46 @@
+// Quantities as types, so that cycles are never added to bytes. Each wraps one number in the unit
+// its name says; arithmetic stays within one quantity, and scaling is by plain numbers.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+namespace leviosim {
+
+template <class Tag, class Rep>
+class Quantity {
+ public:
+  constexpr Quantity() = default;
+  constexpr explicit Quantity(Rep count) : count_(count) {}
+  constexpr Rep count() const { return count_; }
+
+  constexpr Quantity& operator+=(Quantity o) {
+    count_ += o.count_;
+    return *this;
+  }
+  constexpr Quantity& operator-=(Quantity o) {
+    count_ -= o.count_;
+    return *this;
+  }
+  friend constexpr Quantity operator+(Quantity a, Quantity b) {
+    return Quantity(a.count_ + b.count_);
+  }
+  friend constexpr Quantity operator-(Quantity a, Quantity b) {
+    return Quantity(a.count_ - b.count_);
+  }
+  friend constexpr Quantity operator*(Quantity a, Rep k) { return Quantity(a.count_ * k); }
+  friend constexpr Quantity operator*(Rep k, Quantity a) { return Quantity(k * a.count_); }
+  friend constexpr auto operator<=>(Quantity, Quantity) = default;
+
+ private:
+  Rep count_{};
+};
+
+using Cycles = Quantity<struct CyclesTag, std::int64_t>;  ///< clock cycles of the domain at hand
+using Bytes = Quantity<struct BytesTag, std::int64_t>;    ///< bytes
+using Hertz = Quantity<struct HertzTag, std::int64_t>;    ///< whole hertz
+using Joules = Quantity<struct JoulesTag, double>;        ///< joules
+using Watts = Quantity<struct WattsTag, double>;          ///< watts
+using Volts = Quantity<struct VoltsTag, double>;          ///< volts
+
+}  // namespace leviosim

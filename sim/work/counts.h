@@ -1,0 +1,44 @@
+// How often each operation occurred in a piece of work.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "sim/work/op.h"
+
+namespace leviosim::work {
+
+/// Number of operations of each kind. A plain value: add two to merge two pieces of work.
+struct Counts {
+  std::array<std::uint64_t, kOpCount> n{};
+
+  constexpr std::uint64_t operator[](Op op) const { return n[index(op)]; }
+  constexpr std::uint64_t& operator[](Op op) { return n[index(op)]; }
+
+  constexpr Counts& operator+=(const Counts& other) {
+    for (std::size_t i = 0; i < kOpCount; ++i) n[i] += other.n[i];
+    return *this;
+  }
+  friend constexpr Counts operator+(Counts a, const Counts& b) { return a += b; }
+  friend constexpr bool operator==(const Counts&, const Counts&) = default;
+
+  constexpr bool empty() const { return *this == Counts{}; }
+};
+
+/// The counters that counted scalars on this host thread add to.
+///
+/// This is the one piece of ambient state in the project: an overloaded operator has no other place
+/// to find its counter. It is thread-local, so simulations on several host threads do not meet, and
+/// constant-initialised, so an access is one addition that the optimiser can fold over a loop.
+inline constinit thread_local Counts tally{};
+
+inline void count(Op op, std::uint64_t times = 1) { tally[op] += times; }
+
+/// Returns what this thread counted since the last call, and starts again from zero.
+inline Counts take_tally() {
+  const Counts taken = tally;
+  tally = Counts{};
+  return taken;
+}
+
+}  // namespace leviosim::work

@@ -1,0 +1,75 @@
+#include "sim/work/machine.h"
+
+#include "sim/check.h"
+
+namespace leviosim::work {
+
+Machine::Machine(const MachineConfig& config)
+    : config_(config), local_(config.memory, config.capacity, config.alignment) {
+  check(config.cores >= 1, "a machine has at least one core");
+}
+
+void Machine::begin_stage(std::string_view name) {
+  check(!in_stage_, "stages do not nest");
+  in_stage_ = true;
+  local_.set_user(name);
+  local_.reset_peak();
+  fork_peak_ = {};
+  if (!recording()) return;
+  take_tally();  // what happened between stages belongs to none
+  job_.stages.push_back({name, {}, {}});
+}
+
+void Machine::end_stage() {
+  in_stage_ = false;
+  if (!recording()) return;
+  flush_serial();
+  MemoryPeak& memory = job_.stages.back().memory;
+  memory = fork_peak_;
+  memory.single = std::max(memory.single, local_.peak());
+  if (local_.peak() >= memory.parallel) {
+    memory.parallel = local_.peak();
+    memory.blocks = local_.blocks_at_peak();
+  }
+}
+
+void Machine::begin_fork(std::string_view name) {
+  check(in_stage_, "a fork belongs to a stage");
+  scratch_sum_ = scratch_max_ = Bytes(0);
+  fork_ = {name, {}};
+  if (recording()) flush_serial();
+}
+
+void Machine::end_share(Bytes scratch_peak) {
+  scratch_sum_ += scratch_peak;
+  scratch_max_ = std::max(scratch_max_, scratch_peak);
+  if (recording()) fork_.shares.push_back(take_tally());
+}
+
+void Machine::end_fork() {
+  if (!recording()) return;
+  fork_peak_.single = std::max(fork_peak_.single, local_.used() + scratch_max_);
+  if (local_.used() + scratch_sum_ > fork_peak_.parallel) {
+    fork_peak_.parallel = local_.used() + scratch_sum_;
+    fork_peak_.blocks = local_.live();
+    if (scratch_sum_ > Bytes(0))
+      fork_peak_.blocks.push_back({"scratch of the cores", local_.used(), scratch_sum_});
+  }
+  job_.stages.back().steps.emplace_back(std::move(fork_));
+}
+
+void Machine::note_transfer(Direction direction, Bytes bytes) {
+  if (!recording()) return;
+  check(in_stage_, "a transfer belongs to a stage");
+  flush_serial();
+  job_.stages.back().steps.emplace_back(Transfer{direction, bytes});
+}
+
+void Machine::flush_serial() {
+  const Counts counts = take_tally();
+  if (!counts.empty()) job_.stages.back().steps.emplace_back(Serial{counts});
+}
+
+Job Machine::take_job() { return std::exchange(job_, {}); }
+
+}  // namespace leviosim::work

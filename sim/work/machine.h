@@ -1,0 +1,133 @@
+// The machine as a workload sees it: a memory of its own, an L2 behind it, a team of workers. This
+// is the whole interface between workload and simulator.
+//
+//   auto stage = machine.stage("feature extraction");
+//   work::Arena::Frame frame(machine.local());
+//   auto image = machine.local().alloc<P::Span<Byte>>("image", w * h);
+//   machine.copy_in(image, image_in_l2);                     // DMA
+//   machine.fork("detect", [&](work::Core& core) { … });     // every worker, its share
+//   …                                                        // all else: serial, on the master
+//
+// Bodies run natively, one after the other, in the order of the core ids; a recording machine takes
+// what they counted as each core's share of work. A machine that does not record costs nothing.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "sim/work/arena.h"
+#include "sim/work/policy.h"
+#include "sim/work/program.h"
+
+namespace leviosim::work {
+
+/// Contiguous share [begin, end) of `n` items for core `id` of `cores`, sizes differing by one at
+/// most.
+struct Share {
+  int begin;
+  int end;
+};
+constexpr Share share_of(int n, int id, int cores) {
+  const int base = n / cores;
+  const int extra = n % cores;
+  const int begin = id * base + std::min(id, extra);
+  return {begin, begin + base + (id < extra ? 1 : 0)};
+}
+
+/// One worker inside a fork.
+struct Core {
+  int id;
+  int cores;
+  Arena& scratch;  ///< this core's part of the free local memory
+
+  Share share(int n) const { return share_of(n, id, cores); }
+};
+
+struct MachineConfig {
+  int cores = 8;                   ///< workers of the team; 1 for a controller without a cluster
+  std::string_view memory = "L1";  ///< name of the local memory
+  Bytes capacity{128 * 1024};      ///< of the local memory
+  int alignment = 4;               ///< of blocks, in bytes; 1 packs them
+  bool record = false;             ///< keep a Job of what was done
+};
+
+class Machine {
+ public:
+  explicit Machine(const MachineConfig& config);
+
+  int cores() const { return config_.cores; }
+  bool recording() const { return config_.record; }
+  Arena& local() { return local_; }
+
+  /// While alive, work belongs to the stage of this name (a string literal). Stages do not nest.
+  class Stage {
+   public:
+    Stage(Machine& machine, std::string_view name) : machine_(&machine) {
+      machine.begin_stage(name);
+    }
+    ~Stage() { machine_->end_stage(); }
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+   private:
+    Machine* machine_;
+  };
+  [[nodiscard]] Stage stage(std::string_view name) { return Stage(*this, name); }
+
+  /// Runs body(core) for every worker; the master waits for all of them.
+  template <class Body>
+  void fork(std::string_view name, Body&& body) {
+    begin_fork(name);
+    for (int id = 0; id < config_.cores; ++id) {
+      Arena scratch = local_.lend("scratch", config_.cores, id);
+      Core core{id, config_.cores, scratch};
+      body(core);
+      end_share(scratch.peak());
+    }
+    end_fork();
+  }
+
+  /// DMA from L2 into local memory, and back. The host copies at once.
+  template <class To, class From>
+  void copy_in(To to, From from) {
+    copy(Direction::L2ToL1, to, from);
+  }
+  template <class To, class From>
+  void copy_out(To to, From from) {
+    copy(Direction::L1ToL2, to, from);
+  }
+
+  /// What was recorded since the last call.
+  Job take_job();
+
+ private:
+  template <class To, class From>
+  void copy(Direction direction, To to, From from) {
+    const auto n = static_cast<std::size_t>(std::min(to.size(), from.size()));
+    static_assert(sizeof(*to.data()) == sizeof(*from.data()));
+    if (n > 0) std::memcpy(static_cast<void*>(to.data()), from.data(), n * sizeof(*to.data()));
+    note_transfer(direction, Bytes(static_cast<std::int64_t>(n * sizeof(*to.data()))));
+  }
+
+  void begin_stage(std::string_view name);
+  void end_stage();
+  void begin_fork(std::string_view name);
+  void end_share(Bytes scratch_peak);
+  void end_fork();
+  void note_transfer(Direction direction, Bytes bytes);
+  void flush_serial();
+
+  MachineConfig config_;
+  Arena local_;
+  Job job_;
+  bool in_stage_ = false;
+  Fork fork_;
+  Bytes scratch_sum_{0};
+  Bytes scratch_max_{0};
+  MemoryPeak fork_peak_;  ///< of the forks of the stage so far
+};
+
+}  // namespace leviosim::work

@@ -1,0 +1,175 @@
+// Views of memory through which kernels read and write. Under the counting policy every access
+// counts a load or a store; under the native policy a view is a plain pointer.
+//
+// The index tells what the address costs: a plain `int` comes from a loop and is affine in the loop
+// indices, so a compiler strength-reduces it to a stream; an I32 is data, so its address is
+// computed. What a view does not count: values kept in C++ variables, which stand for registers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "sim/check.h"
+#include "sim/work/counted.h"
+
+namespace leviosim::work {
+
+/// Where the memory of a view lies, seen from the core that works on it. Local is the core's own
+/// memory: L1 for cluster cores, L2 for the fabric controller.
+enum class Space : std::uint8_t { Local, L2 };
+
+/// Storage of a byte under the counting policy. A type of its own, because a store through
+/// `unsigned char*` may touch any object, so that the compiler would have to keep the counters in
+/// memory (design section 3).
+enum class Byte : std::uint8_t {};
+
+/// The scalar that a load of T yields: narrow integers are extended to 32 bits.
+template <class T>
+struct LoadedAs {
+  using Type = T;
+  static Type from(T stored) { return stored; }
+};
+template <>
+struct LoadedAs<Byte> {
+  using Type = I32;
+  static Type from(Byte stored) { return I32(static_cast<std::int32_t>(stored)); }
+};
+template <>
+struct LoadedAs<std::uint16_t> {
+  using Type = I32;
+  static Type from(std::uint16_t stored) { return I32(stored); }
+};
+template <>
+struct LoadedAs<std::int16_t> {
+  using Type = I32;
+  static Type from(std::int16_t stored) { return I32(stored); }
+};
+
+/// Keeps the low bits of an integer for storage, as a store instruction does: nothing is counted.
+template <class T>
+T narrow(I32 x) {
+  return static_cast<T>(x.v);
+}
+template <class T>
+T narrow(std::int32_t x) {
+  return static_cast<T>(x);
+}
+
+/// A memory cell as the left or right side of an expression: reading it counts a load, assigning a
+/// store. `Load` and `Store` say which kind.
+template <class T, Op Load, Op Store>
+class Cell {
+ public:
+  using Value = typename LoadedAs<std::remove_const_t<T>>::Type;
+
+  Cell(T* where, std::uint8_t straddles) : where_(where), straddles_(straddles) {}
+
+  operator Value() const {
+    count(Load);
+    count(Op::Straddle, straddles_);
+    return LoadedAs<std::remove_const_t<T>>::from(*where_);
+  }
+  const Cell& operator=(T stored) const requires(!std::is_const_v<T>) {
+    count(Store);
+    count(Op::Straddle, straddles_);
+    *where_ = stored;
+    return *this;
+  }
+  const Cell& operator=(const Cell& other) const { return *this = static_cast<T>(Value(other)); }
+  const Cell& operator+=(Value x) const { return *this = static_cast<T>(Value(*this) + x); }
+  const Cell& operator-=(Value x) const { return *this = static_cast<T>(Value(*this) - x); }
+  const Cell& operator*=(Value x) const { return *this = static_cast<T>(Value(*this) * x); }
+  const Cell& operator/=(Value x) const { return *this = static_cast<T>(Value(*this) / x); }
+  const Cell& operator^=(Value x) const { return *this = static_cast<T>(Value(*this) ^ x); }
+  const Cell& operator|=(Value x) const { return *this = static_cast<T>(Value(*this) | x); }
+  /// Multiply-add forms: `cell += a * b` loads, multiplies and adds in one operation, and stores.
+  const Cell& operator+=(Product<Value> x) const requires requires { Value::kMul; }
+  { return *this = static_cast<T>(Value(*this) + x); }
+  const Cell& operator-=(Product<Value> x) const requires requires { Value::kMul; }
+  { return *this = static_cast<T>(Value(*this) - x); }
+
+ private:
+  T* where_;
+  std::uint8_t straddles_;
+};
+
+/// View of `size` consecutive elements under the counting policy. `straddles` is 1 if the elements
+/// do not lie on their natural boundary in the target's memory, so that each access takes two.
+template <class T, Space S = Space::Local>
+class CountedSpan {
+  static constexpr bool kLocal = S == Space::Local;
+  using Stream =
+      Cell<T, kLocal ? Op::LoadStream : Op::LoadL2, kLocal ? Op::StoreStream : Op::StoreL2>;
+  using Indexed =
+      Cell<T, kLocal ? Op::LoadIndexed : Op::LoadL2, kLocal ? Op::StoreIndexed : Op::StoreL2>;
+
+ public:
+  CountedSpan() = default;
+  CountedSpan(T* data, int size, bool straddles = false)
+      : data_(data), size_(size), straddles_(straddles) {}
+  /// A read-only view of the same memory.
+  operator CountedSpan<const T, S>() const requires(!std::is_const_v<T>) {
+    return {data_, size_, straddles_ != 0};
+  }
+
+  int size() const { return size_; }
+  T* data() const { return data_; }
+  Stream operator[](int i) const { return {data_ + i, straddles_}; }
+  Indexed operator[](I32 i) const { return {data_ + i.v, straddles_}; }
+  CountedSpan subspan(int offset, int size) const {
+    return {data_ + offset, size, straddles_ != 0};
+  }
+
+ private:
+  T* data_ = nullptr;
+  int size_ = 0;
+  std::uint8_t straddles_ = 0;
+};
+
+/// The same view under the native policy.
+template <class T>
+class NativeSpan {
+ public:
+  NativeSpan() = default;
+  NativeSpan(T* data, int size, bool = false) : data_(data), size_(size) {}
+  operator NativeSpan<const T>() const requires(!std::is_const_v<T>) { return {data_, size_}; }
+
+  int size() const { return size_; }
+  T* data() const { return data_; }
+  T& operator[](int i) const { return data_[i]; }
+  NativeSpan subspan(int offset, int size) const { return {data_ + offset, size}; }
+
+ private:
+  T* data_ = nullptr;
+  int size_ = 0;
+};
+
+/// Fixed-size array on a core's call stack, with counted accesses.
+template <class T, int N>
+class CountedArray {
+ public:
+  static constexpr int size() { return N; }
+  auto operator[](int i) { return CountedSpan<T>(data_, N)[i]; }
+  auto operator[](I32 i) { return CountedSpan<T>(data_, N)[i]; }
+  auto operator[](int i) const { return CountedSpan<const T>(data_, N)[i]; }
+  auto operator[](I32 i) const { return CountedSpan<const T>(data_, N)[i]; }
+  operator CountedSpan<T>() { return {data_, N}; }
+  operator CountedSpan<const T>() const { return {data_, N}; }
+
+  T data_[N];
+};
+
+template <class T, int N>
+class NativeArray {
+ public:
+  static constexpr int size() { return N; }
+  T& operator[](int i) { return data_[i]; }
+  const T& operator[](int i) const { return data_[i]; }
+  operator NativeSpan<T>() { return {data_, N}; }
+  operator NativeSpan<const T>() const { return {data_, N}; }
+
+  T data_[N];
+};
+
+}  // namespace leviosim::work

@@ -1,0 +1,104 @@
+// The kinds of operation that counted scalars record: the part of the work vocabulary that says
+// what a core does. An Op is an operation of the *source program*; what it costs on a chip
+// (instructions, stalls, which shared unit it occupies) is the platform's business
+// (platform_models/).
+//
+// Left out: register moves, spills and address constants, which a compiler adds; platforms carry
+// one global code-generation overhead for them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace leviosim::work {
+
+enum class Op : std::uint8_t {
+  IntAlu,
+  IntMinMax,
+  IntMul,
+  IntMac,
+  IntDiv,
+  IntDivBits,
+  Popcount,
+  LoadStream,
+  LoadIndexed,
+  StoreStream,
+  StoreIndexed,
+  LoadL2,
+  StoreL2,
+  Straddle,
+  BranchTaken,
+  BranchNotTaken,
+  LoopEntry,
+  LoopIteration,
+  Call,
+  F32Add,
+  F32Mul,
+  F32Fma,
+  F32Div,
+  F32Sqrt,
+  F32Compare,
+  F32Convert,
+  F32Sign,
+  F64Add,
+  F64Mul,
+  F64Div,
+  F64Compare,
+  F64Convert,
+};
+
+struct OpInfo {
+  Op op;
+  std::string_view name;         ///< key in platform files, statistics and work traces
+  std::string_view description;  ///< what one count means
+};
+
+inline constexpr std::array kOps = {
+    OpInfo{Op::IntAlu, "int_alu", "integer add, subtract, logic, shift, negate"},
+    OpInfo{Op::IntMinMax, "int_min_max", "integer minimum, maximum, absolute value"},
+    OpInfo{Op::IntMul, "int_mul", "32-bit integer product"},
+    OpInfo{Op::IntMac, "int_mac", "32-bit integer product added to or subtracted from a value"},
+    OpInfo{Op::IntDiv, "int_div", "integer quotient or remainder"},
+    OpInfo{Op::IntDivBits, "int_div_bits", "leading zeros of the divisors, summed over int_div"},
+    OpInfo{Op::Popcount, "popcount", "number of set bits of a 32-bit word"},
+    OpInfo{Op::LoadStream, "load_stream", "load whose address is affine in the loop indices"},
+    OpInfo{Op::LoadIndexed, "load_indexed", "load whose address is computed from data"},
+    OpInfo{Op::StoreStream, "store_stream", "store whose address is affine in the loop indices"},
+    OpInfo{Op::StoreIndexed, "store_indexed", "store whose address is computed from data"},
+    OpInfo{Op::LoadL2, "load_l2", "load from L2 by a core whose own memory is L1"},
+    OpInfo{Op::StoreL2, "store_l2", "store to L2 by a core whose own memory is L1"},
+    OpInfo{Op::Straddle, "straddle", "access crossing a word, counted besides its load or store"},
+    OpInfo{Op::BranchTaken, "branch_taken", "conditional branch that is taken"},
+    OpInfo{Op::BranchNotTaken, "branch_not_taken", "conditional branch that falls through"},
+    OpInfo{Op::LoopEntry, "loop_entry", "counted loop entered"},
+    OpInfo{Op::LoopIteration, "loop_iteration", "iteration of a counted loop"},
+    OpInfo{Op::Call, "call", "call of a function that is not inlined, with its return"},
+    OpInfo{Op::F32Add, "f32_add", "single-precision sum or difference"},
+    OpInfo{Op::F32Mul, "f32_mul", "single-precision product"},
+    OpInfo{Op::F32Fma, "f32_fma", "single-precision product added to or subtracted from a value"},
+    OpInfo{Op::F32Div, "f32_div", "single-precision quotient"},
+    OpInfo{Op::F32Sqrt, "f32_sqrt", "single-precision square root"},
+    OpInfo{Op::F32Compare, "f32_compare", "single-precision comparison"},
+    OpInfo{Op::F32Convert, "f32_convert", "conversion between single precision and integer"},
+    OpInfo{Op::F32Sign, "f32_sign", "single-precision negation, absolute value, minimum, maximum"},
+    OpInfo{Op::F64Add, "f64_add", "double-precision sum or difference"},
+    OpInfo{Op::F64Mul, "f64_mul", "double-precision product"},
+    OpInfo{Op::F64Div, "f64_div", "double-precision quotient"},
+    OpInfo{Op::F64Compare, "f64_compare", "double-precision comparison"},
+    OpInfo{Op::F64Convert, "f64_convert", "conversion between single and double precision"},
+};
+
+inline constexpr std::size_t kOpCount = kOps.size();
+
+constexpr std::size_t index(Op op) { return static_cast<std::size_t>(op); }
+
+constexpr bool ops_are_in_order() {
+  for (std::size_t i = 0; i < kOpCount; ++i)
+    if (index(kOps[i].op) != i) return false;
+  return true;
+}
+static_assert(ops_are_in_order(), "kOps must list every Op in the order of the enumeration");
+
+}  // namespace leviosim::work

@@ -1,0 +1,131 @@
+// The two arithmetic policies that kernels are templates over.
+//
+//   template <class P> typename P::F32 dot(typename P::template Span<const typename P::F32> a, …) {
+//     typename P::F32 sum = 0.0f;
+//     for (int i : P::range(0, a.size())) sum += a[i] * b[i];
+//     return sum;
+//   }
+//
+// Native: the types *are* float, std::int32_t, std::uint8_t… Counting: thin wrappers that also
+// count. Both compute the same bits. Nobody writes operation counts by hand: loops are written with
+// P::range, functions that are real calls on the target start with `typename P::Function`.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/work/counted.h"
+#include "sim/work/functions.h"
+#include "sim/work/memory.h"
+
+namespace leviosim::work {
+
+/// Integers begin, begin+1, … below end; counts one loop entry and its iterations if Counted.
+template <bool Counted>
+class Range {
+ public:
+  class Iterator {
+   public:
+    explicit Iterator(int i) : i_(i) {}
+    int operator*() const { return i_; }
+    Iterator& operator++() {
+      if constexpr (Counted) count(Op::LoopIteration);
+      ++i_;
+      return *this;
+    }
+    bool operator!=(Iterator other) const { return i_ < other.i_; }
+
+   private:
+    int i_;
+  };
+
+  Range(int begin, int end) : begin_(begin), end_(end) {
+    if constexpr (Counted) count(Op::LoopEntry);
+  }
+  Iterator begin() const { return Iterator(begin_); }
+  Iterator end() const { return Iterator(end_); }
+
+ private:
+  int begin_;
+  int end_;
+};
+
+/// begin, begin-1, … down to and including last.
+template <bool Counted>
+class DownRange {
+ public:
+  class Iterator {
+   public:
+    explicit Iterator(int i) : i_(i) {}
+    int operator*() const { return i_; }
+    Iterator& operator++() {
+      if constexpr (Counted) count(Op::LoopIteration);
+      --i_;
+      return *this;
+    }
+    bool operator!=(Iterator other) const { return i_ > other.i_; }
+
+   private:
+    int i_;
+  };
+
+  DownRange(int begin, int last) : begin_(begin), end_(last - 1) {
+    if constexpr (Counted) count(Op::LoopEntry);
+  }
+  Iterator begin() const { return Iterator(begin_); }
+  Iterator end() const { return Iterator(end_); }
+
+ private:
+  int begin_;
+  int end_;
+};
+
+/// Marks a function that a target compiler does not inline. `name` names the piece of code.
+template <bool Counted>
+struct FunctionScope {
+  explicit FunctionScope(const char* /*name*/) {
+    if constexpr (Counted) count(Op::Call);
+  }
+};
+
+struct Native {
+  static constexpr bool kCounting = false;
+  using F32 = float;
+  using F64 = double;
+  using I32 = std::int32_t;
+  using U32 = std::uint32_t;
+  using U16 = std::uint16_t;
+  using Byte = std::uint8_t;
+  using Bool = bool;
+  template <class T>
+  using Span = NativeSpan<T>;
+  template <class T>
+  using L2Span = NativeSpan<T>;
+  template <class T, int N>
+  using Array = NativeArray<T, N>;
+  using Function = FunctionScope<false>;
+  static Range<false> range(int begin, int end) { return {begin, end}; }
+  static DownRange<false> down_range(int begin, int last) { return {begin, last}; }
+};
+
+struct Counting {
+  static constexpr bool kCounting = true;
+  using F32 = work::F32;
+  using F64 = work::F64;
+  using I32 = work::I32;
+  using U32 = work::U32;
+  using U16 = std::uint16_t;
+  using Byte = work::Byte;
+  using Bool = Cond;
+  template <class T>
+  using Span = CountedSpan<T>;
+  template <class T>
+  using L2Span = CountedSpan<T, Space::L2>;
+  template <class T, int N>
+  using Array = CountedArray<T, N>;
+  using Function = FunctionScope<true>;
+  static Range<true> range(int begin, int end) { return {begin, end}; }
+  static DownRange<true> down_range(int begin, int last) { return {begin, last}; }
+  static Range<true> range(I32 begin, I32 end) { return {begin.v, end.v}; }
+};
+
+}  // namespace leviosim::work

@@ -1,0 +1,58 @@
+// What a workload did, as the chip sees it: the recorded form of the work vocabulary. A Job is what
+// one processor runs in one go (the front end for one frame, the optimiser for one iteration); it
+// is a list of stages, each a list of steps executed one after the other by the job's master core.
+//
+// The chip times a Job as soon as the workload has recorded it, and a stored Job is timed in the
+// same way, so live runs and replays have one timing path.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "sim/units.h"
+#include "sim/work/arena.h"
+#include "sim/work/counts.h"
+
+namespace leviosim::work {
+
+/// Work of the master core alone.
+struct Serial {
+  Counts counts;
+};
+
+/// The master offloads one share of work to each worker and waits for all of them.
+struct Fork {
+  std::string_view name;
+  std::vector<Counts> shares;  ///< one per worker, in the order of their ids
+};
+
+enum class Direction : std::uint8_t { L2ToL1, L1ToL2 };
+
+/// One blocking DMA transfer, programmed by the master core.
+struct Transfer {
+  Direction direction;
+  Bytes bytes;
+};
+
+using Step = std::variant<Serial, Fork, Transfer>;
+
+/// Highest occupation of a memory during a stage.
+struct MemoryPeak {
+  Bytes parallel;             ///< with the scratch of all cores alive at once
+  Bytes single;               ///< with the scratch of one core, as one core alone would need
+  std::vector<Block> blocks;  ///< alive at the parallel peak
+};
+
+struct StageRun {
+  std::string_view stage;
+  std::vector<Step> steps;
+  MemoryPeak memory;  ///< of the machine's own memory (L1 for the cluster, L2 for the controller)
+};
+
+struct Job {
+  std::vector<StageRun> stages;
+};
+
+}  // namespace leviosim::work

@@ -1,0 +1,43 @@
+// The pinhole camera with radial-tangential ("plumb bob") distortion of EuRoC's sensor.yaml:
+//   r² = x² + y²,  d = 1 + k1 r² + k2 r⁴
+//   xd = x d + 2 p1 x y + p2 (r² + 2 x²),  yd = y d + p1 (r² + 2 y²) + 2 p2 x y
+//   u = fx xd + cx,  v = fy yd + cy
+// (Brown 1966, in the order of coefficients k1, k2, p1, p2 that the ASL format shares with OpenCV).
+// Pixel centres have whole-number coordinates. Left out: k3 and higher terms, fish-eye and
+// rectified models, rolling shutter.
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace leviosim::traces {
+
+struct CameraModel {
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px] of the full-resolution image
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0;  ///< distortion coefficients
+  int width = 0, height = 0;              ///< [px]
+  /// Camera frame (x right, y down, z forward) to body frame: `T_BS` of sensor.yaml [m].
+  Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
+  double rate_hz = 0;
+
+  /// Distorts a point on the plane z = 1.
+  Eigen::Vector2d distort(const Eigen::Vector2d& normalized) const;
+
+  /// Undoes distort() by Newton's method to 1e-12; exact within the image of EuRoC's lens. Throws
+  /// InputError if it does not converge, which means that the coefficients cannot be inverted
+  /// there.
+  Eigen::Vector2d undistort(const Eigen::Vector2d& distorted) const;
+
+  /// The pixel that sees a point of the camera frame with z > 0.
+  Eigen::Vector2d project(const Eigen::Vector3d& point_camera) const;
+
+  /// The point on the plane z = 1 that a pixel sees.
+  Eigen::Vector2d unproject(const Eigen::Vector2d& pixel) const;
+};
+
+/// A pinhole camera without distortion: what is left after undistortion and decimation.
+struct PinholeIntrinsics {
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
+  int width = 0, height = 0;              ///< [px]
+};
+
+}  // namespace leviosim::traces

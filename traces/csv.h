@@ -1,0 +1,87 @@
+// Reading of delimited text files (EuRoC's data.csv, TUM trajectories) row by row.
+// Every fault is an InputError that names file, line and column. Lines that begin with '#' are
+// comments; CRLF line ends, a byte-order mark and blank lines at the end of the file are accepted.
+// Left out: quoting and escapes, which none of these formats has.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leviosim::traces {
+
+/// "FILE line N", the way every message of this folder names a place.
+std::string at_line(const std::filesystem::path& file, std::size_t line);
+
+/// The whole file. Throws InputError if it cannot be read.
+std::string read_text_file(const std::filesystem::path& file);
+
+/// The number that `text` spells completely and that is finite; false otherwise. Independent of the
+/// locale.
+bool parse_number(std::string_view text, double& value);
+
+/// One data row; cells are trimmed of blanks. Valid until the reader moves on.
+class CsvRow {
+ public:
+  std::size_t line() const { return line_; }
+  std::size_t size() const { return cells_.size(); }
+  std::string_view text(std::size_t column) const { return cells_[column]; }
+
+  /// A finite number, or InputError.
+  double number(std::size_t column) const;
+  /// Nanoseconds as a non-negative integer, or InputError.
+  std::int64_t nanoseconds(std::size_t column) const;
+  /// Throws an InputError about this row.
+  [[noreturn]] void fail(std::string_view message) const;
+  /// Throws an InputError about one cell: "..., column 2 (name): 'text' is MESSAGE".
+  [[noreturn]] void fail(std::size_t column, std::string_view message) const;
+
+ private:
+  friend class CsvReader;
+  const std::filesystem::path* file_ = nullptr;
+  const std::vector<std::string>* names_ = nullptr;
+  std::size_t line_ = 0;
+  std::vector<std::string_view> cells_;
+};
+
+enum class Separator { comma, blanks };
+
+/// Reads a file whose rows have `names.size()` columns (the names appear in messages only).
+class CsvReader {
+ public:
+  CsvReader(std::filesystem::path file, Separator separator, std::vector<std::string> names);
+  CsvReader(const CsvReader&) = delete;
+  CsvReader& operator=(const CsvReader&) = delete;
+
+  /// The next row, or nullptr at the end. Throws InputError for a row of another width.
+  const CsvRow* next();
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::string_view next_line();
+  void split(std::string_view line);
+
+  std::filesystem::path file_;
+  Separator separator_;
+  std::vector<std::string> names_;
+  std::string text_;
+  std::size_t position_ = 0;
+  std::size_t line_ = 0;
+  CsvRow row_;
+};
+
+/// Holds that time stamps rise from row to row; InputError names both stamps.
+class RisingStamps {
+ public:
+  void add(const CsvRow& row, std::int64_t t_ns);
+
+ private:
+  bool empty_ = true;
+  std::int64_t last_ns_ = 0;
+  std::size_t last_line_ = 0;
+};
+
+}  // namespace leviosim::traces

@@ -1,0 +1,19 @@
+// Reading of the two sensor.yaml files of an ASL folder. Strict where it matters: a missing key, a
+// list of the wrong length or an unsupported model is an InputError that names file, line and key;
+// keys that are not needed (comments, extra entries) are passed over.
+#pragma once
+
+#include <filesystem>
+
+#include "traces/camera_model.h"
+#include "traces/imu_model.h"
+
+namespace leviosim::traces {
+
+/// Reads cam0/sensor.yaml. Supported: camera_model pinhole, distortion_model radial-tangential.
+CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
+
+/// Reads imu0/sensor.yaml. Its T_BS must be the identity: the body frame is the IMU frame.
+ImuModel read_imu_model(const std::filesystem::path& sensor_yaml);
+
+}  // namespace leviosim::traces

@@ -1,0 +1,46 @@
+// Strict access to one YAML mapping: every fault is an InputError that names file, line and key.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leviosim::traces {
+
+class YamlMap {
+ public:
+  /// Parses a file whose root is a mapping. Throws InputError if it cannot be read or parsed.
+  static YamlMap load(const std::filesystem::path& file);
+
+  std::string text(const std::string& key) const;
+  /// A finite number.
+  double number(const std::string& key) const;
+  /// A finite number above zero.
+  double positive(const std::string& key) const;
+  /// A finite number not below zero.
+  double not_negative(const std::string& key) const;
+  /// A list of exactly `size` finite numbers; `meaning` says what they are.
+  std::vector<double> numbers(const std::string& key, std::size_t size,
+                              std::string_view meaning) const;
+  YamlMap map(const std::string& key) const;
+
+  /// Throws an InputError about the value of a key: "FILE line N, key 'key': MESSAGE".
+  [[noreturn]] void fail(const std::string& key, std::string_view message) const;
+
+ private:
+  YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node);
+  YAML::Node require(const std::string& key) const;
+  std::string nearest_key(const std::string& key) const;
+  [[noreturn]] void fail_at(const YAML::Node& node, const std::string& key,
+                            std::string_view message) const;
+
+  std::filesystem::path file_;
+  std::string prefix_;  // of nested keys, "T_BS."
+  YAML::Node node_;
+};
+
+}  // namespace leviosim::traces
