@@ -44,9 +44,10 @@ class PooledFrame {
   struct FreeBlock {
     FreeBlock* next;
   };
-  /// `largest` is 0 before a thread's first frame and after its end: both then go the slow way.
+  /// `largest` is 0 before a thread's first frame and once it has ended: all then go the slow way.
   struct Lists {
     std::size_t largest = 0;
+    bool ended = false;
     std::array<FreeBlock*, kLargest / kGranule> heads{};
   };
   struct ReturnAtThreadEnd;

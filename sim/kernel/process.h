@@ -32,7 +32,7 @@ struct ProcessState {
   std::coroutine_handle<> resume_point;      ///< innermost suspended coroutine of this process
   ProcessState* next_in_list = nullptr;      ///< link of the list it waits in
   std::uint64_t rank = 0;                    ///< order among the ready, see EventKey
-  const std::string* waits_for = nullptr;    ///< name of what must wake it; null when scheduled
+  const char* waits_for = nullptr;           ///< name of what must wake it; null when scheduled
   void* exchange = nullptr;                  ///< what it gives or gets, known to what it waits for
   Kernel* kernel = nullptr;                  ///< owner, once spawned
   ProcessState* previous_process = nullptr;  ///< links of the kernel's list of live processes
@@ -40,6 +40,9 @@ struct ProcessState {
   std::string name;
   bool server = false;
 };
+
+/// What ProcessState::waits_for says when that no longer exists.
+inline constexpr const char* kDestroyed = "something destroyed meanwhile";
 
 /// First in, first out; links through the processes themselves.
 class ProcessList {

@@ -1,0 +1,33 @@
+// A chip: its clocks, a cluster and a fabric controller on one event kernel.
+#pragma once
+
+#include <memory>
+
+#include "sim/chip/cluster.h"
+#include "sim/chip/controller.h"
+
+namespace leviosim::sim {
+
+class Chip {
+ public:
+  /// @param workers  size of the cluster's team
+  /// @throws InputError for clocks without a common tick or more workers than the event unit serves
+  Chip(const ChipConfig& config, int workers);
+
+  Kernel& kernel() { return kernel_; }
+  const Timebase& timebase() const { return timebase_; }
+  Cluster& cluster() { return cluster_; }
+  Controller& controller() { return controller_; }
+
+  /// co_await: the controller sends the job to the cluster and is told when it is done.
+  Task<JobTiming> offload(const work::Job& job);
+
+ private:
+  ChipConfig config_;
+  Timebase timebase_;
+  Kernel kernel_;
+  Cluster cluster_;
+  Controller controller_;
+};
+
+}  // namespace leviosim::sim

@@ -1,0 +1,119 @@
+#include "sim/chip/cluster.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sim/check.h"
+#include "sim/error.h"
+
+namespace leviosim::sim {
+namespace {
+
+int checked_workers(const ClusterConfig& config, int workers) {
+  if (workers < 1 || workers > config.max_workers)
+    throw InputError(fmt::format("a team of {} workers: the event unit serves 1 to {}", workers,
+                                 config.max_workers));
+  return workers;
+}
+
+}  // namespace
+
+double transfer_cycles(const DmaConfig& dma, Bytes bytes) {
+  const double payload = std::ceil(static_cast<double>(bytes.count()) / dma.bytes_per_cycle);
+  return dma.programming + dma.first_data + payload + dma.completion;
+}
+
+Cluster::Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers)
+    : kernel_(kernel),
+      clock_(clock),
+      config_(config),
+      workers_(checked_workers(config, workers)),
+      team_(kernel, clock, config, workers + 1),
+      end_of_fork_(kernel, "end of fork", static_cast<std::size_t>(workers) + 1,
+                   cycles(config.events.barrier)) {
+  for (int id = 0; id < workers_; ++id) {
+    dispatch_.push_back(
+        std::make_unique<Channel<Dispatch>>(kernel_, fmt::format("dispatch to core {}", id), 1));
+    kernel_.spawn_server(fmt::format("core {}", id), worker(id));
+  }
+}
+
+Duration Cluster::cycles(double n) const {
+  return clock_.duration(Cycles(static_cast<std::int64_t>(std::llround(n))));
+}
+
+double Cluster::cycles_since(Time begin, Time end) const {
+  return static_cast<double>(clock_.whole_cycles(end - begin).count());
+}
+
+Task<JobTiming> Cluster::run(const work::Job& job) {
+  JobTiming timing{kernel_.now(), kernel_.now(), {}};
+  for (const work::StageRun& stage : job.stages) {
+    StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
+    for (const work::Step& variant : stage.steps) {
+      // Not std::visit: a coroutine must not be awaited inside a plain lambda.
+      if (const auto* serial = std::get_if<work::Serial>(&variant))
+        co_await step(*serial, s.account);
+      else if (const auto* fork = std::get_if<work::Fork>(&variant))
+        co_await step(*fork, s.account);
+      else
+        co_await step(std::get<work::Transfer>(variant), s.account);
+    }
+    s.end = kernel_.now();
+    s.cycles = clock_.whole_cycles(s.end - s.begin);
+    timing.stages.push_back(s);
+  }
+  timing.end = kernel_.now();
+  co_return timing;
+}
+
+Task<> Cluster::step(const work::Serial& serial, Account& account) {
+  const Time begin = kernel_.now();
+  co_await team_.execute(workers_, serial.counts);
+  account.serial += workers_ * cycles_since(begin, kernel_.now());
+}
+
+Task<> Cluster::step(const work::Transfer& transfer, Account& account) {
+  const Time begin = kernel_.now();
+  co_await kernel_.delay(cycles(transfer_cycles(config_.dma, transfer.bytes)));
+  account.transfer += workers_ * cycles_since(begin, kernel_.now());
+}
+
+Task<> Cluster::step(const work::Fork& fork, Account& account) {
+  const Time begin = kernel_.now();
+  arrivals_ = 0;
+  co_await kernel_.delay(cycles(config_.events.fork_master));
+  for (auto& channel : dispatch_) co_await channel->push({&fork, &account, begin});
+  co_await end_of_fork_.arrive();
+  const double last = cycles_since(begin, last_arrival_);
+  const double start_up = cycles_since(
+      begin, begin + cycles(config_.events.fork_master) + cycles(config_.events.fork_worker));
+  const double barrier = cycles_since(last_arrival_, kernel_.now());
+  account.imbalance += workers_ * last - arrivals_;
+  account.synchronisation += workers_ * (start_up + barrier);
+}
+
+Process Cluster::worker(int id) {
+  for (;;) {
+    const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
+    co_await kernel_.delay(cycles(config_.events.fork_worker));
+    const auto& shares = dispatch.fork->shares;
+    work::Counts mine;
+    for (std::size_t k = static_cast<std::size_t>(id); k < shares.size();
+         k += static_cast<std::size_t>(workers_))
+      mine += shares[k];
+    const SegmentTime time = co_await team_.execute(id, mine);
+    Account& account = *dispatch.account;
+    account.useful += time.alone;
+    account.fpu += time.fpu;
+    account.divider += time.divider;
+    account.banks += time.banks;
+    account.rounding += time.rounding;
+    last_arrival_ = kernel_.now();
+    arrivals_ += cycles_since(dispatch.begin, last_arrival_);
+    co_await end_of_fork_.arrive();
+  }
+}
+
+}  // namespace leviosim::sim

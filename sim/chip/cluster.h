@@ -1,0 +1,62 @@
+// A cluster of worker cores and a master that executes the steps of a job one after the other:
+// serial work by the master, forks on the team, DMA transfers that the master waits for.
+//
+// Models: the path of a team fork (dispatch by the master, wake-up of the workers, barrier at the
+// end), DMA programming, latency, payload and completion, contention within a team (team.h).
+// Leaves out: DMA payload competing with cores for banks (a master that waits has idle workers),
+// instruction fetches.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/chip/team.h"
+#include "sim/chip/timing.h"
+#include "sim/kernel/channel.h"
+#include "sim/work/program.h"
+
+namespace leviosim::sim {
+
+class Cluster {
+ public:
+  /// @param workers  size of the team, ≤ config.max_workers
+  Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
+
+  /// co_await: the master runs the job. If the job was recorded for another number of workers,
+  /// worker w of W runs shares w, w+W, … one after the other. One job at a time.
+  Task<JobTiming> run(const work::Job& job);
+
+  const ClockDomain& clock() const { return clock_; }
+  int workers() const { return workers_; }
+
+ private:
+  /// What a worker is sent: its shares, and where it reports to.
+  struct Dispatch {
+    const work::Fork* fork;
+    Account* account;
+    Time begin;  ///< of the fork
+  };
+
+  Process worker(int id);
+  Task<> step(const work::Serial& serial, Account& account);
+  Task<> step(const work::Fork& fork, Account& account);
+  Task<> step(const work::Transfer& transfer, Account& account);
+  Duration cycles(double n) const;
+  double cycles_since(Time begin, Time end) const;
+
+  Kernel& kernel_;
+  const ClockDomain& clock_;
+  ClusterConfig config_;
+  int workers_;
+  Team team_;  ///< the workers and, last, the master
+  Barrier end_of_fork_;
+  std::vector<std::unique_ptr<Channel<Dispatch>>> dispatch_;
+  Time last_arrival_;
+  double arrivals_ =
+      0;  ///< arrival times of the workers after the begin of the fork, summed, cycles
+};
+
+/// Cycles that a blocking transfer takes from its programming until the master goes on.
+double transfer_cycles(const DmaConfig& dma, Bytes bytes);
+
+}  // namespace leviosim::sim

@@ -1,0 +1,97 @@
+// The numbers that describe a chip: what a platform file (platform_models/) fills in. Every
+// number's source stands beside it in the platform file; the comments here say what it means.
+//
+// Cycles are cycles of the clock domain that the structure belongs to. They are real numbers where
+// the value is an average over many events.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "sim/units.h"
+#include "sim/work/op.h"
+
+namespace leviosim::sim {
+
+/// Which unit an operation occupies besides its core.
+enum class Unit : std::uint8_t { Core, Fpu, Divider };
+
+/// What one counted operation costs a core that is alone.
+struct OpCost {
+  double issue = 0;  ///< instructions issued
+  double stall = 0;  ///< cycles the pipeline waits in addition
+  Unit unit = Unit::Core;
+};
+
+/// How counted operations become instructions of one instruction set, and their latencies.
+struct CoreConfig {
+  std::array<OpCost, work::kOpCount> ops{};
+  double instruction_overhead = 1;  ///< instructions emitted per instruction accounted for by ops
+  double load_use_fraction = 0;     ///< share of loads whose result the next instruction uses
+  double load_use_stall = 0;        ///< cycles such a load waits
+
+  const OpCost& operator[](work::Op op) const { return ops[work::index(op)]; }
+};
+
+/// Floating-point units shared by the cores of a cluster.
+enum class FpuMapping : std::uint8_t {
+  Fixed,   ///< core c uses unit c mod n
+  Dynamic  ///< any core uses any free unit
+};
+
+struct FpuConfig {
+  int units = 0;
+  FpuMapping mapping = FpuMapping::Fixed;
+  double cycles_per_op = 1;  ///< occupation of a unit by one add, multiply, fma, …
+  int dividers = 0;          ///< divide/square-root units of the cluster
+  double cycles_per_division = 0;
+};
+
+struct L1Config {
+  Bytes size;
+  int banks = 1;
+};
+
+struct DmaConfig {
+  double programming = 0;      ///< cycles of the programming core per transfer, API included
+  double first_data = 0;       ///< latency until the first beat arrives
+  double bytes_per_cycle = 0;  ///< payload
+  double completion = 0;       ///< from the last beat until the waiting core goes on
+};
+
+struct EventUnitConfig {
+  double fork_master = 0;  ///< master: masks, dispatch of entry and argument
+  double fork_worker = 0;  ///< worker: wake-up, fetch of entry and argument, jump
+  double barrier = 0;      ///< from the last arrival until everyone goes on
+  double offload = 0;      ///< controller → cluster task, one way, in cycles of the controller
+};
+
+struct ClusterConfig {
+  Hertz clock;
+  int workers = 0;
+  int max_workers = 0;  ///< what the event unit can serve
+  CoreConfig core;
+  FpuConfig fpu;
+  L1Config l1;
+  DmaConfig dma;
+  EventUnitConfig events;
+};
+
+/// The fabric controller: one core with its own floating-point unit; its memory is L2.
+struct ControllerConfig {
+  Hertz clock;
+  CoreConfig core;
+};
+
+struct L2Config {
+  Bytes size;
+};
+
+struct ChipConfig {
+  std::string name;
+  ClusterConfig cluster;
+  ControllerConfig controller;
+  L2Config l2;
+};
+
+}  // namespace leviosim::sim

@@ -1,0 +1,30 @@
+// The fabric controller: one core with its own floating-point unit, working in L2. It runs jobs of
+// serial work; it shares nothing that this workload contends for.
+#pragma once
+
+#include "sim/chip/config.h"
+#include "sim/chip/timing.h"
+#include "sim/kernel/kernel.h"
+#include "sim/kernel/task.h"
+#include "sim/work/program.h"
+
+namespace leviosim::sim {
+
+class Controller {
+ public:
+  Controller(Kernel& kernel, const ClockDomain& clock, const ControllerConfig& config)
+      : kernel_(kernel), clock_(clock), config_(config) {}
+
+  /// co_await: runs the job. Forks run their shares one after the other; transfers copy nothing,
+  /// since the controller works where the data lies.
+  Task<JobTiming> run(const work::Job& job);
+
+  const ClockDomain& clock() const { return clock_; }
+
+ private:
+  Kernel& kernel_;
+  const ClockDomain& clock_;
+  ControllerConfig config_;
+};
+
+}  // namespace leviosim::sim

@@ -1,0 +1,38 @@
+// What a piece of counted work costs a core that runs alone, and what it asks of shared units.
+//
+// Models: issue slots of an in-order single-issue core, load-use and taken-branch stalls,
+// latencies. Leaves out: instruction-cache refills and the order of instructions within a piece of
+// work.
+#pragma once
+
+#include "sim/chip/config.h"
+#include "sim/work/counts.h"
+
+namespace leviosim::sim {
+
+/// Where the cycles of a core that runs alone go. All in cycles of its clock.
+struct CycleBreakdown {
+  double issue = 0;       ///< instructions
+  double load_use = 0;    ///< waiting for a loaded value
+  double control = 0;     ///< refilling the pipeline after branches, calls and loop entries
+  double memory = 0;      ///< L2 latency and words that straddle
+  double arithmetic = 0;  ///< integer divisions and floating-point latencies
+
+  double total() const { return issue + load_use + control + memory + arithmetic; }
+  CycleBreakdown& operator+=(const CycleBreakdown& o);
+  friend CycleBreakdown operator*(const CycleBreakdown& b, double k);
+};
+
+/// Demands of one segment.
+struct Demand {
+  CycleBreakdown alone;
+  double fpu_ops = 0;      ///< operations of the shared floating-point units
+  double divisions = 0;    ///< operations of the shared divider
+  double l1_accesses = 0;  ///< loads and stores of the core's local memory
+
+  double cycles() const { return alone.total(); }
+};
+
+Demand price(const work::Counts& counts, const CoreConfig& core);
+
+}  // namespace leviosim::sim

@@ -1,0 +1,100 @@
+#include "sim/chip/team.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/check.h"
+
+namespace leviosim::sim {
+namespace {
+
+// Rates are quotients: what is left at the end of a piece of work may miss zero by rounding.
+constexpr double kNothingLeft = 1e-6;
+
+}  // namespace
+
+Team::Core::Core(Kernel& kernel, int id) : end(kernel, fmt::format("end of work on core {}", id)) {}
+
+Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int cores)
+    : kernel_(kernel),
+      clock_(clock),
+      core_config_(config.core),
+      contention_(config.fpu, config.l1),
+      changed_(kernel, "change of running cores") {
+  for (int id = 0; id < cores; ++id) cores_.push_back(std::make_unique<Core>(kernel, id));
+  kernel_.spawn_server("contention", settle());
+}
+
+Task<SegmentTime> Team::execute(int id, const work::Counts& counts) {
+  Core& core = *cores_.at(static_cast<std::size_t>(id));
+  check(!core.running, "a core runs one piece of work at a time");
+  core.demand = price(counts, core_config_);
+  core.remaining = core.demand.cycles();
+  core.time = {};
+  core.progress = {};
+  const Time begin = kernel_.now();
+  advance();
+  core.running = true;
+  note_change();
+  co_await core.end.expired();
+  advance();
+  core.running = false;
+  note_change();
+  core.time.alone = core.demand.alone;
+  const auto elapsed = static_cast<double>(clock_.whole_cycles(kernel_.now() - begin).count());
+  core.time.rounding =
+      elapsed - core.demand.cycles() - core.time.fpu - core.time.divider - core.time.banks;
+  co_return core.time;
+}
+
+void Team::note_change() {
+  if (change_noted_) return;
+  change_noted_ = true;
+  changed_.notify();
+}
+
+Process Team::settle() {
+  for (;;) {
+    if (!change_noted_) co_await changed_.wait();
+    co_await kernel_.delay(Duration(0), Phase::Settle);
+    change_noted_ = false;
+    solve();
+  }
+}
+
+/// Books the time since the last change at the rates that were valid then.
+void Team::advance() {
+  const auto cycles =
+      static_cast<double>(clock_.whole_cycles(kernel_.now() - advanced_to_).count());
+  advanced_to_ = kernel_.now();
+  if (cycles == 0) return;
+  for (const auto& core : cores_) {
+    if (!core->running) continue;
+    // The last, partial cycle of a piece of work is not lost to anybody: it is rounding.
+    const double worked = std::min(cycles, core->remaining / core->progress.rate);
+    core->remaining -= worked * core->progress.rate;
+    core->time.fpu += worked * core->progress.fpu;
+    core->time.divider += worked * core->progress.divider;
+    core->time.banks += worked * core->progress.banks;
+  }
+}
+
+void Team::solve() {
+  advance();
+  runners_.clear();
+  for (std::size_t id = 0; id < cores_.size(); ++id)
+    if (cores_[id]->running)
+      runners_.push_back(Runner::of(static_cast<int>(id), cores_[id]->demand));
+  contention_.solve(runners_, progress_);
+  for (std::size_t i = 0; i < runners_.size(); ++i) {
+    Core& core = *cores_[static_cast<std::size_t>(runners_[i].core)];
+    core.progress = progress_[i];
+    const double left = std::ceil(core.remaining / core.progress.rate - kNothingLeft);
+    const Cycles cycles(static_cast<std::int64_t>(std::max(left, 0.0)));
+    core.end.arm(kernel_.now() + clock_.duration(cycles));
+  }
+}
+
+}  // namespace leviosim::sim

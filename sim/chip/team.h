@@ -1,0 +1,64 @@
+// Cores of a cluster that run pieces of work at the same time and share units.
+//
+// Whenever a core starts or ends a piece of work, the rates of all running ones are solved again
+// (contention.h), once per instant, and their ends are moved. No cycle is stepped.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/chip/contention.h"
+#include "sim/chip/cost.h"
+#include "sim/kernel/kernel.h"
+#include "sim/kernel/sync.h"
+#include "sim/kernel/task.h"
+#include "sim/kernel/timer.h"
+
+namespace leviosim::sim {
+
+/// Where the time of one piece of work went, in cycles.
+struct SegmentTime {
+  CycleBreakdown alone;
+  double fpu = 0;
+  double divider = 0;
+  double banks = 0;
+  double rounding = 0;
+};
+
+class Team {
+ public:
+  /// @param cores  ids 0 … cores-1
+  Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int cores);
+
+  /// co_await: core `id` runs `counts`; at most one piece of work per core at a time.
+  Task<SegmentTime> execute(int id, const work::Counts& counts);
+
+ private:
+  struct Core {
+    explicit Core(Kernel& kernel, int id);
+    Timer end;
+    bool running = false;
+    Demand demand;
+    double remaining = 0;  ///< lone cycles still to do
+    Progress progress;
+    SegmentTime time;
+  };
+
+  Process settle();
+  void note_change();
+  void advance();
+  void solve();
+
+  Kernel& kernel_;
+  const ClockDomain& clock_;
+  CoreConfig core_config_;
+  Contention contention_;
+  std::vector<std::unique_ptr<Core>> cores_;
+  std::vector<Runner> runners_;
+  std::vector<Progress> progress_;
+  Event changed_;
+  bool change_noted_ = false;
+  Time advanced_to_;
+};
+
+}  // namespace leviosim::sim

@@ -1,0 +1,18 @@
+#include "sim/chip/timing.h"
+
+namespace leviosim::sim {
+
+Account& Account::operator+=(const Account& o) {
+  useful += o.useful;
+  fpu += o.fpu;
+  divider += o.divider;
+  banks += o.banks;
+  imbalance += o.imbalance;
+  synchronisation += o.synchronisation;
+  transfer += o.transfer;
+  serial += o.serial;
+  rounding += o.rounding;
+  return *this;
+}
+
+}  // namespace leviosim::sim

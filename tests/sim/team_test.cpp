@@ -1,0 +1,154 @@
+// Cores that share units, against closed formulas and the vendor's calibration table (hw_facts 3.2).
+#include "sim/chip/team.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/sim/chip_test_config.h"
+
+namespace leviosim::sim {
+namespace {
+
+using work::Counts;
+using work::Op;
+
+Counts counts(std::initializer_list<std::pair<Op, std::uint64_t>> list) {
+  Counts c;
+  for (const auto& [op, n] : list) c[op] += n;
+  return c;
+}
+
+struct Outcome {
+  std::vector<std::int64_t> cycles;
+  std::vector<SegmentTime> time;
+};
+
+/// Runs work[i] on core i, all starting at cycle start[i], and returns how long each took.
+Outcome run_together(const std::vector<Counts>& work, ClusterConfig config = test_cluster(),
+                     std::vector<std::int64_t> start = {}) {
+  const Timebase timebase({{"cluster", config.clock}});
+  const ClockDomain& clock = timebase.clock("cluster");
+  start.resize(work.size(), 0);
+  Outcome out{std::vector<std::int64_t>(work.size()), std::vector<SegmentTime>(work.size())};
+  Kernel kernel;
+  Team team(kernel, clock, config, static_cast<int>(work.size()));
+  const auto body = [&](std::size_t i) -> Process {
+    co_await kernel.delay(clock.duration(Cycles(start[i])));
+    const Time begin = kernel.now();
+    out.time[i] = co_await team.execute(static_cast<int>(i), work[i]);
+    out.cycles[i] = clock.whole_cycles(kernel.now() - begin).count();
+  };
+  for (std::size_t i = 0; i < work.size(); ++i) kernel.spawn("test", body(i));
+  EXPECT_EQ(kernel.run(), 0U);
+  return out;
+}
+
+constexpr std::uint64_t kN = 10'000;
+
+/// Cycles per slot when `cores` cores run the same stream at the same time; the longest of them.
+double per_slot(int cores, const Counts& stream, double slots) {
+  ClusterConfig config = test_cluster();
+  config.l1.banks = 1 << 20;  // the streams access no memory
+  const Outcome o = run_together(std::vector<Counts>(static_cast<std::size_t>(cores), stream), config);
+  return static_cast<double>(*std::max_element(o.cycles.begin(), o.cycles.end())) / slots;
+}
+
+TEST(Team, OneCoreAloneTakesItsLoneTime) {
+  const Outcome o = run_together({counts({{Op::IntAlu, 100}, {Op::F32Fma, 50}, {Op::F32Div, 3}})});
+  EXPECT_EQ(o.cycles[0], 100 + 50 + 3 * 14);
+  EXPECT_EQ(o.time[0].fpu, 0);
+  EXPECT_EQ(o.time[0].divider, 0);
+  EXPECT_EQ(o.time[0].rounding, 0);
+}
+
+TEST(Team, NoWorkTakesNoTime) { EXPECT_EQ(run_together({Counts{}}).cycles[0], 0); }
+
+TEST(Team, TwoCoresOnOneFpuTakeTurns) {
+  const Counts stream = counts({{Op::F32Add, kN}});
+  std::vector<Counts> work(5);
+  work[0] = work[4] = stream;  // unit 0 serves cores 0 and 4
+  const Outcome same = run_together(work);
+  EXPECT_EQ(same.cycles[0], 2 * static_cast<std::int64_t>(kN));
+  EXPECT_EQ(same.cycles[4], 2 * static_cast<std::int64_t>(kN));
+  EXPECT_DOUBLE_EQ(same.time[0].fpu, static_cast<double>(kN));
+  work[4] = Counts{};
+  work[1] = stream;  // unit 1
+  const Outcome apart = run_together(work);
+  EXPECT_EQ(apart.cycles[0], static_cast<std::int64_t>(kN));
+  EXPECT_EQ(apart.cycles[1], static_cast<std::int64_t>(kN));
+}
+
+TEST(Team, ALateStarterSlowsOnlyWhatIsLeft) {
+  std::vector<Counts> work(5);
+  work[0] = counts({{Op::F32Add, 1000}});
+  work[4] = counts({{Op::F32Add, 1000}});
+  const Outcome o = run_together(work, test_cluster(), {0, 0, 0, 0, 400});
+  // Core 0: 400 alone, then 600 at half speed. Core 4: 600 done when core 0 ends, 400 alone.
+  EXPECT_EQ(o.cycles[0], 400 + 2 * 600);
+  EXPECT_EQ(o.cycles[4], 2 * 600 + 400);
+}
+
+TEST(Team, DynamicMappingUsesAnyFreeUnit) {
+  ClusterConfig config = test_cluster();
+  config.fpu.mapping = FpuMapping::Dynamic;
+  std::vector<Counts> work(5);
+  work[0] = work[4] = counts({{Op::F32Add, 1000}});
+  EXPECT_EQ(run_together(work, config).cycles[0], 1000);
+}
+
+struct CalibrationRow {
+  const char* name;
+  Op op;
+  std::uint64_t nops;   ///< between two operations
+  double expected[4];   ///< cycles per slot on 1, 5, 8, 9 cores
+};
+
+TEST(Team, VendorCalibrationTableWithinFivePercent) {
+  const CalibrationRow rows[] = {
+      {"add stream", Op::F32Add, 0, {1.02, 2.02, 2.02, 3.02}},
+      {"add and nop", Op::F32Add, 1, {1.02, 1.02, 1.03, 1.52}},
+      {"fdiv.s", Op::F32Div, 0, {14.02, 70.05, 112.09, 126.10}},
+      {"fsqrt.s", Op::F32Sqrt, 0, {14.02, 70.05, 112.09, 126.10}},
+      {"fdiv.s and nop", Op::F32Div, 1, {7.5, 35.3, 56.1, 63.1}},
+  };
+  const int cores[] = {1, 5, 8, 9};
+  for (const CalibrationRow& row : rows)
+    for (int i = 0; i < 4; ++i) {
+      const Counts stream = counts({{row.op, kN}, {Op::IntAlu, row.nops * kN}});
+      const double slots = static_cast<double>(kN * (1 + row.nops));
+      EXPECT_NEAR(per_slot(cores[i], stream, slots), row.expected[i], 0.05 * row.expected[i])
+          << row.name << " on " << cores[i] << " cores";
+    }
+}
+
+TEST(Team, TheDividerIsIndependentOfTheFpus) {
+  std::vector<Counts> work(8, counts({{Op::F32Add, 28 * kN}}));
+  work[0] = counts({{Op::F32Div, kN}});
+  const Outcome o = run_together(work);
+  EXPECT_NEAR(static_cast<double>(o.cycles[0]) / kN, 14.11, 0.05 * 14.11);
+}
+
+TEST(Team, BankConflictsDelayEachAccessByTheOthersDemand) {
+  // Eight cores, each cycle an access: an access waits 7·r/(2·16), r the accesses per cycle.
+  const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadStream, kN}})));
+  const double r = (-1 + std::sqrt(1 + 4 * 7.0 / 32)) / (2 * 7.0 / 32);  // r = 1/(1 + 7 r/32)
+  EXPECT_NEAR(static_cast<double>(o.cycles[0]), kN / r, 2);
+  EXPECT_NEAR(o.time[0].banks, kN / r - kN, 2);
+}
+
+TEST(Team, MixedDemandsNeverExceedAUnitAndLeaveNoneIdleNeedlessly) {
+  // Cores 0 and 4 share a unit with demands 0.9 and 0.3: together 1.2 of 1. The small one gets all
+  // it asks for, the large one the rest.
+  std::vector<Counts> work(5);
+  work[0] = counts({{Op::F32Add, 9 * kN}, {Op::IntAlu, kN}});
+  work[4] = counts({{Op::F32Add, 30 * kN}, {Op::IntAlu, 70 * kN}});
+  const Outcome o = run_together(work);
+  EXPECT_NEAR(static_cast<double>(o.cycles[0]), 10.0 * kN * 0.9 / 0.7, 2);
+  EXPECT_EQ(o.cycles[4], static_cast<std::int64_t>(100 * kN));
+}
+
+}  // namespace
+}  // namespace leviosim::sim
