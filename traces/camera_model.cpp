@@ -42,8 +42,14 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& distorted) const {
   Eigen::Vector2d point = distorted;
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Vector2d error = distort(point) - distorted;
-    if (error.squaredNorm() < kTolerance * kTolerance) return point;
-    point -= distortion_jacobian(*this, point).inverse() * error;
+    const Eigen::Matrix2d jacobian = distortion_jacobian(*this, point);
+    if (error.squaredNorm() < kTolerance * kTolerance) {
+      // Beyond the bend of the polynomial there are further solutions, which no lens has.
+      const bool same_side = point.dot(distorted) >= 0;
+      if (!same_side || jacobian.determinant() <= 0) break;
+      return point;
+    }
+    point -= jacobian.inverse() * error;
   }
   throw InputError(
       fmt::format("the distortion coefficients [{}, {}, {}, {}] cannot be inverted at the image "

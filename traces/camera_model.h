@@ -23,8 +23,7 @@ struct CameraModel {
   Eigen::Vector2d distort(const Eigen::Vector2d& normalized) const;
 
   /// Undoes distort() by Newton's method to 1e-12; exact within the image of EuRoC's lens. Throws
-  /// InputError if it does not converge, which means that the coefficients cannot be inverted
-  /// there.
+  /// InputError if there is no solution before the bend of the distortion polynomial.
   Eigen::Vector2d undistort(const Eigen::Vector2d& distorted) const;
 
   /// The pixel that sees a point of the camera frame with z > 0.

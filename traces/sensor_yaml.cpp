@@ -33,8 +33,8 @@ Eigen::Isometry3d read_extrinsics(const YamlMap& sensor) {
 int read_pixels(const YamlMap& sensor, double value) {
   constexpr double kMost = 65535;
   if (value < 1 || value > kMost || value != std::floor(value))
-    sensor.fail("resolution", fmt::format("{} is not a whole number of pixels (1 ... {})", value,
-                                          kMost));
+    sensor.fail("resolution",
+                fmt::format("{} is not a whole number of pixels (1 ... {})", value, kMost));
   return static_cast<int>(value);
 }
 

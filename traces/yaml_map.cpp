@@ -43,8 +43,8 @@ YamlMap YamlMap::load(const std::filesystem::path& file) {
   try {
     const YAML::Node root = YAML::Load(read_text_file(file));
     if (!root.IsMap())
-      throw InputError(fmt::format("{}: is {}; expected keys and values", file.string(),
-                                   kind_of(root)));
+      throw InputError(
+          fmt::format("{}: is {}; expected keys and values", file.string(), kind_of(root)));
     return YamlMap(file, "", root);
   } catch (const YAML::Exception& e) {
     throw InputError(fmt::format("{}: is no valid YAML: {}",
@@ -115,8 +115,7 @@ std::vector<double> YamlMap::numbers(const std::string& key, std::size_t size,
     fail_at(node, key,
             fmt::format("is {}; expected a list of {} numbers ({})", kind_of(node), size, meaning));
   if (node.size() != size)
-    fail_at(node, key,
-            fmt::format("has {} entries; expected {} ({})", node.size(), size, meaning));
+    fail_at(node, key, fmt::format("has {} entries; expected {} ({})", node.size(), size, meaning));
   std::vector<double> values(size);
   for (std::size_t i = 0; i < size; ++i) {
     const YAML::Node entry = node[i];

@@ -71,9 +71,13 @@ class Channel {
   PopAwaiter pop() { return {*this, std::nullopt}; }
 
  private:
+  std::size_t wrapped(std::size_t index) const {
+    return index < capacity() ? index : index - capacity();
+  }
+
   void put(T value) {
     if (consumers_.empty()) {
-      slots_[(first_ + size_) % capacity()] = std::move(value);
+      slots_[wrapped(first_ + size_)] = std::move(value);
       ++size_;
       return;
     }
@@ -84,7 +88,7 @@ class Channel {
   T take() {
     T value = std::move(*slots_[first_]);
     slots_[first_].reset();
-    first_ = (first_ + 1) % capacity();
+    first_ = wrapped(first_ + 1);
     --size_;
     if (!producers_.empty()) {
       put(std::move(*static_cast<T*>(producers_.front().exchange)));

@@ -6,14 +6,15 @@
 //
 // The lists are thread_local, the one piece of mutable state outside objects: several simulations
 // may run in several host threads, a frame's operator new has no place to carry a pool in, and
-// nothing simulated can observe which block a frame gets. A frame freed in another thread than it was
-// allocated in joins the lists of the thread that frees it. Each thread returns its lists to the
-// system when it ends. With AddressSanitizer nothing is recycled, so that it sees every use after
-// free.
+// nothing simulated can observe which block a frame gets. A frame freed in another thread than it
+// was allocated in joins the lists of the thread that frees it. Each thread returns its lists to
+// the system when it ends. With AddressSanitizer nothing is recycled, so that it sees every use
+// after free.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <new>
 
 namespace leviosim::sim {
 
@@ -38,7 +39,7 @@ class PooledFrame {
   }
 
  private:
-  static constexpr std::size_t kGranule = 64;           // one cache line of the host
+  static constexpr std::size_t kGranule = 64;             // one cache line of the host
   static constexpr std::size_t kLargest = 32 * kGranule;  // larger frames are not recycled
 
   struct FreeBlock {

@@ -50,13 +50,22 @@ void Kernel::adopt(std::string name, Process process, bool server) {
   state.name = std::move(name);
   state.server = server;
   state.kernel = this;
+  state.slot = add_alarm({handle, &state, nullptr});
   state.previous_process = last_process_;
   (last_process_ == nullptr ? first_process_ : last_process_->next_process) = &state;
   last_process_ = &state;
   schedule(now_, Phase::Run, state);
 }
 
+Slot Kernel::add_alarm(const Alarm& alarm) {
+  const Slot slot = future_.add_slot();
+  if (slot >= alarms_.size()) alarms_.resize(slot + 1);
+  alarms_[slot] = alarm;
+  return slot;
+}
+
 void Kernel::unlink(ProcessState& process) {
+  future_.free_slot(process.slot);
   ProcessState* const before = process.previous_process;
   ProcessState* const after = process.next_process;
   (before == nullptr ? first_process_ : before->next_process) = after;
@@ -66,8 +75,7 @@ void Kernel::unlink(ProcessState& process) {
 std::size_t Kernel::run() {
   check(!running_, "a kernel is run from within one of its processes");
   const Raised running(running_);
-  while (execute_next(Time::max())) {
-  }
+  execute_all(Time::max());
   std::size_t deadlocked = 0;
   for (const ProcessState* p = first_process_; p != nullptr; p = p->next_process)
     deadlocked += p->server ? 0 : 1;
@@ -78,50 +86,47 @@ void Kernel::run_until(Time end) {
   check(!running_, "a kernel is run from within one of its processes");
   check(end >= now_, "a kernel is run until a time that has passed");
   const Raised running(running_);
-  while (execute_next(end)) {
-  }
+  execute_all(end);
   now_ = end;
 }
 
-bool Kernel::execute_next(Time end) {
-  future_.close_vacancy();
-  timers_.close_vacancy();
-  EventKey next = EventKey::last();
-  const int phase = std::countr_zero(ready_phases_);
-  if (ready_phases_ != 0) next = {now_, ready_[static_cast<std::size_t>(phase)].front().rank};
-  const EventKey first_future = future_.first_key();
-  const EventKey first_timer = timers_.first_key();
-
-  if (first_timer < next && first_timer < first_future) {
-    if (first_timer.time > end) return false;
-    now_ = first_timer.time;
-    if (ProcessState* const waiter = expire_first_timer()) execute(*waiter);
-  } else if (first_future < next) {
-    if (first_future.time > end) return false;
-    now_ = first_future.time;
-    execute(*future_.take_first());
-  } else {
-    if (ready_phases_ == 0) return false;
-    ProcessList& ready = ready_[static_cast<std::size_t>(phase)];
-    ProcessState& process = ready.pop();
-    if (ready.empty()) ready_phases_ &= ready_phases_ - 1;
-    execute(process);
+void Kernel::execute_all(Time end) {
+  for (;;) {
+    const EventKey next = future_.first();
+    if (ready_phases_ != 0) {
+      ProcessList& ready = ready_[static_cast<std::size_t>(std::countr_zero(ready_phases_))];
+      if (EventKey{now_, ready.front().rank} < next) {
+        execute_first(ready);
+        continue;
+      }
+    }
+    if (next.time > end || next == EventKey::never()) return;
+    now_ = next.time;
+    execute_future();
   }
-  return true;
 }
 
-void Kernel::execute(ProcessState& process) {
+void Kernel::execute_first(ProcessList& ready) {
+  ProcessState& process = ready.pop();
+  if (ready.empty()) ready_phases_ &= ready_phases_ - 1;  // `ready` is that of the lowest bit
+  resume(process, process.resume_point);
+}
+
+void Kernel::execute_future() {
+  const Alarm& alarm = alarms_[future_.take_first()];
+  if (alarm.timer == nullptr) {
+    resume(*alarm.process, alarm.resume_point);
+  } else if (ProcessState* const waiter = alarm.timer->expire()) {
+    resume(*waiter, waiter->resume_point);
+  }
+}
+
+void Kernel::resume(ProcessState& process, std::coroutine_handle<> resume_point) {
   ++events_executed_;
   current_ = &process;
-  process.resume_point.resume();  // `process` may have ended with this
+  resume_point.resume();  // `process` may have ended with this
   if (failure_) [[unlikely]]
     rethrow_failure();
-}
-
-ProcessState* Kernel::expire_first_timer() {
-  Timer& timer = *timers_.take_first();
-  timer.expired_ = timer.waiter_ == nullptr;
-  return std::exchange(timer.waiter_, nullptr);
 }
 
 void Kernel::rethrow_failure() { std::rethrow_exception(std::exchange(failure_, nullptr)); }

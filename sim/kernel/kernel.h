@@ -28,14 +28,14 @@
 
 namespace leviosim::sim {
 
-class Timer;
-
 /// A process that nothing scheduled will wake.
 struct BlockedProcess {
   std::string name;
   std::string waits_for;  ///< name of the event, barrier, semaphore, channel or timer
   bool server;            ///< whether waiting for ever is its normal end
 };
+
+class Timer;
 
 class Kernel {
  public:
@@ -73,8 +73,8 @@ class Kernel {
     }
     void await_resume() const noexcept {}
   };
-  /// co_await: continues at now() + `duration` (>= 0). A delay of 0 lets all others run that are due
-  /// in this instant up to `phase`.
+  /// co_await: continues at now() + `duration` (>= 0). A delay of 0 lets all others run that are
+  /// due in this instant up to `phase`.
   TimeAwaiter delay(Duration duration, Phase phase = Phase::Run) {
     check(duration >= Duration(0) && duration <= Time::max() - now_,
           "a delay is negative or beyond the end of time");
@@ -93,12 +93,14 @@ class Kernel {
   /// Makes a suspended process continue at `time` (>= now()).
   void schedule(Time time, Phase phase, ProcessState& process) {
     check(time >= now_, "an event is scheduled in the past");
-    const std::uint64_t rank = next_rank(phase);
+    const std::uint64_t rank = next_rank(phase, process.slot);
     process.waits_for = nullptr;
-    if (time == now_)
+    if (time == now_) {
       make_ready(phase, rank, process);
-    else
-      future_.push({time, rank}, &process);
+    } else {
+      alarms_[process.slot].resume_point = process.resume_point;
+      future_.set({time, rank});
+    }
   }
   /// True while the kernel is destroyed: processes must no longer be touched.
   bool closing() const { return closing_; }
@@ -110,11 +112,23 @@ class Kernel {
 
   void adopt(std::string name, Process process, bool server);
   void unlink(ProcessState& process);
-  bool execute_next(Time end);
-  void execute(ProcessState& process);
-  ProcessState* expire_first_timer();
+  /// Whose event it is when a slot's comes. A process's resume point is repeated here because
+  /// following pointers to it is most of what an event costs.
+  struct Alarm {
+    std::coroutine_handle<> resume_point;
+    ProcessState* process = nullptr;
+    Timer* timer = nullptr;  ///< set for timers instead of the others
+  };
+
+  Slot add_alarm(const Alarm& alarm);
+  void execute_all(Time end);
+  void execute_first(ProcessList& ready);
+  void execute_future();
+  void resume(ProcessState& process, std::coroutine_handle<> resume_point);
   [[noreturn]] void rethrow_failure();
-  std::uint64_t next_rank(Phase phase) { return event_rank(phase, next_sequence_++); }
+  std::uint64_t next_rank(Phase phase, Slot slot) {
+    return event_rank(phase, next_sequence_++, slot);
+  }
   void make_ready(Phase phase, std::uint64_t rank, ProcessState& process) {
     process.rank = rank;
     ready_[static_cast<std::size_t>(phase)].push(process);
@@ -125,10 +139,10 @@ class Kernel {
   ProcessState* current_ = nullptr;
   std::uint64_t next_sequence_ = 0;
   std::uint64_t events_executed_ = 0;
-  std::array<ProcessList, kPhases> ready_;  // due now, scheduled during this instant
+  std::array<ProcessList, kPhases> ready_;  // scheduled during the instant in which it is due
   unsigned ready_phases_ = 0;               // bit p: ready_[p] is not empty
-  EventHeap<ProcessState*> future_;         // scheduled before the instant at which they are due
-  EventHeap<Timer*> timers_;                // armed timers
+  EventQueue future_;                       // everything else, and all timers
+  std::vector<Alarm> alarms_;               // by slot
   std::exception_ptr failure_;              // what left the process that ran last
   ProcessState* first_process_ = nullptr;
   ProcessState* last_process_ = nullptr;

@@ -15,6 +15,7 @@
 #include <string>
 #include <utility>
 
+#include "sim/kernel/event_queue.h"
 #include "sim/kernel/frame_pool.h"
 
 namespace leviosim::sim {
@@ -32,6 +33,7 @@ struct ProcessState {
   std::coroutine_handle<> resume_point;      ///< innermost suspended coroutine of this process
   ProcessState* next_in_list = nullptr;      ///< link of the list it waits in
   std::uint64_t rank = 0;                    ///< order among the ready, see EventKey
+  Slot slot = 0;                             ///< its slot in the event queue
   const char* waits_for = nullptr;           ///< name of what must wake it; null when scheduled
   void* exchange = nullptr;                  ///< what it gives or gets, known to what it waits for
   Kernel* kernel = nullptr;                  ///< owner, once spawned

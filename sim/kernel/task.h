@@ -47,7 +47,7 @@ struct TaskPromiseBase : PooledFrame {
 
 template <class T>
 struct TaskPromise : TaskPromiseBase {
-  template <class U>
+  template <class U = T>
   void return_value(U&& returned) {
     value.emplace(std::forward<U>(returned));
   }

@@ -29,8 +29,8 @@ std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
 std::string listed(const std::vector<ClockSpec>& clocks) {
   std::string text;
   for (const ClockSpec& clock : clocks)
-    text += fmt::format("{}{} {} Hz", text.empty() ? "" : ", ", clock.name,
-                        clock.frequency.count());
+    text +=
+        fmt::format("{}{} {} Hz", text.empty() ? "" : ", ", clock.name, clock.frequency.count());
   return text;
 }
 

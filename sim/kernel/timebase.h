@@ -1,8 +1,8 @@
 // Exact simulated time over several clock domains.
 //
-// Models: time as a whole number of ticks. 370 MHz is no whole number of picoseconds, so the tick is
-// not a fixed unit: a Timebase chooses ticks per second as the least common multiple of all clock
-// frequencies and 1e9, and so a cycle of every clock and a nanosecond (the unit of sensor
+// Models: time as a whole number of ticks. 370 MHz is no whole number of picoseconds, so the tick
+// is not a fixed unit: a Timebase chooses ticks per second as the least common multiple of all
+// clock frequencies and 1e9, and so a cycle of every clock and a nanosecond (the unit of sensor
 // timestamps) are whole numbers of ticks. Conversions never round unless their name says so.
 // GAP9 with 370 MHz, 240 MHz and nanoseconds: 222e9 ticks per second.
 //

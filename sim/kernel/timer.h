@@ -1,15 +1,13 @@
 // A timer that can be armed again and cancelled: the end of something whose pace may change.
 //
 // A model of shared resources arms the timer of every running segment again whenever the rates
-// change. The kernel keeps armed timers in an indexed heap: arming again moves the entry in place,
-// nothing stale is left behind.
+// change; that costs no more than scheduling it the first time (sim/kernel/event_queue.h).
 #pragma once
 
 #include <coroutine>
-#include <cstddef>
 #include <string>
+#include <utility>
 
-#include "sim/kernel/event_queue.h"
 #include "sim/kernel/kernel.h"
 
 namespace leviosim::sim {
@@ -27,7 +25,7 @@ class Timer {
   void arm(Time time, Phase phase = Phase::Run);
   /// Makes the timer not expire until it is armed again; who awaits it goes on waiting.
   void cancel();
-  bool armed() const { return heap_index != EventHeap<Timer*>::kAbsent; }
+  bool armed() const { return armed_; }
   /// When it will expire, while armed.
   Time expiry() const { return expiry_; }
 
@@ -41,16 +39,22 @@ class Timer {
   /// most one process awaits a timer. It need not be armed yet.
   Awaiter expired() { return {*this}; }
 
-  std::size_t heap_index = EventHeap<Timer*>::kAbsent;  ///< kept by the kernel
-
  private:
   friend class Kernel;
   void wait(std::coroutine_handle<> h);
+  /// Returns who continues, or null and remembers.
+  ProcessState* expire() {
+    armed_ = false;
+    expired_ = waiter_ == nullptr;
+    return std::exchange(waiter_, nullptr);
+  }
 
   Kernel& kernel_;
+  Slot slot_;
+  bool armed_ = false;
+  bool expired_ = false;  // with nobody waiting
   ProcessState* waiter_ = nullptr;
   Time expiry_;
-  bool expired_ = false;
   std::string name_;
 };
 

@@ -27,6 +27,17 @@ class MatrixView {
     return data_[work::I32(r * work::I32(cols_) + c)];
   }
   Span row(int r) const { return data_.subspan(r * cols_, cols_); }
+  /// A row known only from data: its start is computed once, its elements are then a stream.
+  Span row(work::I32 r) const {
+    const work::I32 offset = r * work::I32(cols_) + work::I32(0);
+    return data_.subspan(offset.v, cols_);
+  }
+  /// The matrix seen from column c on, so that (k, 0) walks down that column.
+  MatrixView from_column(int c) const { return {data_.subspan(c, data_.size() - c), rows_, cols_}; }
+  MatrixView from_column(work::I32 c) const {
+    const work::I32 offset = c + work::I32(0);
+    return from_column(offset.v);
+  }
 
  private:
   Span data_;

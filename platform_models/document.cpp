@@ -1,0 +1,252 @@
+#include "platform_models/document.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <utility>
+
+#include "platform_models/nearest.h"
+#include "platform_models/yaml_entries.h"
+
+namespace leviosim::platform {
+namespace {
+
+/// What a record says besides its values.
+struct Provenance {
+  std::string unit;
+  std::string source;
+  std::string confidence;
+  std::string note;
+};
+
+class Reader {
+ public:
+  Reader(const Schema& schema, const std::string& file) : schema_(schema), file_(file) {
+    document_.settings.resize(schema.fields().size());
+  }
+
+  Document read(const std::string& text);
+
+ private:
+  void read_header(const std::vector<YamlEntry>& root);
+  void read_sources(const YamlEntry& entry);
+  void read_section(const std::vector<YamlEntry>& entries, const std::string& path);
+  void read_record(const YamlEntry& entry, const std::string& path);
+  Provenance read_provenance(const std::vector<YamlEntry>& entries, const std::string& path,
+                             const Place& record) const;
+  void check_keys(const std::vector<YamlEntry>& entries, const std::string& path) const;
+  void check_source(const std::string& source, const Place& place) const;
+  void read_field(std::size_t index, const std::vector<YamlEntry>& entries,
+                  const Provenance& provenance, int line);
+  Range read_range_of(const Field& field, const YamlEntry& entry, const Setting& value) const;
+  void check_complete() const;
+  Place place(const YamlEntry& entry, const std::string& path) const {
+    return place_of(file_, entry.line, path);
+  }
+
+  const Schema& schema_;
+  std::string file_;
+  std::map<std::string, int> section_lines_;
+  Document document_;
+};
+
+/// Keys of the root that are about the file as a whole.
+bool is_header(std::string_view path) {
+  return path == "name" || path == "description" || path == "sources";
+}
+
+const YamlEntry* find(const std::vector<YamlEntry>& entries, const std::string& key) {
+  for (const YamlEntry& entry : entries)
+    if (entry.key == key) return &entry;
+  return nullptr;
+}
+
+Document Reader::read(const std::string& text) {
+  const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "", 1);
+  read_header(root);
+  read_section(root, "");
+  check_complete();
+  return std::move(document_);
+}
+
+void Reader::read_header(const std::vector<YamlEntry>& root) {
+  const auto text = [&](const std::string& key, std::string_view example) {
+    const YamlEntry* entry = find(root, key);
+    if (entry == nullptr)
+      place_of(file_, 1, key).fail(fmt::format("missing key; expected {}: {}", key, example));
+    const std::string value = scalar(entry->value, place(*entry, key));
+    if (trim(value).empty()) place(*entry, key).fail("is empty");
+    return value;
+  };
+  document_.name = text("name", "the name of the chip");
+  document_.description = text("description", "one line about the chip");
+  const YamlEntry* sources = find(root, "sources");
+  if (sources == nullptr)
+    place_of(file_, 1, "sources").fail("missing key; expected a map of sources");
+  read_sources(*sources);
+}
+
+void Reader::read_sources(const YamlEntry& entry) {
+  for (const YamlEntry& source : entries_of(entry.value, file_, entry.key, entry.line))
+    document_.sources[source.key] =
+        scalar(source.value, place(source, joined(entry.key, source.key)));
+}
+
+void Reader::read_section(const std::vector<YamlEntry>& entries, const std::string& path) {
+  for (const YamlEntry& entry : entries) {
+    const std::string inner = joined(path, entry.key);
+    if (is_header(inner)) continue;
+    if (schema_.is_section(inner)) {
+      section_lines_[inner] = entry.line;
+      read_section(entries_of(entry.value, file_, inner, entry.line), inner);
+    } else if (!schema_.record(inner).empty()) {
+      read_record(entry, inner);
+    } else {
+      place(entry, inner).fail("unknown key" + did_you_mean(inner, schema_.keys()));
+    }
+  }
+}
+
+void Reader::read_record(const YamlEntry& entry, const std::string& path) {
+  const Place record = place(entry, path);
+  const std::vector<std::size_t> indices = schema_.record(path);
+  if (!entry.value.IsMap())
+    record.fail(fmt::format("is {}; expected a map {{ {}: …, unit: …, source: …, confidence: … }}",
+                            kind_of(entry.value), schema_.fields()[indices.front()].name));
+  const std::vector<YamlEntry> entries = entries_of(entry.value, file_, path, entry.line);
+  check_keys(entries, path);
+  const Provenance provenance = read_provenance(entries, path, record);
+  bool any = false;
+  for (const std::size_t index : indices) {
+    const Field& field = schema_.fields()[index];
+    const bool given = find(entries, field.name) != nullptr;
+    any = any || given;
+    if (given)
+      read_field(index, entries, provenance, entry.line);
+    else if (field.required || find(entries, field.range_key()) != nullptr)
+      record.fail(fmt::format("missing key '{}' ({})", field.name, field.description));
+  }
+  if (!any)
+    record.fail(
+        fmt::format("gives no value; expected '{}'", schema_.fields()[indices.front()].name));
+}
+
+/// Every key of a record must be a column, the range of one, or one of the general keys.
+void Reader::check_keys(const std::vector<YamlEntry>& entries, const std::string& path) const {
+  std::vector<std::string> known;
+  bool has_unit = false;
+  for (const std::size_t index : schema_.record(path)) {
+    const Field& field = schema_.fields()[index];
+    known.push_back(field.name);
+    if (!field.is_choice()) known.push_back(field.range_key());
+    has_unit = has_unit || !field.is_choice();
+  }
+  if (has_unit) known.push_back("unit");
+  known.insert(known.end(), {"source", "confidence", "note"});
+  for (const YamlEntry& entry : entries) {
+    bool found = false;
+    for (const std::string& key : known) found = found || key == entry.key;
+    if (!found)
+      place(entry, joined(path, entry.key))
+          .fail(fmt::format("unknown key; expected {}{}", fmt::join(known, ", "),
+                            did_you_mean(entry.key, known)));
+  }
+}
+
+Provenance Reader::read_provenance(const std::vector<YamlEntry>& entries, const std::string& path,
+                                   const Place& record) const {
+  static constexpr std::array<std::string_view, 4> kWords = {"high", "medium", "low", "assumed"};
+  const auto text = [&](const std::string& key, bool required) -> std::string {
+    const YamlEntry* entry = find(entries, key);
+    if (entry == nullptr && required) record.fail(fmt::format("missing key '{}'", key));
+    if (entry == nullptr) return {};
+    const std::string value = scalar(entry->value, place(*entry, joined(path, key)));
+    if (trim(value).empty()) place(*entry, joined(path, key)).fail("is empty");
+    return value;
+  };
+  bool has_unit = false;
+  for (const std::size_t index : schema_.record(path)) {
+    const Field& field = schema_.fields()[index];
+    has_unit = has_unit || (!field.is_choice() && find(entries, field.name) != nullptr);
+  }
+  const Provenance provenance{text("unit", has_unit), text("source", true),
+                              text("confidence", true), text("note", false)};
+  check_source(provenance.source, place(*find(entries, "source"), joined(path, "source")));
+  bool known = false;
+  for (const std::string_view word : kWords) known = known || word == provenance.confidence;
+  if (!known) {
+    const std::vector<std::string> words(kWords.begin(), kWords.end());
+    place(*find(entries, "confidence"), joined(path, "confidence"))
+        .fail(fmt::format("'{}' is not known; expected one of {}{}", provenance.confidence,
+                          fmt::join(words, ", "), did_you_mean(provenance.confidence, words)));
+  }
+  return provenance;
+}
+
+/// "SDK-1, RTL-2 (hw_facts 3.1)": what stands before the parenthesis must be listed.
+void Reader::check_source(const std::string& source, const Place& place) const {
+  std::string_view keys = std::string_view(source).substr(0, source.find('('));
+  for (;;) {
+    const std::size_t comma = keys.find(',');
+    const std::string key(trim(keys.substr(0, comma)));
+    if (document_.sources.count(key) == 0) {
+      std::vector<std::string> known;
+      for (const auto& [name, text] : document_.sources) known.push_back(name);
+      place.fail(fmt::format("'{}' is not listed under sources{}", key, did_you_mean(key, known)));
+    }
+    if (comma == std::string_view::npos) return;
+    keys.remove_prefix(comma + 1);
+  }
+}
+
+void Reader::read_field(std::size_t index, const std::vector<YamlEntry>& entries,
+                        const Provenance& provenance, int line) {
+  const Field& field = schema_.fields()[index];
+  const YamlEntry& entry = *find(entries, field.name);
+  const std::string path = joined(field.record, field.name);
+  if (!field.is_choice())
+    check_unit(field, provenance.unit, place(*find(entries, "unit"), joined(field.record, "unit")));
+  const Place at = place(entry, path);
+  Setting setting = read_value(field, scalar(entry.value, at), provenance.unit, at);
+  setting.where = fmt::format("{}:{}", file_, line);
+  setting.parameter.source = provenance.source;
+  setting.parameter.confidence = provenance.confidence;
+  setting.parameter.note = provenance.note;
+  if (const YamlEntry* range = find(entries, field.range_key()))
+    setting.parameter.range = read_range_of(field, *range, setting);
+  document_.settings[index] = std::move(setting);
+}
+
+Range Reader::read_range_of(const Field& field, const YamlEntry& entry,
+                            const Setting& value) const {
+  const Place at = place(entry, joined(field.record, entry.key));
+  const YAML::Node& list = entry.value;
+  if (!list.IsSequence() || list.size() != 2)
+    at.fail("expected a list of two numbers, [low, high]");
+  return read_range(field, value, scalar(list[0], at), scalar(list[1], at), at);
+}
+
+/// Every required parameter must have been given.
+void Reader::check_complete() const {
+  for (std::size_t i = 0; i < schema_.fields().size(); ++i) {
+    const Field& field = schema_.fields()[i];
+    if (!field.required || document_.settings[i]) continue;
+    std::string section = field.record;
+    int line = 1;
+    while (line == 1 && section.find('.') != std::string::npos) {
+      section = section.substr(0, section.rfind('.'));
+      if (const auto found = section_lines_.find(section); found != section_lines_.end())
+        line = found->second;
+    }
+    place_of(file_, line, field.record).fail(fmt::format("missing key ({})", field.description));
+  }
+}
+
+}  // namespace
+
+Document read_document(const Schema& schema, const std::string& file, const std::string& text) {
+  return Reader(schema, file).read(text);
+}
+
+}  // namespace leviosim::platform

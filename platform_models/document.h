@@ -1,0 +1,35 @@
+// A platform file as text → its parameters. Strict: every key must be one of the schema's, every
+// number must have a unit, a source and a confidence, and each fault is an InputError that says
+// where it is.
+//
+// A parameter is one map, `workers: { value: 8, unit: cores, source: "…", confidence: high }`, and
+// may have a `range: [low, high]` for sensitivity sweeps and a `note`. Rows of the operation tables
+// have the columns `issue`, `stall` and `on` in place of `value`, with `issue_range` and
+// `stall_range`. The text of a source up to the first parenthesis is a list of keys of the file's
+// section `sources`.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform_models/parameter.h"
+#include "platform_models/schema.h"
+
+namespace leviosim::platform {
+
+/// Settings by index of the field in the schema; empty where the file says nothing.
+using Settings = std::vector<std::optional<Setting>>;
+
+struct Document {
+  std::string name;                            ///< of the chip
+  std::string description;                     ///< one line
+  std::map<std::string, std::string> sources;  ///< what the keys in sources stand for
+  Settings settings;
+};
+
+/// @param file  name of the file for messages
+Document read_document(const Schema& schema, const std::string& file, const std::string& text);
+
+}  // namespace leviosim::platform

@@ -1,0 +1,256 @@
+#include "platform_models/fields.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace leviosim::platform {
+namespace {
+
+using sim::ChipConfig;
+
+// Limits that keep typing errors out; they are far outside of any chip of this class.
+constexpr double kMaxCost = 1e5;     // cycles of an operation or a latency
+constexpr double kMaxParts = 1024;   // cores, banks, units
+constexpr double kLeastTime = 1e-3;  // of what something is divided by
+constexpr double kMaxSize = 1e12;    // bytes
+constexpr double kMinClock = 1e3;    // hertz
+constexpr double kMaxClock = 1e11;
+
+// Between the representation that all fields have in common (Field::set) and a member of the chip.
+void put(double& target, double value) { target = value; }
+void put(int& target, double value) { target = static_cast<int>(value); }
+void put(Bytes& target, double value) { target = Bytes(static_cast<std::int64_t>(value)); }
+void put(Hertz& target, double value) { target = Hertz(static_cast<std::int64_t>(value)); }
+void put(sim::Unit& target, double value) { target = static_cast<sim::Unit>(value); }
+void put(sim::FpuMapping& target, double value) { target = static_cast<sim::FpuMapping>(value); }
+
+template <class T>
+double as_number(const T& value) {
+  return static_cast<double>(value);
+}
+template <class Tag>
+double as_number(Quantity<Tag, std::int64_t> value) {
+  return static_cast<double>(value.count());
+}
+
+Field quantity(std::string path, const Dimension& dimension, double min, double max,
+               std::string description) {
+  Field field;
+  field.path = path;
+  field.record = std::move(path);
+  field.name = "value";
+  field.dimension = &dimension;
+  field.min = min;
+  field.max = max;
+  field.description = std::move(description);
+  return field;
+}
+
+/// @param choices  names in the order of the enumeration
+Field choice(std::string path, std::vector<std::string> choices, std::string description) {
+  const auto last = static_cast<double>(choices.size() - 1);
+  Field field = quantity(std::move(path), kChoice, 0, last, std::move(description));
+  field.choices = std::move(choices);
+  return field;
+}
+
+/// Makes a field a column of a row of several: "isa.ops.int_mul.issue" is in "isa.ops.int_mul".
+Field column(Field field) {
+  const std::size_t dot = field.path.rfind('.');
+  field.record = field.path.substr(0, dot);
+  field.name = field.path.substr(dot + 1);
+  return field;
+}
+
+/// A section about cores: what all have in common, or what is different for some.
+struct CoreSection {
+  std::string path;
+  bool cluster;
+  bool controller;
+
+  bool common() const { return cluster && controller; }
+};
+
+class Table {
+ public:
+  /// @param member  returns a reference to the field's place in a ChipConfig, const or not
+  template <class Member>
+  void add(Field field, Member member) {
+    field.set = [member](ChipConfig& chip, double value) { put(member(chip), value); };
+    field.get = [member](const ChipConfig& chip) { return as_number(member(chip)); };
+    fields_.push_back(std::move(field));
+  }
+
+  /// @param member  returns a reference to the field's place in a CoreConfig, const or not
+  template <class Member>
+  void add_of_cores(const CoreSection& section, Field field, Member member) {
+    field.required = section.common();
+    field.set = [section, member](ChipConfig& chip, double value) {
+      if (section.cluster) put(member(chip.cluster.core), value);
+      if (section.controller) put(member(chip.controller.core), value);
+    };
+    field.get = [section, member](const ChipConfig& chip) {
+      return as_number(member(section.cluster ? chip.cluster.core : chip.controller.core));
+    };
+    fields_.push_back(std::move(field));
+  }
+
+  std::vector<Field> take() { return std::move(fields_); }
+
+ private:
+  std::vector<Field> fields_;
+};
+
+void add_operation(Table& table, const CoreSection& section, const work::OpInfo& info) {
+  const std::string row = fmt::format("{}.ops.{}", section.path, info.name);
+  const work::Op op = info.op;
+  table.add_of_cores(
+      section,
+      column(quantity(row + ".issue", kCycles, 0, kMaxCost,
+                      fmt::format("instructions issued, one per cycle: {}", info.description))),
+      [op](auto& core) -> auto& { return core.ops[work::index(op)].issue; });
+  table.add_of_cores(
+      section,
+      column(quantity(row + ".stall", kCycles, 0, kMaxCost,
+                      fmt::format("cycles that the core waits in addition: {}", info.description))),
+      [op](auto& core) -> auto& { return core.ops[work::index(op)].stall; });
+  table.add_of_cores(
+      section,
+      column(choice(row + ".on", {"core", "fpu", "divider"},
+                    fmt::format("unit that does the work: {}", info.description))),
+      [op](auto& core) -> auto& { return core.ops[work::index(op)].unit; });
+}
+
+/// Instruction set and code generation.
+void add_core(Table& table, const CoreSection& section) {
+  const auto key = [&](std::string_view name) { return fmt::format("{}.{}", section.path, name); };
+  table.add_of_cores(
+      section,
+      quantity(key("instruction_overhead"), kRatio, 0.1, 10,
+               "instructions emitted per instruction accounted for by ops"),
+      [](auto& core) -> auto& { return core.instruction_overhead; });
+  table.add_of_cores(
+      section,
+      quantity(key("load_use_fraction"), kRatio, 0, 1,
+               "share of loads whose result the next instruction uses"),
+      [](auto& core) -> auto& { return core.load_use_fraction; });
+  table.add_of_cores(
+      section,
+      quantity(key("load_use_stall"), kCycles, 0, kMaxCost, "cycles that such a load waits"),
+      [](auto& core) -> auto& { return core.load_use_stall; });
+  for (const work::OpInfo& info : work::kOps) add_operation(table, section, info);
+}
+
+void add_cores_of_cluster(Table& table) {
+  table.add(
+      quantity("cluster.clock", kFrequency, kMinClock, kMaxClock,
+               "clock of the cluster's cores, L1, DMA and event unit"),
+      [](auto& chip) -> auto& { return chip.cluster.clock; });
+  table.add(
+      quantity("cluster.workers", kCores, 1, kMaxParts, "worker cores, besides the master"),
+      [](auto& chip) -> auto& { return chip.cluster.workers; });
+  table.add(
+      quantity("cluster.max_workers", kCores, 1, kMaxParts,
+               "workers that the event unit can serve"),
+      [](auto& chip) -> auto& { return chip.cluster.max_workers; });
+  add_core(table, {"cluster.core", true, false});
+}
+
+void add_fpu(Table& table) {
+  table.add(
+      quantity("cluster.fpu.units", kUnits, 0, kMaxParts,
+               "floating-point units that the cluster's cores share"),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.units; });
+  table.add(
+      choice("cluster.fpu.mapping", {"fixed", "dynamic"},
+             "unit that serves a core: fixed, core c uses unit c mod units; dynamic, any"),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.mapping; });
+  table.add(
+      quantity("cluster.fpu.cycles_per_op", kCycles, kLeastTime, kMaxCost,
+               "cycles that an operation occupies its floating-point unit"),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.cycles_per_op; });
+  table.add(
+      quantity("cluster.fpu.dividers", kUnits, 0, kMaxParts,
+               "divide and square-root units that the cluster's cores share"),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.dividers; });
+  table.add(
+      quantity("cluster.fpu.cycles_per_division", kCycles, kLeastTime, kMaxCost,
+               "cycles that a division or square root occupies its unit"),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.cycles_per_division; });
+}
+
+void add_l1_and_dma(Table& table) {
+  table.add(
+      quantity("cluster.l1.size", kSize, 1, kMaxSize, "size of the cluster's L1"),
+      [](auto& chip) -> auto& { return chip.cluster.l1.size; });
+  table.add(
+      quantity("cluster.l1.banks", kBanks, 1, kMaxParts,
+               "word-interleaved banks of L1, a power of two"),
+      [](auto& chip) -> auto& { return chip.cluster.l1.banks; });
+  table.add(
+      quantity("cluster.dma.programming", kCycles, 0, kMaxCost,
+               "cycles of the programming core per transfer, API included"),
+      [](auto& chip) -> auto& { return chip.cluster.dma.programming; });
+  table.add(
+      quantity("cluster.dma.first_data", kCycles, 0, kMaxCost,
+               "cycles until the first data of a transfer arrive"),
+      [](auto& chip) -> auto& { return chip.cluster.dma.first_data; });
+  table.add(
+      quantity("cluster.dma.bytes_per_cycle", kRate, kLeastTime, 1e6,
+               "payload of a transfer per cluster cycle"),
+      [](auto& chip) -> auto& { return chip.cluster.dma.bytes_per_cycle; });
+  table.add(
+      quantity("cluster.dma.completion", kCycles, 0, kMaxCost,
+               "cycles from the last data until the waiting core goes on"),
+      [](auto& chip) -> auto& { return chip.cluster.dma.completion; });
+}
+
+void add_events(Table& table) {
+  table.add(
+      quantity("cluster.events.fork_master", kCycles, 0, kMaxCost,
+               "cycles of the master per team fork"),
+      [](auto& chip) -> auto& { return chip.cluster.events.fork_master; });
+  table.add(
+      quantity("cluster.events.fork_worker", kCycles, 0, kMaxCost,
+               "cycles from the dispatch until a worker begins its share"),
+      [](auto& chip) -> auto& { return chip.cluster.events.fork_worker; });
+  table.add(
+      quantity("cluster.events.barrier", kCycles, 0, kMaxCost,
+               "cycles from the last arrival until everyone goes on"),
+      [](auto& chip) -> auto& { return chip.cluster.events.barrier; });
+  table.add(
+      quantity("cluster.events.offload", kCycles, 0, 1e7,
+               "controller cycles between controller and cluster task, one way"),
+      [](auto& chip) -> auto& { return chip.cluster.events.offload; });
+}
+
+void add_controller(Table& table) {
+  table.add(
+      quantity("controller.clock", kFrequency, kMinClock, kMaxClock,
+               "clock of the fabric controller"),
+      [](auto& chip) -> auto& { return chip.controller.clock; });
+  add_core(table, {"controller.core", false, true});
+}
+
+void add_l2(Table& table) {
+  table.add(
+      quantity("l2.size", kSize, 1, kMaxSize, "size of L2"),
+      [](auto& chip) -> auto& { return chip.l2.size; });
+}
+
+}  // namespace
+
+std::vector<Field> all_fields() {
+  Table table;
+  add_core(table, {"isa", true, true});
+  add_cores_of_cluster(table);
+  add_fpu(table);
+  add_l1_and_dma(table);
+  add_events(table);
+  add_controller(table);
+  add_l2(table);
+  return table.take();
+}
+
+}  // namespace leviosim::platform

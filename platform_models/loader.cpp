@@ -1,0 +1,95 @@
+#include "platform_models/loader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "platform_models/builtin.h"
+#include "platform_models/document.h"
+#include "platform_models/nearest.h"
+#include "platform_models/override.h"
+#include "platform_models/rules.h"
+#include "sim/error.h"
+
+namespace leviosim::platform {
+namespace {
+
+bool ends_with(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+bool is_path(std::string_view name) {
+  return name.find('/') != std::string_view::npos || ends_with(name, ".yaml") ||
+         ends_with(name, ".yml");
+}
+
+std::string read_file(const std::string& path) {
+  std::error_code ignored;
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path, ignored))
+    throw InputError(fmt::format("{}: cannot be read as a platform file", path));
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+[[noreturn]] void unknown_platform(const std::string& name) {
+  const std::vector<std::string> names = platform_names();
+  throw InputError(
+      fmt::format("unknown platform '{}'{} (built in: {}; a file is given by a path that contains "
+                  "'/' or ends in .yaml)",
+                  name, did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
+sim::ChipConfig configure(const Schema& schema, const Document& document) {
+  sim::ChipConfig config;
+  config.name = document.name;
+  for (std::size_t i = 0; i < schema.fields().size(); ++i)
+    if (const auto& setting = document.settings[i]) schema.fields()[i].set(config, setting->base);
+  return config;
+}
+
+}  // namespace
+
+std::vector<std::string> platform_names() {
+  std::vector<std::string> names;
+  for (const BuiltinPlatform& platform : builtin_platforms()) names.emplace_back(platform.name);
+  return names;
+}
+
+ResolvedPlatform resolve_platform_text(const std::string& file, const std::string& text,
+                                       const std::vector<std::string>& overrides) {
+  const Schema schema;
+  Document document = read_document(schema, file, text);
+  for (const std::string& override : overrides) apply_override(schema, document.settings, override);
+  ResolvedPlatform platform;
+  platform.config = configure(schema, document);
+  check_rules(schema, document.settings, platform.config);
+  platform.name = document.name;
+  platform.description = document.description;
+  for (const auto& setting : document.settings)
+    if (setting) platform.parameters.push_back(setting->parameter);
+  if (!overrides.empty()) document.sources[kOverrideKey] = kOverrideMeaning;
+  platform.sources.assign(document.sources.begin(), document.sources.end());
+  return platform;
+}
+
+ResolvedPlatform resolve_platform(const std::string& name_or_path,
+                                  const std::vector<std::string>& overrides) {
+  if (is_path(name_or_path))
+    return resolve_platform_text(name_or_path, read_file(name_or_path), overrides);
+  for (const BuiltinPlatform& platform : builtin_platforms())
+    if (platform.name == name_or_path)
+      return resolve_platform_text(fmt::format("{}.yaml", platform.name),
+                                   std::string(platform.text), overrides);
+  unknown_platform(name_or_path);
+}
+
+sim::ChipConfig load_platform(const std::string& name_or_path,
+                              const std::vector<std::string>& overrides) {
+  return resolve_platform(name_or_path, overrides).config;
+}
+
+}  // namespace leviosim::platform

@@ -1,0 +1,23 @@
+// Command-line overrides of platform parameters: "-p cluster.workers=4", "-p cluster.clock=240MHz".
+#pragma once
+
+#include <string>
+
+#include "platform_models/document.h"
+#include "platform_models/schema.h"
+
+namespace leviosim::platform {
+
+/// Source of a value that an override gave. Its first word is a key of `sources`.
+inline constexpr const char* kOverrideKey = "override";
+inline constexpr const char* kOverrideSource = "override (-p)";
+inline constexpr const char* kOverrideMeaning = "given on the command line with -p";
+
+/// Replaces one setting. Without a unit, the number is in the unit of the value it replaces, or in
+/// the base unit where there is none. Such a value has no source but the person who gave it, hence
+/// no range either, and its confidence is "assumed".
+/// @param text  "path=value", "path=number unit"
+/// @throws InputError as for a value in a file, for unknown paths, and for paths given twice
+void apply_override(const Schema& schema, Settings& settings, const std::string& text);
+
+}  // namespace leviosim::platform

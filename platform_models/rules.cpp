@@ -1,0 +1,71 @@
+#include "platform_models/rules.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <string_view>
+
+#include "sim/error.h"
+
+namespace leviosim::platform {
+namespace {
+
+class Rules {
+ public:
+  Rules(const Schema& schema, const Settings& settings) : schema_(schema), settings_(settings) {}
+
+  /// "cluster.workers is 9 cores (-p cluster.workers=9)"
+  std::string state(std::string_view path) const {
+    const Setting& setting = settings_[schema_.find(path)].value();
+    const Parameter& p = setting.parameter;
+    return fmt::format("{} is {}{}{} ({})", path, p.value, p.unit.empty() ? "" : " ", p.unit,
+                       setting.where);
+  }
+
+  void require(bool ok, std::string_view path, std::string_view expected) const {
+    if (!ok) throw InputError(fmt::format("{}: expected {}", state(path), expected));
+  }
+
+  /// No operation of the cluster's cores may need a unit that the cluster does not have.
+  void require_units(std::string_view choice, std::string_view count_path, int count) const {
+    if (count > 0) return;
+    for (std::size_t i = 0; i < schema_.fields().size(); ++i) {
+      const Field& field = schema_.fields()[i];
+      const auto& setting = settings_[i];
+      if (!setting || field.name != "on" || setting->parameter.value != choice) continue;
+      if (field.path.rfind("controller.", 0) == 0) continue;
+      if (field.path.rfind("isa.", 0) == 0 && replaced(field)) continue;
+      throw InputError(
+          fmt::format("{}, but {}: expected at least one, or what the operation costs "
+                      "without it and on: core",
+                      state(count_path), state(field.path)));
+    }
+  }
+
+ private:
+  /// Whether the cluster has a value of its own in place of this one of `isa`.
+  bool replaced(const Field& field) const {
+    const std::string own = "cluster.core" + field.path.substr(std::string_view("isa").size());
+    return settings_[schema_.find(own)].has_value();
+  }
+
+  const Schema& schema_;
+  const Settings& settings_;
+};
+
+}  // namespace
+
+void check_rules(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip) {
+  const Rules rules(schema, settings);
+  const sim::ClusterConfig& cluster = chip.cluster;
+  if (cluster.workers > cluster.max_workers)
+    throw InputError(fmt::format("{}, but {}: expected no more workers than the event unit serves",
+                                 rules.state("cluster.workers"),
+                                 rules.state("cluster.max_workers")));
+  rules.require(std::has_single_bit(static_cast<unsigned>(cluster.l1.banks)), "cluster.l1.banks",
+                "a power of two");
+  rules.require_units("fpu", "cluster.fpu.units", cluster.fpu.units);
+  rules.require_units("divider", "cluster.fpu.dividers", cluster.fpu.dividers);
+}
+
+}  // namespace leviosim::platform

@@ -1,0 +1,13 @@
+// What must hold between parameters, whatever each of them may be on its own.
+#pragma once
+
+#include "platform_models/document.h"
+#include "platform_models/schema.h"
+#include "sim/chip/config.h"
+
+namespace leviosim::platform {
+
+/// Throws an InputError that names the parameters at odds and where each was given.
+void check_rules(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip);
+
+}  // namespace leviosim::platform

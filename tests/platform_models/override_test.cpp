@@ -1,0 +1,174 @@
+// Overrides (-p): they change what they name and nothing else, under the checks of files.
+
+#include "platform_models/dimension.h"
+#include "tests/platform_models/platform_test.h"
+
+namespace leviosim::platform {
+namespace {
+
+sim::ChipConfig with(const std::vector<std::string>& overrides) {
+  return load_platform("gap9", overrides);
+}
+
+std::string fault(const std::string& override) {
+  return fault_of([&] { with({override}); });
+}
+
+TEST(Override, UnitsAreConverted) {
+  EXPECT_EQ(with({"cluster.clock=240MHz"}).cluster.clock.count(), 240'000'000);
+  EXPECT_EQ(with({"cluster.clock=240 MHz"}).cluster.clock.count(), 240'000'000);
+  EXPECT_EQ(with({"cluster.clock=0.24GHz"}).cluster.clock.count(), 240'000'000);
+  EXPECT_EQ(with({"cluster.l1.size=64KiB"}).cluster.l1.size.count(), 65536);
+  EXPECT_EQ(with({"cluster.l1.size=64kB"}).cluster.l1.size.count(), 64000);
+  EXPECT_EQ(with({" cluster.dma.bytes_per_cycle = 4 B/cycle "}).cluster.dma.bytes_per_cycle, 4);
+}
+
+TEST(Override, WithoutUnitTheUnitOfTheFileHolds) {
+  EXPECT_EQ(with({"cluster.clock=240"}).cluster.clock.count(), 240'000'000);
+  EXPECT_EQ(with({"cluster.l1.size=64"}).cluster.l1.size.count(), 65536);
+  EXPECT_EQ(with({"l2.size=2"}).l2.size.count(), 2097152);
+}
+
+TEST(Override, ChoicesAreNames) {
+  EXPECT_EQ(with({"cluster.fpu.mapping=dynamic"}).cluster.fpu.mapping, sim::FpuMapping::Dynamic);
+  EXPECT_EQ(with({"isa.ops.f32_compare.on=core"}).cluster.core[work::Op::F32Compare].unit,
+            sim::Unit::Core);
+}
+
+TEST(Override, IsaSpeaksOfBothKindsOfCore) {
+  const sim::ChipConfig chip = with({"isa.ops.f32_add.issue=2"});
+  EXPECT_EQ(chip.cluster.core[work::Op::F32Add].issue, 2);
+  EXPECT_EQ(chip.controller.core[work::Op::F32Add].issue, 2);
+}
+
+TEST(Override, DifferencesOfACoreWinOverIsa) {
+  const sim::ChipConfig chip = with({"cluster.core.ops.f32_add.issue=3", "isa.ops.f32_add.issue=2",
+                                     "controller.core.instruction_overhead=1.25"});
+  EXPECT_EQ(chip.cluster.core[work::Op::F32Add].issue, 3);
+  EXPECT_EQ(chip.controller.core[work::Op::F32Add].issue, 2);
+  EXPECT_EQ(chip.cluster.core.instruction_overhead, 1);
+  EXPECT_EQ(chip.controller.core.instruction_overhead, 1.25);
+  EXPECT_EQ(chip.controller.core[work::Op::F32Div].stall, 14);
+}
+
+/// The chip with a value of this field that differs from the present one and is allowed.
+sim::ChipConfig changed(const Field& field, double present) {
+  if (field.is_choice()) return with({field.path + "=" + field.choices[present == 0 ? 1 : 0]});
+  for (const double candidate : {present + 1, present - 1, present * 2, present / 2}) {
+    const std::string unit(field.dimension->units[0].name);
+    try {
+      return with({field.path + "=" + number_text(candidate) + unit});
+    } catch (const InputError&) {
+      continue;
+    }
+  }
+  ADD_FAILURE() << "no other value of " << field.path << " is allowed";
+  return load_platform("gap9");
+}
+
+bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
+
+/// Whether changing `field` may change what `other` reads: `isa` speaks of all cores, and a
+/// section about some of the cores has the same keys.
+bool related(const Field& field, const Field& other) {
+  if (field.path == other.path) return true;
+  const auto is_core = [](const Field& f) {
+    return starts_with(f.path, "isa.") || starts_with(f.path, "cluster.core.") ||
+           starts_with(f.path, "controller.core.");
+  };
+  const auto key = [](const Field& f) {
+    const std::size_t core = f.path.find("core.");
+    return f.path.substr(core == std::string::npos ? 4 : core + 5);
+  };
+  return is_core(field) && is_core(other) && key(field) == key(other);
+}
+
+TEST(Override, EveryParameterCanBeChangedAndChangesOnlyItself) {
+  const Schema schema;
+  const sim::ChipConfig before = load_platform("gap9");
+  for (const Field& field : schema.fields()) {
+    const sim::ChipConfig after = changed(field, field.get(before));
+    EXPECT_NE(field.get(after), field.get(before)) << field.path;
+    for (const Field& other : schema.fields())
+      EXPECT_TRUE(related(field, other) || other.get(after) == other.get(before))
+          << field.path << " changes " << other.path;
+  }
+}
+
+TEST(Override, IsMarkedAsSuch) {
+  const ResolvedPlatform platform = resolve_platform("gap9", {"cluster.dma.programming=12"});
+  int overridden = 0;
+  for (const Parameter& p : platform.parameters) {
+    overridden += p.overridden;
+    if (p.path != "cluster.dma.programming") continue;
+    EXPECT_TRUE(p.overridden);
+    EXPECT_EQ(p.value, "12");
+    EXPECT_EQ(p.unit, "cycles");
+    EXPECT_EQ(p.source, "override (-p)");
+    EXPECT_EQ(p.confidence, "assumed");
+    EXPECT_FALSE(p.range);
+  }
+  EXPECT_EQ(overridden, 1);
+}
+
+TEST(Override, UnknownKeysAreRefusedWithTheNearest) {
+  EXPECT_EQ(fault("cluster.fpus=2"),
+            "-p cluster.fpus=2: unknown key; did you mean 'cluster.fpu.units'?");
+  expect_parts(fault("cluster.wrokers=2"), {"did you mean 'cluster.workers'"});
+  expect_parts(fault("isa.ops.f32_ad.issue=2"), {"did you mean 'isa.ops.f32_add.issue'"});
+  expect_parts(fault("workers=2"), {"did you mean 'cluster.workers'"});
+  EXPECT_EQ(fault("zzz=2"), "-p zzz=2: unknown key");
+  EXPECT_EQ(fault("=2"), "-p =2: unknown key");
+}
+
+TEST(Override, SectionsAndRowsAreNoValues) {
+  expect_parts(fault("cluster.l1=2"), {"-p cluster.l1=2", "'cluster.l1.size'"});
+  expect_parts(fault("isa.ops.f32_add=2"), {"'isa.ops.f32_add.issue'"});
+}
+
+TEST(Override, BadValuesAreRefused) {
+  expect_parts(fault("cluster.workers"), {"-p cluster.workers: expected path=value"});
+  expect_parts(fault("cluster.workers="), {"expected a value"});
+  expect_parts(fault("cluster.workers=many"), {"'many' is not a number"});
+  expect_parts(fault("cluster.workers=nan"), {"not a finite number"});
+  expect_parts(fault("cluster.clock=-infMHz"), {"not a finite number"});
+  expect_parts(fault("cluster.workers=0"), {"0 cores is out of range", "1 to 1024"});
+  expect_parts(fault("cluster.workers=2.5"), {"2.5 cores is no whole number"});
+  expect_parts(fault("cluster.clock=5 cores"), {"'cores' is no unit of a frequency", "MHz"});
+  expect_parts(fault("cluster.clock=0x10"), {"'x10' is no unit"});
+  expect_parts(fault("cluster.fpu.mapping=dynamc"), {"fixed, dynamic", "'dynamic'"});
+  expect_parts(fault("cluster.fpu.mapping=1"), {"'1' is not known", "fixed, dynamic"});
+}
+
+TEST(Override, NoParameterTwice) {
+  expect_parts(fault_of([] {
+                 with({"cluster.workers=4", "cluster.workers=2"});
+               }),
+               {"-p cluster.workers=2", "already given by -p cluster.workers=4"});
+}
+
+TEST(Override, RulesBetweenParametersNameBothSides) {
+  expect_parts(fault("cluster.workers=9"), {"cluster.workers is 9 cores (-p cluster.workers=9)",
+                                            "cluster.max_workers is 8 cores (gap9.yaml:"});
+  EXPECT_EQ(with({"cluster.workers=16", "cluster.max_workers=16"}).cluster.workers, 16);
+  expect_parts(fault("cluster.l1.banks=12"), {"cluster.l1.banks is 12 banks", "a power of two"});
+  expect_parts(fault("cluster.fpu.units=0"),
+               {"cluster.fpu.units is 0 units", "isa.ops.f32_add.on is fpu (gap9.yaml:"});
+  expect_parts(fault("cluster.fpu.dividers=0"), {"isa.ops.f32_div.on is divider"});
+}
+
+// The cluster may do without a unit that only the controller's operations use.
+TEST(Override, UnitsAreRequiredOfTheCoresThatShareThem) {
+  const std::vector<std::string> without = {"cluster.fpu.dividers=0",
+                                            "cluster.core.ops.f32_div.on=core",
+                                            "cluster.core.ops.f32_sqrt.on=core"};
+  EXPECT_EQ(with(without).cluster.fpu.dividers, 0);
+  expect_parts(fault_of([] {
+                 with({"cluster.fpu.dividers=0", "isa.ops.f32_div.on=core",
+                       "isa.ops.f32_sqrt.on=core", "cluster.core.ops.f32_div.on=divider"});
+               }),
+               {"cluster.core.ops.f32_div.on is divider"});
+}
+
+}  // namespace
+}  // namespace leviosim::platform

@@ -1,0 +1,79 @@
+// The resolved platform as a file: it loads to the same configuration.
+#include "tests/platform_models/platform_test.h"
+
+namespace leviosim::platform {
+namespace {
+
+ResolvedPlatform reloaded(const ResolvedPlatform& platform) {
+  return resolve_platform_text("resolved.yaml", to_yaml(platform));
+}
+
+TEST(Writer, Gap9ReadsBackInFull) {
+  const ResolvedPlatform before = resolve_platform("gap9");
+  const ResolvedPlatform after = reloaded(before);
+  EXPECT_EQ(after.name, before.name);
+  EXPECT_EQ(after.description, before.description);
+  EXPECT_EQ(after.sources, before.sources);
+  EXPECT_EQ(numbers_of(after.config), numbers_of(before.config));
+  ASSERT_EQ(after.parameters.size(), before.parameters.size());
+  for (std::size_t i = 0; i < after.parameters.size(); ++i) {
+    const Parameter& a = after.parameters[i];
+    const Parameter& b = before.parameters[i];
+    EXPECT_EQ(a.path, b.path);
+    EXPECT_EQ(a.value, b.value) << a.path;
+    EXPECT_EQ(a.unit, b.unit) << a.path;
+    EXPECT_EQ(a.source, b.source) << a.path;
+    EXPECT_EQ(a.confidence, b.confidence) << a.path;
+    EXPECT_EQ(a.note, b.note) << a.path;
+    ASSERT_EQ(a.range.has_value(), b.range.has_value()) << a.path;
+    if (!a.range) continue;
+    EXPECT_EQ(a.range->low, b.range->low) << a.path;
+    EXPECT_EQ(a.range->high, b.range->high) << a.path;
+  }
+}
+
+TEST(Writer, WritingAgainGivesTheSameBytes) {
+  const ResolvedPlatform platform = resolve_platform("gap9");
+  const std::string text = to_yaml(platform);
+  EXPECT_EQ(to_yaml(reloaded(platform)), text);
+  EXPECT_EQ(to_yaml(resolve_platform("gap9")), text);
+}
+
+// Numbers without a short decimal form, optional rows, other units, names.
+TEST(Writer, OverridesReadBackExactly) {
+  const ResolvedPlatform before = resolve_platform(
+      "gap9", {"cluster.clock=0.333GHz", "isa.load_use_fraction=0.12345678901234568",
+               "cluster.core.load_use_stall=0.1", "cluster.core.ops.f64_add.issue=33.3",
+               "controller.core.ops.int_alu.stall=0.7", "cluster.fpu.mapping=dynamic",
+               "isa.ops.int_mul.on=fpu", "cluster.l1.size=100kB"});
+  const ResolvedPlatform after = reloaded(before);
+  EXPECT_EQ(numbers_of(after.config), numbers_of(before.config));
+  EXPECT_EQ(after.config.cluster.clock.count(), 333'000'000);
+  EXPECT_EQ(after.config.cluster.core.load_use_stall, 0.1);
+}
+
+TEST(Writer, OverriddenValuesSaySo) {
+  const ResolvedPlatform after =
+      reloaded(resolve_platform("gap9", {"cluster.workers=4", "isa.ops.load_l2.stall=20"}));
+  int found = 0;
+  for (const Parameter& p : after.parameters) {
+    const bool row = p.path == "isa.ops.load_l2.stall" || p.path == "isa.ops.load_l2.issue";
+    if (p.path != "cluster.workers" && !row) continue;
+    ++found;
+    EXPECT_EQ(p.source.rfind("override (-p)", 0), 0u) << p.source;
+    EXPECT_EQ(p.confidence, "assumed") << p.path;
+    EXPECT_EQ(p.source.find("stall; the rest: SDK-1") != std::string::npos, row) << p.source;
+  }
+  EXPECT_EQ(found, 3);
+}
+
+TEST(Writer, EscapesWhatYamlWouldTakeForItsOwn) {
+  std::string text =
+      replaced(gap9_text(), "name: GAP9", "name: \"a: \\\"b\\\" # c\\t\\\\ \\x01 é\"");
+  const ResolvedPlatform before = resolve_platform_text("odd.yaml", text);
+  EXPECT_EQ(before.name, "a: \"b\" # c\t\\ \x01 é");
+  EXPECT_EQ(reloaded(before).name, before.name);
+}
+
+}  // namespace
+}  // namespace leviosim::platform

@@ -1,0 +1,40 @@
+#include "tools/run/digest.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/traces/test_folder.h"
+#include "traces/asl_reader.h"
+#include "traces/atomic_file.h"
+#include "traces/csv.h"
+
+namespace leviosim::tools {
+namespace {
+
+TEST(Sha256, MatchesTheStandardsExamples) {
+  // FIPS 180-4 / NIST example values.
+  EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  Sha256 sha;
+  sha.add("a");
+  sha.add("bc");
+  EXPECT_EQ(sha.hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(InputDigests, ChangeWithAPixelOfAFrameInRangeOnly) {
+  const traces::testing::AslFolder asl;
+  const auto digests = [&] {
+    return digest_inputs(traces::open_asl(asl.root(), {.frames = traces::FrameRange{0, 3}}));
+  };
+  const std::vector<InputDigest> before = digests();
+  ASSERT_EQ(before.size(), 6u);
+  const auto append = [&](int frame) {
+    traces::write_file_atomically(asl.image(frame), traces::read_text_file(asl.image(frame)) + "x");
+  };
+  append(4);
+  EXPECT_EQ(digests().back().sha256, before.back().sha256);
+  append(2);
+  EXPECT_NE(digests().back().sha256, before.back().sha256);
+  EXPECT_EQ(digests().front().sha256, before.front().sha256);
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,72 @@
+// Runs the leviosim program as a user would, and shows what it printed and how it ended.
+#pragma once
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/traces/test_folder.h"
+
+namespace leviosim::tools::testing {
+
+struct ProgramResult {
+  int status = -1;  ///< exit status, or 128 + the signal that ended the program
+  std::string out;
+  std::string err;
+};
+
+/// A running program with its output in files of `folder`.
+class Program {
+ public:
+  Program(const std::filesystem::path& folder, std::vector<std::string> words)
+      : out_(folder / "stdout.txt"), err_(folder / "stderr.txt") {
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    constexpr int kFlags = O_CREAT | O_WRONLY | O_TRUNC;
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out_.c_str(), kFlags, 0600);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err_.c_str(), kFlags, 0600);
+    words.insert(words.begin(), LEVIOSIM_BINARY);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    const int error =
+        posix_spawn(&pid_, LEVIOSIM_BINARY, &files, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    EXPECT_EQ(error, 0) << LEVIOSIM_BINARY;
+  }
+
+  void send(int signal) const { ::kill(pid_, signal); }
+  bool running() {
+    if (pid_ > 0 && !ended_) ended_ = ::waitpid(pid_, &wait_status_, WNOHANG) == pid_;
+    return !ended_;
+  }
+  ProgramResult wait() {
+    if (!ended_) ::waitpid(pid_, &wait_status_, 0);
+    ended_ = true;
+    ProgramResult result;
+    result.status =
+        WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_);
+    result.out = traces::read_text_file(out_);
+    result.err = traces::read_text_file(err_);
+    return result;
+  }
+
+ private:
+  std::filesystem::path out_;
+  std::filesystem::path err_;
+  pid_t pid_ = -1;
+  int wait_status_ = 0;
+  bool ended_ = false;
+};
+
+inline ProgramResult run_program(const std::filesystem::path& folder,
+                                 std::vector<std::string> words) {
+  return Program(folder, std::move(words)).wait();
+}
+
+}  // namespace leviosim::tools::testing

@@ -1,0 +1,94 @@
+#include "tools/run/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/tools/example_run.h"
+#include "tools/run/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+using testing::example_run;
+
+Json statistic(const Json& document, const std::string& name) {
+  for (const Json& entry : document.at("statistics"))
+    if (entry.at("name") == name) return entry;
+  ADD_FAILURE() << "no statistic " << name;
+  return {};
+}
+
+Json value(const Json& document, const std::string& name) {
+  return statistic(document, name).at("value");
+}
+
+TEST(Statistics, EachHasNameUnitDescriptionValueAndNamesAreUnique) {
+  std::set<std::string> names;
+  const Json document = statistics(example_run());
+  ASSERT_FALSE(document.at("statistics").empty());
+  for (const Json& entry : document.at("statistics")) {
+    for (const char* key : {"name", "unit", "description", "value"})
+      EXPECT_TRUE(entry.contains(key)) << entry.dump();
+    EXPECT_FALSE(entry.at("description").get<std::string>().empty()) << entry.dump();
+    EXPECT_TRUE(names.insert(entry.at("name").get<std::string>()).second) << entry.at("name");
+  }
+}
+
+TEST(Statistics, ValuesAreThoseOfTheRun) {
+  const Json document = statistics(example_run());
+  EXPECT_EQ(value(document, "stages.feature_extraction.calls"), 2);
+  EXPECT_EQ(value(document, "stages.feature_extraction.cycles.single.sum"), 8'000'000);
+  EXPECT_EQ(value(document, "stages.feature_extraction.cycles.single.mean"), 4e6);
+  EXPECT_EQ(value(document, "stages.feature_extraction.speedup"), 4.0);
+  EXPECT_EQ(value(document, "stages.feature_extraction.time.parallel.mean"), 10.0);
+  EXPECT_EQ(value(document, "stages.feature_extraction.ops.f32_add"), 12'345);
+  EXPECT_EQ(value(document, "stages.feature_extraction.memory.block.scratch"), 20'000);
+  EXPECT_EQ(value(document, "stages.optimiser_iteration.time.parallel.mean"), 10.0);
+  EXPECT_EQ(value(document, "latency.epnp.mean"), 35e6);
+  EXPECT_EQ(value(document, "latency.eight_point_keyframe.worst"), 60'000'000);
+  EXPECT_EQ(value(document, "latency.eight_point_keyframe.over_period"), 1);
+  EXPECT_EQ(value(document, "memory.l2.optimiser.bytes"), 743'600);
+  EXPECT_EQ(value(document, "trajectory.length"), 2.0);
+  EXPECT_EQ(value(document, "frames.keyframes"), 2);
+}
+
+TEST(Statistics, WhatDoesNotExistIsNull) {
+  const Json document = statistics(example_run());
+  EXPECT_TRUE(value(document, "stages.epnp_ransac.speedup").is_null());
+  EXPECT_TRUE(value(document, "stages.epnp_ransac.cycles.parallel.mean").is_null());
+  EXPECT_TRUE(value(document, "latency.epnp_keyframe.mean").is_null());
+}
+
+TEST(Statistics, AccountPartsAddUpToTheirTotal) {
+  const Json document = statistics(example_run());
+  const std::string prefix = "stages.feature_extraction.account.";
+  double sum = 0;
+  for (const AccountPart& part : kAccountParts)
+    sum += value(document, prefix + std::string(part.key)).get<double>();
+  EXPECT_DOUBLE_EQ(sum, value(document, prefix + "total").get<double>());
+}
+
+TEST(Statistics, AccuracyNeverAppearsWithoutItsProtocol) {
+  const RunResult run = example_run();
+  const Json document = statistics(run);  // named, because the loop keeps no temporary alive
+  int figures = 0;
+  for (const Json& entry : document.at("statistics"))
+    if (entry.at("name").get<std::string>().rfind("accuracy.", 0) == 0) {
+      ++figures;
+      EXPECT_EQ(entry.at("protocol"), run.ate->protocol);
+    }
+  EXPECT_GE(figures, 5);
+}
+
+TEST(Statistics, DependNeitherOnTheHostNorOnTiming) {
+  RunResult run = example_run();
+  const std::string before = statistics(run).dump();
+  run.host_seconds = 99;
+  EXPECT_EQ(statistics(run).dump(), before);
+  run.timed = false;
+  EXPECT_EQ(statistics(run).dump().find("cycles"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace leviosim::tools

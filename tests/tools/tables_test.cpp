@@ -1,0 +1,199 @@
+#include "tools/run/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "tests/tools/example_run.h"
+#include "tools/run/summary.h"
+#include "tools/run/text_table.h"
+
+namespace leviosim::tools {
+namespace {
+
+using testing::example_run;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The one line that begins with `start`; empty if there is none.
+std::string line_of(const std::string& text, const std::string& start) {
+  for (const std::string& line : lines_of(text))
+    if (line.rfind(start, 0) == 0) return line;
+  return {};
+}
+
+/// The words of a line after its first `skipped` characters.
+std::vector<std::string> cells_after(const std::string& line, std::size_t skipped) {
+  std::istringstream in(line.substr(skipped));
+  std::vector<std::string> cells;
+  for (std::string cell; in >> cell;) cells.push_back(cell);
+  return cells;
+}
+
+using Cells = std::vector<std::string>;
+
+TEST(TextTable, AlignsByCodePointsAndTrimsLineEnds) {
+  TextTable table({{"a", TextTable::Align::Left}, {"n"}, {"t", TextTable::Align::Left}});
+  table.add({"é–×", "1", "x"});
+  table.add({"b", "1000", ""});
+  EXPECT_EQ(table.str(),
+            "a       n  t\n"
+            "────────────\n"
+            "é–×     1  x\n"
+            "b    1000\n");
+}
+
+TEST(TextTable, WrapsListsWhereTheyWouldExceedTheWidth) {
+  EXPECT_EQ(wrap({"aaaa", "bbbb", "cccc"}, " · ", 2, 13), "aaaa · bbbb\n  cccc");
+  EXPECT_EQ(wrap({"aaaa", "bbbb"}, " · ", 2, 12), "aaaa\n  bbbb");
+  EXPECT_EQ(wrap({}, " · ", 2, 12), "");
+}
+
+TEST(StageTable, ShowsMeansOfACallSpeedUpAndTime) {
+  const std::string line = line_of(stage_table(example_run()), "feature extraction");
+  // 8 Mcycles in 2 calls, 1000 kcycles at 100 MHz are 10 ms, the worst call has 1200 kcycles.
+  EXPECT_EQ(cells_after(line, 18),
+            (Cells{"frame", "2", "4000.00", "1000.00", "4.00", "10.00", "12.00"}));
+}
+
+TEST(StageTable, TimesTheControllerByItsOwnClock) {
+  const std::string text = stage_table(example_run());
+  const std::string line = line_of(text, "optimiser iteration ¹");
+  EXPECT_EQ(cells_after(line, std::string("optimiser iteration ¹").size()),
+            (Cells{"iteration", "3", "500.00", "500.00", "1.00", "10.00", "12.00"}));
+  EXPECT_NE(text.find("¹ on the fabric controller"), std::string::npos);
+}
+
+TEST(StageTable, ShowsDashesForAStageWithoutCalls) {
+  const std::string line = line_of(stage_table(example_run()), "EPnP RANSAC");
+  EXPECT_EQ(cells_after(line, 11), (Cells{"frame", "0", "–", "–", "–", "–", "–"}));
+}
+
+TEST(AccountTable, SharesAddUpTo100PerCent) {
+  const std::string text = account_table(example_run());
+  const Cells cells = cells_after(line_of(text, "feature extraction"), 18);
+  // 5 of 8 Mcycles are useful, 1 waits for a floating-point unit; rounding counts as imbalance.
+  // Three tenths are handed out: to serial (99.875), imbalance (37.625) and divider (62.5).
+  EXPECT_EQ(cells, (Cells{"62.5", "12.5", "6.3", "1.2", "3.8", "1.2", "2.5", "10.0", "8.0"}));
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < cells.size(); ++i) sum += std::stod(cells[i]);
+  EXPECT_NEAR(sum, 100.0, 1e-9);
+}
+
+TEST(AccountTable, LeavesOutTheControllerAndShowsDashesWithoutCalls) {
+  const std::string text = account_table(example_run());
+  EXPECT_EQ(text.find("optimiser iteration"), std::string::npos);
+  const Cells cells = cells_after(line_of(text, "EPnP RANSAC"), 11);
+  EXPECT_EQ(cells, Cells(9, "–"));
+}
+
+TEST(AccountTable, TenthsAddUpForAnyParts) {
+  for (const std::vector<double>& parts :
+       {std::vector<double>{1, 1, 1}, {1, 2, 4, 8, 16, 32, 1e-9}, {0.3333, 0.6667, 0, 12345.678}}) {
+    const std::vector<double> tenths = tenths_of_percent(parts);
+    const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
+    EXPECT_NEAR(std::accumulate(tenths.begin(), tenths.end(), 0.0), 100.0, 1e-9);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      EXPECT_LE(std::abs(tenths[i] - 100 * parts[i] / total), 0.1);
+  }
+  EXPECT_EQ(tenths_of_percent({0, 0}), (std::vector<double>{0, 0}));
+}
+
+TEST(AccountTable, PartsAreTheWholeAccount) {
+  const sim::Account account = example_run().stages[0].account;
+  double sum = 0;
+  for (const AccountPart& part : kAccountParts) sum += part.of(account);
+  EXPECT_DOUBLE_EQ(sum, account.total());
+  EXPECT_DOUBLE_EQ(account.total(), 8e6);
+}
+
+TEST(LatencyTable, TellsTheKindsOfFrameApart) {
+  const std::string text = latency_table(example_run());
+  const auto row = [&](const std::string& name) {
+    return cells_after(line_of(text, name + "  "), name.size());
+  };
+  EXPECT_EQ(row("EPnP"), (Cells{"2", "35.00", "40.00", "70.0", "80.0", "0"}));
+  EXPECT_EQ(row("EPnP, keyframe"), (Cells{"0", "–", "–", "–", "–", "0"}));
+  EXPECT_EQ(row("8-point"), (Cells{"1", "20.00", "20.00", "40.0", "40.0", "0"}));
+  EXPECT_EQ(row("8-point, keyframe"), (Cells{"1", "60.00", "60.00", "120.0", "120.0", "1"}));
+  EXPECT_EQ(row("other (first, pose kept)"), (Cells{"1", "10.00", "10.00", "20.0", "20.0", "0"}));
+  EXPECT_NE(text.find("frame period 50.00 ms"), std::string::npos);
+  EXPECT_NE(text.find("waited for the front end: 1, the longest 2.50 ms"), std::string::npos);
+}
+
+TEST(LatencyTable, EveryFrameIsInOneScenario) {
+  const RunResult run = example_run();
+  std::int64_t frames = 0;
+  for (const Scenario& scenario : scenarios(run)) frames += scenario.frames;
+  EXPECT_EQ(frames, static_cast<std::int64_t>(run.frames.size()));
+}
+
+TEST(MemoryTable, ShowsKilobytesAndSharesOfTheNominalSize) {
+  const std::string text = memory_table(example_run());
+  EXPECT_EQ(cells_after(line_of(text, "feature extraction"), 18),
+            (Cells{"L1", "32.0", "64.0", "25.00", "50.00"}));
+  EXPECT_EQ(cells_after(line_of(text, "EPnP RANSAC"), 11), (Cells{"L1", "–", "–", "–", "–"}));
+  // The paper's row: 50.9 kB are 3.18 % of 1600 kB.
+  EXPECT_EQ(cells_after(line_of(text, "last keyframe"), 13),
+            (Cells{"L2", "50.9", "–", "3.18", "–"}));
+  EXPECT_NE(text.find("% of 128 kB L1 and 1600 kB L2"), std::string::npos);
+}
+
+TEST(MemoryTable, NamesTheBlocksAliveAtThePeak) {
+  const std::string text = memory_table(example_run());
+  EXPECT_NE(text.find("feature extraction  image 19.2 · scratch ×2 20.0\n"), std::string::npos);
+  EXPECT_NE(text.find("last keyframe       keypoints 2.8 · image 19.2\n"), std::string::npos);
+}
+
+TEST(MemoryTable, PeakOfTheControllerIsARowOfL2Only) {
+  const std::string text = memory_table(example_run());
+  EXPECT_EQ(text.find("optimiser iteration"), std::string::npos);
+  EXPECT_FALSE(line_of(text, "optimiser").empty());
+}
+
+TEST(TrajectorySummary, GivesTheProtocolBesideTheError) {
+  const std::string text = trajectory_summary(example_run());
+  EXPECT_NE(text.find("5 poses, 2.00 m long"), std::string::npos);
+  EXPECT_NE(text.find("0.176 m RMSE"), std::string::npos);
+  EXPECT_NE(text.find(example_run().ate->protocol), std::string::npos);
+}
+
+TEST(TrajectorySummary, SaysWhereThereIsNoGroundTruth) {
+  RunResult run = example_run();
+  run.ate.reset();
+  EXPECT_NE(trajectory_summary(run).find("no ground truth"), std::string::npos);
+}
+
+TEST(Report, OnlyItsLastLineIsAboutTheHost) {
+  RunResult run = example_run();
+  const std::vector<std::string> first = lines_of(report(run));
+  run.host_seconds = 7;
+  const std::vector<std::string> second = lines_of(report(run));
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i + 1 < first.size(); ++i) EXPECT_EQ(first[i], second[i]);
+  EXPECT_EQ(first.back(), "host: 5 frames in 2.5 s (2.0 frames/s)");
+}
+
+TEST(Report, OfANativeRunHasNoTiming) {
+  RunResult run = example_run();
+  run.timed = false;
+  const std::string text = report(run);
+  EXPECT_EQ(text.find("kcycles"), std::string::npos);
+  EXPECT_EQ(text.find("L1"), std::string::npos);
+  EXPECT_NE(text.find("trajectory: 5 poses"), std::string::npos);
+}
+
+TEST(Report, OfAnEmptyRunIsStillText) {
+  const RunResult run;
+  EXPECT_NE(report(run).find("frames: 0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace leviosim::tools

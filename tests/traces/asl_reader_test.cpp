@@ -1,0 +1,238 @@
+// open_asl: what a valid folder yields, and one test for each way a folder can be broken.
+#include "traces/asl_reader.h"
+
+#include <gtest/gtest.h>
+
+#include "test_folder.h"
+
+namespace leviosim::traces {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AslFolder;
+using testing::expect_input_error;
+using testing::TempFolder;
+
+constexpr const char* kFrames = "cam0/data.csv";
+constexpr const char* kImu = "imu0/data.csv";
+constexpr const char* kTruth = "state_groundtruth_estimate0/data.csv";
+
+void expect_broken(const AslFolder& folder, std::initializer_list<std::string> parts,
+                   const OpenOptions& options = {}) {
+  expect_input_error([&] { open_asl(folder.root(), options); }, parts);
+}
+
+TEST(AslReader, ReadsEveryStreamOfAValidFolder) {
+  const AslFolder folder;
+  const Dataset data = open_asl(folder.root());
+  EXPECT_EQ(data.camera.fy, 21);
+  EXPECT_EQ(data.imu_model.rate_hz, 200);
+  ASSERT_EQ(data.frames.size(), 6u);
+  EXPECT_EQ(data.frames[3].t_ns, AslFolder::frame_ns(3));
+  EXPECT_EQ(data.frames[3].line, 5u) << "line 1 is the heading";
+  EXPECT_EQ(data.frames[3].path, folder.image(3));
+  ASSERT_EQ(data.imu.size(), 71u);
+  EXPECT_EQ(data.imu[0].t_ns, AslFolder::kStartNs - 50'000'000);
+  EXPECT_TRUE(data.imu[12].gyro.isApprox(Eigen::Vector3d(0.02, 0.2, -0.3)));
+  EXPECT_TRUE(data.imu[12].accel.isApprox(Eigen::Vector3d(0.1, 9.81, 0.002)));
+  ASSERT_EQ(data.ground_truth.size(), 71u);
+  const GroundTruthPose& pose = data.ground_truth[14];
+  const Eigen::Isometry3d expected =
+      Eigen::Translation3d(0.4, 1, 2) * Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 2) / 3);
+  EXPECT_TRUE(pose.T_world_body.isApprox(expected, 1e-9));
+  EXPECT_EQ(pose.velocity, Eigen::Vector3d(20, 0, 0));
+  EXPECT_EQ(pose.bias_gyro, Eigen::Vector3d(0.01, 0.02, 0.03));
+  EXPECT_EQ(pose.bias_accel, Eigen::Vector3d(0.1, 0.2, 0.3));
+}
+
+TEST(AslReader, OpensTheMav0FolderItself) {
+  const AslFolder folder;
+  EXPECT_EQ(open_asl(folder.root() / "mav0").frames.size(), 6u);
+}
+
+TEST(AslReader, GroundTruthIsOptional) {
+  const AslFolder folder;
+  fs::remove_all(folder.mav0("state_groundtruth_estimate0"));
+  EXPECT_TRUE(open_asl(folder.root()).ground_truth.empty());
+}
+
+TEST(AslReader, AcceptsCarriageReturnsAndBlankLinesAtTheEnd) {
+  const AslFolder folder;
+  for (const char* name : {kFrames, kImu, kTruth}) {
+    std::string text;
+    for (const char c : read_text_file(folder.mav0(name)))
+      text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    write_file_atomically(folder.mav0(name), "\xEF\xBB\xBF" + text + "\r\n \r\n\n");
+  }
+  const Dataset data = open_asl(folder.root());
+  EXPECT_EQ(data.frames.size(), 6u);
+  EXPECT_EQ(data.frames[0].path, folder.image(0));
+  EXPECT_EQ(data.imu.size(), 71u);
+}
+
+TEST(AslReader, SelectsARangeOfFrames) {
+  const AslFolder folder;
+  OpenOptions options;
+  options.frames = FrameRange{2, 4};
+  const Dataset data = open_asl(folder.root(), options);
+  ASSERT_EQ(data.frames.size(), 2u);
+  EXPECT_EQ(data.frames[0].t_ns, AslFolder::frame_ns(2));
+  EXPECT_EQ(data.frames[0].line, 4u);
+  options.frames = FrameRange{2, 7};
+  expect_broken(folder, {"frame range 2:7", "6 frames", "0:6"}, options);
+}
+
+TEST(AslReader, ChecksOnlyTheSelectedFramesAgainstImagesAndImu) {
+  const AslFolder folder;
+  fs::remove(folder.image(5));
+  folder.remove_lines(kImu, 60, 13);  // the last 65 ms
+  OpenOptions options;
+  options.frames = FrameRange{0, 5};
+  EXPECT_EQ(open_asl(folder.root(), options).frames.size(), 5u);
+}
+
+TEST(AslReader, MissingFolder) {
+  const TempFolder empty;
+  expect_input_error([&] { open_asl(empty / "nowhere"); }, {"nowhere", "no such folder"});
+}
+
+TEST(AslReader, MissingFilesSayWhatAnAslFolderHas) {
+  for (const char* name : {"cam0/sensor.yaml", kFrames, "imu0/sensor.yaml", kImu}) {
+    const AslFolder folder;
+    fs::remove(folder.mav0(name));
+    expect_broken(folder, {std::string(name) + " not found in", "mav0/{cam0,imu0}"});
+  }
+  const AslFolder folder;
+  fs::remove(folder.mav0(kTruth));
+  expect_broken(folder, {std::string(kTruth) + " not found in"});
+}
+
+TEST(AslReader, WrongNumberOfColumns) {
+  const AslFolder folder;
+  folder.set_line(kImu, 7, "4975000000,0,0,0,0,0");
+  expect_broken(folder, {"imu0/data.csv line 7", "6 columns instead of 7"});
+}
+
+TEST(AslReader, CellsThatAreNoFiniteNumbers) {
+  for (const char* text : {"abc", "nan", "inf", "-inf", "1e999", "", "1.5x", "0x10"}) {
+    const AslFolder folder;
+    folder.set_line(kImu, 7, fmt::format("4975000000,0,{},0,0,0,0", text));
+    expect_broken(folder, {"imu0/data.csv line 7, column 3 (w_RS_S_y)",
+                           fmt::format("'{}' is not a finite number", text)});
+  }
+}
+
+TEST(AslReader, StampsThatAreNoIntegers) {
+  for (const char* text : {"1.5e9", "-5", "12.0", "99999999999999999999"}) {
+    const AslFolder folder;
+    folder.set_line(kFrames, 3, fmt::format("{},a.png", text));
+    expect_broken(folder, {"cam0/data.csv line 3, column 1 (timestamp [ns])", text, "integer"});
+  }
+}
+
+TEST(AslReader, UnsortedStampsNameBothValues) {
+  const AslFolder folder;
+  folder.set_line(kImu, 7, "4969000000,0,0,0,0,0,0");
+  expect_broken(folder,
+                {"imu0/data.csv line 7", "4969000000", "lies before that of line 6", "4970000000"});
+}
+
+TEST(AslReader, DuplicateStampsNameBothLines) {
+  for (const char* name : {kFrames, kImu, kTruth}) {
+    const AslFolder folder;
+    const std::string text = read_text_file(folder.mav0(name));
+    const auto from = text.find('\n') + 1;
+    const std::string row = text.substr(from, text.find('\n', from) - from);
+    folder.set_line(name, 2, row + "\n" + row);
+    expect_broken(folder, {std::string(name) + " line 3", "repeats that of line 2"});
+  }
+}
+
+TEST(AslReader, BlankLineBetweenRows) {
+  const AslFolder folder;
+  folder.set_line(kImu, 7, "");
+  expect_broken(folder, {"imu0/data.csv line 7", "blank line"});
+}
+
+TEST(AslReader, ImuGapAboveTheLimit) {
+  const AslFolder two_missing;
+  two_missing.remove_lines(kImu, 30, 2);  // 15 ms, the default limit
+  EXPECT_NO_THROW(open_asl(two_missing.root()));
+  const AslFolder three_missing;
+  three_missing.remove_lines(kImu, 30, 3);
+  expect_broken(three_missing,
+                {"imu0/data.csv", "gap of 20.000 ms", "5085000000", "5105000000", "15.000 ms"});
+  OpenOptions patient;
+  patient.max_imu_gap_periods = 4;
+  EXPECT_NO_THROW(open_asl(three_missing.root(), patient));
+}
+
+TEST(AslReader, ImuGapOutsideTheFramesDoesNotMatter) {
+  const AslFolder folder;
+  folder.remove_lines(kImu, 3, 6);
+  EXPECT_NO_THROW(open_asl(folder.root()));
+}
+
+TEST(AslReader, FrameBeforeTheFirstImuSample) {
+  const AslFolder tolerated;
+  tolerated.remove_lines(kImu, 2, 11);  // starts 5 ms after the first frame
+  EXPECT_NO_THROW(open_asl(tolerated.root()));
+  const AslFolder folder;
+  folder.remove_lines(kImu, 2, 12);
+  expect_broken(folder, {"cam0/data.csv line 2", "5000000000", "0.0100 s before the first IMU"});
+}
+
+TEST(AslReader, FrameAfterTheLastImuSample) {
+  const AslFolder folder;
+  folder.remove_lines(kImu, 60, 13);
+  expect_broken(folder, {"cam0/data.csv line 7", "5250000000", "s after the last IMU"});
+}
+
+TEST(AslReader, MissingImage) {
+  const AslFolder folder;
+  fs::remove(folder.image(3));
+  expect_broken(folder, {"cam0/data.csv line 5", "5150000000.png", "does not exist"});
+}
+
+TEST(AslReader, RowWithoutFileName) {
+  const AslFolder folder;
+  folder.set_line(kFrames, 3, "5050000000,");
+  expect_broken(folder, {"cam0/data.csv line 3, column 2 (filename)"});
+}
+
+TEST(AslReader, EmptySequences) {
+  for (const char* name : {kFrames, kImu, kTruth}) {
+    const AslFolder folder;
+    write_file_atomically(folder.mav0(name), "#heading only\n");
+    expect_broken(folder, {name, "empty"});
+    write_file_atomically(folder.mav0(name), "");
+    expect_broken(folder, {name, "empty"});
+  }
+}
+
+TEST(AslReader, QuaternionNorm) {
+  const auto row = [](double w) {
+    return fmt::format("4955000000,0,0,0,{},0,0,0,0,0,0,0,0,0,0,0,0", w);
+  };
+  const AslFolder folder;
+  folder.set_line(kTruth, 3, row(1.0009));
+  EXPECT_EQ(open_asl(folder.root()).ground_truth[1].T_world_body.linear(),
+            Eigen::Matrix3d::Identity());
+  folder.set_line(kTruth, 3, row(1.0011));
+  expect_broken(folder, {std::string(kTruth) + " line 3", "norm 1.001100"});
+}
+
+TEST(AslReader, RecordedFlight) {
+  const fs::path folder = testing::recorded_data() / "euroc" / "MH_01_easy_t05_t20";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not here";
+  const Dataset data = open_asl(folder);
+  EXPECT_EQ(data.frames.size(), 300u);
+  EXPECT_EQ(data.imu.size(), 3201u);
+  EXPECT_EQ(data.ground_truth.size(), 3201u);
+  EXPECT_EQ(data.camera.fx, 458.654);
+  EXPECT_EQ(data.camera.width, 752);
+  EXPECT_EQ(data.frames.front().t_ns, 1403636584763555584);
+}
+
+}  // namespace
+}  // namespace leviosim::traces

@@ -1,0 +1,68 @@
+#include "traces/atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include <iterator>
+
+#include "test_folder.h"
+
+namespace leviosim::traces {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::expect_input_error;
+using testing::TempFolder;
+
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+}
+
+TEST(AtomicFile, ReplacesAndLeavesNothingElse) {
+  const TempFolder folder;
+  write_file_atomically(folder / "a", "one");
+  write_file_atomically(folder / "a", "two");
+  EXPECT_EQ(read_text_file(folder / "a"), "two");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(AtomicFile, FailsCleanly) {
+  const TempFolder folder;
+  expect_input_error([&] { write_file_atomically(folder / "none/a", "x"); }, {"cannot be written"});
+  fs::create_directories(folder / "a/b");
+  expect_input_error([&] { write_file_atomically(folder / "a", "x"); }, {"cannot be written"});
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(StagedFolder, AppearsOnlyWhenCommitted) {
+  const TempFolder folder;
+  {
+    StagedFolder staged(folder / "out/");
+    write_file_atomically(staged.path() / "x", "1");
+    EXPECT_FALSE(fs::exists(folder / "out"));
+    staged.commit();
+  }
+  EXPECT_EQ(read_text_file(folder / "out/x"), "1");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(StagedFolder, VanishesWithoutCommit) {
+  const TempFolder folder;
+  { const StagedFolder staged(folder / "out"); }
+  EXPECT_EQ(entries(folder.path()), 0u);
+}
+
+TEST(StagedFolder, ReplacesTheOldOneAsAWhole) {
+  const TempFolder folder;
+  fs::create_directories(folder / "out/old");
+  {
+    StagedFolder staged(folder / "out");
+    write_file_atomically(staged.path() / "x", "1");
+    staged.commit();
+  }
+  EXPECT_FALSE(fs::exists(folder / "out/old"));
+  EXPECT_TRUE(fs::exists(folder / "out/x"));
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+}  // namespace
+}  // namespace leviosim::traces

@@ -1,0 +1,60 @@
+#include "traces/csv.h"
+
+#include <gtest/gtest.h>
+
+#include "test_folder.h"
+
+namespace leviosim::traces {
+namespace {
+
+using testing::expect_input_error;
+using testing::TempFolder;
+
+TEST(Csv, SkipsCommentsAndTrimsCells) {
+  const TempFolder folder;
+  write_file_atomically(folder / "a.csv", "# one\n 1 , +2.5e1 \r\n# two\n3,-4");
+  CsvReader csv(folder / "a.csv", Separator::comma, {"a", "b"});
+  const CsvRow* row = csv.next();
+  ASSERT_NE(row, nullptr);
+  EXPECT_EQ(row->line(), 2u);
+  EXPECT_EQ(row->nanoseconds(0), 1);
+  EXPECT_EQ(row->number(1), 25);
+  row = csv.next();
+  ASSERT_NE(row, nullptr);
+  EXPECT_EQ(row->line(), 4u);
+  EXPECT_EQ(row->number(1), -4);
+  EXPECT_EQ(csv.next(), nullptr);
+}
+
+TEST(Csv, BlanksSeparateWhereAsked) {
+  const TempFolder folder;
+  write_file_atomically(folder / "a.txt", "  1\t2   3 \n");
+  CsvReader csv(folder / "a.txt", Separator::blanks, {"a", "b", "c"});
+  const CsvRow* row = csv.next();
+  ASSERT_NE(row, nullptr);
+  EXPECT_EQ(row->text(1), "2");
+  EXPECT_EQ(row->text(2), "3");
+}
+
+TEST(Csv, LongCellsAreCutInMessages) {
+  const TempFolder folder;
+  write_file_atomically(folder / "a.csv", std::string(500, 'x'));
+  CsvReader csv(folder / "a.csv", Separator::comma, {"a"});
+  const CsvRow* row = csv.next();
+  ASSERT_NE(row, nullptr);
+  try {
+    row->number(0);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_LT(std::string(error.what()).size(), 300u);
+  }
+}
+
+TEST(Csv, MissingFilesAndFolders) {
+  const TempFolder folder;
+  expect_input_error([&] { read_text_file(folder / "none"); }, {"none", "cannot be opened"});
+  expect_input_error([&] { read_text_file(folder.path()); }, {"cannot be opened"});
+}
+
+}  // namespace
+}  // namespace leviosim::traces

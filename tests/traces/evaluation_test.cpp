@@ -1,0 +1,149 @@
+#include "traces/evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "test_folder.h"
+#include "traces/asl_reader.h"
+#include "traces/rng.h"
+
+namespace leviosim::traces {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A helix, sampled every `step_ns` from time 0.
+Trajectory helix(std::int64_t step_ns, std::size_t count) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int64_t t_ns = static_cast<std::int64_t>(i) * step_ns;
+    const double s = static_cast<double>(t_ns) * 1e-9;
+    trajectory.push_back({t_ns, Eigen::Translation3d(std::cos(s), std::sin(s), 0.3 * s) *
+                                    Eigen::AngleAxisd(s, Eigen::Vector3d(0, 0.6, 0.8))});
+  }
+  return trajectory;
+}
+
+Trajectory moved(Trajectory trajectory, const Eigen::Isometry3d& by, double scale = 1) {
+  for (StampedPose& pose : trajectory) {
+    pose.T_world_body.translation() *= scale;
+    pose.T_world_body = by * pose.T_world_body;
+  }
+  return trajectory;
+}
+
+Eigen::Isometry3d some_transform() {
+  return Eigen::Translation3d(4, -5, 6) * Eigen::AngleAxisd(1.9, Eigen::Vector3d(2, 1, -2) / 3);
+}
+
+TEST(Evaluation, AlignmentTakesAwayWhatItMay) {
+  const Trajectory truth = helix(5'000'000, 2001);
+  const Trajectory every_tenth = helix(50'000'000, 201);
+  EvaluationOptions options;
+  const Evaluation rigid = evaluate(moved(every_tenth, some_transform()), truth, options);
+  EXPECT_LT(rigid.translation.max, 1e-9);
+  EXPECT_LT(rigid.rotation_rmse_deg, 1e-5);
+  EXPECT_EQ(rigid.matched, 201u);
+
+  const Trajectory scaled = moved(every_tenth, some_transform(), 1.7);
+  EXPECT_GT(evaluate(scaled, truth, options).translation.rmse, 0.1);
+  options.alignment = Alignment::sim3;
+  const Evaluation similar = evaluate(scaled, truth, options);
+  EXPECT_LT(similar.translation.max, 1e-9);
+  EXPECT_NEAR(similar.alignment.scale, 1 / 1.7, 1e-12);
+  options.alignment = Alignment::none;
+  EXPECT_EQ(evaluate(every_tenth, truth, options).translation.max, 0);
+}
+
+TEST(Evaluation, FiguresAreThoseOfTheirDefinitions) {
+  // Four poses off by 1, 2, 3 and 6 m along z, and by 10, 20, 30 and 40 degrees.
+  Trajectory truth;
+  Trajectory estimate;
+  const std::vector<double> off{3, 1, 6, 2};
+  for (int i = 0; i < 4; ++i) {
+    truth.push_back({i * 1'000'000, Eigen::Isometry3d(Eigen::Translation3d(2.0 * i, 0, 0))});
+    const double turn = (i + 1) * kPi / 18;
+    estimate.push_back({i * 1'000'000, Eigen::Translation3d(2.0 * i, 0, off[i]) *
+                                           Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY())});
+  }
+  EvaluationOptions options;
+  options.alignment = Alignment::none;
+  options.expected_poses = 8;
+  const Evaluation result = evaluate(estimate, truth, options);
+  EXPECT_DOUBLE_EQ(result.translation.rmse, std::sqrt((1 + 4 + 9 + 36) / 4.0));
+  EXPECT_DOUBLE_EQ(result.translation.mean, 3);
+  EXPECT_DOUBLE_EQ(result.translation.median, 2.5);
+  EXPECT_DOUBLE_EQ(result.translation.max, 6);
+  EXPECT_NEAR(result.rotation_rmse_deg, std::sqrt((100 + 400 + 900 + 1600) / 4.0), 1e-6);
+  EXPECT_DOUBLE_EQ(result.completion, 0.5);
+  EXPECT_DOUBLE_EQ(result.path_length_m, 6);
+  EXPECT_EQ(result.protocol,
+            "not aligned, 4 of 4 poses matched within 10 ms, completion 50.0 %, 6.00 m of path");
+}
+
+TEST(Evaluation, ProtocolNamesTheAlignment) {
+  const Trajectory truth = helix(5'000'000, 2001);
+  const std::string line = evaluate(truth, truth).protocol;
+  EXPECT_EQ(
+      line.rfind("SE3-aligned, 2001 of 2001 poses matched within 10 ms, completion 100.0 %", 0), 0u)
+      << line;
+}
+
+TEST(Evaluation, PathLengthOfTheMatchedSpanOnly) {
+  // Helix of slope 0.3: length sqrt(1.09) per second.
+  const Trajectory truth = helix(5'000'000, 2001);
+  Trajectory estimate = helix(52'500'000, 100);
+  estimate.erase(estimate.begin(), estimate.begin() + 20);
+  const double seconds = (99 - 20) * 0.0525;
+  EXPECT_NEAR(evaluate(estimate, truth).path_length_m, seconds * std::sqrt(1.09), 1e-4);
+}
+
+TEST(Associate, InterpolatesBetweenTheSamplesOfTheTruth) {
+  Trajectory truth;
+  truth.push_back({0, Eigen::Isometry3d::Identity()});
+  truth.push_back(
+      {10, Eigen::Translation3d(10, 20, 30) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX())});
+  const auto matches = associate({{3, Eigen::Isometry3d::Identity()}}, truth, 5);
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_TRUE(matches[0].truth.translation().isApprox(Eigen::Vector3d(3, 6, 9)));
+  EXPECT_TRUE(matches[0].truth.linear().isApprox(
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix()));
+}
+
+TEST(Associate, LeavesOutWhatIsTooFarFromASample) {
+  Trajectory truth;
+  for (const std::int64_t t_ns : {0, 100, 200, 300})
+    truth.push_back({t_ns, Eigen::Isometry3d::Identity()});
+  Trajectory estimate;
+  for (const std::int64_t t_ns : {-5, 0, 11, 10, 90, 89, 150, 300, 301})
+    estimate.push_back({t_ns, Eigen::Isometry3d::Identity()});
+  std::vector<std::int64_t> matched;
+  for (const MatchedPose& match : associate(estimate, truth, 10)) matched.push_back(match.t_ns);
+  EXPECT_EQ(matched, (std::vector<std::int64_t>{0, 10, 90, 300}));
+}
+
+TEST(Evaluation, NothingMatched) {
+  const Trajectory truth = helix(5'000'000, 10);
+  const Trajectory later{{1'000'000'000'000, Eigen::Isometry3d::Identity()}};
+  testing::expect_input_error([&] { evaluate(later, truth); }, {"none of the 1", "10 ms"});
+  testing::expect_input_error([&] { evaluate({truth[0], truth[1]}, truth); }, {"at least 3"});
+}
+
+TEST(Evaluation, RecordedPathHasItsKnownLength) {
+  const auto folder = testing::recorded_data() / "euroc" / "MH_01_easy_t05_t20";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
+  const Dataset data = open_asl(folder);
+  const Trajectory truth = to_trajectory(data.ground_truth);
+  Trajectory at_frames;
+  for (const FrameRef& frame : data.frames)
+    at_frames.push_back({frame.t_ns, Eigen::Isometry3d::Identity()});
+  EvaluationOptions options;
+  options.alignment = Alignment::none;
+  const Evaluation result = evaluate(at_frames, truth, options);
+  EXPECT_EQ(result.matched, 300u);
+  EXPECT_NEAR(result.path_length_m, 5.4, 0.1);
+}
+
+}  // namespace
+}  // namespace leviosim::traces

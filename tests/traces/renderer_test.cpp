@@ -1,0 +1,140 @@
+// Pictures against the camera model: what project() says must be where render() draws it.
+#include "traces/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "traces/euroc_models.h"
+#include "traces/rng.h"
+
+namespace leviosim::traces {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPlateX = 2.5;
+constexpr double kPlateHalf = 0.15;
+
+/// White plates on a 5x3 grid in front of a black room.
+struct Plates {
+  std::vector<Vector3d> centres;
+  World world;
+
+  Plates() : centres(grid()), world(plain_box({-4, -4, -4}, {4, 4, 4}, 0), boxes(centres)) {}
+
+  static std::vector<Vector3d> grid() {
+    std::vector<Vector3d> result;
+    for (const double y : {-1.6, -0.8, 0.0, 0.8, 1.6})
+      for (const double z : {-0.9, 0.0, 0.9}) result.emplace_back(kPlateX, y, z);
+    return result;
+  }
+  static std::vector<Box> boxes(const std::vector<Vector3d>& centres) {
+    std::vector<Box> result;
+    for (const Vector3d& c : centres) {
+      const Vector3d half(0, kPlateHalf, kPlateHalf);
+      const Vector3d max = c + half + Vector3d(0.001, 0, 0);
+      result.push_back(plain_box((c - half).cast<float>(), max.cast<float>(), 255));
+    }
+    return result;
+  }
+};
+
+/// A camera near the origin that looks along x, slightly turned about each axis.
+Eigen::Isometry3d camera_pose() {
+  Eigen::Matrix3d ahead;  // columns: camera x (right), y (down), z (forward)
+  ahead << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return Eigen::Translation3d(0.1, -0.05, 0.08) *
+         Eigen::AngleAxisd(0.1, Vector3d(1, 2, 3).normalized()) * Eigen::Isometry3d(ahead);
+}
+
+TEST(Renderer, DrawsPointsWhereTheCameraModelProjectsThem) {
+  const Plates plates;
+  const CameraModel camera = euroc_cam0();
+  const Renderer renderer(plates.world, camera, {0, 0, 1});
+  const Eigen::Isometry3d pose = camera_pose();
+  const std::vector<std::uint8_t> picture = renderer.render(pose, 0);
+  // A point this far inside or outside its plate stays so when it is rounded to a pixel centre,
+  // with less than half a pixel to spare: a picture off by half a pixel would be found out.
+  const double margin = 0.75 * 2.5 / camera.fx;
+  Rng rng(1);
+  int inside_points = 0;
+  int outside_points = 0;
+  for (const Vector3d& centre : plates.centres) {
+    for (int i = 0; i < 2000; ++i) {
+      const Vector3d offset(0, rng.uniform(-1.2, 1.2) * kPlateHalf,
+                            rng.uniform(-1.2, 1.2) * kPlateHalf);
+      const double reach = std::max(std::abs(offset.y()), std::abs(offset.z()));
+      if (std::abs(reach - kPlateHalf) < margin) continue;
+      const Eigen::Vector2d pixel = camera.project(pose.inverse() * (centre + offset));
+      const auto x = std::lround(pixel.x());
+      const auto y = std::lround(pixel.y());
+      if (x < 0 || y < 0 || x >= camera.width || y >= camera.height) continue;
+      const bool inside = reach < kPlateHalf;
+      ++(inside ? inside_points : outside_points);
+      ASSERT_EQ(picture[static_cast<std::size_t>(y) * camera.width + x], inside ? 255 : 0)
+          << pixel.transpose();
+    }
+  }
+  EXPECT_GT(inside_points, 10'000);
+  EXPECT_GT(outside_points, 3'000);
+}
+
+TEST(Renderer, TilesDropNothingThatIsVisible) {
+  // Many boxes, seen from everywhere: the picture must equal one cast against all objects.
+  Rng rng(2);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 40; ++i) {
+    const Eigen::Vector3f centre(static_cast<float>(rng.uniform(-3, 3)),
+                                 static_cast<float>(rng.uniform(-3, 3)),
+                                 static_cast<float>(rng.uniform(-3, 3)));
+    if (centre.norm() < 1) continue;
+    const float half = static_cast<float>(rng.log_uniform(0.01, 0.4));
+    boxes.push_back(plain_box(centre.array() - half, centre.array() + half,
+                              static_cast<std::uint8_t>(50 + 5 * i)));
+  }
+  const World world(plain_box({-4, -4, -4}, {4, 4, 4}, 10), std::move(boxes));
+  CameraModel camera = euroc_cam0();
+  camera.fx /= 6, camera.fy /= 6, camera.cx /= 6, camera.cy /= 6;
+  camera.width = 125, camera.height = 80;
+  const Renderer renderer(world, camera, {0, 0, 1});
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Isometry3d pose(
+        Eigen::AngleAxisd(i, Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized()));
+    const auto picture = renderer.render(pose, 0);
+    for (int y = 0; y < camera.height; ++y) {
+      for (int x = 0; x < camera.width; ++x) {
+        const Eigen::Vector3d ray = camera.unproject({x, y}).homogeneous();
+        const Eigen::Vector3f direction = pose.linear().cast<float>() * ray.cast<float>();
+        const Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+        const float grey = World::grey(world.cast(origin, direction), origin, direction, 1e-3f);
+        ASSERT_EQ(picture[static_cast<std::size_t>(y) * camera.width + x],
+                  static_cast<std::uint8_t>(grey));
+      }
+    }
+  }
+}
+
+TEST(Renderer, NoiseAndVignettingAreAsAskedFor) {
+  const World world(plain_box({-4, -4, -4}, {4, 4, 4}, 120), {});
+  const CameraModel camera = euroc_cam0();
+  const Renderer noisy(world, camera, {2.0, 0, 7});
+  const auto a = noisy.render(camera_pose(), 0);
+  double sum = 0, squares = 0;
+  for (const std::uint8_t value : a) {
+    sum += value - 120.0;
+    squares += (value - 120.0) * (value - 120.0);
+  }
+  const auto count = static_cast<double>(a.size());
+  EXPECT_NEAR(sum / count, 0, 0.1);
+  EXPECT_NEAR(std::sqrt(squares / count), std::sqrt(4 + 1.0 / 12), 0.1);
+  EXPECT_EQ(a, noisy.render(camera_pose(), 0));
+  EXPECT_NE(a, noisy.render(camera_pose(), 1)) << "each frame has its own noise";
+
+  const auto dim = Renderer(world, camera, {0, 0.3, 7}).render(camera_pose(), 0);
+  EXPECT_EQ(dim[0], 84) << "the corner loses 30 %";
+  EXPECT_EQ(dim[240 * 752 + 376], 120);
+}
+
+}  // namespace
+}  // namespace leviosim::traces

@@ -1,0 +1,230 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <string>
+
+#include "optimiser_scene.h"
+
+namespace leviosim::vio::test {
+namespace {
+
+using work::Counting;
+using work::Native;
+using Scene = OptimiserScene<Native>;
+
+TEST(Optimiser, FindsTheTruthFromExactMeasurements) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SceneOptions options;
+    options.seed = seed;
+    Scene scene(options);
+    ASSERT_GT(scene.position_rms(), 0.05);
+    const auto reports = scene.optimise(10);
+    EXPECT_LT(scene.position_rms(), 2e-3) << "seed " << seed;
+    EXPECT_LT(scene.rotation_rms(), 2e-4) << "seed " << seed;
+    EXPECT_LT(scene.velocity_rms(), 1e-2) << "seed " << seed;
+    EXPECT_LT(scene.point_median(), 1e-2) << "seed " << seed;
+    EXPECT_LT(reports.back().cost_after, 0.1f) << "seed " << seed;
+  }
+}
+
+TEST(Optimiser, CostNeverRisesAndEveryStepCanBeSolved) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SceneOptions options;
+    options.seed = seed;
+    options.whole_pixels = true;
+    Scene scene(options);
+    float cost = 0;
+    for (const IterationReport& r : scene.optimise(12)) {
+      EXPECT_TRUE(r.positive_definite);
+      EXPECT_EQ(r.accepted, r.cost_after < r.cost_before);
+      if (cost > 0) {
+        EXPECT_LE(r.cost_before, cost * 1.00001f);
+      }
+      cost = r.accepted ? r.cost_after : r.cost_before;
+    }
+    EXPECT_LT(cost, 200.0f);
+  }
+}
+
+TEST(Optimiser, ARejectedStepChangesNothingButTheDamping) {
+  SceneOptions options;
+  options.whole_pixels = true;
+  Scene scene(options);
+  scene.optimise(15);  // as far as single precision goes
+  LmState<Native> lm(scene.options);
+  bool seen = false;
+  for (int i = 0; i < 10 && !seen; ++i) {
+    const WindowState<Native>& state = scene.window.state;
+    const std::vector<float> poses(state.poses.data(), state.poses.data() + 96);
+    const std::vector<float> points(state.points.data(),
+                                    state.points.data() + 3 * scene.window.landmarks);
+    const float lambda = lm.lambda;
+    const auto stage = scene.fc.stage("optimiser");
+    if (optimise_once<Native>(scene.fc, scene.window, lm, scene.options).accepted) continue;
+    seen = true;
+    EXPECT_EQ(0, std::memcmp(poses.data(), state.poses.data(), 4 * poses.size()));
+    EXPECT_EQ(0, std::memcmp(points.data(), state.points.data(), 4 * points.size()));
+    EXPECT_FLOAT_EQ(lm.lambda, lambda * scene.options.lambda_up);
+  }
+  EXPECT_TRUE(seen);
+}
+
+TEST(Optimiser, DampingFallsWithSuccess) {
+  Scene scene;
+  const auto reports = scene.optimise(4);
+  for (std::size_t i = 1; i < 4; ++i)
+    EXPECT_FLOAT_EQ(reports[i].lambda,
+                    std::max(reports[i - 1].lambda * 0.1f, scene.options.min_lambda));
+}
+
+TEST(Optimiser, HuberLimitsTheInfluenceOfOutliers) {
+  SceneOptions options;
+  options.outliers = 0.05;
+  Scene robust(options), plain(options);
+  plain.options.visual.huber_px = 1e6f;
+  robust.optimise(30);
+  plain.optimise(30);
+  EXPECT_LT(robust.position_rms(), 0.02);
+  EXPECT_LT(robust.rotation_rms(), 0.005);
+  EXPECT_GT(plain.position_rms(), 3 * robust.position_rms());
+  EXPECT_GT(plain.rotation_rms(), 3 * robust.rotation_rms());
+}
+
+TEST(Optimiser, WithoutImuFindsThePosesUpToScale) {
+  Scene scene;
+  scene.options.use_imu = false;
+  const std::vector<float> velocities(scene.window.state.velocities.data(),
+                                      scene.window.state.velocities.data() + 24);
+  scene.optimise(15);
+  const Vector3d origin = Motion::position(0);
+  double dot = 0, square = 0;
+  for (int k = 0; k < 8; ++k) {
+    const Vector3d found = eigen<Native>(scene.window.state.pose(k).t) - origin;
+    dot += found.dot(Motion::position(scene.time(k)) - origin);
+    square += found.squaredNorm();
+  }
+  const double scale = dot / square;
+  for (int k = 0; k < 8; ++k) {
+    const Vector3d found = eigen<Native>(scene.window.state.pose(k).t) - origin;
+    EXPECT_LT((scale * found + origin - Motion::position(scene.time(k))).norm(), 2e-3);
+  }
+  EXPECT_LT(scene.rotation_rms(), 2e-4);
+  EXPECT_EQ(0, std::memcmp(velocities.data(), scene.window.state.velocities.data(), 96));
+}
+
+/// Everything scaled about the anchored camera: images alone cannot tell, the IMU can.
+TEST(Optimiser, ImuRestoresTheScale) {
+  SceneOptions options;
+  options.rotation_noise = options.position_noise = options.velocity_noise = options.depth_noise =
+      0;
+  const auto scale_after = [&](bool use_imu) {
+    Scene scene(options);
+    scene.options.use_imu = use_imu;
+    const Vector3d origin = Motion::position(0);
+    const auto scaled_about = [&](const Vec3<Native>& x) {
+      return vec3<Native>(origin + 1.2 * (eigen<Native>(x) - origin));
+    };
+    for (int k = 0; k < 8; ++k) {
+      KeyframeState<Native> s = scene.window.state.keyframe(k);
+      s.T_world_camera.t = scaled_about(s.T_world_camera.t);
+      s.velocity = s.velocity * 1.2f;
+      scene.window.state.set_keyframe(k, s);
+    }
+    const auto points = scene.window.state.points;
+    for (int i = 0; i < scene.window.landmarks; ++i)
+      store_vec3<Native>(points, 3 * i, scaled_about(load_vec3<Native>(points, 3 * i)));
+    scene.optimise(12);
+    return (eigen<Native>(scene.window.state.pose(7).t) - origin).norm() /
+           (Motion::position(scene.time(7)) - origin).norm();
+  };
+  EXPECT_NEAR(scale_after(true), 1.0, 0.01);
+  EXPECT_NEAR(scale_after(false), 1.2, 0.01);
+}
+
+TEST(Optimiser, AnchorHoldsTheOldestKeyframe) {
+  Scene scene;
+  scene.optimise(8);
+  EXPECT_LT(scene.position_error(0), 1e-4);
+  EXPECT_LT(scene.rotation_error(0), 1e-4);
+}
+
+TEST(Optimiser, LeavesASingleKeyframeAlone) {
+  SceneOptions options;
+  options.keyframes = 1;
+  options.landmarks = 5;
+  options.shortest_track = options.longest_track = 1;
+  Scene scene(options);
+  const auto reports = scene.optimise(1);
+  EXPECT_FALSE(reports[0].accepted);
+  EXPECT_EQ(scene.position_error(0), Scene(options).position_error(0));
+}
+
+/// A window of inertial intervals only: the motion follows the IMU.
+TEST(Optimiser, WorksWithoutLandmarks) {
+  SceneOptions options;
+  options.landmarks = 0;
+  options.position_noise = 0.01;
+  Scene scene(options);
+  scene.optimise(5);
+  EXPECT_LT(scene.rotation_rms(), 1e-3);
+}
+
+TEST(Optimiser, AShortWindowUsesWhatItHas) {
+  SceneOptions options;
+  options.keyframes = 3;
+  options.shortest_track = 2;
+  options.longest_track = 3;
+  options.landmarks = 60;
+  Scene scene(options);
+  const auto reports = scene.optimise(10);
+  EXPECT_TRUE(reports.back().positive_definite);
+  EXPECT_LT(reports.back().cost_after, 0.1f);
+  EXPECT_LT(scene.rotation_rms(), 1e-3);
+}
+
+SceneOptions full_window() {
+  SceneOptions options;
+  options.landmarks = 1000;
+  options.shortest_track = 2;
+  options.longest_track = 2;
+  return options;
+}
+
+TEST(Optimiser, WorkMemoryIsThePapersAtAFullWindow) {
+  OptimiserScene<Native> scene(full_window(), true);
+  ASSERT_EQ(scene.window.landmarks, 1000);
+  scene.optimise(1);
+  std::map<std::string, std::int64_t> bytes;
+  std::int64_t total = 0;
+  const work::Job job = scene.fc.take_job();
+  for (const work::Block& block : job.stages.back().memory.blocks) {
+    bytes[std::string(block.name)] += block.size.count();
+    total += block.size.count();
+  }
+  for (const GraphBlock& block : kGraphBlocks) total -= bytes.at(std::string(block.name));
+  EXPECT_EQ(bytes.at("landmark Jacobian records"), 676'000);
+  EXPECT_NEAR(static_cast<double>(total), 743'600, 0.01 * 743'600);
+}
+
+TEST(Optimiser, CountsWhatItComputesNatively) {
+  for (const bool use_imu : {true, false}) {
+    SceneOptions options;
+    options.outliers = 0.05;
+    OptimiserScene<Native> native(options);
+    OptimiserScene<Counting> counting(options);
+    native.options.use_imu = counting.options.use_imu = use_imu;
+    const auto a = native.optimise(8);
+    const auto b = counting.optimise(8);
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(a[i].cost_after, b[i].cost_after);
+    const WindowState<Native>& x = native.window.state;
+    const WindowState<Counting>& y = counting.window.state;
+    EXPECT_EQ(0, std::memcmp(x.poses.data(), y.poses.data(), 4 * 96));
+    EXPECT_EQ(0, std::memcmp(x.velocities.data(), y.velocities.data(), 4 * 24));
+    EXPECT_EQ(0, std::memcmp(x.points.data(), y.points.data(),
+                             12 * static_cast<std::size_t>(native.window.landmarks)));
+  }
+}
+
+}  // namespace
+}  // namespace leviosim::vio::test

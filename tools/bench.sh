@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Builds and runs the benchmarks whose figures the README shows. Further options go to them, e.g.
+# tools/bench.sh --benchmark_filter=Kernel
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+tools/setup.sh
+tools/build.sh release
+found=no
+for program in build/release/tests/bench/*; do
+  [[ -f $program && -x $program ]] || continue
+  found=yes
+  echo "bench: $(basename "$program")"
+  "$program" "$@"
+done
+if [[ $found == no ]]; then
+  echo "bench: no benchmark programs in build/release/tests/bench" >&2
+  exit 1
+fi

@@ -1,0 +1,48 @@
+// The leviosim command. Exit status: 0 if done, 2 for bad input, with one message on stderr. Faults
+// of leviosim itself abort.
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "sim/error.h"
+#include "tools/cli/interrupts.h"
+#include "tools/cli/version.h"
+#include "tools/platforms/platforms_command.h"
+#include "tools/run/run_command.h"
+#include "tools/synth/synth_command.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kInterrupted = 130;  // only seen if the pending signal does not end the process
+
+int fail(const std::exception& error) {
+  fmt::print(stderr, "leviosim: {}\n", error.what());
+  return kBadInput;
+}
+
+int run_program(const Words& words) {
+  CLI::App app("Runs visual-inertial odometry on models of ultra-low-power multicore chips.",
+               "leviosim");
+  app.set_version_flag("--version", fmt::format("leviosim {}", version()));
+  try {
+    return run_command_line(
+        app, {add_run_command(app, words), add_synth_command(app), add_platforms_command(app)},
+        words);
+  } catch (const InputError& error) {
+    return fail(error);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(error);
+  } catch (const Interrupted&) {
+    return kInterrupted;
+  }
+}
+
+}  // namespace
+}  // namespace leviosim::tools
+
+int main(int argc, char** argv) {
+  const leviosim::tools::DeferredInterrupts deferred;
+  return leviosim::tools::run_program(leviosim::tools::Words(argv + 1, argv + argc));
+}

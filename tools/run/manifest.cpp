@@ -1,0 +1,50 @@
+#include "tools/run/manifest.h"
+
+#include "tools/cli/version.h"
+
+namespace leviosim::tools {
+namespace {
+
+Json inputs_json(const std::vector<InputDigest>& inputs) {
+  Json list = Json::array();
+  for (const InputDigest& input : inputs) {
+    Json& entry = list.emplace_back(Json::object());
+    entry["name"] = input.name;
+    entry["bytes"] = input.bytes;
+    entry["sha256"] = input.sha256;
+  }
+  return list;
+}
+
+Json platform_json(const Manifest& manifest, const RunResult& run) {
+  if (!run.timed) return nullptr;
+  Json platform;
+  platform["name"] = manifest.platform;
+  platform["overrides"] = manifest.overrides;
+  platform["cores"] = run.cores;
+  return platform;
+}
+
+}  // namespace
+
+Json manifest_json(const Manifest& manifest, const RunResult& run) {
+  Json document;
+  document["format"] = "leviosim manifest";
+  document["version"] = 1;
+  document["program"]["version"] = version();
+  document["program"]["revision"] = revision();
+  document["command_line"] = manifest.command_line;
+  document["profile"] = run.profile;
+  document["seed"] = manifest.seed;
+  document["platform"] = platform_json(manifest, run);
+  document["image"]["width"] = run.image_width;
+  document["image"]["height"] = run.image_height;
+  document["data"]["folder"] = manifest.data;
+  document["data"]["first_frame"] = manifest.first_frame;
+  document["data"]["frames"] = run.frames.size();
+  document["inputs"] = inputs_json(manifest.inputs);
+  document["host"]["seconds"] = run.host_seconds;
+  return document;
+}
+
+}  // namespace leviosim::tools

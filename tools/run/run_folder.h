@@ -1,0 +1,34 @@
+// The files that a run leaves behind. Same inputs, same bytes, except the member "host" of
+// manifest.json.
+//
+//   manifest.json    what the run was made from (manifest.h)
+//   platform.yaml    the resolved platform, overrides included; loads as a platform file
+//   stats.json       every statistic with name, unit and description (statistics.h)
+//   stages.csv       a row per stage: calls, cycles, account, operations
+//   frames.csv       a row per frame
+//   memory.csv       a row per peak, and per block alive at it
+//   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
+//
+// A native run has no platform.yaml, stages.csv and memory.csv, and no timing columns.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "tools/run/manifest.h"
+#include "tools/run/run_result.h"
+
+namespace leviosim::tools {
+
+/// Writes into an existing folder, which the caller has staged (traces/atomic_file.h).
+/// @param platform_yaml  unused for a native run
+/// @throws InputError if a file cannot be written
+void write_run_folder(const std::filesystem::path& folder, const RunResult& run,
+                      const Manifest& manifest, const std::string& platform_yaml);
+
+/// The texts of the CSV files; the units stand in the column names.
+std::string stages_csv(const RunResult& run);
+std::string frames_csv(const RunResult& run);
+std::string memory_csv(const RunResult& run);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,84 @@
+#include "tools/run/run_options.h"
+
+#include <fmt/core.h>
+
+#include <limits>
+
+#include "sim/error.h"
+#include "tools/cli/command_line.h"
+#include "workload/pipeline/profile.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr std::int64_t kLargestSide = 16384;
+
+/// A native run has no chip, so options about one are a misunderstanding.
+void refuse_chip_options(const CLI::App& command) {
+  for (const char* option : {"--platform", "--cores", "--set"})
+    if (command.count(option) > 0)
+      throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
+}
+
+void resolve_chip(const CLI::App& command, const RunOptions& options, RunRequest& request) {
+  require(command, "--platform", "the name of a chip or a platform file, or --native");
+  request.platform = platform::resolve_platform(options.platform, options.overrides);
+  const sim::ClusterConfig& cluster = request.platform.config.cluster;
+  request.cores =
+      options.cores.empty()
+          ? cluster.workers
+          : static_cast<int>(parse_whole("--cores", options.cores, 1, cluster.max_workers));
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command.add_option(name, value, help)->type_name(type);
+  };
+  add("--platform", options.platform, "NAME|FILE", "chip: a name (leviosim platforms) or a file");
+  command.add_option("-p,--set", options.overrides, "parameter of the chip; repeatable")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  add("--cores", options.cores, "N", "worker cores [the chip's]");
+  command.add_flag("--native", options.native, "no chip, no timing: the golden model");
+  add("--data", options.data, "DIR|synthetic", "ASL/EuRoC folder, or the synthetic flight");
+  add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
+  add("--size", options.size, "WxH", "image size [160x120]");
+  add("--profile", options.profile, "NAME", "of the workload [levio]");
+  add("--seed", options.seed, "N", "of the workload's random draws [1]");
+  add("--out", options.out, "DIR", "folder for the results; must be new or empty");
+  command.add_flag("--force", options.force, "replace the results of an earlier run");
+  command.add_flag("--quiet", options.quiet, "no progress");
+}
+
+traces::ImageSize parse_size(const std::string& text) {
+  const auto x = text.find('x');
+  if (x == std::string::npos)
+    throw InputError(fmt::format("--size '{}': expected WxH, e.g. 160x120", text));
+  const auto side = [](const std::string& digits) {
+    return static_cast<int>(parse_whole("--size", digits, 1, kLargestSide));
+  };
+  return {side(text.substr(0, x)), side(text.substr(x + 1))};
+}
+
+RunRequest make_request(const CLI::App& command, const RunOptions& options) {
+  require(command, "--data", "an ASL folder or 'synthetic'");
+  require(command, "--out", "a folder for the results");
+  RunRequest request;
+  request.native = options.native;
+  request.seed = static_cast<std::uint32_t>(
+      parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
+  request.profile = options.profile;
+  vio::profile_named(options.profile, request.seed);  // refuses unknown names
+  request.image_size = parse_size(options.size);
+  if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
+  if (options.native)
+    refuse_chip_options(command);
+  else
+    resolve_chip(command, options, request);
+  return request;
+}
+
+}  // namespace leviosim::tools

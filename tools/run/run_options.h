@@ -1,0 +1,37 @@
+// The options of `leviosim run` as typed, and what they ask for once checked.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/run/run_request.h"
+
+namespace leviosim::tools {
+
+struct RunOptions {
+  std::string platform;
+  std::string data;
+  std::string profile = "levio";
+  std::string frames;
+  std::string cores;
+  std::string seed = "1";
+  std::string size = "160x120";
+  std::string out;
+  std::vector<std::string> overrides;
+  bool native = false;
+  bool force = false;
+  bool quiet = false;
+};
+
+/// Declares the options on the subcommand.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// Everything that can be checked without the data, whose folder is left for the caller to fill in.
+/// @throws InputError naming the option
+RunRequest make_request(const CLI::App& command, const RunOptions& options);
+
+/// "160x120". @throws InputError
+traces::ImageSize parse_size(const std::string& text);
+
+}  // namespace leviosim::tools

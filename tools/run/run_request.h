@@ -1,0 +1,38 @@
+// What the user asked `leviosim run` to do, after the command line has been checked.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform_models/loader.h"
+#include "tools/run/run_result.h"
+#include "traces/frame_range.h"
+#include "traces/image_source.h"
+
+namespace leviosim::tools {
+
+struct RunRequest {
+  std::string data;                        ///< ASL folder (the synthetic flight has been made)
+  std::string profile = "levio";
+  std::optional<traces::FrameRange> frames;
+  traces::ImageSize image_size{160, 120};
+  bool native = false;                     ///< no timing, any resolution
+  int cores = 8;
+  std::uint32_t seed = 1;                  ///< of the workload's random draws
+  platform::ResolvedPlatform platform;     ///< unused if native
+};
+
+/// Called after every frame.
+struct Progress {
+  int done = 0;
+  int total = 0;
+  std::int64_t simulated_ns = 0;
+};
+using ProgressCallback = std::function<void(const Progress&)>;
+
+/// Runs the workload over the data. @throws InputError for data or requests that cannot be run.
+RunResult simulate(const RunRequest& request, const ProgressCallback& progress);
+
+}  // namespace leviosim::tools

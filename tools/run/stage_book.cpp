@@ -1,0 +1,55 @@
+#include "tools/run/stage_book.h"
+
+#include <algorithm>
+
+namespace leviosim::tools {
+namespace {
+
+work::Counts counts_of(const work::StageRun& stage) {
+  work::Counts sum;
+  for (const work::Step& step : stage.steps) {
+    if (const auto* serial = std::get_if<work::Serial>(&step)) sum += serial->counts;
+    if (const auto* fork = std::get_if<work::Fork>(&step))
+      for (const work::Counts& share : fork->shares) sum += share;
+  }
+  return sum;
+}
+
+}  // namespace
+
+StageResult& StageBook::find(std::string_view name) {
+  const auto it = std::find_if(stages_.begin(), stages_.end(),
+                               [&](const StageResult& s) { return s.name == name; });
+  if (it != stages_.end()) return *it;
+  StageResult stage;
+  stage.name = name;
+  return stages_.emplace_back(std::move(stage));
+}
+
+void StageBook::add_work(const work::Job& job) {
+  for (const work::StageRun& run : job.stages) {
+    StageResult& stage = find(run.stage);
+    ++stage.calls;
+    stage.counts += counts_of(run);
+    stage.memory.single = std::max(stage.memory.single, run.memory.single);
+    if (run.memory.parallel > stage.memory.parallel) {
+      stage.memory.parallel = run.memory.parallel;
+      stage.memory.blocks = run.memory.blocks;
+    }
+  }
+}
+
+void StageBook::add_parallel(const sim::JobTiming& timing) {
+  for (const sim::StageTiming& run : timing.stages) {
+    StageResult& stage = find(run.stage);
+    stage.parallel += run.cycles;
+    stage.worst_parallel = std::max(stage.worst_parallel, run.cycles);
+    stage.account += run.account;
+  }
+}
+
+void StageBook::add_single(const sim::JobTiming& timing) {
+  for (const sim::StageTiming& run : timing.stages) find(run.stage).single += run.cycles;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,210 @@
+#include "tools/run/statistics.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/run/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+Json value_of(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
+
+/// Nine decimals, as trajectory files have.
+Json rounded(double value) { return std::round(value * 1e9) / 1e9; }
+
+class StatisticList {
+ public:
+  void add(const std::string& name, std::string_view unit, std::string_view description,
+           Json value) {
+    Json& entry = list_.emplace_back(Json::object());
+    entry["name"] = name;
+    entry["unit"] = unit;
+    entry["description"] = description;
+    entry["value"] = std::move(value);
+  }
+  void add_with_protocol(const std::string& name, std::string_view unit,
+                         std::string_view description, Json value, const std::string& protocol) {
+    add(name, unit, description, std::move(value));
+    list_.back()["protocol"] = protocol;
+  }
+
+  Json take() { return std::move(list_); }
+
+ private:
+  Json list_ = Json::array();
+};
+
+void add_run(StatisticList& list, const RunResult& run) {
+  list.add("run.profile", "text", "profile of the workload", run.profile);
+  list.add("run.image_width", "px", "width of the image that the workload gets", run.image_width);
+  list.add("run.image_height", "px", "height of that image", run.image_height);
+  list.add("run.frame_period", "ns", "between two camera frames", run.frame_period_ns);
+  if (!run.timed) return;
+  list.add("run.cores", "1", "cores N of the parallel execution", run.cores);
+  list.add("run.cluster_clock", "Hz", "clock of the cluster", run.cluster_clock.count());
+  list.add("run.controller_clock", "Hz", "clock of the fabric controller",
+           run.controller_clock.count());
+  list.add("run.l1_size", "byte", "size of L1", run.l1_size.count());
+  list.add("run.l2_size", "byte", "size of L2", run.l2_size.count());
+}
+
+void add_cycles(StatisticList& list, const std::string& path, const RunResult& run,
+                const StageResult& stage) {
+  const std::optional<double> parallel = mean(stage.parallel, stage.calls);
+  const Hertz clock = clock_of(run, stage);
+  list.add(path + "cycles.single.sum", "cycles", "on one core", stage.single.count());
+  list.add(path + "cycles.single.mean", "cycles", "of a call on one core",
+           value_of(mean(stage.single, stage.calls)));
+  list.add(path + "cycles.parallel.sum", "cycles", "on N cores", stage.parallel.count());
+  list.add(path + "cycles.parallel.mean", "cycles", "of a call on N cores", value_of(parallel));
+  list.add(path + "cycles.parallel.worst", "cycles", "longest call on N cores",
+           stage.worst_parallel.count());
+  list.add(path + "speedup", "1", "one core over N cores", value_of(speedup(stage)));
+  list.add(path + "time.parallel.mean", "ms", "of a call on N cores",
+           parallel ? Json(milliseconds(*parallel, clock)) : Json(nullptr));
+}
+
+void add_account(StatisticList& list, const std::string& path, const StageResult& stage) {
+  list.add(path + "account.total", "core-cycles", "of the team on N cores", stage.account.total());
+  for (const AccountPart& part : kAccountParts)
+    list.add(fmt::format("{}account.{}", path, part.key), "core-cycles", part.description,
+             part.of(stage.account));
+}
+
+void add_blocks(StatisticList& list, const std::string& path,
+                const std::vector<work::Block>& blocks) {
+  for (const BlockGroup& group : grouped(blocks))
+    list.add(fmt::format("{}block.{}", path, key_of(group.name)), "byte",
+             fmt::format("block \"{}\" alive at the peak, {} of them", group.name, group.copies),
+             group.bytes.count());
+}
+
+void add_stage(StatisticList& list, const RunResult& run, const StageResult& stage) {
+  const std::string path = fmt::format("stages.{}.", key_of(stage.name));
+  list.add(path + "calls", "1", fmt::format("executions, one per {}", stage.unit), stage.calls);
+  list.add(path + "runs_on", "text", "cluster or fabric controller",
+           stage.on_controller ? "controller" : "cluster");
+  add_cycles(list, path, run, stage);
+  add_account(list, path, stage);
+  for (const work::OpInfo& op : work::kOps)
+    list.add(fmt::format("{}ops.{}", path, op.name), "1", op.description, stage.counts[op.op]);
+  list.add(path + "memory.single", "byte", "peak in its memory on one core",
+           stage.memory.single.count());
+  list.add(path + "memory.parallel", "byte", "peak in its memory on N cores",
+           stage.memory.parallel.count());
+  add_blocks(list, path + "memory.", stage.memory.blocks);
+}
+
+void add_frames(StatisticList& list, const RunResult& run) {
+  list.add("frames.count", "1", "frames processed", run.frames.size());
+  const auto count = [&](const auto& condition) {
+    return std::count_if(run.frames.begin(), run.frames.end(), condition);
+  };
+  for (const PoseSource source :
+       {PoseSource::First, PoseSource::Epnp, PoseSource::EightPoint, PoseSource::Kept})
+    list.add(fmt::format("frames.source.{}", key_of(source)), "1", "frames by source of the pose",
+             count([&](const FrameResult& f) { return f.source == source; }));
+  list.add("frames.keyframes", "1", "frames that became keyframes",
+           count([](const FrameResult& f) { return f.keyframe; }));
+  struct Field {
+    const char* name;
+    int FrameResult::*of;
+  };
+  for (const Field& field :
+       {Field{"features", &FrameResult::features},
+        Field{"world_matches", &FrameResult::world_matches},
+        Field{"frame_matches", &FrameResult::frame_matches},
+        Field{"inliers", &FrameResult::inliers}, Field{"landmarks", &FrameResult::landmarks}}) {
+    std::int64_t sum = 0;
+    for (const FrameResult& frame : run.frames) sum += frame.*field.of;
+    list.add(fmt::format("frames.{}.sum", field.name), "1", "summed over the frames", sum);
+  }
+}
+
+void add_latencies(StatisticList& list, const RunResult& run) {
+  const Waiting waiting = frames_that_waited(run);
+  list.add("frames.waited", "1", "frames that found the front end busy", waiting.frames);
+  list.add("frames.longest_wait", "ns", "of a frame for the front end", waiting.longest_ns);
+  for (const Scenario& scenario : scenarios(run)) {
+    const std::string path = fmt::format("latency.{}.", scenario.key);
+    list.add(path + "frames", "1", fmt::format("frames of the kind \"{}\"", scenario.name),
+             scenario.frames);
+    list.add(path + "mean", "ns", "from the camera's frame to its pose",
+             value_of(scenario.mean_latency_ns()));
+    list.add(path + "worst", "ns", "longest from the camera's frame to its pose",
+             scenario.worst_latency_ns);
+    list.add(path + "over_period", "1", "frames whose latency exceeds the frame period",
+             scenario.over_period);
+    list.add(path + "cycles.single.mean", "cycles", "of the front end on one core",
+             value_of(mean(scenario.single, scenario.frames)));
+    list.add(path + "cycles.parallel.mean", "cycles", "of the front end on N cores",
+             value_of(mean(scenario.parallel, scenario.frames)));
+  }
+}
+
+void add_l2(StatisticList& list, const RunResult& run) {
+  for (const L2Row& row : run.l2) {
+    const std::string path = fmt::format("memory.l2.{}.", key_of(row.name));
+    list.add(path + "bytes", "byte", "occupation of L2", row.bytes.count());
+    add_blocks(list, path, row.blocks);
+  }
+}
+
+void add_accuracy(StatisticList& list, const RunResult& run) {
+  list.add("trajectory.poses", "1", "poses of the trajectory", run.trajectory.size());
+  list.add("trajectory.length", "m", "of the estimated path", rounded(path_length(run.trajectory)));
+  if (!run.ate) return;
+  const traces::Evaluation& ate = *run.ate;
+  const auto add = [&](const char* name, const char* unit, const char* description, Json value) {
+    list.add_with_protocol(std::string("accuracy.") + name, unit, description, std::move(value),
+                           ate.protocol);
+  };
+  add("ate.rmse", "m", "absolute trajectory error, root mean square",
+      rounded(ate.translation.rmse));
+  add("ate.mean", "m", "absolute trajectory error, mean", rounded(ate.translation.mean));
+  add("ate.median", "m", "absolute trajectory error, median", rounded(ate.translation.median));
+  add("ate.worst", "m", "absolute trajectory error, worst", rounded(ate.translation.max));
+  add("rotation.rmse", "deg", "rotation error after alignment, root mean square",
+      rounded(ate.rotation_rmse_deg));
+  add("matched", "1", "poses matched with the ground truth", ate.matched);
+  add("completion", "1", "matched over expected poses", rounded(ate.completion));
+  add("truth_length", "m", "of the true path", rounded(ate.path_length_m));
+}
+
+}  // namespace
+
+Json statistics(const RunResult& run) {
+  StatisticList list;
+  add_run(list, run);
+  if (run.timed)
+    for (const StageResult& stage : run.stages) add_stage(list, run, stage);
+  add_frames(list, run);
+  if (run.timed) {
+    add_latencies(list, run);
+    add_l2(list, run);
+    list.add("optimiser.published", "1", "results that reached the front end",
+             run.optimiser_published);
+    list.add("optimiser.late", "1", "frames at whose start the controller was still busy",
+             run.optimiser_late);
+  }
+  add_accuracy(list, run);
+  Json document;
+  document["format"] = "leviosim statistics";
+  document["version"] = 1;
+  document["statistics"] = list.take();
+  return document;
+}
+
+std::string statistics_text(const RunResult& run) {
+  const Json document = statistics(run);
+  std::string lines;
+  for (const Json& entry : document.at("statistics"))
+    lines += (lines.empty() ? "\n" : ",\n") + entry.dump();
+  return fmt::format("{{\"format\": {}, \"version\": {}, \"statistics\": [{}\n]}}\n",
+                     document.at("format").dump(), document.at("version").dump(), lines);
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,127 @@
+#include "tools/run/summary.h"
+
+#include <algorithm>
+
+namespace leviosim::tools {
+namespace {
+
+/// Which scenario a frame belongs to; the last one takes what the others do not.
+std::size_t scenario_of(const FrameResult& frame) {
+  if (frame.source == PoseSource::Epnp) return frame.keyframe ? 1 : 0;
+  if (frame.source == PoseSource::EightPoint) return frame.keyframe ? 3 : 2;
+  return 4;
+}
+
+std::vector<Scenario> empty_scenarios() {
+  constexpr std::array<std::array<std::string_view, 2>, 5> names{{
+      {"EPnP", "epnp"},
+      {"EPnP, keyframe", "epnp_keyframe"},
+      {"8-point", "eight_point"},
+      {"8-point, keyframe", "eight_point_keyframe"},
+      {"other (first, pose kept)", "other"},
+  }};
+  std::vector<Scenario> all;
+  for (const auto& [name, key] : names) {
+    Scenario scenario;
+    scenario.name = name;
+    scenario.key = key;
+    all.push_back(scenario);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string key_of(std::string_view name) {
+  std::string key;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (letter)
+      key += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    else if (!key.empty() && key.back() != '_')
+      key += '_';
+  }
+  while (!key.empty() && key.back() == '_') key.pop_back();
+  return key;
+}
+
+std::string_view key_of(PoseSource source) {
+  constexpr std::array<std::string_view, 4> keys{"first", "epnp", "eight_point", "kept"};
+  return keys[static_cast<std::size_t>(source)];
+}
+
+std::optional<double> mean(Cycles sum, std::int64_t calls) {
+  if (calls == 0) return std::nullopt;
+  return static_cast<double>(sum.count()) / static_cast<double>(calls);
+}
+
+std::optional<double> speedup(const StageResult& stage) {
+  if (stage.calls == 0 || stage.parallel.count() == 0) return std::nullopt;
+  return static_cast<double>(stage.single.count()) / static_cast<double>(stage.parallel.count());
+}
+
+Hertz clock_of(const RunResult& run, const StageResult& stage) {
+  return stage.on_controller ? run.controller_clock : run.cluster_clock;
+}
+
+double milliseconds(double cycles, Hertz clock) {
+  return cycles * 1e3 / static_cast<double>(clock.count());
+}
+
+std::optional<double> Scenario::mean_latency_ns() const {
+  if (frames == 0) return std::nullopt;
+  return static_cast<double>(latency_ns) / static_cast<double>(frames);
+}
+
+std::vector<Scenario> scenarios(const RunResult& run) {
+  std::vector<Scenario> all = empty_scenarios();
+  for (const FrameResult& frame : run.frames) {
+    Scenario& scenario = all[scenario_of(frame)];
+    const std::int64_t latency_ns = frame.end_ns - frame.arrival_ns;
+    ++scenario.frames;
+    scenario.latency_ns += latency_ns;
+    scenario.worst_latency_ns = std::max(scenario.worst_latency_ns, latency_ns);
+    if (latency_ns > run.frame_period_ns) ++scenario.over_period;
+    scenario.single += frame.single_cycles;
+    scenario.parallel += frame.cycles;
+  }
+  return all;
+}
+
+Waiting frames_that_waited(const RunResult& run) {
+  Waiting waiting;
+  for (const FrameResult& frame : run.frames) {
+    const std::int64_t wait_ns = frame.start_ns - frame.arrival_ns;
+    if (wait_ns > 0) ++waiting.frames;
+    waiting.longest_ns = std::max(waiting.longest_ns, wait_ns);
+  }
+  return waiting;
+}
+
+std::vector<BlockGroup> grouped(const std::vector<work::Block>& blocks) {
+  std::vector<BlockGroup> groups;
+  for (const work::Block& block : blocks) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const BlockGroup& g) { return g.name == block.name; });
+    if (group == groups.end()) group = groups.insert(group, BlockGroup{block.name, 0, Bytes(0)});
+    ++group->copies;
+    group->bytes += block.size;
+  }
+  return groups;
+}
+
+double percent_of_nominal(Bytes used, Bytes size) {
+  const double nominal = static_cast<double>(size.count()) / 1024.0 * 1000.0;
+  return nominal > 0 ? 100.0 * static_cast<double>(used.count()) / nominal : 0;
+}
+
+double path_length(const std::vector<traces::StampedPose>& trajectory) {
+  double length = 0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    length +=
+        (trajectory[i].T_world_body.translation() - trajectory[i - 1].T_world_body.translation())
+            .norm();
+  return length;
+}
+
+}  // namespace leviosim::tools

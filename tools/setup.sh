@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Installs what leviosim needs and is missing, from Debian 12's packages. Does nothing, and needs no
+# network, where everything is there.
+set -euo pipefail
+
+packages=(
+  g++ clang cmake ninja-build git          # compilers (Clang for tools/check_reproducible.sh), build
+  libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
+  libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
+  libgtest-dev libbenchmark-dev libsystemc-dev                # tests, benchmarks and their yardstick
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ $status == installed ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  echo "setup: all packages are installed"
+  exit 0
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    echo "setup: please install as root: apt-get install --no-install-recommends ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "setup: installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

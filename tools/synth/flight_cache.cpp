@@ -1,0 +1,86 @@
+#include "tools/synth/flight_cache.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "sim/error.h"
+#include "tools/cli/interrupts.h"
+#include "tools/cli/version.h"
+#include "traces/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// By the XDG base directory specification, which ignores relative paths.
+fs::path cache_home() {
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/') return xdg;
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+    return fs::path(home) / ".cache";
+  return fs::temp_directory_path();
+}
+
+/// Excludes other processes from acquire() to the end of its life. The file stays; it is empty.
+class FileLock {
+ public:
+  explicit FileLock(const fs::path& file)
+      : descriptor_(::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+    if (descriptor_ < 0) throw InputError(fmt::format("{}: cannot be written", file.string()));
+  }
+  ~FileLock() { ::close(descriptor_); }
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+  void acquire() {
+    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      throw_if_interrupted();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace
+
+fs::path flight_folder() {
+  return cache_home() / "leviosim" /
+         fmt::format("synthetic-{}-{:g}s-{}", kFlightSeed, kFlightSeconds, flight_version());
+}
+
+void write_flight(const fs::path& folder, std::uint64_t seed, double seconds, bool overwrite,
+                  ProgressLine::Style progress) {
+  ProgressLine line(progress);
+  traces::SyntheticOptions options;
+  options.seed = seed;
+  options.duration_s = seconds;
+  options.overwrite = overwrite;
+  traces::write_synthetic_flight(folder, options, [&](std::size_t done, std::size_t total) {
+    throw_if_interrupted();
+    line.show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total),
+              [&] { return fmt::format("synthetic flight: image {}/{}", done, total); });
+  });
+}
+
+fs::path cached_flight(ProgressLine::Style progress) {
+  const fs::path folder = flight_folder();
+  std::error_code error;
+  fs::create_directories(folder.parent_path(), error);
+  if (error)
+    throw InputError(
+        fmt::format("{}: cannot be created: {}", folder.parent_path().string(), error.message()));
+  FileLock lock(folder.string() + ".lock");
+  lock.acquire();
+  if (!fs::exists(folder)) write_flight(folder, kFlightSeed, kFlightSeconds, false, progress);
+  return folder;
+}
+
+}  // namespace leviosim::tools

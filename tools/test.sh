@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Builds everything and runs every test; what CI calls. Exit status 0 only if all is well.
+#   tools/test.sh           release build (GCC), reproducibility over compilers, all tests
+#   tools/test.sh --fast    without the other compilers
+#   tools/test.sh --asan    all tests under address and undefined-behaviour sanitizers
+#   tools/test.sh --clang   all tests, built by Clang
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+preset=release
+reproducible=yes
+for option in "$@"; do
+  case $option in
+    --fast) reproducible=no ;;
+    --asan) preset=asan reproducible=no ;;
+    --clang) preset=clang reproducible=no ;;
+    *)
+      echo "test: unknown option $option; expected --fast, --asan or --clang" >&2
+      exit 2
+      ;;
+  esac
+done
+
+tools/setup.sh
+echo "test: building preset $preset"
+tools/build.sh "$preset"
+
+status=0
+if [[ $reproducible == yes ]]; then
+  tools/check_reproducible.sh --quick || status=1
+fi
+# Last, so that its summary is what stands at the end of the log.
+ctest --preset "$preset" --parallel 2 || status=1
+exit $status

@@ -1,0 +1,30 @@
+#include "traces/frame_range.h"
+
+#include <fmt/core.h>
+
+#include <charconv>
+
+#include "sim/error.h"
+
+namespace leviosim::traces {
+namespace {
+
+bool parse_index(std::string_view text, std::size_t& value) {
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
+}  // namespace
+
+FrameRange parse_frame_range(std::string_view text) {
+  FrameRange range;
+  const auto colon = text.find(':');
+  if (colon == std::string_view::npos || !parse_index(text.substr(0, colon), range.begin) ||
+      !parse_index(text.substr(colon + 1), range.end) || range.begin >= range.end)
+    throw InputError(fmt::format(
+        "frame range '{}': expected A:B with 0 <= A < B (B exclusive), e.g. 0:100", text));
+  return range;
+}
+
+}  // namespace leviosim::traces

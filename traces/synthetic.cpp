@@ -1,0 +1,140 @@
+#include "traces/synthetic.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <mutex>
+#include <opencv2/imgcodecs.hpp>
+#include <vector>
+
+#include "sim/error.h"
+#include "traces/asl_writer.h"
+#include "traces/atomic_file.h"
+#include "traces/imu_synthesis.h"
+#include "traces/motion.h"
+#include "traces/parallel_for.h"
+#include "traces/renderer.h"
+#include "traces/rng.h"
+#include "traces/world.h"
+
+namespace leviosim::traces {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Parts of the flight that have a seed of their own.
+enum SeedPart : std::uint64_t { kWorldSeed, kMotionSeed, kImuSeed, kImageSeed };
+
+void check_options(const SyntheticOptions& options) {
+  constexpr double kLongestS = 3600;
+  if (!(options.duration_s > 0) || options.duration_s > kLongestS)
+    throw InputError(fmt::format("synthetic flight: duration {} s; expected above 0, at most {} s",
+                                 options.duration_s, kLongestS));
+  if (!(options.image_noise >= 0) || options.image_noise > 255)
+    throw InputError(fmt::format("synthetic flight: image noise {}; expected 0 to 255 grey levels",
+                                 options.image_noise));
+  if (!(options.texel_m >= 0.001) || options.texel_m > 0.1)
+    throw InputError(
+        fmt::format("synthetic flight: texel {} m; expected 0.001 to 0.1 m", options.texel_m));
+}
+
+/// Folders are replaced only if asked, and only if they are what this function writes.
+void check_target(const fs::path& out_dir, bool overwrite) {
+  if (!fs::exists(out_dir)) return;
+  if (!overwrite)
+    throw InputError(fmt::format("{}: already exists; choose another folder or allow overwriting",
+                                 out_dir.string()));
+  if (!fs::is_directory(out_dir / "mav0") && !(fs::is_directory(out_dir) && fs::is_empty(out_dir)))
+    throw InputError(fmt::format("{}: is not overwritten because it is no ASL folder (no mav0)",
+                                 out_dir.string()));
+}
+
+std::int64_t step_ns(double rate_hz, std::int64_t step) {
+  return static_cast<std::int64_t>(std::llround(static_cast<double>(step) * 1e9 / rate_hz));
+}
+
+/// The stamps kFirstFrameNs + i / rate for i = first ... last.
+std::vector<std::int64_t> stamps(double rate_hz, std::int64_t first, std::int64_t last) {
+  std::vector<std::int64_t> result;
+  for (std::int64_t i = first; i <= last; ++i)
+    result.push_back(SyntheticOptions::kFirstFrameNs + step_ns(rate_hz, i));
+  return result;
+}
+
+std::vector<std::int64_t> frame_stamps(const SyntheticOptions& options) {
+  const double frames = std::ceil(options.duration_s * options.camera.rate_hz - 1e-9);
+  return stamps(options.camera.rate_hz, 0, static_cast<std::int64_t>(frames) - 1);
+}
+
+std::vector<std::int64_t> imu_stamps(const SyntheticOptions& options, std::int64_t last_frame_ns) {
+  const double rate = options.imu.rate_hz;
+  const double lead = std::ceil(rate / options.camera.rate_hz);
+  const double span_s = static_cast<double>(last_frame_ns - SyntheticOptions::kFirstFrameNs) * 1e-9;
+  return stamps(rate, -static_cast<std::int64_t>(lead),
+                static_cast<std::int64_t>(std::ceil(span_s * rate - 1e-6)));
+}
+
+void write_text(const fs::path& mav0, const SyntheticOptions& options, const Motion& motion,
+                const std::vector<std::int64_t>& frames) {
+  ImuSynthesizer imu(options.imu, derive_seed(options.seed, kImuSeed));
+  const ImuTrack track =
+      record_imu(motion, options.imu_errors ? &imu : nullptr, SyntheticOptions::kFirstFrameNs,
+                 imu_stamps(options, frames.back()));
+  for (const char* folder : {"cam0/data", "imu0", "state_groundtruth_estimate0"})
+    fs::create_directories(mav0 / folder);
+  const std::string comment = fmt::format("leviosim synthetic flight, seed {}", options.seed);
+  const auto write = [&mav0](const char* name, const std::string& text) {
+    write_file_atomically(mav0 / name, text);
+  };
+  write("cam0/sensor.yaml", format_camera_yaml(options.camera, comment));
+  write("cam0/data.csv", format_frames_csv(frames));
+  write("imu0/sensor.yaml", format_imu_yaml(options.imu, comment));
+  write("imu0/data.csv", format_imu_csv(track.samples));
+  write("state_groundtruth_estimate0/sensor.yaml", format_ground_truth_yaml(comment));
+  write("state_groundtruth_estimate0/data.csv", format_ground_truth_csv(track.truth));
+}
+
+void write_png(const fs::path& file, int width, int height, std::vector<std::uint8_t>& pixels) {
+  const cv::Mat image(height, width, CV_8UC1, pixels.data());
+  const std::vector<int> fast{cv::IMWRITE_PNG_COMPRESSION, 1};
+  if (!cv::imwrite(file.string(), image, fast))
+    throw InputError(fmt::format("{}: cannot be written", file.string()));
+}
+
+void write_images(const fs::path& folder, const SyntheticOptions& options, const Motion& motion,
+                  const std::vector<std::int64_t>& frames, const SyntheticProgress& progress) {
+  const World world =
+      make_room(derive_seed(options.seed, kWorldSeed), options.texel_m, options.threads);
+  RenderOptions render_options;
+  render_options.noise = options.image_noise;
+  render_options.seed = derive_seed(options.seed, kImageSeed);
+  const Renderer renderer(world, options.camera, render_options);
+  std::mutex mutex;
+  std::size_t done = 0;
+  parallel_for(frames.size(), options.threads, [&](std::size_t i) {
+    const double t_s = static_cast<double>(frames[i] - SyntheticOptions::kFirstFrameNs) * 1e-9;
+    std::vector<std::uint8_t> pixels =
+        renderer.render(motion.at(t_s).T_world_body * options.camera.T_body_camera, i);
+    write_png(folder / image_name(frames[i]), renderer.width(), renderer.height(), pixels);
+    const std::lock_guard<std::mutex> lock(mutex);
+    ++done;
+    if (progress) progress(done, frames.size());
+  });
+}
+
+}  // namespace
+
+void write_synthetic_flight(const fs::path& out_dir, const SyntheticOptions& options,
+                            const SyntheticProgress& progress) {
+  check_options(options);
+  check_target(out_dir, options.overwrite);
+  StagedFolder staged(out_dir);
+  const fs::path mav0 = staged.path() / "mav0";
+  const HandHeldFlight motion(derive_seed(options.seed, kMotionSeed));
+  const std::vector<std::int64_t> frames = frame_stamps(options);
+  write_text(mav0, options, motion, frames);
+  write_images(mav0 / "cam0" / "data", options, motion, frames, progress);
+  staged.commit();
+}
+
+}  // namespace leviosim::traces

@@ -1,0 +1,125 @@
+#include "workload/geometry/essential_ransac.h"
+
+#include <algorithm>
+
+#include "sim/check.h"
+#include "workload/geometry/random.h"
+
+namespace leviosim::vio {
+namespace {
+
+/// What the master and the team exchange in one batch: element h (row h) belongs to hypothesis h.
+template <class P>
+struct Batch {
+  template <class T>
+  using Span = typename P::template Span<T>;
+  using Byte = typename P::Byte;
+  using U16 = typename P::U16;
+
+  Batch(work::Arena& arena, int size, int sample_size, int matches)
+      : samples(arena.alloc<Span<U16>>("8-point samples", size * sample_size)),
+        essentials(arena.alloc<Span<typename P::F32>>("8-point hypotheses", size * 9)),
+        inliers(arena.alloc<Span<typename P::I32>>("8-point inlier counts", size)),
+        masks(arena.alloc<Span<Byte>>("8-point inlier masks", size * matches)),
+        sample_size_(sample_size),
+        matches_(matches) {}
+
+  Span<U16> sample(int h) const { return samples.subspan(h * sample_size_, sample_size_); }
+  Span<Byte> mask(int h) const { return masks.subspan(h * matches_, matches_); }
+  Mat3<P> essential(int h) const {
+    const auto e = essentials.subspan(h * 9, 9);
+    return {{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, {e[6], e[7], e[8]}}};
+  }
+  void store_essential(int h, const Mat3<P>& E) const {
+    const auto e = essentials.subspan(h * 9, 9);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) e[3 * r + c] = E.m[r][c];
+  }
+
+  Span<U16> samples;
+  Span<typename P::F32> essentials;
+  Span<typename P::I32> inliers;
+  Span<Byte> masks;
+
+ private:
+  int sample_size_;
+  int matches_;
+};
+
+template <class P>
+void fork_hypotheses(work::Machine& machine, const TwoViewMatches<P>& matches,
+                     const EssentialOptions& options, const Batch<P>& batch, int size) {
+  machine.fork("8-point hypotheses", [&](work::Core& core) {
+    const auto [begin, end] = core.share(size);
+    for (int h : P::range(begin, end))
+      batch.store_essential(
+          h, essential_from_sample<P>(matches, batch.sample(h), options.solver, core.scratch));
+  });
+}
+
+template <class P>
+void fork_scoring(work::Machine& machine, const TwoViewMatches<P>& matches,
+                  typename P::F32 threshold, const Batch<P>& batch, int size) {
+  machine.fork("8-point scoring", [&](work::Core& core) {
+    const auto [begin, end] = core.share(size);
+    for (int h : P::range(begin, end))
+      batch.inliers[h] = score_essential<P>(batch.essential(h), matches, threshold, batch.mask(h));
+  });
+}
+
+}  // namespace
+
+template <class P>
+EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatches<P>& matches,
+                                      float fx, const EssentialOptions& options,
+                                      typename P::template Span<typename P::Byte> inlier_mask) {
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  check(options.sample >= 8 && options.batch >= 1, "8-point RANSAC: sample or batch too small");
+  check(matches.n <= 65536, "8-point RANSAC: match indices have 16 bits");
+  const typename P::Function function("estimate_essential");
+  for (int i : P::range(0, matches.n)) inlier_mask[i] = work::narrow<typename P::Byte>(I32(0));
+  EssentialResult<P> best{false, Mat3<P>::zero(), 0};
+  if (matches.n < options.sample) return best;
+
+  work::Arena& local = machine.local();
+  const work::Arena::Frame frame(local);
+  const auto indices =
+      local.alloc<typename P::template Span<typename P::U16>>("8-point indices", matches.n);
+  const Batch<P> batch(local, options.batch, options.sample, matches.n);
+  const F pixel = F(options.inlier_px) / F(fx);
+  const F threshold = pixel * pixel;
+  Lfsr32<P> random(options.seed);
+  number_consecutively<P>(indices);
+  I32 most_inliers = options.sample - 1;  // a sample that its own matches do not fit is no result
+
+  const int batches = (options.iterations + options.batch - 1) / options.batch;
+  for (int i : P::range(0, batches)) {
+    const int size = std::min(options.batch, options.iterations - i * options.batch);
+    for (int h : P::range(0, size))
+      draw_sample<P>(random, indices, matches.n, options.sample, batch.sample(h));
+    fork_hypotheses<P>(machine, matches, options, batch, size);
+    fork_scoring<P>(machine, matches, threshold, batch, size);
+    for (int h : P::range(0, size)) {
+      const I32 inliers = batch.inliers[h];
+      if (inliers > most_inliers) {
+        most_inliers = inliers;
+        best = {true, batch.essential(h), work::value(inliers)};
+        const auto mask = batch.mask(h);
+        for (int m : P::range(0, matches.n))
+          inlier_mask[m] = work::narrow<typename P::Byte>(I32(mask[m]));
+      }
+    }
+  }
+  return best;
+}
+
+template EssentialResult<work::Native> estimate_essential(work::Machine&,
+                                                          const TwoViewMatches<work::Native>&,
+                                                          float, const EssentialOptions&,
+                                                          work::Native::Span<work::Native::Byte>);
+template EssentialResult<work::Counting> estimate_essential(
+    work::Machine&, const TwoViewMatches<work::Counting>&, float, const EssentialOptions&,
+    work::Counting::Span<work::Counting::Byte>);
+
+}  // namespace leviosim::vio

@@ -1,0 +1,213 @@
+#include "workload/graph/inertial_terms.h"
+
+namespace leviosim::vio {
+namespace {
+
+// Rows of an interval, as in its covariance, and columns of a keyframe.
+constexpr int kRotation = 0;
+constexpr int kVelocityRow = 3, kPositionRow = 6;
+constexpr int kPositionColumn = 3, kVelocityColumn = 6;
+constexpr int kEnd = 9;        ///< first column of the keyframe at the end
+constexpr int kResidual = 18;  ///< column of the residual
+
+template <class P>
+void store_block(MatrixView<P> rows, int r, int c, const Mat3<P>& block) {
+  store_mat3<P>(rows.data(), r * rows.cols() + c, block, rows.cols());
+}
+template <class P>
+void store_residual(MatrixView<P> rows, const ImuResidual<P>& r) {
+  const Vec3<P> parts[3] = {r.rotation, r.velocity, r.position};
+  for (int i = 0; i < 3; ++i) {
+    rows(3 * i, kResidual) = parts[i].x;
+    rows(3 * i + 1, kResidual) = parts[i].y;
+    rows(3 * i + 2, kResidual) = parts[i].z;
+  }
+}
+
+template <class P>
+void store_jacobians(MatrixView<P> rows, const ImuJacobians<P>& J, typename P::F32 dt) {
+  using F = typename P::F32;
+  const Mat3<P> minus_Rt = scaled<P>(F(-1.0f), J.Rt);
+  store_block<P>(rows, kRotation, 0, J.rotation_by_rotation0);
+  store_block<P>(rows, kRotation, kEnd, J.rotation_by_rotation1);
+  store_block<P>(rows, kVelocityRow, 0, J.velocity_by_rotation0);
+  store_block<P>(rows, kVelocityRow, kVelocityColumn, minus_Rt);
+  store_block<P>(rows, kVelocityRow, kEnd + kVelocityColumn, J.Rt);
+  store_block<P>(rows, kPositionRow, 0, J.position_by_rotation0);
+  store_block<P>(rows, kPositionRow, kPositionColumn, minus_Rt);
+  store_block<P>(rows, kPositionRow, kVelocityColumn, scaled<P>(dt, minus_Rt));
+  store_block<P>(rows, kPositionRow, kEnd + kPositionColumn, J.Rt);
+}
+
+/// Multiplies columns [begin, end) by the inverse of the factor: forward substitution.
+template <class P>
+void whiten(const Preintegration<P>& interval, MatrixView<P> rows, int begin, int end) {
+  using F = typename P::F32;
+  const typename P::Function function("whiten");
+  const MatrixView<P> factor = interval.covariance();
+  for (int r : P::range(0, 9)) {
+    const F inverse_diagonal = factor(r, r);
+    for (int c : P::range(begin, end)) {
+      F sum = rows(r, c);
+      for (int k : P::range(0, r)) sum -= factor(r, k) * rows(k, c);
+      rows(r, c) = sum * inverse_diagonal;
+    }
+  }
+}
+
+template <class P>
+typename P::F32 half_square_of_residual(MatrixView<P> rows) {
+  using F = typename P::F32;
+  F sum = 0.0f;
+  for (int r : P::range(0, 9)) {
+    const F e = rows(r, kResidual);
+    sum += e * e;
+  }
+  return sum * F(0.5f);
+}
+
+/// The columns of two consecutive keyframes are neighbours in the system.
+template <class P>
+void add_rows(MatrixView<P> rows, const ReducedSystem<P>& system, int keyframe) {
+  using F = typename P::F32;
+  const typename P::Function function("add_rows");
+  const int base = keyframe * system.per_keyframe();
+  const MatrixView<P> matrix = system.matrix();
+  for (int i : P::range(0, kResidual)) {
+    for (int j : P::range(0, i + 1)) {
+      F sum = matrix(base + i, base + j);
+      for (int r : P::range(0, 9)) sum += rows(r, i) * rows(r, j);
+      matrix(base + i, base + j) = sum;
+    }
+    F b = system.vector()[base + i];
+    for (int r : P::range(0, 9)) b -= rows(r, i) * rows(r, kResidual);
+    system.vector()[base + i] = b;
+  }
+}
+
+/// 1/σ², or 0 if the part is free.
+float information(float stddev) { return stddev > 0 ? 1.0f / (stddev * stddev) : 0.0f; }
+
+template <class P>
+struct AnchorResidual {
+  Vec3<P> rotation, position, velocity;
+};
+
+template <class P>
+AnchorResidual<P> anchor_residual(const Window<P>& window, const WindowState<P>& state) {
+  const KeyframeState<P> oldest = state.keyframe(0);
+  const Pose<P>& anchor = window.anchor.T_world_camera;
+  return {so3_log<P>(transpose(anchor.R) * oldest.T_world_camera.R),
+          oldest.T_world_camera.t - anchor.t, oldest.velocity - window.anchor.velocity};
+}
+
+template <class P>
+void add_held(const ReducedSystem<P>& system, int at, const Vec3<P>& residual, float weight) {
+  using F = typename P::F32;
+  const F w = weight;
+  const MatrixView<P> matrix = system.matrix();
+  for (int i = 0; i < 3; ++i) matrix(at + i, at + i) += w;
+  const auto b = system.vector();
+  b[at] -= w * residual.x;
+  b[at + 1] -= w * residual.y;
+  b[at + 2] -= w * residual.z;
+}
+
+template <class P>
+typename P::F32 held_cost(const AnchorResidual<P>& r, const AnchorOptions& options,
+                          bool with_velocity) {
+  using F = typename P::F32;
+  F cost = F(dot(r.rotation, r.rotation)) * F(0.5f * information(options.rotation));
+  cost += F(dot(r.position, r.position)) * F(0.5f * information(options.position));
+  if (with_velocity)
+    cost += F(dot(r.velocity, r.velocity)) * F(0.5f * information(options.velocity));
+  return cost;
+}
+
+}  // namespace
+
+template <class P>
+typename P::F32 add_inertial_terms(const Window<P>& window, const IntervalScratch<P>& scratch,
+                                   const ReducedSystem<P>& system) {
+  using F = typename P::F32;
+  const typename P::Function function("add_inertial_terms");
+  F cost = 0.0f;
+  for (int k : P::range(1, window.keyframes)) {
+    const Preintegration<P> interval = window.interval(k);
+    if (!(interval.duration() > 0.0f)) continue;
+    const KeyframeState<P> begin = window.state.keyframe(k - 1), end = window.state.keyframe(k);
+    const ImuDelta<P> delta = interval.corrected(window.bias);
+    const ImuResidual<P> residual = imu_residual<P>(begin, end, delta, window.gravity);
+    fill<P>(scratch.rows, 0.0f);
+    store_residual<P>(scratch.rows, residual);
+    store_jacobians<P>(scratch.rows,
+                       imu_jacobians<P>(begin, end, delta.dt, window.gravity, residual), delta.dt);
+    whiten<P>(interval, scratch.rows, 0, IntervalScratch<P>::kColumns);
+    add_rows<P>(scratch.rows, system, k - 1);
+    cost += half_square_of_residual<P>(scratch.rows);
+  }
+  return cost;
+}
+
+template <class P>
+typename P::F32 inertial_cost(const Window<P>& window, const WindowState<P>& state,
+                              const IntervalScratch<P>& scratch) {
+  using F = typename P::F32;
+  const typename P::Function function("inertial_cost");
+  F cost = 0.0f;
+  for (int k : P::range(1, window.keyframes)) {
+    const Preintegration<P> interval = window.interval(k);
+    if (!(interval.duration() > 0.0f)) continue;
+    store_residual<P>(scratch.rows,
+                      imu_residual<P>(state.keyframe(k - 1), state.keyframe(k),
+                                      interval.corrected(window.bias), window.gravity));
+    whiten<P>(interval, scratch.rows, kResidual, kResidual + 1);
+    cost += half_square_of_residual<P>(scratch.rows);
+  }
+  return cost;
+}
+
+template <class P>
+typename P::F32 add_anchor(const Window<P>& window, const AnchorOptions& options,
+                           const ReducedSystem<P>& system) {
+  const typename P::Function function("add_anchor");
+  const bool with_velocity = system.per_keyframe() > kVelocityColumn;
+  const AnchorResidual<P> r = anchor_residual<P>(window, window.state);
+  add_held<P>(system, kRotation, r.rotation, information(options.rotation));
+  add_held<P>(system, kPositionColumn, r.position, information(options.position));
+  if (with_velocity)
+    add_held<P>(system, kVelocityColumn, r.velocity, information(options.velocity));
+  return held_cost<P>(r, options, with_velocity);
+}
+
+template <class P>
+typename P::F32 anchor_cost(const Window<P>& window, const WindowState<P>& state,
+                            const AnchorOptions& options, bool with_velocity) {
+  const typename P::Function function("anchor_cost");
+  return held_cost<P>(anchor_residual<P>(window, state), options, with_velocity);
+}
+
+template work::Native::F32 add_inertial_terms(const Window<work::Native>&,
+                                              const IntervalScratch<work::Native>&,
+                                              const ReducedSystem<work::Native>&);
+template work::Counting::F32 add_inertial_terms(const Window<work::Counting>&,
+                                                const IntervalScratch<work::Counting>&,
+                                                const ReducedSystem<work::Counting>&);
+template work::Native::F32 inertial_cost(const Window<work::Native>&,
+                                         const WindowState<work::Native>&,
+                                         const IntervalScratch<work::Native>&);
+template work::Counting::F32 inertial_cost(const Window<work::Counting>&,
+                                           const WindowState<work::Counting>&,
+                                           const IntervalScratch<work::Counting>&);
+template work::Native::F32 add_anchor(const Window<work::Native>&, const AnchorOptions&,
+                                      const ReducedSystem<work::Native>&);
+template work::Counting::F32 add_anchor(const Window<work::Counting>&, const AnchorOptions&,
+                                        const ReducedSystem<work::Counting>&);
+template work::Native::F32 anchor_cost(const Window<work::Native>&,
+                                       const WindowState<work::Native>&, const AnchorOptions&,
+                                       bool);
+template work::Counting::F32 anchor_cost(const Window<work::Counting>&,
+                                         const WindowState<work::Counting>&, const AnchorOptions&,
+                                         bool);
+
+}  // namespace leviosim::vio

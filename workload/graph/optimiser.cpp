@@ -1,0 +1,130 @@
+#include "workload/graph/optimiser.h"
+
+#include "workload/graph/visual_terms.h"
+
+namespace leviosim::vio {
+namespace {
+
+/// The work memory of an iteration.
+template <class P>
+struct WorkMemory {
+  using Span = typename P::template Span<typename P::F32>;
+
+  WorkMemory(work::Arena& arena, const Window<P>& window, bool use_imu)
+      : records(arena, window.landmarks, window.capacity.keyframes),
+        system(arena, window.keyframes, use_imu),
+        elimination(arena, window.capacity.keyframes),
+        interval(arena),
+        trial{arena.alloc<Span>("trial poses", kPoseFloats * window.keyframes),
+              arena.alloc<Span>("trial velocities", 3 * window.keyframes),
+              arena.alloc<Span>("trial points", 3 * window.landmarks)} {}
+
+  LandmarkRecords<P> records;
+  ReducedSystem<P> system;
+  EliminationScratch<P> elimination;
+  IntervalScratch<P> interval;
+  WindowState<P> trial;
+};
+
+/// One Newton step towards the nearest rotation, against the drift of many small updates.
+template <class P>
+Mat3<P> orthonormalised(const Mat3<P>& R) {
+  using F = typename P::F32;
+  const Mat3<P> RtR = transpose(R) * R;
+  return R * add_diagonal<P>(scaled<P>(F(-0.5f), RtR), F(1.5f));
+}
+
+template <class P>
+void step_keyframes(const Window<P>& window, const ReducedSystem<P>& solved,
+                    const WindowState<P>& to) {
+  const typename P::Function function("step_keyframes");
+  const bool with_velocity = solved.per_keyframe() == ReducedSystem<P>::kPoseAndVelocityUnknowns;
+  for (int k : P::range(0, window.keyframes)) {
+    const auto step = solved.vector();
+    const int at = k * solved.per_keyframe();
+    KeyframeState<P> state = window.state.keyframe(k);
+    Pose<P>& T = state.T_world_camera;
+    T.R = orthonormalised<P>(T.R * so3_exp<P>(load_vec3<P>(step, at)));
+    T.t = T.t + load_vec3<P>(step, at + 3);
+    if (with_velocity) state.velocity = state.velocity + load_vec3<P>(step, at + 6);
+    to.set_keyframe(k, state);
+  }
+}
+
+/// Linearises everything at the window's state.
+/// @return the cost there
+template <class P>
+typename P::F32 build(const Window<P>& window, const OptimiserOptions& options,
+                      typename P::F32 lambda, const WorkMemory<P>& memory, VisualUse& use) {
+  using F = typename P::F32;
+  memory.system.clear();
+  F cost = 0.0f;
+  use = add_visual_terms<P>(window, PixelModel<P>(options.visual), lambda, memory.records,
+                            memory.elimination, memory.system, cost);
+  if (options.use_imu) cost += add_inertial_terms<P>(window, memory.interval, memory.system);
+  cost += add_anchor<P>(window, options.anchor, memory.system);
+  memory.system.damp(lambda);
+  return cost;
+}
+
+template <class P>
+typename P::F32 cost_at(const Window<P>& window, const WindowState<P>& state,
+                        const OptimiserOptions& options, const WorkMemory<P>& memory) {
+  typename P::F32 cost = visual_cost<P>(window, state, PixelModel<P>(options.visual));
+  if (options.use_imu) cost += inertial_cost<P>(window, state, memory.interval);
+  cost += anchor_cost<P>(window, state, options.anchor, options.use_imu);
+  return cost;
+}
+
+template <class P>
+void adopt(const WindowState<P>& trial, const Window<P>& window) {
+  using F = typename P::F32;
+  const WindowState<P> state = window.state;
+  for (int i : P::range(0, kPoseFloats * window.keyframes)) state.poses[i] = F(trial.poses[i]);
+  for (int i : P::range(0, 3 * window.keyframes)) state.velocities[i] = F(trial.velocities[i]);
+  for (int i : P::range(0, 3 * window.landmarks)) state.points[i] = F(trial.points[i]);
+}
+
+}  // namespace
+
+template <class P>
+IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
+                              const OptimiserOptions& options) {
+  using F = typename P::F32;
+  const typename P::Function function("optimise_once");
+  IterationReport report;
+  report.lambda = work::value(lm.lambda);
+  if (window.keyframes < 2) return report;
+
+  const work::Arena::Frame frame(fc.local());
+  const WorkMemory<P> memory(fc.local(), window, options.use_imu);
+  VisualUse use;
+  const F cost = build<P>(window, options, lm.lambda, memory, use);
+  F trial_cost = cost;
+  report.positive_definite = memory.system.solve();
+  if (report.positive_definite) {
+    step_keyframes<P>(window, memory.system, memory.trial);
+    step_points<P>(window, memory.records, memory.system, memory.trial.points);
+    trial_cost = cost_at<P>(window, memory.trial, options, memory);
+  }
+  // Not true either if a cost is not a number.
+  if (trial_cost < cost) {
+    adopt<P>(memory.trial, window);
+    lm.lambda = work::max(F(lm.lambda * options.lambda_down), F(options.min_lambda));
+    report.accepted = true;
+  } else {
+    lm.lambda = work::min(F(lm.lambda * options.lambda_up), F(options.max_lambda));
+  }
+  report.cost_before = work::value(cost);
+  report.cost_after = work::value(trial_cost);
+  report.landmarks = use.landmarks;
+  report.observations = use.observations;
+  return report;
+}
+
+template IterationReport optimise_once(work::Machine&, Window<work::Native>&,
+                                       LmState<work::Native>&, const OptimiserOptions&);
+template IterationReport optimise_once(work::Machine&, Window<work::Counting>&,
+                                       LmState<work::Counting>&, const OptimiserOptions&);
+
+}  // namespace leviosim::vio

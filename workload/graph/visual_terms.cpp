@@ -1,0 +1,302 @@
+#include "workload/graph/visual_terms.h"
+
+namespace leviosim::vio {
+namespace {
+
+template <class P>
+using Records = LandmarkRecords<P>;
+template <class P>
+using Floats = typename P::template Span<typename P::F32>;
+
+template <class P>
+void store_term(const Floats<P>& slot, const VisualTerm<P>& term) {
+  for (int row = 0; row < 2; ++row) {
+    store_vec3<P>(slot, Records<P>::kByPose + 6 * row, term.by_rotation[row]);
+    store_vec3<P>(slot, Records<P>::kByPose + 6 * row + 3, -term.by_point[row]);
+    store_vec3<P>(slot, Records<P>::kByPoint + 3 * row, term.by_point[row]);
+    slot[Records<P>::kResidual + row] = term.residual[row];
+  }
+}
+
+/// Pose of keyframe k, known only from data.
+template <class P>
+Pose<P> pose_of(const WindowState<P>& state, typename P::I32 k) {
+  using I32 = typename P::I32;
+  const I32 at = k * I32(kPoseFloats);
+  return load_pose<P>(state.poses.subspan(work::value(at), kPoseFloats), 0);
+}
+
+template <class P>
+Vec2<P> observed_pixel(const Window<P>& window, int o) {
+  using I32 = typename P::I32;
+  return {work::to_f32(I32(window.observation_u[o])), work::to_f32(I32(window.observation_v[o]))};
+}
+
+/// Fills the slots of landmark i. Lost observations get zeros.
+/// @return the number of the others
+template <class P>
+typename P::I32 linearise_landmark(const Window<P>& window, const PixelModel<P>& model, int i,
+                                   const Records<P>& records, typename P::F32& cost) {
+  using I32 = typename P::I32;
+  const int first = work::value(I32(window.first_observations[i]));
+  const int number = work::value(I32(window.observation_numbers[i]));
+  const Vec3<P> point = load_vec3<P>(window.state.points, 3 * i);
+  I32 valid = 0;
+  for (int j : P::range(0, number)) {
+    const auto slot = records.slot(i, j);
+    const Pose<P> T = pose_of<P>(window.state, window.observation_keyframes[first + j]);
+    const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
+    Projection<P> at;
+    if (!project<P>(model, in_camera, observed_pixel<P>(window, first + j), at)) {
+      for (int e : P::range(0, Records<P>::kSlotFloats)) slot[e] = 0.0f;
+      cost += model.lost_cost;
+      continue;
+    }
+    cost += huber_cost<P>(model, at.error_sq);
+    store_term<P>(slot, linearise<P>(model, T.R, at));
+    ++valid;
+  }
+  return valid;
+}
+
+/// The landmark's own block of the normal equations: its damped inverse and right-hand side go to
+/// the record.
+/// @return false if the block cannot be inverted
+template <class P>
+bool invert_landmark(const Records<P>& records, int i, int number, typename P::F32 lambda) {
+  using F = typename P::F32;
+  Mat3<P> H = Mat3<P>::zero();
+  Vec3<P> b{0.0f, 0.0f, 0.0f};
+  for (int j : P::range(0, number)) {
+    const auto slot = records.slot(i, j);
+    for (int row = 0; row < 2; ++row) {
+      const Vec3<P> J = load_vec3<P>(slot, Records<P>::kByPoint + 3 * row);
+      const F residual = slot[Records<P>::kResidual + row];
+      H.m[0][0] += J.x * J.x;
+      H.m[0][1] += J.x * J.y;
+      H.m[0][2] += J.x * J.z;
+      H.m[1][1] += J.y * J.y;
+      H.m[1][2] += J.y * J.z;
+      H.m[2][2] += J.z * J.z;
+      b.x -= J.x * residual;
+      b.y -= J.y * residual;
+      b.z -= J.z * residual;
+    }
+  }
+  for (int d = 0; d < 3; ++d) H.m[d][d] += lambda * H.m[d][d];
+  Mat3<P> inverse;
+  if (!invert_spd3<P>(H, inverse)) return false;
+  records.store_inverse(i, inverse);
+  store_vec3<P>(records.own(i), Records<P>::kRightHandSide, b);
+  return true;
+}
+
+/// A landmark that stays where it is.
+template <class P>
+void freeze_landmark(const Records<P>& records, int i) {
+  const auto own = records.own(i);
+  for (int e : P::range(0, Records<P>::kOwnFloats)) own[e] = 0.0f;
+}
+
+/// Leaves W = J_pᵀ J_l and Y = W H_ll⁻¹ of one observation, and adds -J_pᵀ r - Y b_l to the
+/// right-hand side.
+template <class P>
+void form_coupling(const Floats<P>& slot, const Mat3<P>& inverse, const Vec3<P>& landmark_rhs,
+                   const Floats<P>& rhs, const Floats<P>& W, const Floats<P>& Y) {
+  using F = typename P::F32;
+  const Vec3<P> l0 = load_vec3<P>(slot, Records<P>::kByPoint);
+  const Vec3<P> l1 = load_vec3<P>(slot, Records<P>::kByPoint + 3);
+  const F r0 = slot[Records<P>::kResidual], r1 = slot[Records<P>::kResidual + 1];
+  for (int r : P::range(0, 6)) {
+    const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
+    const Vec3<P> w = l0 * p0 + l1 * p1;
+    const Vec3<P> y = inverse * w;  // the inverse is symmetric
+    store_vec3<P>(W, 3 * r, w);
+    store_vec3<P>(Y, 3 * r, y);
+    F b = rhs[r];
+    b -= p0 * r0;
+    b -= p1 * r1;
+    b -= F(dot(y, landmark_rhs));
+    rhs[r] = b;
+  }
+}
+
+// The 6×6 blocks below are updated three columns at a time, whose factors stay in registers. Of a
+// block on the diagonal, what lies above the 3×3 blocks of the diagonal is left out.
+
+/// matrix += J_pᵀ J_p of one observation, a block on the diagonal.
+template <class P>
+void add_pose_block(const Floats<P>& slot, const Floats<P>& matrix, int stride) {
+  using F = typename P::F32;
+  for (int half : P::range(0, 2)) {
+    const Vec3<P> q0 = load_vec3<P>(slot, Records<P>::kByPose + 3 * half);
+    const Vec3<P> q1 = load_vec3<P>(slot, Records<P>::kByPose + 6 + 3 * half);
+    for (int r : P::range(3 * half, 6)) {
+      const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
+      const int at = r * stride + 3 * half;
+      Vec3<P> sum = load_vec3<P>(matrix, at);
+      sum.x += p0 * q0.x;
+      sum.y += p0 * q0.y;
+      sum.z += p0 * q0.z;
+      sum.x += p1 * q1.x;
+      sum.y += p1 * q1.y;
+      sum.z += p1 * q1.z;
+      store_vec3<P>(matrix, at, sum);
+    }
+  }
+}
+
+/// matrix -= Y Wᵀ, the block of two observations.
+template <class P>
+void subtract_elimination(const Floats<P>& Y, const Floats<P>& W, bool diagonal,
+                          const Floats<P>& matrix, int stride) {
+  for (int half : P::range(0, 2)) {
+    const Mat3<P> w = load_mat3<P>(W, 9 * half);
+    for (int r : P::range(diagonal ? 3 * half : 0, 6)) {
+      const Vec3<P> y = load_vec3<P>(Y, 3 * r);
+      const int at = r * stride + 3 * half;
+      Vec3<P> sum = load_vec3<P>(matrix, at);
+      sum.x -= y.x * w.m[0][0];
+      sum.y -= y.x * w.m[1][0];
+      sum.z -= y.x * w.m[2][0];
+      sum.x -= y.y * w.m[0][1];
+      sum.y -= y.y * w.m[1][1];
+      sum.z -= y.y * w.m[2][1];
+      sum.x -= y.z * w.m[0][2];
+      sum.y -= y.z * w.m[1][2];
+      sum.z -= y.z * w.m[2][2];
+      store_vec3<P>(matrix, at, sum);
+    }
+  }
+}
+
+/// Adds landmark i to the keyframes' equations. Its observations are in ascending order of keyframes,
+/// so all blocks lie on or below the diagonal.
+template <class P>
+void eliminate_landmark(const Window<P>& window, const Records<P>& records, int i,
+                        const EliminationScratch<P>& scratch, const ReducedSystem<P>& system) {
+  using I32 = typename P::I32;
+  const int first = work::value(I32(window.first_observations[i]));
+  const int number = work::value(I32(window.observation_numbers[i]));
+  const Mat3<P> inverse = records.inverse(i);
+  const Vec3<P> rhs = load_vec3<P>(records.own(i), Records<P>::kRightHandSide);
+  const int stride = system.unknowns();
+  for (int a : P::range(0, number)) {
+    const I32 keyframe = window.observation_keyframes[first + a];
+    const auto slot = records.slot(i, a);
+    form_coupling<P>(slot, inverse, rhs, system.vector(keyframe), scratch.W.subspan(18 * a, 18),
+                     scratch.Y);
+    add_pose_block<P>(slot, system.block(keyframe, keyframe), stride);
+    for (int b : P::range(0, a + 1)) {
+      const I32 other = window.observation_keyframes[first + b];
+      subtract_elimination<P>(scratch.Y, scratch.W.subspan(18 * b, 18), a == b,
+                              system.block(keyframe, other), stride);
+    }
+  }
+}
+
+/// Step of landmark i: H_ll⁻¹ (b_l - Σ J_lᵀ J_p δ_p).
+template <class P>
+Vec3<P> landmark_step(const Window<P>& window, const Records<P>& records, int i,
+                      const ReducedSystem<P>& solved) {
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  const int first = work::value(I32(window.first_observations[i]));
+  const int number = work::value(I32(window.observation_numbers[i]));
+  Vec3<P> b = load_vec3<P>(records.own(i), Records<P>::kRightHandSide);
+  for (int j : P::range(0, number)) {
+    const auto slot = records.slot(i, j);
+    const auto step = solved.vector(I32(window.observation_keyframes[first + j]));
+    const Vec3<P> turn = load_vec3<P>(step, 0), move = load_vec3<P>(step, 3);
+    for (int row = 0; row < 2; ++row) {
+      const int by_pose = Records<P>::kByPose + 6 * row;
+      const F moved = F(dot(load_vec3<P>(slot, by_pose), turn)) +
+                      F(dot(load_vec3<P>(slot, by_pose + 3), move));
+      b = b - load_vec3<P>(slot, Records<P>::kByPoint + 3 * row) * moved;
+    }
+  }
+  return records.inverse(i) * b;
+}
+
+}  // namespace
+
+template <class P>
+VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
+                           typename P::F32 lambda, const LandmarkRecords<P>& records,
+                           const EliminationScratch<P>& scratch, const ReducedSystem<P>& system,
+                           typename P::F32& cost) {
+  using I32 = typename P::I32;
+  const typename P::Function function("add_visual_terms");
+  VisualUse use;
+  for (int i : P::range(0, window.landmarks)) {
+    const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
+    const int number = work::value(I32(window.observation_numbers[i]));
+    if (valid < I32(2) || !invert_landmark<P>(records, i, number, lambda)) {
+      freeze_landmark<P>(records, i);
+      continue;
+    }
+    eliminate_landmark<P>(window, records, i, scratch, system);
+    ++use.landmarks;
+    use.observations += work::value(valid);
+  }
+  return use;
+}
+
+template <class P>
+void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
+                 const ReducedSystem<P>& solved, typename P::template Span<typename P::F32> to) {
+  const typename P::Function function("step_points");
+  for (int i : P::range(0, window.landmarks)) {
+    const Vec3<P> point = load_vec3<P>(window.state.points, 3 * i);
+    store_vec3<P>(to, 3 * i, point + landmark_step<P>(window, records, i, solved));
+  }
+}
+
+template <class P>
+typename P::F32 visual_cost(const Window<P>& window, const WindowState<P>& state,
+                            const PixelModel<P>& model) {
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  const typename P::Function function("visual_cost");
+  F cost = 0.0f;
+  for (int i : P::range(0, window.landmarks)) {
+    const int first = work::value(I32(window.first_observations[i]));
+    const int number = work::value(I32(window.observation_numbers[i]));
+    const Vec3<P> point = load_vec3<P>(state.points, 3 * i);
+    for (int j : P::range(0, number)) {
+      const Pose<P> T = pose_of<P>(state, window.observation_keyframes[first + j]);
+      const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
+      Projection<P> at;
+      if (project<P>(model, in_camera, observed_pixel<P>(window, first + j), at))
+        cost += huber_cost<P>(model, at.error_sq);
+      else
+        cost += model.lost_cost;
+    }
+  }
+  return cost;
+}
+
+
+template VisualUse add_visual_terms(const Window<work::Native>&, const PixelModel<work::Native>&,
+                                    work::Native::F32, const LandmarkRecords<work::Native>&,
+                                    const EliminationScratch<work::Native>&,
+                                    const ReducedSystem<work::Native>&, work::Native::F32&);
+template VisualUse add_visual_terms(const Window<work::Counting>&,
+                                    const PixelModel<work::Counting>&, work::Counting::F32,
+                                    const LandmarkRecords<work::Counting>&,
+                                    const EliminationScratch<work::Counting>&,
+                                    const ReducedSystem<work::Counting>&, work::Counting::F32&);
+template void step_points(const Window<work::Native>&, const LandmarkRecords<work::Native>&,
+                          const ReducedSystem<work::Native>&,
+                          work::Native::Span<work::Native::F32>);
+template void step_points(const Window<work::Counting>&, const LandmarkRecords<work::Counting>&,
+                          const ReducedSystem<work::Counting>&,
+                          work::Counting::Span<work::Counting::F32>);
+template work::Native::F32 visual_cost(const Window<work::Native>&,
+                                       const WindowState<work::Native>&,
+                                       const PixelModel<work::Native>&);
+template work::Counting::F32 visual_cost(const Window<work::Counting>&,
+                                         const WindowState<work::Counting>&,
+                                         const PixelModel<work::Counting>&);
+
+}  // namespace leviosim::vio

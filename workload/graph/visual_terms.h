@@ -1,0 +1,58 @@
+// The visual part of the optimiser: linearises all observations into the landmark records, adds them
+// to the normal equations of the keyframes while eliminating one landmark after the other (Schur
+// complement, paper eq. 6), and recovers the landmarks' steps afterwards.
+//
+// Minimised is half the sum of squares. With J the derivatives and r the residuals of a landmark,
+//   H_pp = J_pᵀ J_p,  W = J_pᵀ J_l,  H_ll = J_lᵀ J_l,  b = -Jᵀ r,
+// the reduced system gets H_pp - W H_ll⁻¹ Wᵀ and b_p - W H_ll⁻¹ b_l. H_ll is damped (its diagonal
+// grows by the factor 1 + λ) before it is inverted.
+//
+// A landmark whose damped block is not positive definite, or with fewer than two observations that
+// are not lost (reprojection.h), is left out of the iteration and stays where it is.
+#pragma once
+
+#include "workload/graph/landmark_records.h"
+#include "workload/graph/reduced_system.h"
+#include "workload/graph/reprojection.h"
+#include "workload/graph/window.h"
+
+namespace leviosim::vio {
+
+/// Scratch for one landmark: the blocks W of its observations, and W H_ll⁻¹ of one of them.
+template <class P>
+struct EliminationScratch {
+  using Span = typename P::template Span<typename P::F32>;
+
+  EliminationScratch(work::Arena& arena, int keyframes)
+      : W(arena.alloc<Span>("elimination W", 18 * keyframes)),
+        Y(arena.alloc<Span>("elimination Y", 18)) {}
+
+  Span W;  ///< 6×3 per observation
+  Span Y;  ///< 6×3
+};
+
+/// What became of a window's landmarks and observations in one linearisation.
+struct VisualUse {
+  int landmarks = 0;     ///< that took part
+  int observations = 0;  ///< of those landmarks, without the lost ones
+};
+
+/// Linearises landmark after landmark at `window.state` and adds each to `system`.
+/// @return how much of the window took part; the cost is added to `cost`
+template <class P>
+VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
+                           typename P::F32 lambda, const LandmarkRecords<P>& records,
+                           const EliminationScratch<P>& scratch, const ReducedSystem<P>& system,
+                           typename P::F32& cost);
+
+/// Steps of the landmarks for the keyframes' step, added to the points: to = from + step.
+template <class P>
+void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
+                 const ReducedSystem<P>& solved, typename P::template Span<typename P::F32> to);
+
+/// Cost of all observations at `state`, a state of `window`.
+template <class P>
+typename P::F32 visual_cost(const Window<P>& window, const WindowState<P>& state,
+                            const PixelModel<P>& model);
+
+}  // namespace leviosim::vio

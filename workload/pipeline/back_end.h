@@ -1,0 +1,35 @@
+// The back end: the sliding-window optimiser on the fabric controller. It works on a snapshot of the
+// pose graph while the front end goes on, and publishes what it found when it is done.
+#pragma once
+
+#include "sim/work/machine.h"
+#include "workload/graph/optimiser.h"
+#include "workload/graph/pose_graph.h"
+#include "workload/graph/window.h"
+#include "workload/pipeline/odometry.h"
+
+namespace leviosim::vio {
+
+template <class P>
+class BackEnd {
+ public:
+  /// @param graph  in L2; shared with the front end
+  BackEnd(const Profile& profile, work::Machine& controller, const PoseGraph<P>& graph);
+
+  bool begin();
+  OptimiserReport optimise();
+  void publish();
+
+ private:
+  using I32 = typename P::I32;
+
+  void move_newer_keyframes(const Pose<P>& T_new_old);
+
+  const Profile& profile_;
+  work::Machine& machine_;
+  PoseGraph<P> graph_;
+  Window<P> window_;
+  LmState<P> damping_;
+};
+
+}  // namespace leviosim::vio

@@ -1,0 +1,283 @@
+#include "workload/pipeline/front_end.h"
+
+#include <cstring>
+
+#include "workload/geometry/recover_pose.h"
+#include "workload/geometry/triangulate.h"
+#include "workload/inertial/initialisation.h"
+#include "workload/pipeline/stages.h"
+
+namespace leviosim::vio {
+namespace {
+
+template <class P>
+Mat3<P> matrix_from(const std::array<float, 9>& a) {
+  return {{{a[0], a[1], a[2]}, {a[3], a[4], a[5]}, {a[6], a[7], a[8]}}};
+}
+
+/// Host-side: the pose as plain numbers.
+template <class P>
+void report_pose(const Pose<P>& T_world_camera, FrameReport& report) {
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c)
+      report.R_world_camera[3 * r + c] = work::value(T_world_camera.R.m[r][c]);
+  report.p_world_camera = {work::value(T_world_camera.t.x), work::value(T_world_camera.t.y),
+                           work::value(T_world_camera.t.z)};
+}
+
+}  // namespace
+
+template <class P>
+FrontEnd<P>::FrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
+                      work::Arena& keyframe_memory, const PoseGraph<P>& graph)
+    : profile_(profile),
+      rig_(rig),
+      R_camera_body_(matrix_from<P>(rig.R_camera_body)),
+      machine_(cluster),
+      keyframe_(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
+                rig.height),
+      graph_(graph),
+      graph_in_l2_(seen_from_cluster<P>(graph)) {}
+
+template <class P>
+FrameReport FrontEnd<P>::process(const FrameInput& input) {
+  const work::Arena::Frame memory(machine_.local());
+  std::memcpy(static_cast<void*>(keyframe_.image.pixels.data()), input.pixels,
+              static_cast<std::size_t>(input.width * input.height));  // by the camera interface
+  ++frame_number_;
+  time_since_keyframe_ += input.dt;
+  FrameReport report;
+  Frame frame;
+  integrate_imu(input);
+  extract(frame);
+  if (!started_) {
+    start(frame);
+    report.keyframe = true;
+  } else {
+    std::optional<Pose<P>> pose = pose_from_landmarks(frame, report);
+    match_keyframe(frame);
+    if (!pose) pose = pose_from_keyframe(frame, report);
+    frame.T_world_camera = *pose;
+    report.keyframe = is_keyframe(frame);
+    if (report.keyframe) insert_keyframe(frame);
+  }
+  report.features = frame.features.list.count;
+  report.frame_matches = frame.keyframe_matches.count;
+  report.landmarks = work::value(graph_.landmark_count());
+  report_pose<P>(frame.T_world_camera, report);
+  return report;
+}
+
+/// Adds the samples since the last frame to the motion since the last keyframe.
+template <class P>
+void FrontEnd<P>::integrate_imu(const FrameInput& input) {
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
+  const auto record = local.alloc<Span<F>>("IMU interval", Preintegration<P>::kFloats);
+  const auto samples = local.alloc<Span<F>>("IMU samples", kImuSampleFloats * 2);
+  for (const ImuInput& in : input.imu) {
+    const auto stage = machine_.stage(stages::kImu);
+    if (&in == input.imu.data()) {
+      machine_.copy_in(record, keyframe_.interval);
+      machine_.copy_in(samples, keyframe_.last_sample);
+    }
+    const ImuSample<P> before = load_imu_sample<P>(samples, 0);
+    const ImuSample<P> sample{in.dt,
+                              R_camera_body_ * Vec3<P>{in.gyro[0], in.gyro[1], in.gyro[2]},
+                              R_camera_body_ * Vec3<P>{in.accel[0], in.accel[1], in.accel[2]}};
+    if (started_) {
+      Preintegration<P>(record).integrate(before, sample, profile_.imu_noise);
+      samples[0] = sample.dt;
+      store_vec3<P>(samples, 1, sample.gyro);
+      store_vec3<P>(samples, 4, sample.accel);
+    } else {
+      // Until the first frame there is no motion to measure; the forces are averaged for gravity.
+      const bool first = &in == input.imu.data();
+      const Vec3<P> sum = first ? Vec3<P>{0.0f, 0.0f, 0.0f} : before.accel;
+      store_vec3<P>(samples, 4, sum + sample.accel);
+      store_vec3<P>(samples, 1, sample.gyro);
+    }
+    if (&in == &input.imu.back()) {
+      machine_.copy_out(keyframe_.interval, record);
+      machine_.copy_out(keyframe_.last_sample, samples);
+    }
+  }
+}
+
+template <class P>
+void FrontEnd<P>::extract(Frame& frame) {
+  const int capacity = keyframe_.features.list.capacity;
+  frame.features = alloc_observed_features<P>(machine_.local(), capacity);
+  const auto stage = machine_.stage(stages::kExtraction);
+  extract_features<P>(machine_, keyframe_.image, profile_.extractor, frame.features.list);
+  for (int i : P::range(0, frame.features.list.count))
+    frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
+}
+
+/// The first frame is the first keyframe; its camera frame is the world.
+template <class P>
+void FrontEnd<P>::start(Frame& frame) {
+  const auto stage = machine_.stage(stages::kTriangulation);
+  frame.T_world_camera = Pose<P>::identity();
+  const Vec3<P> force = load_vec3<P>(keyframe_.last_sample, 4);
+  graph_.clear(ImuBias<P>::zero(), gravity_from_force<P>(force, frame.T_world_camera.R));
+  Preintegration<P>(keyframe_.interval).reset(ImuBias<P>::zero());
+  graph_.add_keyframe({frame.T_world_camera, {0.0f, 0.0f, 0.0f}}, keyframe_.interval);
+  store_keyframe(frame);
+  started_ = true;
+}
+
+template <class P>
+std::optional<Pose<P>> FrontEnd<P>::pose_from_landmarks(Frame& frame, FrameReport& report) {
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
+  const int landmarks = work::value(graph_.landmark_count());
+  const int capacity = graph_.capacity.landmarks;
+  const auto descriptors = local.alloc<Span<typename P::U32>>("landmark descriptors", kDescriptorWords * capacity);
+  const auto points = local.alloc<Span<F>>("landmark points", 3 * capacity);
+  const auto ages = local.alloc<Span<Byte>>("landmark ages", capacity);
+  MatchList<P> matches = alloc_matches<P>(local, frame.features.list.capacity, "world matches");
+  {
+    const auto stage = machine_.stage(stages::kWorldMatching);
+    machine_.copy_in(descriptors.subspan(0, kDescriptorWords * landmarks), graph_.descriptors);
+    machine_.copy_in(points.subspan(0, 3 * landmarks), graph_.points);
+    machine_.copy_in(ages.subspan(0, landmarks), graph_.ages);
+    match_two_way<P>(machine_, frame.features.list.descriptors, frame.features.list.count,
+                     descriptors, landmarks, profile_.matcher, matches);
+    const int before_filter = matches.count;
+    int kept = 0;
+    for (int i : P::range(0, matches.count)) {
+      const I32 landmark = matches.reference[i];
+      const I32 age = ages[landmark];
+      if (age > I32(profile_.max_landmark_age)) continue;
+      matches.query[kept] = work::narrow<U16>(I32(matches.query[i]));
+      matches.reference[kept] = work::narrow<U16>(landmark);
+      frame.features.landmarks[I32(matches.query[kept])] = work::narrow<U16>(landmark);
+      ++kept;
+    }
+    matches.count = kept;
+    report.world_matches = kept;
+    if (before_filter < profile_.min_world_matches) return std::nullopt;
+  }
+  if (!profile_.use_epnp || matches.count < profile_.min_world_matches) return std::nullopt;
+
+  const auto stage = machine_.stage(stages::kEpnp);
+  const auto matched_points = local.alloc<Span<F>>("matched points", 3 * matches.count);
+  const auto pixels = local.alloc<Span<F>>("matched pixels", 2 * matches.count);
+  for (int i : P::range(0, matches.count)) {
+    const I32 at = I32(matches.reference[i]) * I32(3);
+    for (int c = 0; c < 3; ++c) matched_points[3 * i + c] = F(points[I32(at + I32(c))]);
+    const I32 feature = matches.query[i];
+    pixels[2 * i] = work::to_f32(I32(frame.features.list.x[feature]));
+    pixels[2 * i + 1] = work::to_f32(I32(frame.features.list.y[feature]));
+  }
+  PnpOptions options = profile_.pnp;
+  options.seed += frame_number_;
+  const PnpResult<P> result = estimate_pose_epnp<P>(
+      machine_, {matched_points, pixels, matches.count, rig_.camera}, options);
+  if (!result.ok || result.inliers < profile_.min_epnp_inliers) return std::nullopt;
+  report.source = PoseSource::Epnp;
+  report.inliers = result.inliers;
+  return inverse(result.T_camera_world);
+}
+
+template <class P>
+void FrontEnd<P>::match_keyframe(Frame& frame) {
+  work::Arena& local = machine_.local();
+  const ObservedFeatures<P>& old = keyframe_.features;
+  const int n = old.list.count;
+  frame.keyframe_matches = alloc_matches<P>(local, frame.features.list.capacity, "frame matches");
+  frame.keyframe_pixels = local.alloc<Span<U16>>("keypoints of the keyframe", 2 * old.list.capacity);
+  frame.keyframe_landmarks = local.alloc<Span<U16>>("landmarks of the keyframe", old.list.capacity);
+  const work::Arena::Frame memory(local);
+  const auto stage = machine_.stage(stages::kFrameMatching);
+  const auto descriptors =
+      local.alloc<Span<typename P::U32>>("descriptors of the keyframe", kDescriptorWords * old.list.capacity);
+  machine_.copy_in(descriptors.subspan(0, kDescriptorWords * n), old.list.descriptors);
+  machine_.copy_in(frame.keyframe_pixels.subspan(0, n), old.list.x);
+  machine_.copy_in(frame.keyframe_pixels.subspan(old.list.capacity, n), old.list.y);
+  machine_.copy_in(frame.keyframe_landmarks.subspan(0, n), old.landmarks);
+  match_two_way<P>(machine_, frame.features.list.descriptors, frame.features.list.count, descriptors,
+                   n, profile_.matcher, frame.keyframe_matches);
+}
+
+template <class P>
+Vec2<P> FrontEnd<P>::normalised(I32 u, I32 v) const {
+  const PinholeCamera& k = rig_.camera;
+  return {(work::to_f32(u) - F(k.cx)) * F(1.0f / k.fx), (work::to_f32(v) - F(k.cy)) * F(1.0f / k.fy)};
+}
+
+/// From the essential matrix; its translation has the length that the last velocity suggests.
+template <class P>
+std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, FrameReport& report) {
+  const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
+  const MatchList<P>& matches = frame.keyframe_matches;
+  report.source = PoseSource::Kept;
+  if (matches.count < profile_.min_frame_matches) return last.T_world_camera;
+
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
+  const auto stage = machine_.stage(stages::kEightPoint);
+  const auto a = local.alloc<Span<F>>("matched points of the keyframe", 2 * matches.count);
+  const auto b = local.alloc<Span<F>>("matched points", 2 * matches.count);
+  const auto inliers = local.alloc<Span<Byte>>("inlier mask", matches.count);
+  const int old_v = keyframe_.features.list.capacity;
+  for (int i : P::range(0, matches.count)) {
+    const I32 now = matches.query[i];
+    const I32 old = matches.reference[i];
+    const Vec2<P> in_a = normalised(frame.keyframe_pixels[old], frame.keyframe_pixels[I32(old + I32(old_v))]);
+    const Vec2<P> in_b = normalised(frame.features.list.x[now], frame.features.list.y[now]);
+    a[2 * i] = in_a.x;
+    a[2 * i + 1] = in_a.y;
+    b[2 * i] = in_b.x;
+    b[2 * i + 1] = in_b.y;
+  }
+  const TwoViewMatches<P> views{a, b, matches.count};
+  EssentialOptions options = profile_.essential;
+  options.seed += frame_number_;
+  const EssentialResult<P> essential =
+      estimate_essential<P>(machine_, views, rig_.camera.fx, options, inliers);
+  if (!essential.ok) return last.T_world_camera;
+  const TwoViewPose<P> motion = recover_pose<P>(machine_, views, inliers, essential.E);
+  if (!motion.ok) return last.T_world_camera;
+
+  report.source = PoseSource::EightPoint;
+  report.inliers = essential.inliers;
+  const F dt = std::min(time_since_keyframe_, profile_.max_translation_time);
+  const F length = work::max(F(norm(last.velocity) * dt), F(profile_.min_translation));
+  const Pose<P> T_camera_keyframe{motion.T_b_a.R, motion.T_b_a.t * length};
+  return last.T_world_camera * inverse(T_camera_keyframe);
+}
+
+/// A keyframe has moved far enough, or can hardly be matched with the last one any more. Parallax is
+/// what remains of the motion of the matches when the rotation between the two frames is undone.
+template <class P>
+bool FrontEnd<P>::is_keyframe(const Frame& frame) {
+  const auto stage = machine_.stage(stages::kKeyframeSelection);
+  const MatchList<P>& matches = frame.keyframe_matches;
+  if (matches.count < profile_.min_frame_matches) return true;
+  const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
+  const Mat3<P> R_camera_keyframe =
+      profile_.parallax_without_rotation ? transpose(frame.T_world_camera.R) * last.T_world_camera.R
+                                         : Mat3<P>::identity();
+  F sum = 0.0f;
+  const int old_v = keyframe_.features.list.capacity;
+  for (int i : P::range(0, matches.count)) {
+    const I32 now = matches.query[i];
+    const I32 old = matches.reference[i];
+    const Vec2<P> seen = normalised(frame.features.list.x[now], frame.features.list.y[now]);
+    const Vec2<P> before = normalised(frame.keyframe_pixels[old],
+                                      frame.keyframe_pixels[I32(old + I32(old_v))]);
+    const Vec3<P> turned = R_camera_keyframe * Vec3<P>{before.x, before.y, 1.0f};
+    const F scale = F(1.0f) / turned.z;
+    const F x = seen.x - turned.x * scale;
+    const F y = seen.y - turned.y * scale;
+    sum += work::sqrt(F(x * x + y * y));
+  }
+  return bool(sum > F(profile_.keyframe_parallax * static_cast<float>(matches.count)));
+}
+
+template class FrontEnd<work::Native>;
+template class FrontEnd<work::Counting>;
+
+}  // namespace leviosim::vio

@@ -1,0 +1,70 @@
+// The front end: one frame, from pixels and IMU samples to a pose, on the cluster (paper Fig. 1,
+// right side). Its data persist in L2; L1 is a scratchpad that is empty between frames.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "sim/work/machine.h"
+#include "workload/graph/pose_graph.h"
+#include "workload/pipeline/keyframe_record.h"
+#include "workload/pipeline/odometry.h"
+
+namespace leviosim::vio {
+
+template <class P>
+class FrontEnd {
+ public:
+  using F = typename P::F32;
+
+  /// @param graph  in L2; shared with the back end
+  FrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster, work::Arena& keyframe_memory,
+           const PoseGraph<P>& graph);
+
+  FrameReport process(const FrameInput& input);
+
+ private:
+  template <class T>
+  using Span = typename P::template Span<T>;
+  using I32 = typename P::I32;
+  using U16 = typename P::U16;
+  using Byte = typename P::Byte;
+
+  /// A frame on its way through the pipeline.
+  struct Frame {
+    ObservedFeatures<P> features;   ///< in L1
+    MatchList<P> keyframe_matches;  ///< current feature → feature of the last keyframe
+    Span<U16> keyframe_pixels;      ///< u of all keyframe features, then v
+    Span<U16> keyframe_landmarks;   ///< of the keyframe features
+    Pose<P> T_world_camera;
+  };
+
+  void integrate_imu(const FrameInput& input);
+  void extract(Frame& frame);
+  void start(Frame& frame);
+  std::optional<Pose<P>> pose_from_landmarks(Frame& frame, FrameReport& report);
+  int match_landmarks(Frame& frame, const MatchList<P>& matches);
+  void match_keyframe(Frame& frame);
+  std::optional<Pose<P>> pose_from_keyframe(const Frame& frame, FrameReport& report);
+  bool is_keyframe(const Frame& frame);
+  void insert_keyframe(Frame& frame);
+  void register_observations(const Frame& frame, const PoseGraph<P>& graph, I32 slot);
+  void triangulate_landmarks(const Frame& frame, const PoseGraph<P>& graph, I32 previous_slot, I32 slot);
+  void store_keyframe(const Frame& frame);
+  Vec3<P> velocity_at(const Pose<P>& T_world_camera);
+
+  Vec2<P> normalised(I32 u, I32 v) const;
+
+  const Profile& profile_;
+  Rig rig_;
+  Mat3<P> R_camera_body_;
+  work::Machine& machine_;
+  KeyframeRecord<P> keyframe_;
+  PoseGraph<P> graph_;                                 ///< as its own memory (host of the data)
+  PoseGraph<P, L2FromCluster> graph_in_l2_;            ///< as a cluster core reaches it
+  bool started_ = false;
+  std::uint32_t frame_number_ = 0;
+  float time_since_keyframe_ = 0;
+};
+
+}  // namespace leviosim::vio

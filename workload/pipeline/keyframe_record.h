@@ -1,0 +1,50 @@
+// The last keyframe as it lies in L2 between frames (levio_parameters, "Memory"): its features, the
+// landmark that each of them shows, the motion since then as the IMU saw it, and the buffer that the
+// camera writes the next image to.
+#pragma once
+
+#include "workload/inertial/preintegration.h"
+#include "workload/vision/features.h"
+
+namespace leviosim::vio {
+
+/// Landmark slot of a feature that shows none.
+inline constexpr int kNoLandmark = 0xffff;
+
+/// Features with the landmark slot of each, or kNoLandmark: 38 bytes per feature.
+template <class P>
+struct ObservedFeatures {
+  FeatureList<P> list;
+  typename P::template Span<typename P::U16> landmarks;
+};
+
+template <class P>
+ObservedFeatures<P> alloc_observed_features(work::Arena& arena, int capacity) {
+  ObservedFeatures<P> features;
+  features.list = alloc_features<P>(arena, capacity);
+  features.landmarks =
+      arena.alloc<typename P::template Span<typename P::U16>>("landmarks of features", capacity);
+  return features;
+}
+
+template <class P>
+struct KeyframeRecord {
+  using F = typename P::F32;
+
+  KeyframeRecord(work::Arena& arena, int capacity, int width, int height)
+      : features(alloc_observed_features<P>(arena, capacity)),
+        interval(arena.alloc<typename P::template Span<F>>("IMU interval",
+                                                           Preintegration<P>::kFloats)),
+        last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample",
+                                                              kImuSampleFloats)),
+        image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
+                                                                       width * height),
+              width, height} {}
+
+  ObservedFeatures<P> features;
+  typename P::template Span<F> interval;     ///< pre-integrated motion since the keyframe
+  typename P::template Span<F> last_sample;  ///< where the next step of it begins
+  ImageView<P> image;
+};
+
+}  // namespace leviosim::vio

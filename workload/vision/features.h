@@ -1,0 +1,60 @@
+// What the vision front end works on and hands over: images, and lists of features as structures of
+// spans.
+//
+// Sizes (released embedded code): a keypoint is 4 bytes (two u16 pixel coordinates), a descriptor
+// 32 bytes (256 bits).
+#pragma once
+
+#include <type_traits>
+
+#include "sim/work/arena.h"
+#include "sim/work/policy.h"
+
+namespace leviosim::vio {
+
+/// 32-bit words of one 256-bit descriptor.
+inline constexpr int kDescriptorWords = 8;
+
+/// width × height grey levels, row by row without padding: pixel (x, y) at pixels[y * width + x].
+template <class P, class Pixel = typename P::Byte>
+struct ImageView {
+  using Span = typename P::template Span<Pixel>;
+
+  Span pixels;
+  int width = 0;
+  int height = 0;
+
+  /// A read-only view of the same image.
+  operator ImageView<P, const Pixel>() const requires(!std::is_const_v<Pixel>) {
+    return {pixels, width, height};
+  }
+};
+
+template <class P>
+using ConstImageView = ImageView<P, const typename P::Byte>;
+
+/// Up to `capacity` features, of which the first `count` are valid. Feature i lies at pixel
+/// (x[i], y[i]) and has the descriptor words descriptors[8 i] … descriptors[8 i + 7].
+template <class P>
+struct FeatureList {
+  typename P::template Span<typename P::U16> x, y;
+  typename P::template Span<typename P::U32> descriptors;
+  int count = 0;
+  int capacity = 0;
+};
+
+/// An empty list in `arena`: blocks "keypoints" (4 bytes each) and "descriptors" (32 bytes each).
+template <class P>
+FeatureList<P> alloc_features(work::Arena& arena, int capacity) {
+  using Coordinates = typename P::template Span<typename P::U16>;
+  using Words = typename P::template Span<typename P::U32>;
+  FeatureList<P> list;
+  const Coordinates keypoints = arena.alloc<Coordinates>("keypoints", 2 * capacity);
+  list.x = keypoints.subspan(0, capacity);
+  list.y = keypoints.subspan(capacity, capacity);
+  list.descriptors = arena.alloc<Words>("descriptors", kDescriptorWords * capacity);
+  list.capacity = capacity;
+  return list;
+}
+
+}  // namespace leviosim::vio

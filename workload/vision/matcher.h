@@ -1,0 +1,60 @@
+// Brute-force two-way matching of binary descriptors (paper section III, "Feature Matching"), two
+// team forks: "search" and "two-way filter".
+//
+// Search: every current feature takes the reference descriptor with the smallest Hamming distance
+// below a limit, the first of equals. Two-way filter: a match is dropped if another match claims
+// the same reference feature with an equal or better distance, so two equal claims are both dropped
+// (released embedded code). Each core appends to a slice of its own; the master closes the gaps.
+// Left out: which landmarks are too old to count, which the pipeline decides afterwards.
+#pragma once
+
+#include "sim/work/machine.h"
+#include "workload/vision/features.h"
+
+namespace leviosim::vio {
+
+/// Up to `capacity` matches, of which the first `count` are valid: current feature query[i] is
+/// reference feature reference[i], at Hamming distance distance[i]. 6 bytes per match.
+template <class P>
+struct MatchList {
+  typename P::template Span<typename P::U16> query, reference, distance;
+  int count = 0;
+  int capacity = 0;
+};
+
+/// An empty list in `arena`, one block.
+template <class P>
+MatchList<P> alloc_matches(work::Arena& arena, int capacity, std::string_view name = "matches") {
+  using Numbers = typename P::template Span<typename P::U16>;
+  MatchList<P> list;
+  const Numbers block = arena.alloc<Numbers>(name, 3 * capacity);
+  list.query = block.subspan(0, capacity);
+  list.reference = block.subspan(capacity, capacity);
+  list.distance = block.subspan(2 * capacity, capacity);
+  list.capacity = capacity;
+  return list;
+}
+
+struct MatcherOptions {
+  int max_distance = 35;  ///< bits; a match is strictly closer (released embedded code)
+};
+
+/// Number of bits in which two descriptors differ.
+template <class P>
+typename P::I32 hamming_distance(typename P::template Span<const typename P::U32> a,
+                                 typename P::template Span<const typename P::U32> b) {
+  typename P::I32 distance = 0;
+  for (int w : P::range(0, kDescriptorWords)) distance += work::popcount(a[w] ^ b[w]);
+  return distance;
+}
+
+/// Matches `current_count` current descriptors to `reference_count` reference descriptors, 8 words
+/// each, all in local memory. `out` needs room for current_count matches; they come in the order of
+/// the current features. The caller opens the stage. Local memory while it runs: a second list of
+/// out.capacity matches and one word per core.
+template <class P>
+void match_two_way(work::Machine& machine, typename P::template Span<const typename P::U32> current,
+                   int current_count, typename P::template Span<const typename P::U32> reference,
+                   int reference_count, const MatcherOptions& options, MatchList<P>& out);
+
+}  // namespace leviosim::vio
