@@ -15,6 +15,7 @@ class Chip {
   Chip(const ChipConfig& config, int workers);
 
   Kernel& kernel() { return kernel_; }
+  const Kernel& kernel() const { return kernel_; }
   const Timebase& timebase() const { return timebase_; }
   Cluster& cluster() { return cluster_; }
   Controller& controller() { return controller_; }

@@ -13,6 +13,7 @@
 #include "sim/work/program.h"
 #include "traces/evaluation.h"
 #include "traces/trajectory.h"
+#include "workload/pipeline/odometry.h"
 
 namespace leviosim::tools {
 
@@ -31,8 +32,7 @@ struct StageResult {
   std::vector<work::Block> persistent;  ///< filled in for the controller's L2 only
 };
 
-/// How the pose of a frame was found.
-enum class PoseSource : std::uint8_t { First, Epnp, EightPoint, Kept };
+using vio::PoseSource;
 
 struct FrameResult {
   int index = 0;               ///< in the data set
