@@ -72,7 +72,7 @@ double run(Mode mode) {
   work::Machine controller({.cores = 1, .memory = "L2", .capacity = Bytes(1'600'000),
                             .record = record});
   const auto odometry = vio::make_odometry(record, profile, input.rig, cluster, controller);
-  const sim::ChipConfig config = platform::load_platform("gap9").config;
+  const sim::ChipConfig config = platform::load_platform("gap9");
   sim::Chip chip(config, 8);
   sim::Chip single(config, 1);
   const auto time_on = [](sim::Chip& on, const work::Job& job) {

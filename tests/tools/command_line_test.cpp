@@ -157,7 +157,7 @@ TEST_F(CommandLine, ReplacesResultsOnlyIfForced) {
 
 TEST_F(CommandLine, AnImageThatCannotBeReadLeavesNothingBehind) {
   traces::write_file_atomically(data_.image(3), "no image");
-  expect_run_refused({}, {data_.image(3).filename().string()});
+  expect_run_refused({"--quiet"}, {data_.image(3).filename().string()});
 }
 
 TEST_F(CommandLine, AnOutFolderThatCannotBeMadeIsRefusedBeforeTheRun) {
@@ -167,7 +167,7 @@ TEST_F(CommandLine, AnOutFolderThatCannotBeMadeIsRefusedBeforeTheRun) {
 
 TEST_F(CommandLine, AnInterruptEndsTheProgramAndLeavesNothingBehind) {
   // The program is stopped as soon as its staged folder shows that it is at work.
-  Program program(folder_.path(), {"synth", "--out", out(), "--duration", "600"});
+  Program program(folder_.path(), {"synth", "--out", out()});
   const auto staged = [&] {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path()))
       if (entry.path().filename().string().find(".partial") != std::string::npos) return true;

@@ -96,8 +96,11 @@ inline RunResult example_run() {
                 frame(3, PoseSource::Epnp, false, 30'000'000),
                 frame(4, PoseSource::Epnp, false, 40'000'000)};
   for (const FrameResult& f : run.frames) run.trajectory.push_back(f.pose);
-  run.l2 = {{"last keyframe", Bytes(50'900), {block("keypoints", 2'816), block("image", 19'200)}},
-            {"optimiser", Bytes(743'600), {block("landmark records", 700'000)}}};
+  run.l2 = {
+      {"last keyframe",
+       Bytes(50'900),
+       {block("keypoints", 2'816), block("image", 19'200), block("count", 4), block("flags", 49)}},
+      {"optimiser", Bytes(743'600), {block("landmark records", 700'000)}}};
   run.optimiser_published = 1;
   run.optimiser_late = 2;
   traces::Evaluation ate;

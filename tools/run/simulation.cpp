@@ -220,9 +220,18 @@ Cycles Simulation::time_on_one_core(const work::Job& job) {
 RunResult Simulation::take_result() {
   result_.stages = book_.stages();
   describe(result_, request_, feed_, *odometry_);
-  for (const StageResult& stage : result_.stages)
-    if (stage.on_controller && stage.memory.parallel > Bytes(0))
-      result_.l2.push_back({"optimiser", stage.memory.parallel, stage.memory.blocks});
+  // What persists in L2 lies below whatever the controller allocates; it has rows of its own.
+  const Bytes persistent =
+      odometry_->last_keyframe_memory().used() + odometry_->pose_graph_memory().used();
+  L2Row optimiser{"optimiser", Bytes(0), {}};
+  for (const StageResult& stage : result_.stages) {
+    if (!stage.on_controller || stage.memory.parallel <= optimiser.bytes + persistent) continue;
+    optimiser = {"optimiser", stage.memory.parallel - persistent, stage.memory.blocks};
+    std::erase_if(optimiser.blocks, [](const work::Block& block) {
+      return block.name == vio::kPersistentBlock;
+    });
+  }
+  if (optimiser.bytes > Bytes(0)) result_.l2.push_back(optimiser);
   return std::move(result_);
 }
 

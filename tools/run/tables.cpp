@@ -29,7 +29,7 @@ std::string kilobytes(Bytes bytes) { return kilo(static_cast<double>(bytes.count
 std::string on_cores(int cores) { return cores == 1 ? "1 core" : fmt::format("{} cores", cores); }
 
 std::string milliseconds_text(std::optional<double> cycles, Hertz clock) {
-  return number(cycles ? std::optional(milliseconds(*cycles, clock)) : std::nullopt, 2);
+  return number(cycles ? std::optional(milliseconds(*cycles, clock)) : std::nullopt, 3);
 }
 
 /// The parts of an account that a table has room for; together they are its total.
@@ -58,13 +58,21 @@ std::vector<std::string> account_cells(const sim::Account& account) {
   return cells;
 }
 
-/// "image 19.2", "scratch ×8 36.0"
+/// "image 19.2", "scratch ×8 36.0", and the names of what is too small for the unit.
 std::vector<std::string> block_list(const std::vector<work::Block>& blocks) {
+  constexpr Bytes kShownSize{50};  // the smallest that rounds to 0.1 kB
   std::vector<std::string> items;
-  for (const BlockGroup& group : grouped(blocks))
-    items.push_back(fmt::format("{}{} {}", group.name,
-                                group.copies > 1 ? fmt::format(" ×{}", group.copies) : "",
-                                kilobytes(group.bytes)));
+  std::vector<std::string> small;
+  for (const BlockGroup& group : grouped(blocks)) {
+    std::string name(group.name);
+    if (group.copies > 1) name += fmt::format(" ×{}", group.copies);
+    if (group.bytes < kShownSize)
+      small.push_back(std::move(name));
+    else
+      items.push_back(fmt::format("{} {}", name, kilobytes(group.bytes)));
+  }
+  if (!small.empty()) small.front() = "below 0.1: " + small.front();
+  items.insert(items.end(), small.begin(), small.end());
   return items;
 }
 

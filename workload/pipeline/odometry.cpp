@@ -7,8 +7,13 @@
 namespace leviosim::vio {
 namespace {
 
-/// Host capacity of the arenas for what persists in L2; the chip's L2 is checked against their sum.
-constexpr Bytes kPersistentCapacity{std::int64_t{1} << 26};
+/// Takes from the controller's memory, which is L2, what the persistent data occupy in it, so that
+/// what does not fit is refused.
+struct Reservation {
+  Reservation(work::Arena& l2, Bytes bytes) {
+    l2.alloc<work::Native::Span<std::uint8_t>>(kPersistentBlock, static_cast<int>(bytes.count()));
+  }
+};
 
 template <class P>
 class OdometryOf : public Odometry {
@@ -16,11 +21,12 @@ class OdometryOf : public Odometry {
   OdometryOf(const Profile& profile, const Rig& rig, work::Machine& cluster,
              work::Machine& controller)
       : profile_(profile),
-        keyframe_memory_("L2", kPersistentCapacity),
-        graph_memory_("L2", kPersistentCapacity),
+        keyframe_memory_("L2", controller.local().capacity()),
+        graph_memory_("L2", controller.local().capacity()),
         graph_(graph_memory_, {profile.optimiser_keyframes, profile.max_landmarks,
                                profile.max_observations}),
         front_end_(profile_, rig, cluster, keyframe_memory_, graph_),
+        reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),
         back_end_(profile_, controller, graph_) {
     graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
     work::take_tally();  // set-up happens before the first frame
@@ -39,6 +45,7 @@ class OdometryOf : public Odometry {
   work::Arena graph_memory_;
   PoseGraph<P> graph_;
   FrontEnd<P> front_end_;
+  Reservation reserved_;
   BackEnd<P> back_end_;
 };
 

@@ -77,6 +77,9 @@ struct StageName {
 };
 std::vector<StageName> stage_names();
 
+/// Name of the block by which the controller's memory accounts for the two memories below.
+inline constexpr std::string_view kPersistentBlock = "last keyframe and pose graph";
+
 class Odometry {
  public:
   virtual ~Odometry() = default;
