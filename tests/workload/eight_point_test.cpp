@@ -17,7 +17,7 @@ using work::Counting;
 using work::Native;
 
 template <class P>
-Mat3<P> solve(const Scene& scene, std::vector<std::uint16_t> sample) {
+Mat3<P> solve(const TwoViewScene& scene, std::vector<std::uint16_t> sample) {
   const MatchStorage<P> matches(scene);
   work::Arena scratch("L1", Bytes(4096));
   const auto E = essential_from_sample<P>(
@@ -27,7 +27,7 @@ Mat3<P> solve(const Scene& scene, std::vector<std::uint16_t> sample) {
 }
 
 /// Well spread geometry: a wide baseline and deep scene, so that eight points determine E well.
-SceneOptions well_conditioned() {
+TwoViewSceneOptions well_conditioned() {
   return {.matches = 8, .baseline_m = {0.5, 1.0}, .depth_m = {1.0, 6.0}};
 }
 
@@ -36,7 +36,7 @@ bool is_finite(const Eigen::Matrix3d& m) { return m.allFinite(); }
 TEST(EightPoint, ExactMatchesGiveTheTrueEssentialMatrix) {
   std::vector<double> errors;
   for (std::uint64_t seed = 0; seed < 101; ++seed) {
-    const Scene scene = make_scene(seed, well_conditioned());
+    const TwoViewScene scene = make_two_view_scene(seed, well_conditioned());
     const auto E = solve<Native>(scene, {0, 1, 2, 3, 4, 5, 6, 7});
     errors.push_back(difference_up_to_scale(to_eigen(E), scene.essential()));
   }
@@ -47,19 +47,19 @@ TEST(EightPoint, ExactMatchesGiveTheTrueEssentialMatrix) {
 }
 
 TEST(EightPoint, MoreMatchesThanEightAreFittedInTheLeastSquaresSense) {
-  SceneOptions options = well_conditioned();
+  TwoViewSceneOptions options = well_conditioned();
   options.matches = 40;
   std::vector<std::uint16_t> all(40);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint16_t>(i);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Scene scene = make_scene(seed, options);
+    const TwoViewScene scene = make_two_view_scene(seed, options);
     EXPECT_LT(difference_up_to_scale(to_eigen(solve<Native>(scene, all)), scene.essential()), 2e-3);
   }
 }
 
 TEST(EightPoint, ResultIsOfRankTwo) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 8, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 8, .rounded = true});
     const auto E = to_eigen(solve<Native>(scene, {7, 6, 5, 4, 3, 2, 1, 0}));
     const Eigen::Vector3d s = E.jacobiSvd().singularValues();
     EXPECT_GT(s(1), 1e-2);
@@ -69,7 +69,7 @@ TEST(EightPoint, ResultIsOfRankTwo) {
 }
 
 TEST(EightPoint, DegenerateSamplesFitEverythingOrNothingButDoNotFail) {
-  Scene scene = make_scene(1, {.matches = 8});
+  TwoViewScene scene = make_two_view_scene(1, {.matches = 8});
   for (auto& x : scene.seen_a) x = scene.seen_a[0];
   for (auto& x : scene.seen_b) x = scene.seen_b[0];
   EXPECT_TRUE(is_finite(to_eigen(solve<Native>(scene, {0, 1, 2, 3, 4, 5, 6, 7}))));
@@ -80,7 +80,7 @@ TEST(EightPoint, DegenerateSamplesFitEverythingOrNothingButDoNotFail) {
 
 TEST(EightPoint, CountingComputesTheSameBits) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 8, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 8, .rounded = true});
     const auto native = solve<Native>(scene, {0, 1, 2, 3, 4, 5, 6, 7});
     const auto counted = solve<Counting>(scene, {0, 1, 2, 3, 4, 5, 6, 7});
     for (int i = 0; i < 9; ++i)
@@ -90,7 +90,7 @@ TEST(EightPoint, CountingComputesTheSameBits) {
 }
 
 TEST(Sampson, IsOpenCvsDistance) {
-  const Scene scene = make_scene(2, {.matches = 60, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(2, {.matches = 60, .outliers = 0.3, .rounded = true});
   const Eigen::Matrix3d E = scene.essential();
   cv::Matx33d F;
   for (int r = 0; r < 3; ++r)
@@ -106,14 +106,14 @@ TEST(Sampson, IsOpenCvsDistance) {
 }
 
 TEST(Sampson, DoesNotDependOnTheScaleOfTheEssentialMatrix) {
-  const Scene scene = make_scene(2, {.matches = 1, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(2, {.matches = 1, .rounded = true});
   const auto a = to_vec2<Native>(scene.seen_a[0]), b = to_vec2<Native>(scene.seen_b[0]);
   const float unit = sampson_error_sq<Native>(to_mat3<Native>(scene.essential()), a, b);
   EXPECT_EQ(sampson_error_sq<Native>(to_mat3<Native>(-4 * scene.essential()), a, b), unit);
 }
 
 TEST(ScoreEssential, MarksTheMatchesBelowTheThreshold) {
-  const Scene scene = make_scene(8, {.matches = 90, .outliers = 0.4, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(8, {.matches = 90, .outliers = 0.4, .rounded = true});
   const MatchStorage<Native> matches(scene);
   const Mat3<Native> E = to_mat3<Native>(scene.essential());
   const float threshold = (1.0f / kCamera.fx) * (1.0f / kCamera.fx);
@@ -135,7 +135,7 @@ TEST(ScoreEssential, MarksTheMatchesBelowTheThreshold) {
 }
 
 TEST(ScoreEssential, CountsOneDivisionPerMatch) {
-  const Scene scene = make_scene(8, {.matches = 90});
+  const TwoViewScene scene = make_two_view_scene(8, {.matches = 90});
   const MatchStorage<Counting> matches(scene);
   std::vector<work::Byte> mask(90);
   work::take_tally();

@@ -27,7 +27,7 @@ struct Outcome {
 };
 
 template <class P>
-Outcome run(const Scene& scene, const EssentialOptions& options,
+Outcome run(const TwoViewScene& scene, const EssentialOptions& options,
             const work::MachineConfig& config = {}) {
   const MatchStorage<P> matches(scene);
   std::vector<typename P::Byte> mask(static_cast<std::size_t>(scene.n));
@@ -61,7 +61,7 @@ int marked(const Outcome& outcome) {
 
 TEST(EssentialRansac, ExactMatchesAreAllInliersOfAnEssentialMatrixLikeOpenCvs) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 100});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 100});
     const Outcome outcome = run<Native>(scene, {});
     ASSERT_TRUE(outcome.ok);
     EXPECT_EQ(outcome.inliers, 100);
@@ -87,7 +87,7 @@ TEST(EssentialRansac, ExactMatchesAreAllInliersOfAnEssentialMatrixLikeOpenCvs) {
 TEST(EssentialRansac, OutliersAreLeftOut) {
   int kept_outliers = 0, outliers = 0, kept = 0, good = 0;
   for (std::uint64_t seed = 100; seed < 105; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 120, .outliers = 0.3, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 120, .outliers = 0.3, .rounded = true});
     const Outcome outcome = run<Native>(scene, {});
     ASSERT_TRUE(outcome.ok);
     EXPECT_EQ(marked(outcome), outcome.inliers);
@@ -102,7 +102,7 @@ TEST(EssentialRansac, OutliersAreLeftOut) {
 }
 
 TEST(EssentialRansac, ResultDoesNotDependOnTheNumberOfCores) {
-  const Scene scene = make_scene(5, {.matches = 77, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(5, {.matches = 77, .outliers = 0.3, .rounded = true});
   const Outcome eight = run<Native>(scene, brief(), {.cores = 8});
   ASSERT_TRUE(eight.ok);
   EXPECT_EQ(run<Native>(scene, brief(), {.cores = 1}), eight);
@@ -111,13 +111,13 @@ TEST(EssentialRansac, ResultDoesNotDependOnTheNumberOfCores) {
 
 TEST(EssentialRansac, CountingComputesTheSameBits) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 61, .outliers = 0.3, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 61, .outliers = 0.3, .rounded = true});
     EXPECT_EQ(run<Counting>(scene, brief()), run<Native>(scene, brief()));
   }
 }
 
 TEST(EssentialRansac, MoreIterationsNeverFindFewerInliers) {
-  const Scene scene = make_scene(5, {.matches = 100, .outliers = 0.4, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(5, {.matches = 100, .outliers = 0.4, .rounded = true});
   int before = 0;
   for (int iterations : {8, 24, 96, 384}) {
     EssentialOptions options;
@@ -129,7 +129,7 @@ TEST(EssentialRansac, MoreIterationsNeverFindFewerInliers) {
 }
 
 TEST(EssentialRansac, BatchSizeChangesOnlyWhenTheMasterDecides) {
-  const Scene scene = make_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
   EssentialOptions options = brief();
   const Outcome expected = run<Native>(scene, options);
   for (int batch : {1, 5, 64, 100}) {
@@ -139,7 +139,7 @@ TEST(EssentialRansac, BatchSizeChangesOnlyWhenTheMasterDecides) {
 }
 
 TEST(EssentialRansac, SeedChangesTheSamples) {
-  const Scene scene = make_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
   EssentialOptions options = brief();
   const Outcome first = run<Native>(scene, options);
   options.seed = 77;
@@ -148,17 +148,17 @@ TEST(EssentialRansac, SeedChangesTheSamples) {
 
 TEST(EssentialRansac, TooFewMatchesAreNotOk) {
   for (int n : {0, 1, 7}) {
-    const Outcome outcome = run<Native>(make_scene(1, {.matches = n}), {});
+    const Outcome outcome = run<Native>(make_two_view_scene(1, {.matches = n}), {});
     EXPECT_FALSE(outcome.ok);
     EXPECT_EQ(outcome.inliers, 0);
     EXPECT_EQ(marked(outcome), 0);
     EXPECT_EQ(outcome.E, Eigen::Matrix3d::Zero());
   }
-  EXPECT_TRUE(run<Native>(make_scene(1, {.matches = 8}), brief()).ok);
+  EXPECT_TRUE(run<Native>(make_two_view_scene(1, {.matches = 8}), brief()).ok);
 }
 
 TEST(EssentialRansac, IdenticalMatchesGiveNoNumberThatIsNotFinite) {
-  Scene scene = make_scene(1, {.matches = 30});
+  TwoViewScene scene = make_two_view_scene(1, {.matches = 30});
   for (auto& x : scene.seen_a) x = scene.seen_a[0];
   for (auto& x : scene.seen_b) x = scene.seen_b[0];
   EXPECT_TRUE(run<Native>(scene, brief()).E.allFinite());
@@ -168,7 +168,7 @@ TEST(EssentialRansac, IdenticalMatchesGiveNoNumberThatIsNotFinite) {
 }
 
 TEST(EssentialRansac, PureRotationIsFittedByAFiniteMatrix) {
-  const Scene scene = make_scene(1, {.matches = 60, .baseline_m = {0, 0}});
+  const TwoViewScene scene = make_two_view_scene(1, {.matches = 60, .baseline_m = {0, 0}});
   const Outcome outcome = run<Native>(scene, brief());
   EXPECT_TRUE(outcome.ok);
   EXPECT_TRUE(outcome.E.allFinite());
@@ -176,7 +176,7 @@ TEST(EssentialRansac, PureRotationIsFittedByAFiniteMatrix) {
 }
 
 TEST(EssentialRansac, EveryBatchForksForHypothesesAndForScores) {
-  const Scene scene = make_scene(5, {.matches = 50});
+  const TwoViewScene scene = make_two_view_scene(5, {.matches = 50});
   const Outcome outcome = run<Counting>(scene, {}, {.record = true});
   int hypotheses = 0, scoring = 0;
   std::uint64_t divisions_in_scoring = 0;
@@ -198,7 +198,7 @@ TEST(EssentialRansac, EveryBatchForksForHypothesesAndForScores) {
 }
 
 TEST(EssentialRansac, PackedMemoryStraddlesWordsButGivesTheSameResult) {
-  const Scene scene = make_scene(5, {.matches = 51, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(5, {.matches = 51, .outliers = 0.3, .rounded = true});
   const Outcome packed = run<Counting>(scene, brief(), {.alignment = 1, .record = true});
   const Outcome aligned = run<Counting>(scene, brief(), {.alignment = 4, .record = true});
   EXPECT_EQ(packed, aligned);
@@ -215,7 +215,7 @@ TEST(EssentialRansac, PackedMemoryStraddlesWordsButGivesTheSameResult) {
 
 TEST(EssentialRansac, CoresNeedLittleScratch) {
   const work::MemoryPeak memory =
-      run<Counting>(make_scene(5, {.matches = 360}), brief(), {.record = true})
+      run<Counting>(make_two_view_scene(5, {.matches = 360}), brief(), {.record = true})
           .job.stages.at(0)
           .memory;
   // The masks of 8 hypotheses make up most of the shared part; see the memory table of the paper.

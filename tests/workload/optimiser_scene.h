@@ -11,7 +11,7 @@
 
 namespace leviosim::vio::test {
 
-struct SceneOptions {
+struct OptimiserSceneOptions {
   int keyframes = 8;
   int landmarks = 200;
   int shortest_track = 3, longest_track = 8;  ///< keyframes that see a landmark
@@ -37,7 +37,7 @@ struct OptimiserScene {
     Eigen::Vector2d pixel;
   };
 
-  explicit OptimiserScene(const SceneOptions& scene_options = {}, bool record = false)
+  explicit OptimiserScene(const OptimiserSceneOptions& scene_options = {}, bool record = false)
       : scene(scene_options),
         fc(machine_config(record)),
         graph(fc.local(), GraphCapacity{}),
@@ -189,7 +189,7 @@ struct OptimiserScene {
     return errors[errors.size() / 2];
   }
 
-  SceneOptions scene;
+  OptimiserSceneOptions scene;
   Motion motion;
   OptimiserOptions options;
   work::Machine fc;

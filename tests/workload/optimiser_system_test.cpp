@@ -145,7 +145,7 @@ double smallest_eigenvalue(const MatrixXd& S) {
 
 TEST(NormalEquations, ReducedSystemIsPositiveDefinite) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    SceneOptions options;
+    OptimiserSceneOptions options;
     options.seed = seed;
     Scene scene(options);
     EXPECT_GT(smallest_eigenvalue(Linearised(scene, 1e-4f, true).matrix()), 0) << "start";

@@ -15,7 +15,7 @@ using Scene = OptimiserScene<Native>;
 
 TEST(Optimiser, FindsTheTruthFromExactMeasurements) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    SceneOptions options;
+    OptimiserSceneOptions options;
     options.seed = seed;
     Scene scene(options);
     ASSERT_GT(scene.position_rms(), 0.05);
@@ -30,7 +30,7 @@ TEST(Optimiser, FindsTheTruthFromExactMeasurements) {
 
 TEST(Optimiser, CostNeverRisesAndEveryStepCanBeSolved) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    SceneOptions options;
+    OptimiserSceneOptions options;
     options.seed = seed;
     options.whole_pixels = true;
     Scene scene(options);
@@ -48,7 +48,7 @@ TEST(Optimiser, CostNeverRisesAndEveryStepCanBeSolved) {
 }
 
 TEST(Optimiser, ARejectedStepChangesNothingButTheDamping) {
-  SceneOptions options;
+  OptimiserSceneOptions options;
   options.whole_pixels = true;
   Scene scene(options);
   scene.optimise(15);  // as far as single precision goes
@@ -79,7 +79,7 @@ TEST(Optimiser, DampingFallsWithSuccess) {
 }
 
 TEST(Optimiser, HuberLimitsTheInfluenceOfOutliers) {
-  SceneOptions options;
+  OptimiserSceneOptions options;
   options.outliers = 0.05;
   Scene robust(options), plain(options);
   plain.options.visual.huber_px = 1e6f;
@@ -115,7 +115,7 @@ TEST(Optimiser, WithoutImuFindsThePosesUpToScale) {
 
 /// Everything scaled about the anchored camera: images alone cannot tell, the IMU can.
 TEST(Optimiser, ImuRestoresTheScale) {
-  SceneOptions options;
+  OptimiserSceneOptions options;
   options.rotation_noise = options.position_noise = options.velocity_noise = options.depth_noise =
       0;
   const auto scale_after = [&](bool use_imu) {
@@ -150,7 +150,7 @@ TEST(Optimiser, AnchorHoldsTheOldestKeyframe) {
 }
 
 TEST(Optimiser, LeavesASingleKeyframeAlone) {
-  SceneOptions options;
+  OptimiserSceneOptions options;
   options.keyframes = 1;
   options.landmarks = 5;
   options.shortest_track = options.longest_track = 1;
@@ -162,7 +162,7 @@ TEST(Optimiser, LeavesASingleKeyframeAlone) {
 
 /// A window of inertial intervals only: the motion follows the IMU.
 TEST(Optimiser, WorksWithoutLandmarks) {
-  SceneOptions options;
+  OptimiserSceneOptions options;
   options.landmarks = 0;
   options.position_noise = 0.01;
   Scene scene(options);
@@ -171,7 +171,7 @@ TEST(Optimiser, WorksWithoutLandmarks) {
 }
 
 TEST(Optimiser, AShortWindowUsesWhatItHas) {
-  SceneOptions options;
+  OptimiserSceneOptions options;
   options.keyframes = 3;
   options.shortest_track = 2;
   options.longest_track = 3;
@@ -183,8 +183,8 @@ TEST(Optimiser, AShortWindowUsesWhatItHas) {
   EXPECT_LT(scene.rotation_rms(), 1e-3);
 }
 
-SceneOptions full_window() {
-  SceneOptions options;
+OptimiserSceneOptions full_window() {
+  OptimiserSceneOptions options;
   options.landmarks = 1000;
   options.shortest_track = 2;
   options.longest_track = 2;
@@ -209,7 +209,7 @@ TEST(Optimiser, WorkMemoryIsThePapersAtAFullWindow) {
 
 TEST(Optimiser, CountsWhatItComputesNatively) {
   for (const bool use_imu : {true, false}) {
-    SceneOptions options;
+    OptimiserSceneOptions options;
     options.outliers = 0.05;
     OptimiserScene<Native> native(options);
     OptimiserScene<Counting> counting(options);

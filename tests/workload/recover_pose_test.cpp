@@ -22,7 +22,7 @@ std::vector<typename P::Byte> to_mask(const std::vector<int>& inliers) {
 }
 
 template <class P>
-TwoViewPose<P> run(const Scene& scene, const Eigen::Matrix3d& E, const std::vector<int>& inliers,
+TwoViewPose<P> run(const TwoViewScene& scene, const Eigen::Matrix3d& E, const std::vector<int>& inliers,
                    int cores = 8) {
   const MatchStorage<P> matches(scene);
   const std::vector<typename P::Byte> mask = to_mask<P>(inliers);
@@ -42,7 +42,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& t) {
 
 TEST(DecomposeEssential, AllFourPosesExplainTheMatrix) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 0, .max_rotation_rad = 3.0});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 0, .max_rotation_rad = 3.0});
     for (double sign : {1.0, -1.0}) {
       const auto poses = decompose_essential<Native>(to_mat3<Native>(sign * scene.essential()));
       int like_truth = 0;
@@ -63,7 +63,7 @@ TEST(DecomposeEssential, AllFourPosesExplainTheMatrix) {
 
 TEST(RecoverPose, FindsThePoseThatOpenCvFinds) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 40, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 40, .rounded = true});
     const auto pose = run<Native>(scene, scene.essential(), {});
     ASSERT_TRUE(pose.ok);
     EXPECT_LT(degrees_between(to_eigen(pose.T_b_a.R), scene.R_b_a), 0.05);
@@ -90,13 +90,13 @@ TEST(RecoverPose, FindsThePoseThatOpenCvFinds) {
 
 TEST(RecoverPose, ExactMatchesAreAllInFront) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 33});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 33});
     EXPECT_EQ(run<Native>(scene, scene.essential(), {}).in_front, 33);
   }
 }
 
 TEST(RecoverPose, LeavesOutWhatTheMaskLeavesOut) {
-  const Scene scene = make_scene(3, {.matches = 20});
+  const TwoViewScene scene = make_two_view_scene(3, {.matches = 20});
   std::vector<int> mask(20, 1);
   mask[0] = mask[7] = mask[19] = 0;
   EXPECT_EQ(run<Native>(scene, scene.essential(), mask).in_front, 17);
@@ -106,7 +106,7 @@ TEST(RecoverPose, LeavesOutWhatTheMaskLeavesOut) {
 }
 
 TEST(RecoverPose, ResultDoesNotDependOnTheNumberOfCores) {
-  const Scene scene = make_scene(3, {.matches = 41, .outliers = 0.2, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(3, {.matches = 41, .outliers = 0.2, .rounded = true});
   const auto eight = run<Native>(scene, scene.essential(), {}, 8);
   for (int cores : {1, 3}) {
     const auto other = run<Native>(scene, scene.essential(), {}, cores);
@@ -118,7 +118,7 @@ TEST(RecoverPose, ResultDoesNotDependOnTheNumberOfCores) {
 
 TEST(RecoverPose, CountingComputesTheSameBits) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 41, .outliers = 0.2, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 41, .outliers = 0.2, .rounded = true});
     const auto native = run<Native>(scene, scene.essential(), {});
     const auto counted = run<Counting>(scene, scene.essential(), {});
     EXPECT_EQ(native.in_front, counted.in_front);
@@ -130,7 +130,7 @@ TEST(RecoverPose, CountingComputesTheSameBits) {
 TEST(RecoverPose, RansacAndRecoveryFindTheMotionAmongOutliers) {
   std::vector<double> rotation_errors, direction_errors;
   for (std::uint64_t seed = 0; seed < 11; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 150, .outliers = 0.3, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 150, .outliers = 0.3, .rounded = true});
     const MatchStorage<Native> matches(scene);
     std::vector<std::uint8_t> mask(150);
     work::Machine machine({});
@@ -153,18 +153,18 @@ TEST(RecoverPose, RansacAndRecoveryFindTheMotionAmongOutliers) {
 }
 
 TEST(RecoverPose, DegenerateInputGivesFinitePoses) {
-  const auto expect_finite = [](const Scene& scene, const Eigen::Matrix3d& E) {
+  const auto expect_finite = [](const TwoViewScene& scene, const Eigen::Matrix3d& E) {
     const auto pose = run<Native>(scene, E, {});
     EXPECT_TRUE(to_eigen(pose.T_b_a.R).allFinite());
     EXPECT_TRUE(to_eigen(pose.T_b_a.t).allFinite());
   };
-  Scene scene = make_scene(1, {.matches = 20, .baseline_m = {0, 0}});
+  TwoViewScene scene = make_two_view_scene(1, {.matches = 20, .baseline_m = {0, 0}});
   expect_finite(scene, cross_matrix({1, 0, 0}) * scene.R_b_a);  // pure rotation
   expect_finite(scene, Eigen::Matrix3d::Zero());
   for (auto& x : scene.seen_a) x = scene.seen_a[0];
   for (auto& x : scene.seen_b) x = scene.seen_b[0];
   expect_finite(scene, cross_matrix({0, 1, 0}));  // all matches identical
-  const auto empty = run<Native>(make_scene(1, {.matches = 0}), cross_matrix({1, 0, 0}), {});
+  const auto empty = run<Native>(make_two_view_scene(1, {.matches = 0}), cross_matrix({1, 0, 0}), {});
   EXPECT_FALSE(empty.ok);
 }
 

@@ -51,7 +51,7 @@ TEST(Triangulate, ExactMeasurementsGiveThePointInTheWorldFrame) {
   HostRandom random(4);
   std::vector<double> errors;  // relative to the depth
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 20, .baseline_m = {0.1, 0.3}});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 20, .baseline_m = {0.1, 0.3}});
     // The world frame is turned and one metre away from camera a.
     const Eigen::Matrix3d R_a_world = random.rotation(3);
     const Eigen::Vector3d t_a_world = random.direction();
@@ -73,7 +73,7 @@ TEST(Triangulate, ExactMeasurementsGiveThePointInTheWorldFrame) {
 
 TEST(Triangulate, NoisyMeasurementsGiveWhatOpenCvGives) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Scene scene = make_scene(seed, {.matches = 20, .rounded = true});
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 20, .rounded = true});
     cv::Mat P_a = cv::Mat::eye(3, 4, CV_64F), P_b(3, 4, CV_64F);
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) P_b.at<double>(r, c) = scene.R_b_a(r, c);
@@ -135,7 +135,7 @@ TEST(AgreesWithView, NeedsASmallErrorAndAPositiveDepth) {
 
 TEST(Triangulate, CountingComputesTheSameBits) {
   work::Arena scratch("L1", Bytes(1024));
-  const Scene scene = make_scene(3, {.matches = 50, .rounded = true});
+  const TwoViewScene scene = make_two_view_scene(3, {.matches = 50, .rounded = true});
   for (std::size_t i = 0; i < scene.points_a.size(); ++i) {
     const auto native = triangulate<Native>(
         Pose<Native>::identity(), to_pose<Native>(scene.R_b_a, scene.t_b_a),

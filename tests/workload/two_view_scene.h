@@ -47,7 +47,7 @@ inline constexpr PinholeCamera kCamera{114.66f, 114.32f, 77.80f, 62.09f};
 inline constexpr double kWidth = 160;
 inline constexpr double kHeight = 120;
 
-struct SceneOptions {
+struct TwoViewSceneOptions {
   int matches = 100;
   double outliers = 0;   ///< share of the matches with an arbitrary point in b
   bool rounded = false;  ///< pixels rounded to integers, as feature positions are
@@ -56,7 +56,7 @@ struct SceneOptions {
   double max_rotation_rad = 0.1;
 };
 
-struct Scene {
+struct TwoViewScene {
   Eigen::Matrix3d R_b_a;
   Eigen::Vector3d t_b_a;  ///< metres
   std::vector<Eigen::Vector3d> points_a;
@@ -82,9 +82,9 @@ inline bool in_image(const Eigen::Vector2d& pixel) {
   return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < kWidth && pixel.y() < kHeight;
 }
 
-inline Scene make_scene(std::uint64_t seed, const SceneOptions& options) {
+inline TwoViewScene make_two_view_scene(std::uint64_t seed, const TwoViewSceneOptions& options) {
   HostRandom random(seed);
-  Scene scene;
+  TwoViewScene scene;
   scene.R_b_a = random.rotation(options.max_rotation_rad);
   const double baseline = random.uniform(options.baseline_m[0], options.baseline_m[1]);
   scene.t_b_a = random.direction() * baseline;
@@ -117,7 +117,7 @@ class MatchStorage {
  public:
   using F = typename P::F32;
 
-  explicit MatchStorage(const Scene& scene) : n_(scene.n) {
+  explicit MatchStorage(const TwoViewScene& scene) : n_(scene.n) {
     for (const Eigen::Vector2d& x : scene.seen_a) append(a_, x);
     for (const Eigen::Vector2d& x : scene.seen_b) append(b_, x);
   }
