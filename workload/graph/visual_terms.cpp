@@ -121,18 +121,18 @@ void form_coupling(const Floats<P>& slot, const Mat3<P>& inverse, const Vec3<P>&
   }
 }
 
-// The 6×6 blocks below are updated three columns at a time, whose factors stay in registers. Of a
-// block on the diagonal, what lies above the 3×3 blocks of the diagonal is left out.
+// The 6×6 blocks below are updated row by row, three columns at a time. Of a block on the diagonal,
+// what lies above the 3×3 blocks of the diagonal is left out: the matrix is symmetric.
 
 /// matrix += J_pᵀ J_p of one observation, a block on the diagonal.
 template <class P>
 void add_pose_block(const Floats<P>& slot, const Floats<P>& matrix, int stride) {
   using F = typename P::F32;
-  for (int half : P::range(0, 2)) {
-    const Vec3<P> q0 = load_vec3<P>(slot, Records<P>::kByPose + 3 * half);
-    const Vec3<P> q1 = load_vec3<P>(slot, Records<P>::kByPose + 6 + 3 * half);
-    for (int r : P::range(3 * half, 6)) {
-      const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
+  for (int r : P::range(0, 6)) {
+    const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
+    for (int half : P::range(0, r < 3 ? 1 : 2)) {
+      const Vec3<P> q0 = load_vec3<P>(slot, Records<P>::kByPose + 3 * half);
+      const Vec3<P> q1 = load_vec3<P>(slot, Records<P>::kByPose + 6 + 3 * half);
       const int at = r * stride + 3 * half;
       Vec3<P> sum = load_vec3<P>(matrix, at);
       sum.x += p0 * q0.x;
@@ -150,10 +150,10 @@ void add_pose_block(const Floats<P>& slot, const Floats<P>& matrix, int stride) 
 template <class P>
 void subtract_elimination(const Floats<P>& Y, const Floats<P>& W, bool diagonal,
                           const Floats<P>& matrix, int stride) {
-  for (int half : P::range(0, 2)) {
-    const Mat3<P> w = load_mat3<P>(W, 9 * half);
-    for (int r : P::range(diagonal ? 3 * half : 0, 6)) {
-      const Vec3<P> y = load_vec3<P>(Y, 3 * r);
+  for (int r : P::range(0, 6)) {
+    const Vec3<P> y = load_vec3<P>(Y, 3 * r);
+    for (int half : P::range(0, diagonal && r < 3 ? 1 : 2)) {
+      const Mat3<P> w = load_mat3<P>(W, 9 * half);
       const int at = r * stride + 3 * half;
       Vec3<P> sum = load_vec3<P>(matrix, at);
       sum.x -= y.x * w.m[0][0];

@@ -11,6 +11,17 @@
 namespace leviosim::vio {
 namespace {
 
+/// Found by a random search over these three, the damping and the gates of observations, on the real
+/// frames of MH_01 (5 to 20 s) with four random seeds each: without a prior on the velocity the scale
+/// of the map drifts.
+AnchorOptions levio_anchor() {
+  AnchorOptions anchor;
+  anchor.rotation = 0.01f;
+  anchor.position = 0.001f;
+  anchor.velocity = 0.02f;
+  return anchor;
+}
+
 struct NamedProfile {
   std::string_view name;
   std::string_view description;
@@ -35,6 +46,7 @@ Profile profile_named(std::string_view name, std::uint32_t seed) {
                                  fmt::join(profile_names(), ", ")));
   Profile profile;
   profile.name = name;
+  profile.optimiser.anchor = levio_anchor();
   // Different streams for the two estimators; an odd factor keeps different seeds apart.
   profile.pnp.seed = seed * 0x9e3779b1u + 1;
   profile.essential.seed = seed * 0x85ebca6bu + 2;

@@ -27,7 +27,7 @@ struct Profile {
   PnpOptions pnp;
   EssentialOptions essential;
   int min_world_matches = 25;   ///< for EPnP, before and after the age filter
-  int min_epnp_inliers = 10;    ///< for its pose to be used
+  int min_epnp_inliers = 25;    ///< for its pose to be used; else the 8-point algorithm runs too
   int min_frame_matches = 10;   ///< for the 8-point algorithm
   float min_translation = 0.01f;         ///< per keyframe interval, of the 8-point pose [m]
   float max_translation_time = 1.0f;     ///< that the last velocity is trusted for [s]
@@ -38,9 +38,10 @@ struct Profile {
   int max_landmarks = 1000;
   int max_landmark_age = 15;             ///< keyframes without being seen
   float max_landmark_error_sq = 2.0f;    ///< squared reprojection error of a new landmark [px²]
-  float max_observation_error_sq = 16.0f;  ///< … of a known landmark in a new keyframe [px²]
+  float max_observation_error_sq = 64.0f;  ///< … of a known landmark in a new keyframe [px²]
 
-  // Inertial part and optimiser (III.C).
+  // Inertial part and optimiser (III.C). The paper anchors pose, velocity and bias of the oldest
+  // keyframe and leaves open how tightly; see levio_anchor().
   bool use_imu = true;
   bool use_epnp = true;
   ImuNoise imu_noise;
