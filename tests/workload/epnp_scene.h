@@ -17,9 +17,9 @@ inline constexpr PinholeCamera kCamera{114.66f, 114.32f, 77.80f, 62.09f};
 
 struct SceneOptions {
   int points = 60;
-  double outliers = 0.0;     ///< part of the matches, which come first
-  double noise_px = 0.0;     ///< standard deviation per axis
-  bool whole_pixels = false; ///< measurements rounded, as those of keypoints
+  double outliers = 0.0;      ///< part of the matches, which come first
+  double noise_px = 0.0;      ///< standard deviation per axis
+  bool whole_pixels = false;  ///< measurements rounded, as those of keypoints
   double nearest_m = 1.5;
   double farthest_m = 6.0;
 };
@@ -69,8 +69,8 @@ inline Scene make_scene(Random& random, const SceneOptions& options) {
     const double y = (v - double(kCamera.cy)) / double(kCamera.fy) * z;
     const double d[3] = {x - scene.t(0), y - scene.t(1), z - scene.t(2)};
     for (int c = 0; c < 3; ++c)
-      scene.points.push_back(static_cast<float>(scene.R(0, c) * d[0] + scene.R(1, c) * d[1] +
-                                                scene.R(2, c) * d[2]));
+      scene.points.push_back(
+          static_cast<float>(scene.R(0, c) * d[0] + scene.R(1, c) * d[1] + scene.R(2, c) * d[2]));
     if (i < scene.outliers) {
       u = random.uniform(16.0, 144.0);
       v = random.uniform(16.0, 104.0);
@@ -106,10 +106,10 @@ struct PoseError {
 inline PoseError error_against(const Scene& scene, const Eigen::Matrix3d& R,
                                const Eigen::Vector3d& t) {
   const Eigen::Matrix3d difference = R * scene.R.transpose();
-  const double sine = Eigen::Vector3d(difference(2, 1) - difference(1, 2),
-                                      difference(0, 2) - difference(2, 0),
-                                      difference(1, 0) - difference(0, 1))
-                          .norm();
+  const double sine =
+      Eigen::Vector3d(difference(2, 1) - difference(1, 2), difference(0, 2) - difference(2, 0),
+                      difference(1, 0) - difference(0, 1))
+          .norm();
   return {(R.transpose() * t - scene.R.transpose() * scene.t).norm(),
           std::atan2(sine, difference.trace() - 1.0) * 57.29577951308232};
 }

@@ -35,8 +35,8 @@ TEST_F(Solve, GaussPivotsWhereTheDiagonalIsZero) {
   Eigen::MatrixXd m(3, 3);
   m << 0, 2, 0, 0, 0, 4, 8, 0, 0;
   const auto x = arena_.alloc<P::Span<float>>("x", 3);
-  ASSERT_TRUE(solve_gauss<P>(place<P>(arena_, m),
-                             place_vector<P>(arena_, Eigen::Vector3d(2, 12, 16)), x));
+  ASSERT_TRUE(
+      solve_gauss<P>(place<P>(arena_, m), place_vector<P>(arena_, Eigen::Vector3d(2, 12, 16)), x));
   EXPECT_EQ(values(x), (std::vector<float>{2, 1, 3}));
 }
 
@@ -209,7 +209,7 @@ TEST_F(Solve, BothPoliciesAndEveryCompilerComputeTheSameBits) {
     append(all, inverse);
     return all;
   });
-  EXPECT_EQ(fingerprint(out), 0u);
+  EXPECT_EQ(fingerprint(out), 3303131422996804194u);
 }
 
 }  // namespace
