@@ -2,8 +2,8 @@
 // iteration runs all three one after the other over the same frames, so that the ratios hold on a
 // machine whose speed drifts.
 //
-//   pipeline_bench [--benchmark_min_time=…]   on the data set in LEVIOSIM_DATA, else on a synthetic
-//                                             flight that is made in a temporary folder
+// On the real frames below LEVIOSIM_DATA where that is set, else on a synthetic flight that is made in
+// a temporary folder.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ struct Recording {
 };
 
 std::string data_folder() {
-  if (const char* data = std::getenv("LEVIOSIM_DATA")) return data;
+  if (const char* data = std::getenv("LEVIOSIM_DATA"))
+    return std::string(data) + "/euroc/MH_01_easy_t05_t20";
   const auto folder = std::filesystem::temp_directory_path() / "leviosim-bench-flight";
   if (!std::filesystem::exists(folder))
     traces::write_synthetic_flight(folder, {.duration_s = 5, .texel_m = 0.01});
