@@ -181,7 +181,8 @@ double seconds(const std::function<void()>& body, int times) {
 
 /// Runs both policies alternately; reports the median of the ratios.
 template <class MakeNative, class MakeCounting>
-void compare(benchmark::State& state, MakeNative make_native, MakeCounting make_counting, int times) {
+void compare(benchmark::State& state, MakeNative make_native, MakeCounting make_counting,
+             int times) {
   Bench<work::Native> native;
   Bench<work::Counting> counting;
   const auto plain = make_native(native);
@@ -215,7 +216,8 @@ BENCHMARK_CAPTURE(compare, eight_point, eight_point<work::Native>, eight_point<w
 BENCHMARK_CAPTURE(compare, jacobi12, jacobi12<work::Native>, jacobi12<work::Counting>, 200)
     ->Iterations(15)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(compare, preintegration, preintegration<work::Native>, preintegration<work::Counting>, 2000)
+BENCHMARK_CAPTURE(compare, preintegration, preintegration<work::Native>,
+                  preintegration<work::Counting>, 2000)
     ->Iterations(15)
     ->Unit(benchmark::kMillisecond);
 

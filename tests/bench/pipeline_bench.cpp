@@ -2,8 +2,8 @@
 // iteration runs all three one after the other over the same frames, so that the ratios hold on a
 // machine whose speed drifts.
 //
-// On the real frames below LEVIOSIM_DATA where that is set, else on a synthetic flight that is made in
-// a temporary folder.
+// On the real frames below LEVIOSIM_DATA where that is set, else on a synthetic flight that is made
+// in a temporary folder.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -68,10 +68,10 @@ double run(Mode mode) {
   const Recording& input = recording();
   const vio::Profile profile = vio::profile_named("levio", 1);
   const bool record = mode != Mode::Native;
-  work::Machine cluster({.cores = 8, .memory = "L1", .alignment = profile.l1_alignment,
-                         .record = record});
-  work::Machine controller({.cores = 1, .memory = "L2", .capacity = Bytes(1'600'000),
-                            .record = record});
+  work::Machine cluster(
+      {.cores = 8, .memory = "L1", .alignment = profile.l1_alignment, .record = record});
+  work::Machine controller(
+      {.cores = 1, .memory = "L2", .capacity = Bytes(1'600'000), .record = record});
   const auto odometry = vio::make_odometry(record, profile, input.rig, cluster, controller);
   const sim::ChipConfig config = platform::load_platform("gap9");
   sim::Chip chip(config, 8);

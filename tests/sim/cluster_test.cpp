@@ -78,7 +78,8 @@ TEST(Cluster, TheAccountOfAStageAddsUpToItsCoreCycles) {
     }
     steps.emplace_back(fork);
     steps.emplace_back(work::Serial{alu(random(300))});
-    steps.emplace_back(work::Transfer{work::Direction::L1ToL2, Bytes(static_cast<int>(random(999)))});
+    steps.emplace_back(
+        work::Transfer{work::Direction::L1ToL2, Bytes(static_cast<int>(random(999)))});
   }
   const StageTiming stage = run(one_stage(steps)).stages[0];
   const double core_cycles = 8.0 * static_cast<double>(stage.cycles.count());

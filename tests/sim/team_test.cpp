@@ -1,4 +1,5 @@
-// Cores that share units, against closed formulas and the vendor's calibration table (hw_facts 3.2).
+// Cores that share units, against closed formulas and the vendor's calibration table
+// (hw_facts 3.2).
 #include "sim/chip/team.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +53,8 @@ constexpr std::uint64_t kN = 10'000;
 double per_slot(int cores, const Counts& stream, double slots) {
   ClusterConfig config = test_cluster();
   config.l1.banks = 1 << 20;  // the streams access no memory
-  const Outcome o = run_together(std::vector<Counts>(static_cast<std::size_t>(cores), stream), config);
+  const Outcome o =
+      run_together(std::vector<Counts>(static_cast<std::size_t>(cores), stream), config);
   return static_cast<double>(*std::max_element(o.cycles.begin(), o.cycles.end())) / slots;
 }
 
@@ -102,8 +104,8 @@ TEST(Team, DynamicMappingUsesAnyFreeUnit) {
 struct CalibrationRow {
   const char* name;
   Op op;
-  std::uint64_t nops;   ///< between two operations
-  double expected[4];   ///< cycles per slot on 1, 5, 8, 9 cores
+  std::uint64_t nops;  ///< between two operations
+  double expected[4];  ///< cycles per slot on 1, 5, 8, 9 cores
 };
 
 TEST(Team, VendorCalibrationTableWithinFivePercent) {

@@ -111,14 +111,15 @@ TEST_F(Simulated, AHalvedClockDoublesTheTimeNotTheCycles) {
       run(request(flight(), 8, {"cluster.clock=185MHz", "controller.clock=185MHz"}));
   const auto cycles = [](const RunResult& r) { return r.frames.at(3).cycles.count(); };
   EXPECT_EQ(cycles(fast), cycles(slow));
-  const auto time = [](const RunResult& r) { return r.frames.at(3).end_ns - r.frames.at(3).start_ns; };
+  const auto time = [](const RunResult& r) {
+    return r.frames.at(3).end_ns - r.frames.at(3).start_ns;
+  };
   EXPECT_NEAR(static_cast<double>(time(slow)), 2.0 * static_cast<double>(time(fast)), 4);
 }
 
 TEST_F(Simulated, WhatDoesNotFitInL1IsRefusedWithStageBlockAndMissingBytes) {
-  traces::testing::expect_input_error(
-      [] { run(request(flight(), 8, {"cluster.l1.size=64KiB"})); },
-      {"feature extraction", "bytes are missing", "L1"});
+  traces::testing::expect_input_error([] { run(request(flight(), 8, {"cluster.l1.size=64KiB"})); },
+                                      {"feature extraction", "bytes are missing", "L1"});
 }
 
 /// The real frames; the bounds are those of the project's goals, not of this machine.

@@ -88,14 +88,15 @@ void describe(RunResult& result, const RunRequest& request, const Feed& feed,
   result.frame_period_ns = std::llround(1e9 / feed.data().camera.rate_hz);
   result.image_width = feed.rig().width;
   result.image_height = feed.rig().height;
-  for (const auto& [name, arena] :
-       {std::pair<const char*, const work::Arena&>{"last keyframe", odometry.last_keyframe_memory()},
-        {"pose graph", odometry.pose_graph_memory()}})
+  for (const auto& [name, arena] : {std::pair<const char*, const work::Arena&>{
+                                        "last keyframe", odometry.last_keyframe_memory()},
+                                    {"pose graph", odometry.pose_graph_memory()}})
     result.l2.push_back({name, arena.used(), arena.live()});
   for (const FrameResult& frame : result.frames) result.trajectory.push_back(frame.pose);
   if (!feed.data().ground_truth.empty() && result.trajectory.size() >= 3)
-    result.ate = traces::evaluate(result.trajectory, traces::to_trajectory(feed.data().ground_truth),
-                                  {.expected_poses = result.frames.size()});
+    result.ate =
+        traces::evaluate(result.trajectory, traces::to_trajectory(feed.data().ground_truth),
+                         {.expected_poses = result.frames.size()});
 }
 
 /// The golden model: the same computation without a chip. The optimiser's result of a frame is
@@ -208,9 +209,8 @@ sim::Process Simulation::optimiser() {
 
 Cycles Simulation::time_on_one_core(const work::Job& job) {
   sim::JobTiming timing;
-  const auto body = [](sim::Chip& chip, const work::Job& work, sim::JobTiming& out) -> sim::Process {
-    out = co_await chip.offload(work);
-  };
+  const auto body = [](sim::Chip& chip, const work::Job& work,
+                       sim::JobTiming& out) -> sim::Process { out = co_await chip.offload(work); };
   single_core_chip_.kernel().spawn("single core", body(single_core_chip_, job, timing));
   single_core_chip_.kernel().run();
   book_.add_single(timing);
@@ -227,9 +227,8 @@ RunResult Simulation::take_result() {
   for (const StageResult& stage : result_.stages) {
     if (!stage.on_controller || stage.memory.parallel <= optimiser.bytes + persistent) continue;
     optimiser = {"optimiser", stage.memory.parallel - persistent, stage.memory.blocks};
-    std::erase_if(optimiser.blocks, [](const work::Block& block) {
-      return block.name == vio::kPersistentBlock;
-    });
+    std::erase_if(optimiser.blocks,
+                  [](const work::Block& block) { return block.name == vio::kPersistentBlock; });
   }
   if (optimiser.bytes > Bytes(0)) result_.l2.push_back(optimiser);
   return std::move(result_);

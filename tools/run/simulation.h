@@ -1,12 +1,12 @@
-// The closed loop: camera, front end and optimiser as processes in simulated time, around a workload
-// that really computes.
+// The closed loop: camera, front end and optimiser as processes in simulated time, around a
+// workload that really computes.
 //
 //   camera ──frames──▶ front end (cluster) ──snapshot──▶ optimiser (fabric controller)
 //                          ▲                                   │
 //                          └────────── published result ───────┘
 //
-// A stage's values are computed when it starts in simulated time and used by others when it ends: the
-// front end of a frame sees what the optimiser had published when the frame was taken up.
+// A stage's values are computed when it starts in simulated time and used by others when it ends:
+// the front end of a frame sees what the optimiser had published when the frame was taken up.
 #pragma once
 
 #include "sim/chip/chip.h"

@@ -24,8 +24,7 @@ bool BackEnd<P>::begin() {
 template <class P>
 OptimiserReport BackEnd<P>::optimise() {
   const auto stage = machine_.stage(stages::kOptimiser);
-  const IterationReport report =
-      optimise_once<P>(machine_, window_, damping_, profile_.optimiser);
+  const IterationReport report = optimise_once<P>(machine_, window_, damping_, profile_.optimiser);
   return {true, report.accepted, report.cost_before, report.cost_after};
 }
 
@@ -35,8 +34,7 @@ void BackEnd<P>::publish() {
   if (profile_.use_imu) estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
   const int last = window_.keyframes - 1;
   const I32 slot = window_.keyframe_slots[last];
-  const bool still_there =
-      bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
+  const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
   const Pose<P> before = graph_.keyframe(slot).T_world_camera;
   vio::publish<P>(window_, graph_);
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));

@@ -1,5 +1,5 @@
-// The back end: the sliding-window optimiser on the fabric controller. It works on a snapshot of the
-// pose graph while the front end goes on, and publishes what it found when it is done.
+// The back end: the sliding-window optimiser on the fabric controller. It works on a snapshot of
+// the pose graph while the front end goes on, and publishes what it found when it is done.
 #pragma once
 
 #include "sim/work/machine.h"

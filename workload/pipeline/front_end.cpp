@@ -82,8 +82,7 @@ void FrontEnd<P>::integrate_imu(const FrameInput& input) {
       machine_.copy_in(samples, keyframe_.last_sample);
     }
     const ImuSample<P> before = load_imu_sample<P>(samples, 0);
-    const ImuSample<P> sample{in.dt,
-                              R_camera_body_ * Vec3<P>{in.gyro[0], in.gyro[1], in.gyro[2]},
+    const ImuSample<P> sample{in.dt, R_camera_body_ * Vec3<P>{in.gyro[0], in.gyro[1], in.gyro[2]},
                               R_camera_body_ * Vec3<P>{in.accel[0], in.accel[1], in.accel[2]}};
     if (started_) {
       Preintegration<P>(record).integrate(before, sample, profile_.imu_noise);
@@ -117,12 +116,18 @@ void FrontEnd<P>::extract(Frame& frame) {
 /// The first frame is the first keyframe; its camera frame is the world.
 template <class P>
 void FrontEnd<P>::start(Frame& frame) {
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
   const auto stage = machine_.stage(stages::kTriangulation);
+  const auto sample = local.alloc<Span<F>>("last IMU sample", kImuSampleFloats);
+  const auto interval = local.alloc<Span<F>>("IMU interval", Preintegration<P>::kFloats);
+  machine_.copy_in(sample, keyframe_.last_sample);
   frame.T_world_camera = Pose<P>::identity();
-  const Vec3<P> force = load_vec3<P>(keyframe_.last_sample, 4);
-  graph_.clear(ImuBias<P>::zero(), gravity_from_force<P>(force, frame.T_world_camera.R));
-  Preintegration<P>(keyframe_.interval).reset(ImuBias<P>::zero());
-  graph_.add_keyframe({frame.T_world_camera, {0.0f, 0.0f, 0.0f}}, keyframe_.interval);
+  const Vec3<P> force = load_vec3<P>(sample, 4);
+  graph_in_l2_.clear(ImuBias<P>::zero(), gravity_from_force<P>(force, frame.T_world_camera.R));
+  Preintegration<P>(interval).reset(ImuBias<P>::zero());
+  graph_in_l2_.add_keyframe({frame.T_world_camera, {0.0f, 0.0f, 0.0f}}, interval);
+  machine_.copy_out(keyframe_.interval, interval);
   store_keyframe(frame);
   started_ = true;
 }
@@ -133,7 +138,8 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_landmarks(Frame& frame, FrameRepor
   const work::Arena::Frame memory(local);
   const int landmarks = work::value(graph_.landmark_count());
   const int capacity = graph_.capacity.landmarks;
-  const auto descriptors = local.alloc<Span<typename P::U32>>("landmark descriptors", kDescriptorWords * capacity);
+  const auto descriptors =
+      local.alloc<Span<typename P::U32>>("landmark descriptors", kDescriptorWords * capacity);
   const auto points = local.alloc<Span<F>>("landmark points", 3 * capacity);
   const auto ages = local.alloc<Span<Byte>>("landmark ages", capacity);
   MatchList<P> matches = alloc_matches<P>(local, frame.features.list.capacity, "world matches");
@@ -187,24 +193,26 @@ void FrontEnd<P>::match_keyframe(Frame& frame) {
   const ObservedFeatures<P>& old = keyframe_.features;
   const int n = old.list.count;
   frame.keyframe_matches = alloc_matches<P>(local, frame.features.list.capacity, "frame matches");
-  frame.keyframe_pixels = local.alloc<Span<U16>>("keypoints of the keyframe", 2 * old.list.capacity);
+  frame.keyframe_pixels =
+      local.alloc<Span<U16>>("keypoints of the keyframe", 2 * old.list.capacity);
   frame.keyframe_landmarks = local.alloc<Span<U16>>("landmarks of the keyframe", old.list.capacity);
   const work::Arena::Frame memory(local);
   const auto stage = machine_.stage(stages::kFrameMatching);
-  const auto descriptors =
-      local.alloc<Span<typename P::U32>>("descriptors of the keyframe", kDescriptorWords * old.list.capacity);
+  const auto descriptors = local.alloc<Span<typename P::U32>>("descriptors of the keyframe",
+                                                              kDescriptorWords * old.list.capacity);
   machine_.copy_in(descriptors.subspan(0, kDescriptorWords * n), old.list.descriptors);
   machine_.copy_in(frame.keyframe_pixels.subspan(0, n), old.list.x);
   machine_.copy_in(frame.keyframe_pixels.subspan(old.list.capacity, n), old.list.y);
   machine_.copy_in(frame.keyframe_landmarks.subspan(0, n), old.landmarks);
-  match_two_way<P>(machine_, frame.features.list.descriptors, frame.features.list.count, descriptors,
-                   n, profile_.matcher, frame.keyframe_matches);
+  match_two_way<P>(machine_, frame.features.list.descriptors, frame.features.list.count,
+                   descriptors, n, profile_.matcher, frame.keyframe_matches);
 }
 
 template <class P>
 Vec2<P> FrontEnd<P>::normalised(I32 u, I32 v) const {
   const PinholeCamera& k = rig_.camera;
-  return {(work::to_f32(u) - F(k.cx)) * F(1.0f / k.fx), (work::to_f32(v) - F(k.cy)) * F(1.0f / k.fy)};
+  return {(work::to_f32(u) - F(k.cx)) * F(1.0f / k.fx),
+          (work::to_f32(v) - F(k.cy)) * F(1.0f / k.fy)};
 }
 
 /// From the essential matrix; its translation has the length that the last velocity suggests.
@@ -225,7 +233,8 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
   for (int i : P::range(0, matches.count)) {
     const I32 now = matches.query[i];
     const I32 old = matches.reference[i];
-    const Vec2<P> in_a = normalised(frame.keyframe_pixels[old], frame.keyframe_pixels[I32(old + I32(old_v))]);
+    const Vec2<P> in_a =
+        normalised(frame.keyframe_pixels[old], frame.keyframe_pixels[I32(old + I32(old_v))]);
     const Vec2<P> in_b = normalised(frame.features.list.x[now], frame.features.list.y[now]);
     a[2 * i] = in_a.x;
     a[2 * i + 1] = in_a.y;
@@ -249,25 +258,25 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
   return last.T_world_camera * inverse(T_camera_keyframe);
 }
 
-/// A keyframe has moved far enough, or can hardly be matched with the last one any more. Parallax is
-/// what remains of the motion of the matches when the rotation between the two frames is undone.
+/// A keyframe has moved far enough, or can hardly be matched with the last one any more. Parallax
+/// is what remains of the motion of the matches when the rotation between the two frames is undone.
 template <class P>
 bool FrontEnd<P>::is_keyframe(const Frame& frame) {
   const auto stage = machine_.stage(stages::kKeyframeSelection);
   const MatchList<P>& matches = frame.keyframe_matches;
   if (matches.count < profile_.min_frame_matches) return true;
   const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
-  const Mat3<P> R_camera_keyframe =
-      profile_.parallax_without_rotation ? transpose(frame.T_world_camera.R) * last.T_world_camera.R
-                                         : Mat3<P>::identity();
+  const Mat3<P> R_camera_keyframe = profile_.parallax_without_rotation
+                                        ? transpose(frame.T_world_camera.R) * last.T_world_camera.R
+                                        : Mat3<P>::identity();
   F sum = 0.0f;
   const int old_v = keyframe_.features.list.capacity;
   for (int i : P::range(0, matches.count)) {
     const I32 now = matches.query[i];
     const I32 old = matches.reference[i];
     const Vec2<P> seen = normalised(frame.features.list.x[now], frame.features.list.y[now]);
-    const Vec2<P> before = normalised(frame.keyframe_pixels[old],
-                                      frame.keyframe_pixels[I32(old + I32(old_v))]);
+    const Vec2<P> before =
+        normalised(frame.keyframe_pixels[old], frame.keyframe_pixels[I32(old + I32(old_v))]);
     const Vec3<P> turned = R_camera_keyframe * Vec3<P>{before.x, before.y, 1.0f};
     const F scale = F(1.0f) / turned.z;
     const F x = seen.x - turned.x * scale;

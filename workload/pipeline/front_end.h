@@ -18,8 +18,8 @@ class FrontEnd {
   using F = typename P::F32;
 
   /// @param graph  in L2; shared with the back end
-  FrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster, work::Arena& keyframe_memory,
-           const PoseGraph<P>& graph);
+  FrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
+           work::Arena& keyframe_memory, const PoseGraph<P>& graph);
 
   FrameReport process(const FrameInput& input);
 
@@ -49,9 +49,11 @@ class FrontEnd {
   bool is_keyframe(const Frame& frame);
   void insert_keyframe(Frame& frame);
   void register_observations(const Frame& frame, const PoseGraph<P>& graph, I32 slot);
-  void triangulate_landmarks(const Frame& frame, const PoseGraph<P>& graph, I32 previous_slot, I32 slot);
+  void triangulate_landmarks(const Frame& frame, const PoseGraph<P>& graph, I32 previous_slot,
+                             I32 slot);
   void store_keyframe(const Frame& frame);
-  Vec3<P> velocity_at(const Pose<P>& T_world_camera);
+  Vec3<P> velocity_at(const Pose<P>& T_world_camera, const PoseGraph<P>& graph,
+                      Span<F> interval) const;
 
   Vec2<P> normalised(I32 u, I32 v) const;
 
@@ -60,8 +62,8 @@ class FrontEnd {
   Mat3<P> R_camera_body_;
   work::Machine& machine_;
   KeyframeRecord<P> keyframe_;
-  PoseGraph<P> graph_;                                 ///< as its own memory (host of the data)
-  PoseGraph<P, L2FromCluster> graph_in_l2_;            ///< as a cluster core reaches it
+  PoseGraph<P> graph_;                       ///< in L2, as the source and target of transfers
+  PoseGraph<P, L2FromCluster> graph_in_l2_;  ///< the same, as a cluster core reaches it
   bool started_ = false;
   std::uint32_t frame_number_ = 0;
   float time_since_keyframe_ = 0;

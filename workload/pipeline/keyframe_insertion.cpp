@@ -16,7 +16,8 @@ void FrontEnd<P>::insert_keyframe(Frame& frame) {
   copy_graph_in<P>(machine_, graph, graph_);
   machine_.copy_in(interval, keyframe_.interval);
 
-  const KeyframeState<P> state{frame.T_world_camera, velocity_at(frame.T_world_camera)};
+  const KeyframeState<P> state{frame.T_world_camera,
+                               velocity_at(frame.T_world_camera, graph, interval)};
   const I32 previous = graph.newest_keyframe();
   graph.age_landmarks();
   const I32 slot = graph.add_keyframe(state, interval);
@@ -32,14 +33,15 @@ void FrontEnd<P>::insert_keyframe(Frame& frame) {
 /// Velocity of the camera in the world: the last keyframe's, carried on by the IMU; without an IMU,
 /// the mean since the last keyframe.
 template <class P>
-Vec3<P> FrontEnd<P>::velocity_at(const Pose<P>& T_world_camera) {
-  const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
+Vec3<P> FrontEnd<P>::velocity_at(const Pose<P>& T_world_camera, const PoseGraph<P>& graph,
+                                 Span<F> interval) const {
+  const KeyframeState<P> last = graph.keyframe(graph.newest_keyframe());
   if (!profile_.use_imu) {
     const F dt = std::max(time_since_keyframe_, 1e-3f);
     return (T_world_camera.t - last.T_world_camera.t) * F(F(1.0f) / dt);
   }
-  const ImuDelta<P> delta = Preintegration<P>(keyframe_.interval).corrected(graph_.bias());
-  return last.velocity + graph_.gravity() * delta.dt + last.T_world_camera.R * delta.v;
+  const ImuDelta<P> delta = Preintegration<P>(interval).corrected(graph.bias());
+  return last.velocity + graph.gravity() * delta.dt + last.T_world_camera.R * delta.v;
 }
 
 /// Landmarks that were recognised, directly or through the features of the last keyframe.
@@ -63,20 +65,21 @@ void FrontEnd<P>::register_observations(const Frame& frame, const PoseGraph<P>& 
     const I32 v = features.y[i];
     const Vec2<P> seen = normalised(u, v);
     const bool seen_already = bool(age == I32(0));
-    if (seen_already || !agrees_with_view<P>(T_camera_world, graph.point(landmark), seen, rig_.camera,
-                                             profile_.max_observation_error_sq)) {
+    if (seen_already || !agrees_with_view<P>(T_camera_world, graph.point(landmark), seen,
+                                             rig_.camera, profile_.max_observation_error_sq)) {
       frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
       continue;
     }
     if (graph.add_observation(slot, landmark, u, v))
-      graph.update_descriptor(landmark, features.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
+      graph.update_descriptor(landmark,
+                              features.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
   }
 }
 
 /// Matches that show no landmark yet become one, if both views agree on it.
 template <class P>
-void FrontEnd<P>::triangulate_landmarks(const Frame& frame, const PoseGraph<P>& graph, I32 previous_slot,
-                                        I32 slot) {
+void FrontEnd<P>::triangulate_landmarks(const Frame& frame, const PoseGraph<P>& graph,
+                                        I32 previous_slot, I32 slot) {
   const typename P::Function function("triangulate_landmarks");
   const Pose<P> T_now = inverse(frame.T_world_camera);
   const Pose<P> T_old = inverse(graph.keyframe(previous_slot).T_world_camera);

@@ -1,6 +1,6 @@
 // The last keyframe as it lies in L2 between frames (levio_parameters, "Memory"): its features, the
-// landmark that each of them shows, the motion since then as the IMU saw it, and the buffer that the
-// camera writes the next image to.
+// landmark that each of them shows, the motion since then as the IMU saw it, and the buffer that
+// the camera writes the next image to.
 #pragma once
 
 #include "workload/inertial/preintegration.h"
@@ -33,10 +33,9 @@ struct KeyframeRecord {
 
   KeyframeRecord(work::Arena& arena, int capacity, int width, int height)
       : features(alloc_observed_features<P>(arena, capacity)),
-        interval(arena.alloc<typename P::template Span<F>>("IMU interval",
-                                                           Preintegration<P>::kFloats)),
-        last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample",
-                                                              kImuSampleFloats)),
+        interval(
+            arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
+        last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample", kImuSampleFloats)),
         image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
                                                                        width * height),
               width, height} {}

@@ -37,10 +37,10 @@ struct FrameInput {
 
 /// Camera and its place on the body.
 struct Rig {
-  PinholeCamera camera;                      ///< of the undistorted, decimated image [px]
+  PinholeCamera camera;  ///< of the undistorted, decimated image [px]
   int width;
   int height;
-  std::array<float, 9> R_camera_body;        ///< row-major
+  std::array<float, 9> R_camera_body;  ///< row-major
 };
 
 enum class PoseSource : std::uint8_t {
@@ -56,8 +56,8 @@ struct FrameReport {
   int features = 0;
   int world_matches = 0;  ///< after the age filter
   int frame_matches = 0;
-  int inliers = 0;        ///< of the RANSAC that gave the pose
-  int landmarks = 0;      ///< alive after the frame
+  int inliers = 0;                        ///< of the RANSAC that gave the pose
+  int landmarks = 0;                      ///< alive after the frame
   std::array<float, 9> R_world_camera{};  ///< row-major
   std::array<float, 3> p_world_camera{};  ///< [m]
 };
@@ -69,7 +69,8 @@ struct OptimiserReport {
   float cost_after = 0;
 };
 
-/// The names of the stages, in the order in which a frame passes them, and what one call of each is.
+/// The names of the stages, in the order in which a frame passes them, and what one call of each
+/// is.
 struct StageName {
   std::string_view name;
   std::string_view per;  ///< "frame", "sample", "iteration"

@@ -11,9 +11,9 @@
 namespace leviosim::vio {
 namespace {
 
-/// Found by a random search over these three, the damping and the gates of observations, on the real
-/// frames of MH_01 (5 to 20 s) with four random seeds each: without a prior on the velocity the scale
-/// of the map drifts.
+/// Found by a random search over these three, the damping and the gates of observations, on the
+/// real frames of MH_01 (5 to 20 s) with four random seeds each: without a prior on the velocity
+/// the scale of the map drifts.
 AnchorOptions levio_anchor() {
   AnchorOptions anchor;
   anchor.rotation = 0.01f;
