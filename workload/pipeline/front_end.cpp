@@ -105,9 +105,9 @@ void FrontEnd<P>::integrate_imu(const FrameInput& input) {
 
 template <class P>
 void FrontEnd<P>::extract(Frame& frame) {
+  const auto stage = machine_.stage(stages::kExtraction);
   const int capacity = keyframe_.features.list.capacity;
   frame.features = alloc_observed_features<P>(machine_.local(), capacity);
-  const auto stage = machine_.stage(stages::kExtraction);
   extract_features<P>(machine_, keyframe_.image, profile_.extractor, frame.features.list);
   for (int i : P::range(0, frame.features.list.count))
     frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
@@ -138,13 +138,15 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_landmarks(Frame& frame, FrameRepor
   const work::Arena::Frame memory(local);
   const int landmarks = work::value(graph_.landmark_count());
   const int capacity = graph_.capacity.landmarks;
-  const auto descriptors =
-      local.alloc<Span<typename P::U32>>("landmark descriptors", kDescriptorWords * capacity);
-  const auto points = local.alloc<Span<F>>("landmark points", 3 * capacity);
-  const auto ages = local.alloc<Span<Byte>>("landmark ages", capacity);
-  MatchList<P> matches = alloc_matches<P>(local, frame.features.list.capacity, "world matches");
+  Span<F> points;
+  MatchList<P> matches;
   {
     const auto stage = machine_.stage(stages::kWorldMatching);
+    const auto descriptors =
+        local.alloc<Span<typename P::U32>>("landmark descriptors", kDescriptorWords * capacity);
+    points = local.alloc<Span<F>>("landmark points", 3 * capacity);
+    const auto ages = local.alloc<Span<Byte>>("landmark ages", capacity);
+    matches = alloc_matches<P>(local, frame.features.list.capacity, "world matches");
     machine_.copy_in(descriptors.subspan(0, kDescriptorWords * landmarks), graph_.descriptors);
     machine_.copy_in(points.subspan(0, 3 * landmarks), graph_.points);
     machine_.copy_in(ages.subspan(0, landmarks), graph_.ages);
@@ -189,6 +191,7 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_landmarks(Frame& frame, FrameRepor
 
 template <class P>
 void FrontEnd<P>::match_keyframe(Frame& frame) {
+  const auto stage = machine_.stage(stages::kFrameMatching);
   work::Arena& local = machine_.local();
   const ObservedFeatures<P>& old = keyframe_.features;
   const int n = old.list.count;
@@ -197,7 +200,6 @@ void FrontEnd<P>::match_keyframe(Frame& frame) {
       local.alloc<Span<U16>>("keypoints of the keyframe", 2 * old.list.capacity);
   frame.keyframe_landmarks = local.alloc<Span<U16>>("landmarks of the keyframe", old.list.capacity);
   const work::Arena::Frame memory(local);
-  const auto stage = machine_.stage(stages::kFrameMatching);
   const auto descriptors = local.alloc<Span<typename P::U32>>("descriptors of the keyframe",
                                                               kDescriptorWords * old.list.capacity);
   machine_.copy_in(descriptors.subspan(0, kDescriptorWords * n), old.list.descriptors);
