@@ -51,6 +51,17 @@ struct StageRun {
   MemoryPeak memory;  ///< of the machine's own memory (L1 for the cluster, L2 for the controller)
 };
 
+/// All operations of a stage, whoever executed them.
+inline Counts counts_of(const StageRun& stage) {
+  Counts sum;
+  for (const Step& step : stage.steps) {
+    if (const auto* serial = std::get_if<Serial>(&step)) sum += serial->counts;
+    if (const auto* fork = std::get_if<Fork>(&step))
+      for (const Counts& share : fork->shares) sum += share;
+  }
+  return sum;
+}
+
 struct Job {
   std::vector<StageRun> stages;
 };

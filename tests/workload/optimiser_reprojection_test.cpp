@@ -49,8 +49,8 @@ Eigen::Matrix<double, 2, 3> two_rows(const Vec3<Double> (&rows)[2]) {
 void expect_derivatives(const View& v) {
   const VisualTerm<Double> term = linearise<Double>(v.model, mat3<Double>(v.R), v.at());
   const double weight = root_weight<Double>(v.model, v.at().error_sq);
-  const auto by_rotation = differences(
-      weight, [&](const Vector3d& w) { return v.at(v.R * exp_of(w), v.t, v.point); });
+  const auto by_rotation =
+      differences(weight, [&](const Vector3d& w) { return v.at(v.R * exp_of(w), v.t, v.point); });
   const auto by_position =
       differences(weight, [&](const Vector3d& d) { return v.at(v.R, v.t + d, v.point); });
   const auto by_point =

@@ -19,10 +19,10 @@ struct OptimiserSceneOptions {
   double rotation_noise = 0.02;  ///< rad, of all keyframes but the oldest
   double position_noise = 0.05;  ///< m
   double velocity_noise = 0.1;   ///< m/s
-  double depth_noise = 0.1;      ///< of a landmark along its ray, relative to its depth; a fifth of it
-                                 ///< across
-  double outliers = 0;           ///< share of observations that are 30 px off
-  bool whole_pixels = false;     ///< otherwise 1/64 px
+  double depth_noise = 0.1;   ///< of a landmark along its ray, relative to its depth; a fifth of it
+                              ///< across
+  double outliers = 0;        ///< share of observations that are 30 px off
+  bool whole_pixels = false;  ///< otherwise 1/64 px
   std::uint64_t seed = 1;
 };
 
@@ -45,9 +45,9 @@ struct OptimiserScene {
         random(scene_options.seed) {
     const double unit = scene.whole_pixels ? 1 : 64;
     PinholeCamera& camera = options.visual.camera;
-    for (float* parameter : {&camera.fx, &camera.fy, &camera.cx, &camera.cy,
-                             &options.visual.sigma_px, &options.visual.huber_px,
-                             &options.visual.lost_px})
+    for (float* parameter :
+         {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &options.visual.sigma_px,
+          &options.visual.huber_px, &options.visual.lost_px})
       *parameter *= static_cast<float>(unit);
     make_landmarks();
     fill_graph();
@@ -82,14 +82,13 @@ struct OptimiserScene {
   void make_landmarks() {
     while (static_cast<int>(points.size()) < scene.landmarks) {
       const int length = std::min(
-          scene.keyframes, static_cast<int>(random.uniform(scene.shortest_track,
-                                                           scene.longest_track + 0.999)));
+          scene.keyframes,
+          static_cast<int>(random.uniform(scene.shortest_track, scene.longest_track + 0.999)));
       const int first = static_cast<int>(random.uniform(0, scene.keyframes - length + 0.999));
       const double depth = random.uniform(1.5, 6.0);
       const double x = random.uniform(-0.65, 0.65), y = random.uniform(-0.5, 0.5);
-      const Vector3d point =
-          Motion::rotation(time(first)) * Vector3d(x * depth, y * depth, depth) +
-          Motion::position(time(first));
+      const Vector3d point = Motion::rotation(time(first)) * Vector3d(x * depth, y * depth, depth) +
+                             Motion::position(time(first));
       std::vector<Observation> seen;
       for (int k = first; k < first + length; ++k)
         if (visible(in_camera(k, point))) seen.push_back({k, project(in_camera(k, point))});
@@ -132,11 +131,11 @@ struct OptimiserScene {
       const Vector3d& point = points[i];
       const Vector3d ray = point - Motion::position(time(tracks[i][0].keyframe));
       const double along = random.normal();
-      const Vector3d off = scene.depth_noise * (ray * along +
-                                                0.2 * ray.norm() * random.normal3());
+      const Vector3d off = scene.depth_noise * (ray * along + 0.2 * ray.norm() * random.normal3());
       const I32 slot = graph.add_landmark(vec3<P>(point + off), no_descriptor);
       for (const Observation& o : tracks[i])
-        graph.add_observation(o.keyframe, slot, std::max(0, static_cast<int>(std::lround(o.pixel.x()))),
+        graph.add_observation(o.keyframe, slot,
+                              std::max(0, static_cast<int>(std::lround(o.pixel.x()))),
                               std::max(0, static_cast<int>(std::lround(o.pixel.y()))));
     }
   }

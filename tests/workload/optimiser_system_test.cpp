@@ -113,8 +113,7 @@ void expect_steps_of_the_dense_system(bool imu) {
   const int p = l.system.unknowns();
   d.H.topLeftCorner(p, p) += rest.matrix();
   d.b.head(p) += rest.vector();
-  for (int i = 0; i < p; ++i)
-    d.H(i, i) += static_cast<double>(lambda * l.system.matrix()(i, i));
+  for (int i = 0; i < p; ++i) d.H(i, i) += static_cast<double>(lambda * l.system.matrix()(i, i));
   const VectorXd expected = d.H.ldlt().solve(d.b);
 
   l.system.damp(lambda);
@@ -182,14 +181,13 @@ TEST(NormalEquations, InertialTermIsTheSlopeOfItsCost) {
       const VectorXd step = direction * (side == 0 ? -h : h);
       for (int k = 0; k < 8; ++k) {
         KeyframeState<Native> s = at.keyframe(k);
-        s.T_world_camera.R = mat3<Native>(eigen<Native>(s.T_world_camera.R) *
-                                          exp_of(step.segment<3>(9 * k)));
+        s.T_world_camera.R =
+            mat3<Native>(eigen<Native>(s.T_world_camera.R) * exp_of(step.segment<3>(9 * k)));
         s.T_world_camera.t = s.T_world_camera.t + vec3<Native>(step.segment<3>(9 * k + 3));
         s.velocity = s.velocity + vec3<Native>(step.segment<3>(9 * k + 6));
         moved.set_keyframe(k, s);
       }
-      cost[side] =
-          static_cast<double>(inertial_cost<Native>(scene.window, moved, l.interval));
+      cost[side] = static_cast<double>(inertial_cost<Native>(scene.window, moved, l.interval));
     }
     const double slope = (cost[1] - cost[0]) / (2 * h);
     const double scale = l.vector().norm() * direction.norm();

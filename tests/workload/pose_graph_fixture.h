@@ -29,7 +29,8 @@ struct GraphFixture {
   static std::array<U32, 8> descriptor(int seed) {
     std::array<U32, 8> words;
     for (std::size_t i = 0; i < 8; ++i)
-      words[i] = U32(static_cast<std::uint32_t>(seed) * 0x01000193u + static_cast<std::uint32_t>(i));
+      words[i] =
+          U32(static_cast<std::uint32_t>(seed) * 0x01000193u + static_cast<std::uint32_t>(i));
     return words;
   }
   /// A keyframe at x, with all landmarks aged.

@@ -21,7 +21,8 @@ GraphCapacity small(int keyframes, int landmarks, int observations) {
 TEST(PoseGraph, OccupiesWhatThePaperSaysPlusItsInertialRecords) {
   GraphFixture<Counting> f;
   std::map<std::string, std::int64_t> bytes;
-  for (const work::Block& block : f.memory.live()) bytes[std::string(block.name)] += block.size.count();
+  for (const work::Block& block : f.memory.live())
+    bytes[std::string(block.name)] += block.size.count();
   const std::int64_t landmarks =
       bytes["landmark points"] + bytes["landmark descriptors"] + bytes["landmark ages"];
   const std::int64_t observations = bytes["observed landmarks"] + bytes["observed u"] +
@@ -96,7 +97,8 @@ TEST(PoseGraph, ReusesTheSlotSeenLeastRecently) {
   EXPECT_EQ(f.age(2), 0);
 }
 
-/// Against the plain rule: of all landmarks not seen by this keyframe the oldest, lowest slot first.
+/// Against the plain rule: of all landmarks not seen by this keyframe the oldest, lowest slot
+/// first.
 TEST(PoseGraph, ReuseFollowsTheRuleOverALongRun) {
   constexpr int kLandmarks = 40;
   GraphFixture<Native> f(small(4, kLandmarks, 1000));

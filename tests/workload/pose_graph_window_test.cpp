@@ -100,8 +100,7 @@ TEST_F(Snapshots, PublishWritesKeyframesAndLandmarks) {
 
 TEST_F(Snapshots, PublishSparesSlotsReusedMeanwhile) {
   for (int i = 0; i < 3 * window.landmarks; ++i) window.state.points[i] = -1;
-  for (int k = 0; k < 4; ++k)
-    window.state.set_keyframe(k, {Pose<Native>::identity(), {0, 0, -1}});
+  for (int k = 0; k < 4; ++k) window.state.set_keyframe(k, {Pose<Native>::identity(), {0, 0, -1}});
   const int newcomer = f.add_keyframe(77);  // takes the slot of the oldest
   ASSERT_EQ(newcomer, keyframes[0]);
   while (f.add_landmark(50) != 1) {
@@ -131,8 +130,8 @@ TEST(SnapshotIntervals, HoldTheFactorOfCovarianceWithGravityNoise) {
   Eigen::MatrixXd covariance(9, 9);
   for (int r = 0; r < 9; ++r)
     for (int c = 0; c < 9; ++c)
-      covariance(r, c) = static_cast<double>(
-          r / 3 >= c / 3 ? interval.covariance()(r, c) : interval.covariance()(c, r));
+      covariance(r, c) = static_cast<double>(r / 3 >= c / 3 ? interval.covariance()(r, c)
+                                                            : interval.covariance()(c, r));
   // One error of gravity in all of the interval: velocity and position move together.
   const double dt = 0.3;
   Eigen::MatrixXd by_gravity = Eigen::MatrixXd::Zero(9, 3);

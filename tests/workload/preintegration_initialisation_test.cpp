@@ -97,8 +97,8 @@ TEST(Gravity, PointsAgainstTheSpecificForceInTheWorld) {
   const Motion motion;
   const double t = 0.7;
   const Vector3d at_rest = Motion::rotation(t).transpose() * -motion.gravity * (9.7 / 9.81);
-  const Vec3<Native> g = gravity_from_force<Native>(vec3<Native>(at_rest),
-                                                    mat3<Native>(Motion::rotation(t)));
+  const Vec3<Native> g =
+      gravity_from_force<Native>(vec3<Native>(at_rest), mat3<Native>(Motion::rotation(t)));
   EXPECT_LT((eigen<Native>(g) - motion.gravity).norm(), 1e-5);
 }
 

@@ -31,8 +31,7 @@ using Plain = decltype(work::value(std::declval<typename P::F32>()));
 
 template <class P>
 Vec3<P> vec3(const Vector3d& v) {
-  return {static_cast<Plain<P>>(v.x()), static_cast<Plain<P>>(v.y()),
-          static_cast<Plain<P>>(v.z())};
+  return {static_cast<Plain<P>>(v.x()), static_cast<Plain<P>>(v.y()), static_cast<Plain<P>>(v.z())};
 }
 template <class P>
 Mat3<P> mat3(const Matrix3d& m) {
@@ -149,9 +148,9 @@ void integrate(const Motion& motion, double begin, double end, int steps,
   interval.reset(subtracted);
   const double dt = (end - begin) / steps;
   for (int i = 0; i < steps; ++i)
-    interval.integrate(
-        motion.sample<P>(begin + i * dt, dt, gyro_bias, accel_bias),
-        motion.sample<P>(begin + (i + 1) * dt, dt, gyro_bias, accel_bias), ImuNoise{});
+    interval.integrate(motion.sample<P>(begin + i * dt, dt, gyro_bias, accel_bias),
+                       motion.sample<P>(begin + (i + 1) * dt, dt, gyro_bias, accel_bias),
+                       ImuNoise{});
 }
 
 }  // namespace leviosim::vio::test

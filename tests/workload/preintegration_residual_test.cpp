@@ -52,8 +52,7 @@ Eigen::MatrixXd differences(const std::function<ImuResidual<Double>(const Vector
   return J;
 }
 
-Eigen::MatrixXd rows(const Matrix3d& rotation, const Matrix3d& velocity,
-                     const Matrix3d& position) {
+Eigen::MatrixXd rows(const Matrix3d& rotation, const Matrix3d& velocity, const Matrix3d& position) {
   Eigen::MatrixXd J(9, 3);
   J << rotation, velocity, position;
   return J;
@@ -120,10 +119,10 @@ TEST(ImuResidual, DerivativesByTheStateAtTheEnd) {
              rows(eigen<Double>(J.rotation_by_rotation1), zero, zero))
                 .norm(),
             kTolerance);
-  EXPECT_LT((differences([&](const Vector3d& d) { return with(moved(f.end, d)); }) -
-             rows(zero, zero, Rt))
-                .norm(),
-            kTolerance);
+  EXPECT_LT(
+      (differences([&](const Vector3d& d) { return with(moved(f.end, d)); }) - rows(zero, zero, Rt))
+          .norm(),
+      kTolerance);
   EXPECT_LT((differences([&](const Vector3d& d) { return with(faster(f.end, d)); }) -
              rows(zero, Rt, zero))
                 .norm(),
@@ -177,8 +176,7 @@ TEST(BiasEstimator, FindsTheGyroBiasOfTrueMotion) {
   const Vector3d gyro(0.02, -0.03, 0.08);
   BiasOptions free;
   free.gyro_stddev = 10;
-  const ImuBias<work::Native> bias =
-      estimated<work::Native>(gyro, Vector3d::Zero(), free);
+  const ImuBias<work::Native> bias = estimated<work::Native>(gyro, Vector3d::Zero(), free);
   EXPECT_LT((eigen<work::Native>(bias.gyro) - gyro).norm(), 1e-3);
   EXPECT_EQ(bias.accel.x, 0.0f);
 }
@@ -187,8 +185,8 @@ TEST(BiasEstimator, PriorHoldsTheEstimateBack) {
   const Vector3d gyro(0, 0, 0.08);
   BiasOptions options;
   options.gyro_stddev = 0.02f / std::sqrt(1.4f);  // what 7 intervals of 0.2 s tell: meets half-way
-  const Vector3d half = eigen<work::Native>(
-      estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
+  const Vector3d half =
+      eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
   EXPECT_NEAR(half.z(), 0.04, 1e-3);
   const BiasOptions tight = BiasOptions::random_walk(ImuNoise{}, 1.4f);
   const Vector3d held =

@@ -59,9 +59,8 @@ TEST(Preintegration, SubtractsItsBiases) {
   integrate<Double>(motion, 0.0, 0.5, 100, biased, {vec3<Double>(gyro), vec3<Double>(accel)}, gyro,
                     accel);
   const ImuDelta<Double> expected = plain.delta();
-  EXPECT_LT(worst_error(biased.delta(),
-                        {eigen<Double>(expected.R), eigen<Double>(expected.v),
-                         eigen<Double>(expected.p)}),
+  EXPECT_LT(worst_error(biased.delta(), {eigen<Double>(expected.R), eigen<Double>(expected.v),
+                                         eigen<Double>(expected.p)}),
             1e-12);
 }
 
@@ -94,14 +93,14 @@ TEST(Preintegration, BiasDerivativesMatchIntegratingAnew) {
       const auto column = [axis](const Mat3<Double>& m) { return eigen<Double>(m.column(axis)); };
       EXPECT_LT((by_rotation - (sensor == 0 ? column(interval.rotation_by_gyro()) : none)).norm(),
                 1e-6);
-      EXPECT_LT((by_v - column(sensor == 0 ? interval.velocity_by_gyro()
-                                           : interval.velocity_by_accel()))
-                    .norm(),
-                3e-5);
-      EXPECT_LT((by_p - column(sensor == 0 ? interval.position_by_gyro()
-                                           : interval.position_by_accel()))
-                    .norm(),
-                1e-5);
+      EXPECT_LT(
+          (by_v - column(sensor == 0 ? interval.velocity_by_gyro() : interval.velocity_by_accel()))
+              .norm(),
+          3e-5);
+      EXPECT_LT(
+          (by_p - column(sensor == 0 ? interval.position_by_gyro() : interval.position_by_accel()))
+              .norm(),
+          1e-5);
     }
 }
 

@@ -3,19 +3,6 @@
 #include <algorithm>
 
 namespace leviosim::tools {
-namespace {
-
-work::Counts counts_of(const work::StageRun& stage) {
-  work::Counts sum;
-  for (const work::Step& step : stage.steps) {
-    if (const auto* serial = std::get_if<work::Serial>(&step)) sum += serial->counts;
-    if (const auto* fork = std::get_if<work::Fork>(&step))
-      for (const work::Counts& share : fork->shares) sum += share;
-  }
-  return sum;
-}
-
-}  // namespace
 
 StageResult& StageBook::find(std::string_view name) {
   const auto it = std::find_if(stages_.begin(), stages_.end(),
@@ -30,7 +17,7 @@ void StageBook::add_work(const work::Job& job) {
   for (const work::StageRun& run : job.stages) {
     StageResult& stage = find(run.stage);
     ++stage.calls;
-    stage.counts += counts_of(run);
+    stage.counts += work::counts_of(run);
     stage.memory.single = std::max(stage.memory.single, run.memory.single);
     if (run.memory.parallel > stage.memory.parallel) {
       stage.memory.parallel = run.memory.parallel;

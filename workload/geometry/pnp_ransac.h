@@ -20,8 +20,9 @@ struct PnpResult {
   typename P::F32 mean_error_px = 0.0f;  ///< of the inliers
 };
 
-/// Works inside a stage of `machine`: takes 2·n + 60·batch + 48 bytes of its local memory (for samples
-/// and about 3 kB of the scratch of each core. The result does not depend on the number of cores.
+/// Works inside a stage of `machine`. Takes 2·n + 60·batch + 48 bytes of its local memory (for
+/// samples of 4) and about 3 kB of the scratch of each core. The result does not depend on the
+/// number of cores.
 template <class P>
 PnpResult<P> estimate_pose_epnp(work::Machine& machine, const PnpInput<P>& input,
                                 const PnpOptions& options);

@@ -83,8 +83,8 @@ struct GraphMemory {
           "a pose graph indexes its contents with 8 and 16 bits");
     const GraphBlock* block = kGraphBlocks.data();
     const auto allocate = [&](auto& span) {
-      span = arena.alloc<std::remove_reference_t<decltype(span)>>(block->name,
-                                                                   block->elements(size));
+      span =
+          arena.alloc<std::remove_reference_t<decltype(span)>>(block->name, block->elements(size));
       ++block;
     };
     std::apply([&](auto&... spans) { (allocate(spans), ...); }, blocks());
@@ -139,8 +139,11 @@ GraphMemory<P, L2FromCluster> seen_from_cluster(const GraphMemory<P, LocalMemory
   std::apply(
       [&](auto&... to) {
         GraphMemory<P, LocalMemory> source = graph;
-        std::apply([&](auto&... from) { ((to = {from.data(), from.size()}), ...); },
-                   source.blocks());
+        std::apply(
+            [&](auto&... from) {
+              ((to = {from.data(), from.size()}), ...);
+            },
+            source.blocks());
       },
       seen.blocks());
   return seen;
@@ -150,15 +153,13 @@ GraphMemory<P, L2FromCluster> seen_from_cluster(const GraphMemory<P, LocalMemory
 template <class P>
 void copy_graph_in(work::Machine& machine, const GraphMemory<P, LocalMemory>& local,
                    const GraphMemory<P, LocalMemory>& in_l2) {
-  for_each_block_pair(local, in_l2,
-                      [&](auto& to, auto& from) { machine.copy_in(to, from); });
+  for_each_block_pair(local, in_l2, [&](auto& to, auto& from) { machine.copy_in(to, from); });
 }
 /// DMA of a copy in local memory back to L2.
 template <class P>
 void copy_graph_out(work::Machine& machine, const GraphMemory<P, LocalMemory>& in_l2,
                     const GraphMemory<P, LocalMemory>& local) {
-  for_each_block_pair(in_l2, local,
-                      [&](auto& to, auto& from) { machine.copy_out(to, from); });
+  for_each_block_pair(in_l2, local, [&](auto& to, auto& from) { machine.copy_out(to, from); });
 }
 
 }  // namespace leviosim::vio

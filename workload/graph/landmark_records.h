@@ -1,8 +1,8 @@
 // The optimiser's work memory: one record of Jacobian blocks per landmark (paper section IV.B,
 // "Optimizer" in its memory table: up to 743.6 kB of L2).
 //
-// A record has a slot for each keyframe of the window, used for the landmark's observations in their
-// order, and the landmark's own block:
+// A record has a slot for each keyframe of the window, used for the landmark's observations in
+// their order, and the landmark's own block:
 //   per slot   2×6 derivative by the pose (rotation, position), 2×3 derivative by the landmark,
 //              2 residuals: 80 bytes
 //   at the end the inverse of the landmark's block of the normal equations (6, symmetric) and its

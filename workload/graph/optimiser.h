@@ -1,14 +1,14 @@
 // Sliding-window bundle adjustment with pre-integrated IMU (paper section III.C, eqs 5 and 6): one
-// call is one Levenberg-Marquardt iteration on a snapshot of the pose graph, on one core whose local
-// memory holds the snapshot (the fabric controller and L2). The paper runs three per frame, about
-// 5.5 Mcycles each at a full window (levio_parameters).
+// call is one Levenberg-Marquardt iteration on a snapshot of the pose graph, on one core whose
+// local memory holds the snapshot (the fabric controller and L2). The paper runs three per frame,
+// about 5.5 Mcycles each at a full window (levio_parameters).
 //
-// An iteration linearises all residuals, eliminates the landmarks, solves the damped reduced system,
-// and keeps the step if the cost falls. A rejected step is followed by a stronger damping; the next
-// iteration linearises anew even so, which keeps the work of an iteration constant.
+// An iteration linearises all residuals, eliminates the landmarks, solves the damped reduced
+// system, and keeps the step if the cost falls. A rejected step is followed by a stronger damping;
+// the next iteration linearises anew even so, which keeps the work of an iteration constant.
 //
-// Unknowns per keyframe: rotation (right perturbation), position, and with IMU velocity. Without IMU
-// the window has no scale of its own: only the damping holds it.
+// Unknowns per keyframe: rotation (right perturbation), position, and with IMU velocity. Without
+// IMU the window has no scale of its own: only the damping holds it.
 //
 // Left out: marginalisation of the keyframes that leave the window; the anchor (inertial_terms.h)
 // stands in for it. Biases are not unknowns here (window.h, estimate_biases).
@@ -26,8 +26,8 @@ struct OptimiserOptions {
   AnchorOptions anchor;
   bool use_imu = true;
   float initial_lambda = 1e-4f;
-  float lambda_up = 10.0f;    ///< factor after a rejected step
-  float lambda_down = 0.1f;   ///< factor after an accepted one
+  float lambda_up = 10.0f;   ///< factor after a rejected step
+  float lambda_down = 0.1f;  ///< factor after an accepted one
   float min_lambda = 1e-6f;  ///< single precision needs that much to stay positive definite
   float max_lambda = 1e4f;
 };

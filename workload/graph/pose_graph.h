@@ -2,17 +2,17 @@
 // and the observations that link them (paper section IV.B; levio_parameters, "Memory"). The front
 // end changes it, the optimiser takes snapshots of it and publishes results (window.h).
 //
-// Sizes for 8 keyframes, 1000 landmarks, 2400 observations: landmarks 12 B point + 32 B descriptor +
-// 1 B age, observations 8 B, together the paper's 64.2 kB; besides 1 B of generation per landmark
+// Sizes for 8 keyframes, 1000 landmarks, 2400 observations: landmarks 12 B point + 32 B descriptor
+// + 1 B age, observations 8 B, together the paper's 64.2 kB; besides 1 B of generation per landmark
 // and the keyframe records with their inertial intervals (5.4 kB).
 //
 // Observations are a list in the order of their making. When a keyframe leaves, the list is
 // compacted in place, which also drops observations of landmarks whose slot was reused: a slot has
 // a generation, and an observation remembers the generation it means.
 //
-// Slots are reused by age, the landmark seen least recently first. A search through all ages per new
-// landmark would cost more than its triangulation, so one cursor per keyframe sweeps the slots, once
-// for each age from the oldest down.
+// Slots are reused by age, the landmark seen least recently first. A search through all ages per
+// new landmark would cost more than its triangulation, so one cursor per keyframe sweeps the slots,
+// once for each age from the oldest down.
 //
 // Left out: removal of single landmarks. One that is not seen again ages until its slot is reused.
 #pragma once
@@ -105,19 +105,17 @@ class PoseGraph : public GraphMemory<P, Where> {
   }
   /// In the world frame, pointing down, m/s².
   Vec3<P> gravity() const { return load_vec3<P>(this->environment, 6); }
-  void set_gravity(const Vec3<P>& gravity) const {
-    store_vec3<P>(this->environment, 6, gravity);
-  }
+  void set_gravity(const Vec3<P>& gravity) const { store_vec3<P>(this->environment, 6, gravity); }
 
  private:
   enum Header : int {
-    kKeyframes,      ///< number of keyframes
-    kOldest,         ///< slot of the oldest
-    kNextId,         ///< serial number of the next
-    kObservations,   ///< number of observations
-    kLandmarks,      ///< highest slot ever used, plus one
-    kReuseCursor,    ///< slots below it are younger than kReuseAge
-    kReuseAge,       ///< age of the landmarks to be replaced next
+    kKeyframes,     ///< number of keyframes
+    kOldest,        ///< slot of the oldest
+    kNextId,        ///< serial number of the next
+    kObservations,  ///< number of observations
+    kLandmarks,     ///< highest slot ever used, plus one
+    kReuseCursor,   ///< slots below it are younger than kReuseAge
+    kReuseAge,      ///< age of the landmarks to be replaced next
     kHeaderWords,
   };
   static_assert(kHeaderWords == kGraphHeaderWords);
@@ -261,8 +259,8 @@ template <class P, class Where>
 template <class Words>
 void PoseGraph<P, Where>::update_descriptor(I32 landmark, const Words& descriptor) const {
   const typename P::Function function("PoseGraph::update_descriptor");
-  const auto to = this->descriptors.subspan(
-      work::value(I32(landmark << kLog2DescriptorWords)), kGraphDescriptorWords);
+  const auto to = this->descriptors.subspan(work::value(I32(landmark << kLog2DescriptorWords)),
+                                            kGraphDescriptorWords);
   for (int i : P::range(0, kGraphDescriptorWords)) to[i] = typename P::U32(descriptor[i]);
 }
 

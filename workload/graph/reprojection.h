@@ -6,9 +6,9 @@
 // derivatives are scaled by the root of the weight; its own derivative is left out).
 //
 // An observation is lost if its point lies behind the camera or nearer than min_depth, or if it is
-// more than `lost_px` off. It takes part in no derivative, and its cost is constant: that of lost_px.
-// So a step cannot lower the cost by pushing landmarks out of sight, and one landmark next to a
-// camera, where nothing is linear, cannot have the steps of all others rejected.
+// more than `lost_px` off. It takes part in no derivative, and its cost is constant: that of
+// lost_px. So a step cannot lower the cost by pushing landmarks out of sight, and one landmark next
+// to a camera, where nothing is linear, cannot have the steps of all others rejected.
 #pragma once
 
 #include "workload/math/vec.h"

@@ -170,8 +170,8 @@ void subtract_elimination(const Floats<P>& Y, const Floats<P>& W, bool diagonal,
   }
 }
 
-/// Adds landmark i to the keyframes' equations. Its observations are in ascending order of keyframes,
-/// so all blocks lie on or below the diagonal.
+/// Adds landmark i to the keyframes' equations. Its observations are in ascending order of
+/// keyframes, so all blocks lie on or below the diagonal.
 template <class P>
 void eliminate_landmark(const Window<P>& window, const Records<P>& records, int i,
                         const EliminationScratch<P>& scratch, const ReducedSystem<P>& system) {
@@ -210,8 +210,8 @@ Vec3<P> landmark_step(const Window<P>& window, const Records<P>& records, int i,
     const Vec3<P> turn = load_vec3<P>(step, 0), move = load_vec3<P>(step, 3);
     for (int row = 0; row < 2; ++row) {
       const int by_pose = Records<P>::kByPose + 6 * row;
-      const F moved = F(dot(load_vec3<P>(slot, by_pose), turn)) +
-                      F(dot(load_vec3<P>(slot, by_pose + 3), move));
+      const F moved =
+          F(dot(load_vec3<P>(slot, by_pose), turn)) + F(dot(load_vec3<P>(slot, by_pose + 3), move));
       b = b - load_vec3<P>(slot, Records<P>::kByPoint + 3 * row) * moved;
     }
   }
@@ -275,7 +275,6 @@ typename P::F32 visual_cost(const Window<P>& window, const WindowState<P>& state
   }
   return cost;
 }
-
 
 template VisualUse add_visual_terms(const Window<work::Native>&, const PixelModel<work::Native>&,
                                     work::Native::F32, const LandmarkRecords<work::Native>&,

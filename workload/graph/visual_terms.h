@@ -1,6 +1,6 @@
-// The visual part of the optimiser: linearises all observations into the landmark records, adds them
-// to the normal equations of the keyframes while eliminating one landmark after the other (Schur
-// complement, paper eq. 6), and recovers the landmarks' steps afterwards.
+// The visual part of the optimiser: linearises all observations into the landmark records, adds
+// them to the normal equations of the keyframes while eliminating one landmark after the other
+// (Schur complement, paper eq. 6), and recovers the landmarks' steps afterwards.
 //
 // Minimised is half the sum of squares. With J the derivatives and r the residuals of a landmark,
 //   H_pp = J_pᵀ J_p,  W = J_pᵀ J_l,  H_ll = J_lᵀ J_l,  b = -Jᵀ r,

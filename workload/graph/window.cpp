@@ -81,8 +81,7 @@ void count_observations(const PoseGraph<P>& graph, const SnapshotTables<P>& tabl
 
 /// Gives the landmarks that are seen twice a place in the window, and room for their observations.
 template <class P>
-void copy_landmarks(const PoseGraph<P>& graph, const SnapshotTables<P>& tables,
-                    Window<P>& window) {
+void copy_landmarks(const PoseGraph<P>& graph, const SnapshotTables<P>& tables, Window<P>& window) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   using U16 = typename P::U16;

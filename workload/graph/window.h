@@ -1,12 +1,12 @@
 // What the optimiser works on: a snapshot of the pose graph, taken when a keyframe was added, and
 // published back when an iteration has finished (design section 4, "Values and time"). Meanwhile
-// the front end goes on with the graph; a keyframe or landmark slot that it gave to somebody else is
-// not written.
+// the front end goes on with the graph; a keyframe or landmark slot that it gave to somebody else
+// is not written.
 //
 // The snapshot leaves out landmarks seen by one keyframe only: they constrain nothing. It sorts the
 // observations by landmark, because the optimiser eliminates one landmark after the other. It
-// replaces the covariance of each inertial interval by its Cholesky factor, with which the interval's
-// residual is whitened.
+// replaces the covariance of each inertial interval by its Cholesky factor, with which the
+// interval's residual is whitened.
 //
 // Uncertain gravity (standard deviation σ in each component, levio_parameters: 1 m/s²) is taken as
 // an error of the interval's velocity and position: it adds σ² dt² to the variance of velocity,
@@ -30,9 +30,7 @@ struct WindowState {
   Span points;      ///< 3 per landmark, world frame, m
 
   Pose<P> pose(int k) const { return load_pose<P>(poses, k * kPoseFloats); }
-  KeyframeState<P> keyframe(int k) const {
-    return {pose(k), load_vec3<P>(velocities, 3 * k)};
-  }
+  KeyframeState<P> keyframe(int k) const { return {pose(k), load_vec3<P>(velocities, 3 * k)}; }
   void set_keyframe(int k, const KeyframeState<P>& state) const {
     store_pose<P>(poses, k * kPoseFloats, state.T_world_camera);
     store_vec3<P>(velocities, 3 * k, state.velocity);
@@ -65,7 +63,7 @@ struct Window {
   KeyframeState<P> anchor;  ///< what the oldest keyframe is held to
   ImuBias<P> bias;
   bool bias_is_new = false;  ///< estimated since the snapshot, to be published
-  Vec3<P> gravity;  ///< world frame, m/s²
+  Vec3<P> gravity;           ///< world frame, m/s²
 
   Span<F> intervals;
   Span<typename P::I32> keyframe_slots, keyframe_ids;  ///< in the graph

@@ -31,11 +31,11 @@ ImuSample<P> load_imu_sample(const Span& batch, int i) {
 /// Noise as the paper's pipeline uses it, tuned far above what the sensor specifies
 /// (levio_parameters, "Inertial and optimisation").
 struct ImuNoise {
-  float gyro = 0.02f;         ///< density, rad/s/√Hz
-  float accel = 0.1f;         ///< density, m/s²/√Hz
-  float gyro_bias = 2e-5f;    ///< random walk, rad/s²/√Hz
-  float accel_bias = 3e-4f;   ///< random walk, m/s³/√Hz
-  float gravity = 1.0f;       ///< standard deviation of each component of the gravity vector, m/s²
+  float gyro = 0.02f;        ///< density, rad/s/√Hz
+  float accel = 0.1f;        ///< density, m/s²/√Hz
+  float gyro_bias = 2e-5f;   ///< random walk, rad/s²/√Hz
+  float accel_bias = 3e-4f;  ///< random walk, m/s³/√Hz
+  float gravity = 1.0f;      ///< standard deviation of each component of the gravity vector, m/s²
 };
 
 /// Magnitude of gravity, m/s² (levio_parameters).

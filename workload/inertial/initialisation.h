@@ -2,10 +2,10 @@
 // the vehicle stands still (levio_parameters, "Inertial and optimisation").
 //
 // Standing still: the readings of the last second scatter little. The thresholds lie between what
-// EuRoC shows of a vehicle on the ground (gyro 0.004 to 0.04 rad/s, accelerometer 0.06 to 0.45 m/s²,
-// the larger values with idling rotors) and one that moves, on a rope or in flight (from 0.07 rad/s).
-// Left out: a vehicle in straight uniform motion, which no IMU can tell from one at rest; a caller
-// that knows the parallax of the images should ask for it as well.
+// EuRoC shows of a vehicle on the ground (gyro 0.004 to 0.04 rad/s, accelerometer 0.06 to 0.45
+// m/s², the larger values with idling rotors) and one that moves, on a rope or in flight (from 0.07
+// rad/s). Left out: a vehicle in straight uniform motion, which no IMU can tell from one at rest; a
+// caller that knows the parallax of the images should ask for it as well.
 #pragma once
 
 #include "workload/inertial/imu.h"

@@ -7,8 +7,8 @@
 //
 // Error state of the covariance, in this order: rotation (right perturbation,
 // ΔR_true = ΔR exp(φ)), velocity, position. White noise of density σ over a step dt adds σ² dt to
-// rotation or velocity, and σ² (dt²/2, dt³/3) to velocity-position and position, its exact integral,
-// so that the covariance is positive definite from the first sample on.
+// rotation or velocity, and σ² (dt²/2, dt³/3) to velocity-position and position, its exact
+// integral, so that the covariance is positive definite from the first sample on.
 //
 // Left out: the noise of the gyro inside the step in which it also turns the specific force, the
 // rotation of isotropic noise by the right Jacobian (both of the order of the angle of one step,
@@ -97,12 +97,12 @@ class Preintegration {
   /// What one step does to all parts of the record.
   struct Step {
     F dt;
-    Mat3<P> turn;               ///< rotation during the step
-    Mat3<P> turn_by_gyro;       ///< minus its derivative by the gyro bias
-    Mat3<P> R, next_R;          ///< rotation before and after
-    Vec3<P> gained;             ///< velocity gained
+    Mat3<P> turn;          ///< rotation during the step
+    Mat3<P> turn_by_gyro;  ///< minus its derivative by the gyro bias
+    Mat3<P> R, next_R;     ///< rotation before and after
+    Vec3<P> gained;        ///< velocity gained
     Mat3<P> gained_by_rotation;
-    Mat3<P> gained_by_gyro;     ///< directly, besides through the rotation before
+    Mat3<P> gained_by_gyro;  ///< directly, besides through the rotation before
   };
   Step make_step(const ImuSample<P>& previous, const ImuSample<P>& current) const;
   void advance_covariance(const Step& step, const ImuNoise& noise) const;
@@ -205,8 +205,9 @@ void Preintegration<P>::advance_bias_derivatives(const Step& step) const {
 
   store_mat3<P>(record_, kPositionByGyro,
                 add_scaled<P>(position_by_gyro(), dt, add_scaled<P>(v_by_gyro, half, gyro_gain)));
-  store_mat3<P>(record_, kPositionByAccel,
-                add_scaled<P>(position_by_accel(), dt, add_scaled<P>(v_by_accel, half, accel_gain)));
+  store_mat3<P>(
+      record_, kPositionByAccel,
+      add_scaled<P>(position_by_accel(), dt, add_scaled<P>(v_by_accel, half, accel_gain)));
   store_mat3<P>(record_, kVelocityByGyro, v_by_gyro + gyro_gain);
   store_mat3<P>(record_, kVelocityByAccel, v_by_accel + accel_gain);
   store_mat3<P>(record_, kRotationByGyro,
