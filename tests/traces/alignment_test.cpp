@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 #include "traces/rng.h"
 
 namespace leviosim::traces {

@@ -4,7 +4,7 @@
 
 #include <iterator>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 
 namespace leviosim::traces {
 namespace {

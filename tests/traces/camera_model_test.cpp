@@ -4,7 +4,7 @@
 
 #include <opencv2/calib3d.hpp>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 #include "traces/euroc_models.h"
 
 namespace leviosim::traces {

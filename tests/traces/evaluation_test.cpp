@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 #include "traces/asl_reader.h"
 #include "traces/rng.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 
 namespace leviosim::traces {
 namespace {

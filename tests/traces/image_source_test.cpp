@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 #include "traces/asl_reader.h"
 #include "traces/euroc_models.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 #include "traces/asl_reader.h"
 
 namespace leviosim::traces {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 #include "traces/euroc_models.h"
 
 namespace leviosim::traces {

@@ -8,7 +8,7 @@
 #include <opencv2/features2d.hpp>
 #include <stdexcept>
 
-#include "test_folder.h"
+#include "tests/traces/test_folder.h"
 #include "traces/asl_reader.h"
 #include "traces/image_source.h"
 #include "traces/imu_batches.h"
