@@ -29,7 +29,7 @@ Cluster::Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& 
       clock_(clock),
       config_(config),
       workers_(checked_workers(config, workers)),
-      team_(kernel, clock, config, workers + 1),
+      team_(kernel, clock, config, workers),
       end_of_fork_(kernel, "end of fork", static_cast<std::size_t>(workers) + 1,
                    cycles(config.events.barrier)) {
   for (int id = 0; id < workers_; ++id) {
@@ -109,6 +109,7 @@ Process Cluster::worker(int id) {
     account.fpu += time.fpu;
     account.divider += time.divider;
     account.banks += time.banks;
+    account.fetch += time.fetch;
     account.rounding += time.rounding;
     last_arrival_ = kernel_.now();
     arrivals_ += cycles_since(dispatch.begin, last_arrival_);

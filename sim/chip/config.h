@@ -47,6 +47,18 @@ struct FpuConfig {
   double cycles_per_division = 0;
 };
 
+/// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
+struct InstructionCacheConfig {
+  Bytes line;              ///< bytes fetched at once
+  Bytes worker;            ///< private cache of a worker (or of the controller); 0: none
+  Bytes master;            ///< private cache of the cluster's master
+  Bytes shared;            ///< cache that the cores share; 0: none
+  int shared_banks = 1;    ///< lines that the shared cache can deliver in a cycle
+  double shared_hit = 0;   ///< cycles waited for a line that the private cache lacks
+  double shared_miss = 0;  ///< cycles waited for a line that has to come from L2
+  double refills = 1;      ///< lines that the shared cache can await from L2 at once
+};
+
 struct L1Config {
   Bytes size;
   int banks = 1;
@@ -72,6 +84,7 @@ struct ClusterConfig {
   int max_workers = 0;  ///< what the event unit can serve
   CoreConfig core;
   FpuConfig fpu;
+  InstructionCacheConfig icache;
   L1Config l1;
   DmaConfig dma;
   EventUnitConfig events;
@@ -81,6 +94,7 @@ struct ClusterConfig {
 struct ControllerConfig {
   Hertz clock;
   CoreConfig core;
+  InstructionCacheConfig icache;
 };
 
 struct L2Config {

@@ -49,7 +49,12 @@ void apply(const std::vector<Request>& requests, double fair, std::vector<double
 
 Runner Runner::of(int core, const Demand& demand) {
   const double cycles = std::max(demand.cycles(), 1.0);
-  return {core, demand.fpu_ops / cycles, demand.divisions / cycles, demand.l1_accesses / cycles};
+  return {core,
+          demand.fpu_ops / cycles,
+          demand.divisions / cycles,
+          demand.l1_accesses / cycles,
+          demand.fetches / cycles,
+          demand.refills / cycles};
 }
 
 void Contention::limit_fpus(const std::vector<Runner>& runners) {
@@ -68,21 +73,22 @@ void Contention::limit_fpus(const std::vector<Runner>& runners) {
   }
 }
 
-void Contention::limit_dividers(const std::vector<Runner>& runners) {
-  std::fill(div_limit_.begin(), div_limit_.end(), kUnlimited);
-  if (fpu_.dividers == 0) return;
-  std::vector<Request> requests;
+void Contention::limit(const std::vector<Runner>& runners, double Runner::*requests,
+                       double capacity, std::vector<double>& limits) const {
+  std::fill(limits.begin(), limits.end(), kUnlimited);
+  std::vector<Request> all;
   for (std::size_t i = 0; i < runners.size(); ++i)
-    if (runners[i].divisions > 0)
-      requests.push_back({i, runners[i].divisions, runners[i].divisions * rate_[i]});
-  apply(requests, fair_rate(requests, fpu_.dividers / fpu_.cycles_per_division), div_limit_);
+    if (runners[i].*requests > 0)
+      all.push_back({i, runners[i].*requests, runners[i].*requests * rate_[i]});
+  if (!all.empty()) apply(all, fair_rate(all, capacity), limits);
 }
 
-double Contention::bank_delay(const std::vector<Runner>& runners, std::size_t i) const {
+double Contention::bank_delay(const std::vector<Runner>& runners, double Runner::*accesses,
+                              int banks, std::size_t i) const {
   double others = 0;
   for (std::size_t j = 0; j < runners.size(); ++j)
-    if (j != i) others += runners[j].accesses * rate_[j];
-  return runners[i].accesses * others / (2.0 * banks_);
+    if (j != i) others += runners[j].*accesses * rate_[j];
+  return runners[i].*accesses * others / (2.0 * banks);
 }
 
 void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress) {
@@ -90,20 +96,32 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   rate_.assign(n, 1.0);
   fpu_limit_.assign(n, kUnlimited);
   div_limit_.assign(n, kUnlimited);
+  refill_limit_.assign(n, kUnlimited);
   progress.assign(n, Progress{});
   if (n < 2) return;
 
-  std::vector<double> free_rate(n);  // without shared arithmetic units
+  const auto l1_delay = [&](std::size_t i) {
+    return bank_delay(runners, &Runner::accesses, banks_, i);
+  };
+  const auto fetch_delay = [&](std::size_t i) {
+    return bank_delay(runners, &Runner::fetches, code_.shared_banks, i);
+  };
+  std::vector<double> free_rate(n);  // without units that serve in turn
+  // Each unit's limit is found with what the *other* limits leave of the demand.
+  const auto leave = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min({free_rate[i], a[i], b[i]});
+  };
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0;
-    for (std::size_t i = 0; i < n; ++i) free_rate[i] = 1.0 / (1.0 + bank_delay(runners, i));
-    // Each unit's limit is found with what the *other* limits leave of the demand.
-    for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate[i], div_limit_[i]);
+    for (std::size_t i = 0; i < n; ++i) free_rate[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i));
+    leave(div_limit_, refill_limit_);
     limit_fpus(runners);
-    for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate[i], fpu_limit_[i]);
-    limit_dividers(runners);
+    leave(fpu_limit_, refill_limit_);
+    limit(runners, &Runner::divisions, fpu_.dividers / fpu_.cycles_per_division, div_limit_);
+    leave(fpu_limit_, div_limit_);
+    limit(runners, &Runner::refills, code_.refills / code_.shared_miss, refill_limit_);
     for (std::size_t i = 0; i < n; ++i) {
-      const double rate = std::min({free_rate[i], fpu_limit_[i], div_limit_[i]});
+      const double rate = std::min({free_rate[i], fpu_limit_[i], div_limit_[i], refill_limit_[i]});
       change = std::max(change, std::abs(rate - progress[i].rate));
       rate_[i] = progress[i].rate = rate;
     }
@@ -111,9 +129,11 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   }
   for (std::size_t i = 0; i < n; ++i) {
     Progress& p = progress[i];
-    p.banks = p.rate * bank_delay(runners, i);
-    const double lost = std::max(0.0, 1.0 - p.rate - p.banks);
-    (div_limit_[i] < fpu_limit_[i] ? p.divider : p.fpu) = lost;
+    p.banks = p.rate * l1_delay(i);
+    p.fetch = p.rate * fetch_delay(i);
+    const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch);
+    const double tightest = std::min({fpu_limit_[i], div_limit_[i], refill_limit_[i]});
+    (tightest == fpu_limit_[i] ? p.fpu : tightest == div_limit_[i] ? p.divider : p.fetch) += lost;
   }
 }
 

@@ -7,7 +7,8 @@
 // demand exceeds its capacity, the requesters that are held back get equal request rates and the
 // others all they ask for. L1 banks add a small delay to each access instead: with requesters j
 // making p_j accesses per cycle on B interleaved banks, an access waits Σ p_j / (2B) cycles
-// (hw_facts 4.1).
+// (hw_facts 4.1). The banks of the shared instruction cache delay private misses in the same way,
+// and its refills from L2 are served in turn like divisions.
 //
 // Left out: transients of a few cycles until requesters have interleaved, and the alignment of
 // lock-step accesses to particular banks.
@@ -27,6 +28,7 @@ struct Progress {
   double fpu = 0;      ///< share of the time lost to floating-point units
   double divider = 0;  ///< … to the divider
   double banks = 0;    ///< … to L1 bank conflicts
+  double fetch = 0;    ///< … to the shared instruction cache and its refills
 };
 
 /// One running segment as the solver sees it.
@@ -35,6 +37,8 @@ struct Runner {
   double fpu = 0;        ///< floating-point operations per lone cycle
   double divisions = 0;  ///< divisions per lone cycle
   double accesses = 0;   ///< L1 accesses per lone cycle
+  double fetches = 0;    ///< lines from the shared instruction cache per lone cycle
+  double refills = 0;    ///< lines from L2 per lone cycle
 
   static Runner of(int core, const Demand& demand);
 };
@@ -42,20 +46,27 @@ struct Runner {
 /// Solves the rates of all runners at once. Results are in the order of the runners.
 class Contention {
  public:
-  Contention(const FpuConfig& fpu, const L1Config& l1) : fpu_(fpu), banks_(l1.banks) {}
+  explicit Contention(const ClusterConfig& config)
+      : fpu_(config.fpu), code_(config.icache), banks_(config.l1.banks) {}
 
   void solve(const std::vector<Runner>& runners, std::vector<Progress>& progress);
 
  private:
   void limit_fpus(const std::vector<Runner>& runners);
-  void limit_dividers(const std::vector<Runner>& runners);
-  double bank_delay(const std::vector<Runner>& runners, std::size_t i) const;
+  /// Limits of units that serve everybody in turn.
+  void limit(const std::vector<Runner>& runners, double Runner::*requests, double capacity,
+             std::vector<double>& limits) const;
+  /// Cycles per lone cycle that runner i waits for banks that others use at the same time.
+  double bank_delay(const std::vector<Runner>& runners, double Runner::*accesses, int banks,
+                    std::size_t i) const;
 
   FpuConfig fpu_;
+  InstructionCacheConfig code_;
   int banks_;
-  std::vector<double> rate_;       ///< current estimate
-  std::vector<double> fpu_limit_;  ///< highest rate that the floating-point units allow
-  std::vector<double> div_limit_;  ///< … the dividers
+  std::vector<double> rate_;          ///< current estimate
+  std::vector<double> fpu_limit_;     ///< highest rate that the floating-point units allow
+  std::vector<double> div_limit_;     ///< … the dividers
+  std::vector<double> refill_limit_;  ///< … the refills of the shared instruction cache
 };
 
 }  // namespace leviosim::sim

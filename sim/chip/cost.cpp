@@ -35,14 +35,15 @@ CycleBreakdown& CycleBreakdown::operator+=(const CycleBreakdown& o) {
   control += o.control;
   memory += o.memory;
   arithmetic += o.arithmetic;
+  fetch += o.fetch;
   return *this;
 }
 
 CycleBreakdown operator*(const CycleBreakdown& b, double k) {
-  return {b.issue * k, b.load_use * k, b.control * k, b.memory * k, b.arithmetic * k};
+  return {b.issue * k, b.load_use * k, b.control * k, b.memory * k, b.arithmetic * k, b.fetch * k};
 }
 
-Demand price(const work::Counts& counts, const CoreConfig& core) {
+Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {
   Demand demand;
   for (const work::OpInfo& info : work::kOps) {
     const auto n = static_cast<double>(counts[info.op]);
@@ -55,6 +56,10 @@ Demand price(const work::Counts& counts, const CoreConfig& core) {
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   const double loads = sum(Op::LoadStream, Op::LoadIndexed);
   demand.alone.load_use = loads * core.load_use_fraction * core.load_use_stall;
+  const CodeFetch fetch = code.fetch(counts.code);
+  demand.alone.fetch = fetch.stall;
+  demand.fetches = fetch.requests;
+  demand.refills = fetch.refills;
   demand.l1_accesses = loads + sum(Op::StoreStream, Op::StoreIndexed, Op::Straddle);
   return demand;
 }

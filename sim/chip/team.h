@@ -22,13 +22,16 @@ struct SegmentTime {
   double fpu = 0;
   double divider = 0;
   double banks = 0;
+  double fetch = 0;
   double rounding = 0;
+
+  double waiting() const { return fpu + divider + banks + fetch; }
 };
 
 class Team {
  public:
-  /// @param cores  ids 0 … cores-1
-  Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int cores);
+  /// @param workers  ids 0 … workers-1; the master is core `workers`
+  Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
 
   /// co_await: core `id` runs `counts`; at most one piece of work per core at a time.
   Task<SegmentTime> execute(int id, const work::Counts& counts);
@@ -52,6 +55,8 @@ class Team {
   Kernel& kernel_;
   const ClockDomain& clock_;
   CoreConfig core_config_;
+  CodeFetcher worker_code_;
+  CodeFetcher master_code_;
   Contention contention_;
   std::vector<std::unique_ptr<Core>> cores_;
   std::vector<Runner> runners_;

@@ -75,11 +75,11 @@ inline F32 to_f32(I32 x) {
   return F32(to_f32(x.v));
 }
 inline F32 to_f32(F64 x) {
-  count(Op::F64Convert);
+  count_routine(Op::F64Convert, "f64_convert");
   return F32(to_f32(x.v));
 }
 inline F64 to_f64(F32 x) {
-  count(Op::F64Convert);
+  count_routine(Op::F64Convert, "f64_convert");
   return F64(to_f64(x.v));
 }
 inline I32 to_i32(F32 x) {

@@ -7,6 +7,12 @@ namespace leviosim::work {
 Machine::Machine(const MachineConfig& config)
     : config_(config), local_(config.memory, config.capacity, config.alignment) {
   check(config.cores >= 1, "a machine has at least one core");
+  if (config.record && config.code != nullptr)
+    trackers_.assign(static_cast<std::size_t>(config.cores) + 1, CodeTracker(*config.code));
+}
+
+void Machine::follow_code_of(int core) {
+  if (!trackers_.empty()) current_code = &trackers_[static_cast<std::size_t>(core)];
 }
 
 void Machine::begin_stage(std::string_view name) {
@@ -17,12 +23,14 @@ void Machine::begin_stage(std::string_view name) {
   fork_peak_ = {};
   if (!recording()) return;
   take_tally();  // what happened between stages belongs to none
+  follow_code_of(config_.cores);
   job_.stages.push_back({name, {}, {}});
 }
 
 void Machine::end_stage() {
   in_stage_ = false;
   if (!recording()) return;
+  current_code = nullptr;
   flush_serial();
   MemoryPeak& memory = job_.stages.back().memory;
   memory = fork_peak_;
@@ -48,6 +56,7 @@ void Machine::end_share(Bytes scratch_peak) {
 
 void Machine::end_fork() {
   if (!recording()) return;
+  follow_code_of(config_.cores);
   fork_peak_.single = std::max(fork_peak_.single, local_.used() + scratch_max_);
   if (local_.used() + scratch_sum_ > fork_peak_.parallel) {
     fork_peak_.parallel = local_.used() + scratch_sum_;

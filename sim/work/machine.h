@@ -17,6 +17,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "sim/work/arena.h"
 #include "sim/work/policy.h"
@@ -52,6 +53,7 @@ struct MachineConfig {
   Bytes capacity{128 * 1024};      ///< of the local memory
   int alignment = 4;               ///< of blocks, in bytes; 1 packs them
   bool record = false;             ///< keep a Job of what was done
+  const CodeMap* code = nullptr;   ///< sizes of the workload's compiled code; outlives the machine
 };
 
 class Machine {
@@ -84,6 +86,7 @@ class Machine {
     for (int id = 0; id < config_.cores; ++id) {
       Arena scratch = local_.lend("scratch", config_.cores, id);
       Core core{id, config_.cores, scratch};
+      follow_code_of(id);
       body(core);
       end_share(scratch.peak());
     }
@@ -119,6 +122,8 @@ class Machine {
   void end_fork();
   void note_transfer(Direction direction, Bytes bytes);
   void flush_serial();
+  /// From now on the host executes the code of this core; the master's id is cores().
+  void follow_code_of(int core);
 
   MachineConfig config_;
   Arena local_;
@@ -127,7 +132,8 @@ class Machine {
   Fork fork_;
   Bytes scratch_sum_{0};
   Bytes scratch_max_{0};
-  MemoryPeak fork_peak_;  ///< of the forks of the stage so far
+  MemoryPeak fork_peak_;               ///< of the forks of the stage so far
+  std::vector<CodeTracker> trackers_;  ///< of every core and of the master, if their code is known
 };
 
 }  // namespace leviosim::work

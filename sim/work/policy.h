@@ -13,6 +13,7 @@
 
 #include <cstdint>
 
+#include "sim/work/code_tracker.h"
 #include "sim/work/counted.h"
 #include "sim/work/functions.h"
 #include "sim/work/memory.h"
@@ -79,12 +80,26 @@ class DownRange {
   int end_;
 };
 
-/// Marks a function that a target compiler does not inline. `name` names the piece of code.
+/// Marks a function that a target compiler does not inline. Its name finds the size of its code
+/// (code_map.h).
 template <bool Counted>
 struct FunctionScope {
-  explicit FunctionScope(const char* /*name*/) {
-    if constexpr (Counted) count(Op::Call);
+  explicit FunctionScope(CodeName name) {
+    if constexpr (Counted) {
+      count(Op::Call);
+      code_ = current_code;
+      if (code_ != nullptr) code_->enter(name.key);
+    }
   }
+  ~FunctionScope() {
+    if constexpr (Counted)
+      if (code_ != nullptr) code_->leave();
+  }
+  FunctionScope(const FunctionScope&) = delete;
+  FunctionScope& operator=(const FunctionScope&) = delete;
+
+ private:
+  CodeTracker* code_ = nullptr;  ///< of the core that called
 };
 
 struct Native {
