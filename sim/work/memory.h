@@ -67,12 +67,12 @@ class Cell {
 
   operator Value() const {
     count(Load);
-    count(Op::Straddle, straddles_);
+    count_straddle();
     return LoadedAs<std::remove_const_t<T>>::from(*where_);
   }
   const Cell& operator=(T stored) const requires(!std::is_const_v<T>) {
     count(Store);
-    count(Op::Straddle, straddles_);
+    count_straddle();
     *where_ = stored;
     return *this;
   }
@@ -90,6 +90,11 @@ class Cell {
   { return *this = static_cast<T>(Value(*this) - x); }
 
  private:
+  /// A byte lies in one word wherever it is.
+  void count_straddle() const {
+    if constexpr (sizeof(T) > 1) count(Op::Straddle, straddles_);
+  }
+
   T* where_;
   std::uint8_t straddles_;
 };

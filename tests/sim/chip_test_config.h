@@ -30,7 +30,7 @@ inline ClusterConfig test_cluster() {
 }
 
 inline ChipConfig test_chip() {
-  return {"test", test_cluster(), {Hertz(370'000'000), unit_cost_core()}, {Bytes(1'600'000)}};
+  return {"test", test_cluster(), {Hertz(370'000'000), unit_cost_core(), {}}, {Bytes(1'600'000)}};
 }
 
 }  // namespace leviosim::sim
