@@ -47,10 +47,13 @@ Demand price(const work::Counts& counts, const CoreConfig& core) {
   for (const work::OpInfo& info : work::kOps) {
     const auto n = static_cast<double>(counts[info.op]);
     const OpCost& cost = core[info.op];
-    demand.alone.issue += n * cost.issue * core.instruction_overhead;
+    // A routine was counted with its moves and spills.
+    demand.alone.issue += n * cost.issue * (cost.routine ? 1.0 : core.instruction_overhead);
     demand.alone.*stall_account(info.op) += n * cost.stall;
-    if (cost.unit == Unit::Fpu) demand.fpu_ops += n;
-    if (cost.unit == Unit::Divider) demand.divisions += n;
+    if (cost.unit == Unit::Core) continue;
+    UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];
+    unit.requests += n;
+    unit.cycles += n * cost.busy;
   }
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   const double loads = sum(Op::LoadStream, Op::LoadIndexed);

@@ -19,6 +19,7 @@ enum class Op : std::uint8_t {
   IntMinMax,
   IntMul,
   IntMac,
+  IntMulHigh,
   IntDiv,
   IntDivBits,
   Popcount,
@@ -47,6 +48,14 @@ enum class Op : std::uint8_t {
   F64Div,
   F64Compare,
   F64Convert,
+  F16Op,
+  F16Div,
+  SimdAlu,
+  SimdMinMax,
+  SimdDot,
+  Int64Add,
+  Int64Mul,
+  Int64Mac,
 };
 
 struct OpInfo {
@@ -60,6 +69,7 @@ inline constexpr std::array kOps = {
     OpInfo{Op::IntMinMax, "int_min_max", "integer minimum, maximum, absolute value"},
     OpInfo{Op::IntMul, "int_mul", "32-bit integer product"},
     OpInfo{Op::IntMac, "int_mac", "32-bit integer product added to or subtracted from a value"},
+    OpInfo{Op::IntMulHigh, "int_mul_high", "upper half of a 32-bit integer product"},
     OpInfo{Op::IntDiv, "int_div", "integer quotient or remainder"},
     OpInfo{Op::IntDivBits, "int_div_bits", "leading zeros of the divisors, summed over int_div"},
     OpInfo{Op::Popcount, "popcount", "number of set bits of a 32-bit word"},
@@ -88,6 +98,14 @@ inline constexpr std::array kOps = {
     OpInfo{Op::F64Div, "f64_div", "double-precision quotient"},
     OpInfo{Op::F64Compare, "f64_compare", "double-precision comparison"},
     OpInfo{Op::F64Convert, "f64_convert", "conversion between single and double precision"},
+    OpInfo{Op::F16Op, "f16_op", "half-precision sum, product, multiply-add or conversion"},
+    OpInfo{Op::F16Div, "f16_div", "half-precision quotient"},
+    OpInfo{Op::SimdAlu, "simd_alu", "sum, difference, shuffle of 2x16 or 4x8 bit packed integers"},
+    OpInfo{Op::SimdMinMax, "simd_min_max", "minimum, maximum of 2x16 or 4x8 bit packed integers"},
+    OpInfo{Op::SimdDot, "simd_dot", "dot product of 2x16 or 4x8 bits, added to a sum or not"},
+    OpInfo{Op::Int64Add, "int64_add", "64-bit integer sum or difference"},
+    OpInfo{Op::Int64Mul, "int64_mul", "64-bit product of 32-bit integers"},
+    OpInfo{Op::Int64Mac, "int64_mac", "64-bit product of 32-bit integers added to a 64-bit value"},
 };
 
 inline constexpr std::size_t kOpCount = kOps.size();
