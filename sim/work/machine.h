@@ -161,7 +161,8 @@ class Machine {
     const auto n = static_cast<std::size_t>(std::min(to.size(), from.size()));
     static_assert(sizeof(*to.data()) == sizeof(*from.data()));
     if (n > 0) std::memcpy(static_cast<void*>(to.data()), from.data(), n * sizeof(*to.data()));
-    note_transfer({direction, Bytes(static_cast<std::int64_t>(n * sizeof(*to.data()))), background});
+    note_transfer(
+        {direction, Bytes(static_cast<std::int64_t>(n * sizeof(*to.data()))), background});
   }
 
   void begin_stage(std::string_view name);

@@ -17,7 +17,8 @@ namespace leviosim::work {
 
 /// Where the memory of a view lies, seen from the core that works on it. Local is the core's own
 /// memory: L1 for cluster cores, L2 for the fabric controller.
-enum class Space : std::uint8_t { Local, L2 };
+/// Shared is one word of local memory that all cores of the team use at the same time.
+enum class Space : std::uint8_t { Local, L2, Shared };
 
 /// Storage of a byte under the counting policy. A type of its own, because a store through
 /// `unsigned char*` may touch any object, so that the compiler would have to keep the counters in
@@ -103,11 +104,13 @@ class Cell {
 /// do not lie on their natural boundary in the target's memory, so that each access takes two.
 template <class T, Space S = Space::Local>
 class CountedSpan {
-  static constexpr bool kLocal = S == Space::Local;
-  using Stream =
-      Cell<T, kLocal ? Op::LoadStream : Op::LoadL2, kLocal ? Op::StoreStream : Op::StoreL2>;
-  using Indexed =
-      Cell<T, kLocal ? Op::LoadIndexed : Op::LoadL2, kLocal ? Op::StoreIndexed : Op::StoreL2>;
+  static constexpr Op in(Op local, Op l2, Op shared) {
+    return S == Space::Local ? local : S == Space::L2 ? l2 : shared;
+  }
+  using Stream = Cell<T, in(Op::LoadStream, Op::LoadL2, Op::LoadShared),
+                      in(Op::StoreStream, Op::StoreL2, Op::StoreShared)>;
+  using Indexed = Cell<T, in(Op::LoadIndexed, Op::LoadL2, Op::LoadShared),
+                       in(Op::StoreIndexed, Op::StoreL2, Op::StoreShared)>;
 
  public:
   CountedSpan() = default;

@@ -115,9 +115,13 @@ struct Native {
   using Span = NativeSpan<T>;
   template <class T>
   using L2Span = NativeSpan<T>;
+  template <class T>
+  using SharedSpan = NativeSpan<T>;
   template <class T, int N>
   using Array = NativeArray<T, N>;
   using Function = FunctionScope<false>;
+  /// A jump through a table: of a state machine, an interpreter.
+  static void jump_to_computed() {}
   static Range<false> range(int begin, int end) { return {begin, end}; }
   static DownRange<false> down_range(int begin, int last) { return {begin, last}; }
 };
@@ -135,9 +139,12 @@ struct Counting {
   using Span = CountedSpan<T>;
   template <class T>
   using L2Span = CountedSpan<T, Space::L2>;
+  template <class T>
+  using SharedSpan = CountedSpan<T, Space::Shared>;
   template <class T, int N>
   using Array = CountedArray<T, N>;
   using Function = FunctionScope<true>;
+  static void jump_to_computed() { count(Op::JumpRegister); }
   static Range<true> range(int begin, int end) { return {begin, end}; }
   static DownRange<true> down_range(int begin, int last) { return {begin, last}; }
   static Range<true> range(I32 begin, I32 end) { return {begin.v, end.v}; }

@@ -25,7 +25,7 @@ struct Serial {
 /// The master offloads one share of work to each worker and waits for all of them.
 struct Fork {
   std::string_view name;
-  std::vector<Counts> shares;     ///< one per worker, in the order of their ids
+  std::vector<Counts> shares;      ///< one per worker, in the order of their ids
   bool master_takes_part = false;  ///< then the last share is the master's own
 };
 

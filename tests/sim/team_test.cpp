@@ -115,6 +115,9 @@ TEST(Team, VendorCalibrationTableWithinFivePercent) {
       {"fdiv.s", Op::F32Div, 0, {14.02, 70.05, 112.09, 126.10}},
       {"fsqrt.s", Op::F32Sqrt, 0, {14.02, 70.05, 112.09, 126.10}},
       {"fdiv.s and nop", Op::F32Div, 1, {7.5, 35.3, 56.1, 63.1}},
+      {"vfmac.h stream", Op::F16Op, 0, {1.02, 2.02, 2.02, 3.02}},
+      {"int64 stream", Op::Int64Mac, 0, {1.02, 2.02, 2.02, 3.02}},
+      {"fdiv.h", Op::F16Div, 0, {10.02, 50.05, 80.10, 90.10}},
   };
   const int cores[] = {1, 5, 8, 9};
   for (const CalibrationRow& row : rows)
@@ -131,6 +134,24 @@ TEST(Team, TheDividerIsIndependentOfTheFpus) {
   work[0] = counts({{Op::F32Div, kN}});
   const Outcome o = run_together(work);
   EXPECT_NEAR(static_cast<double>(o.cycles[0]) / kN, 14.11, 0.05 * 14.11);
+}
+
+/// Cycles per operation of eight cores, the first `some` of which run a stream of `a`, the others
+/// one of `b`.
+double mixed(std::size_t some, Op a, Op b) {
+  std::vector<Counts> work(8, counts({{b, kN}}));
+  for (std::size_t i = 0; i < some; ++i) work[i] = counts({{a, kN}});
+  const Outcome o = run_together(work);
+  return static_cast<double>(*std::max_element(o.cycles.begin(), o.cycles.end())) / kN;
+}
+
+TEST(Team, DivisionsOfDifferentLengthTakeTurns) {
+  EXPECT_NEAR(mixed(4, Op::F32Div, Op::F16Div), 96.09, 0.05 * 96.09);
+  EXPECT_NEAR(mixed(2, Op::F32Div, Op::F16Div), 88.09, 0.05 * 88.09);
+}
+
+TEST(Team, TheInt64UnitsAreIndependentOfTheFpus) {
+  EXPECT_NEAR(mixed(4, Op::Int64Add, Op::F32Add), 1.04, 0.05 * 1.04);
 }
 
 TEST(Team, BankConflictsDelayEachAccessByTheOthersDemand) {
