@@ -1,8 +1,9 @@
 // The numbers that describe a chip: what a platform file (platform_models/) fills in. Every
 // number's source stands beside it in the platform file; the comments here say what it means.
 //
-// Cycles are cycles of the clock domain that the structure belongs to. They are real numbers where
-// the value is an average over many events.
+// Cycles are cycles of the clock domain that the structure belongs to; what the cluster awaits from
+// L2 (loads, DMA, refills of instruction caches) belongs to the SoC, whose clock is the
+// controller's. They are real numbers where the value is an average over many events.
 #pragma once
 
 #include <array>
