@@ -1,5 +1,6 @@
-// Platform files that are part of the program, so that it needs no files beside itself. The table
-// is generated from platform_models/*.yaml when the program is built (embed.cmake).
+// Files that are part of the program, so that it needs none beside itself. The tables are generated
+// from platform_models/*.yaml and platform_models/isa/*.yaml when the program is built
+// (embed.cmake).
 #pragma once
 
 #include <span>
@@ -7,12 +8,13 @@
 
 namespace leviosim::platform {
 
-struct BuiltinPlatform {
+struct BuiltinFile {
   std::string_view name;  ///< file name without extension
   std::string_view text;
 };
 
-/// Sorted by name.
-std::span<const BuiltinPlatform> builtin_platforms();
+/// Both sorted by name.
+std::span<const BuiltinFile> builtin_platforms();
+std::span<const BuiltinFile> builtin_instruction_sets();
 
 }  // namespace leviosim::platform
