@@ -71,7 +71,7 @@ work::CodeMap code_map_from(const std::string& file, std::string_view text) {
 
 const work::CodeMap& compiled_code() {
   static const work::CodeMap map = [] {
-    const BuiltinPlatform& file = builtin_code().front();
+    const BuiltinFile& file = builtin_code().front();
     return code_map_from(std::string(file.name) + ".csv", file.text);
   }();
   return map;

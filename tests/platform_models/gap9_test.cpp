@@ -163,15 +163,5 @@ TEST(Gap9, BothEndsOfEveryRangeCanBeRun) {
   }
 }
 
-TEST(Gap9, EverySourceIsUsed) {
-  const ResolvedPlatform gap9 = resolve_platform("gap9");
-  for (const auto& [key, meaning] : gap9.sources) {
-    bool used = false;
-    for (const Parameter& p : gap9.parameters)
-      used = used || p.source.find(key) != std::string::npos;
-    EXPECT_TRUE(used) << key;
-  }
-}
-
 }  // namespace
 }  // namespace leviosim::platform

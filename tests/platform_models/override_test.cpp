@@ -153,9 +153,9 @@ TEST(Override, RulesBetweenParametersNameBothSides) {
   EXPECT_EQ(with({"cluster.workers=16", "cluster.max_workers=16"}).cluster.workers, 16);
   expect_parts(fault("cluster.l1.banks=12"), {"cluster.l1.banks is 12 banks", "a power of two"});
   expect_parts(fault("cluster.fpu.units=0"),
-               {"cluster.fpu.units is 0 units", "isa.ops.f32_add.on is fpu (gap9.yaml:"});
+               {"cluster.fpu.units is 0 units", "isa.ops.f32_add.on is fpu (isa/rv32imfc.yaml:"});
   expect_parts(fault("isa.ops.f32_div.stall=12"),
-               {"isa.ops.f32_div.busy is 14 cycles (gap9.yaml:",
+               {"isa.ops.f32_div.busy is 14 cycles (isa/rv32imfc.yaml:",
                 "isa.ops.f32_div.stall is 12 cycles (-p isa.ops.f32_div.stall=12)"});
   expect_parts(fault("cluster.fpu.int64_units=0"), {"isa.ops.int64_add.on is int64"});
   expect_parts(fault("cluster.fpu.dividers=0"), {"isa.ops.f32_div.on is divider"});
