@@ -8,6 +8,7 @@
 #include <array>
 #include <string>
 
+#include "sim/energy/config.h"
 #include "sim/units.h"
 #include "sim/work/op.h"
 
@@ -92,6 +93,8 @@ struct ChipConfig {
   ClusterConfig cluster;
   ControllerConfig controller;
   L2Config l2;
+  SupplyConfig supply{};
+  Banded<EnergyConfig> energy{};  ///< the numbers, and all of them at the ends of their ranges
 };
 
 }  // namespace leviosim::sim
