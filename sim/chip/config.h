@@ -94,7 +94,7 @@ struct ChipConfig {
   ControllerConfig controller;
   L2Config l2;
   SupplyConfig supply{};
-  Banded<EnergyConfig> energy{};  ///< the numbers, and all of them at the ends of their ranges
+  EnergyRange energy{};
 };
 
 }  // namespace leviosim::sim

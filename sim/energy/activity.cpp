@@ -41,7 +41,6 @@ Activity& Activity::operator+=(const Activity& o) {
   cores_working += o.cores_working;
   cores_gated += o.cores_gated;
   controller_working += o.controller_working;
-  controller_gated += o.controller_gated;
   time += o.time;
   return *this;
 }
@@ -83,14 +82,12 @@ Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
   return a;
 }
 
-Activity idle_activity(const ChipConfig& chip, int workers, Seconds cluster_idle,
-                       Seconds controller_waits) {
+Activity idle_activity(const ChipConfig& chip, int workers, Seconds time) {
   Activity a;
-  a.time = cluster_idle;
-  a.idle_cluster_cycles = cluster_idle.count() * static_cast<double>(chip.cluster.clock.count());
-  a.soc_cycles = cluster_idle.count() * static_cast<double>(chip.controller.clock.count());
-  a.cores_gated = cluster_idle * cores_of(chip, workers);
-  a.controller_gated = controller_waits;
+  a.time = time;
+  a.idle_cluster_cycles = time.count() * static_cast<double>(chip.cluster.clock.count());
+  a.soc_cycles = time.count() * static_cast<double>(chip.controller.clock.count());
+  a.cores_gated = time * cores_of(chip, workers);
   return a;
 }
 

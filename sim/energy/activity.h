@@ -32,7 +32,6 @@ struct Activity {
   Seconds cores_working;  ///< summed over the cluster's cores
   Seconds cores_gated;
   Seconds controller_working;
-  Seconds controller_gated;
   Seconds time;  ///< that the whole chip was on
 
   Activity& operator+=(const Activity& o);
@@ -51,8 +50,6 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
 Activity controller_activity(const ChipConfig& chip, const work::Counts& counts, Cycles cycles);
 
 /// Time during which the cluster has nothing to do.
-/// @param controller_waits  how long the controller waited, of all the time
-Activity idle_activity(const ChipConfig& chip, int workers, Seconds cluster_idle,
-                       Seconds controller_waits);
+Activity idle_activity(const ChipConfig& chip, int workers, Seconds time);
 
 }  // namespace leviosim::sim

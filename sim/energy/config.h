@@ -3,7 +3,6 @@
 // has its source and a range; a chip without these sections has no energy figures.
 #pragma once
 
-#include "sim/energy/band.h"
 #include "sim/units.h"
 
 namespace leviosim::sim {
@@ -63,6 +62,13 @@ struct EnergyConfig {
     Joules cycle;  ///< in each cycle of the controller's clock
     Watts static_power;
   } soc;
+};
+
+/// The numbers, and all of them at the ends of their ranges. No energy falls when a number rises.
+struct EnergyRange {
+  EnergyConfig value;
+  EnergyConfig low;
+  EnergyConfig high;
 };
 
 }  // namespace leviosim::sim

@@ -29,10 +29,11 @@ class Model {
     e[index(Domain::Dma)] = events(a.transfer_cycles, c.dma.transfer_cycle) +
                             events(clocked, c.dma.cycle) + flow(c.dma.leakage, a.time);
     e[index(Domain::Cluster)] = events(clocked, c.cluster.cycle) + flow(c.cluster.leakage, a.time);
-    e[index(Domain::Controller)] = events(a.controller_instructions, c.core.instruction) +
-                                   events(a.controller_f32_operations, c.core.f32_operation) +
-                                   flow(c.core.leakage, a.controller_working) +
-                                   flow(c.core.gated_leakage, a.controller_gated);
+    e[index(Domain::Controller)] =
+        events(a.controller_instructions, c.core.instruction) +
+        events(a.controller_f32_operations, c.core.f32_operation) +
+        flow(c.core.gated_leakage, a.time) +
+        flow(c.core.leakage - c.core.gated_leakage, a.controller_working);
     e[index(Domain::L2)] = events(a.l2_accesses, c.l2.access);
     e[index(Domain::Soc)] = events(a.soc_cycles, c.soc.cycle) + flow(c.soc.static_power, a.time);
     return e;
@@ -49,9 +50,9 @@ class Model {
 
 }  // namespace
 
-Banded<Joules> DomainEnergies::total() const {
-  Banded<Joules> sum;
-  for (const Banded<Joules>& energy : energies_) sum += energy;
+Estimate<Joules> DomainEnergies::total() const {
+  Estimate<Joules> sum;
+  for (const Estimate<Joules>& energy : energies_) sum += energy;
   return sum;
 }
 
@@ -68,12 +69,20 @@ DomainEnergies energy_of(const Activity& activity, const ChipConfig& chip) {
     return Model(config, chip.supply.voltage, chip.cluster.l1.banks).energies(activity);
   };
   const Energies value = with(chip.energy.value);
-  const Energies low = with(chip.energy.low);
-  const Energies high = with(chip.energy.high);
   DomainEnergies result;
-  for (const DomainInfo& info : kDomains) {
-    const std::size_t i = index(info.domain);
-    result[info.domain] = {value[i], low[i], high[i]};
+  for (const DomainInfo& info : kDomains) result[info.domain].value = value[index(info.domain)];
+  for (std::size_t doubt = 0; doubt < kDoubtCount; ++doubt) {
+    EnergyConfig low = chip.energy.value;
+    EnergyConfig high = chip.energy.value;
+    kDoubts[doubt].copy(chip.energy.low, low);
+    kDoubts[doubt].copy(chip.energy.high, high);
+    const Energies least = with(low);
+    const Energies most = with(high);
+    for (const DomainInfo& info : kDomains) {
+      const std::size_t i = index(info.domain);
+      result[info.domain].down[doubt] = value[i] - least[i];
+      result[info.domain].up[doubt] = most[i] - value[i];
+    }
   }
   return result;
 }

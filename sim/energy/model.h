@@ -17,19 +17,20 @@
 
 #include "sim/energy/activity.h"
 #include "sim/energy/domain.h"
+#include "sim/energy/estimate.h"
 
 namespace leviosim::sim {
 
 class DomainEnergies {
  public:
-  const Banded<Joules>& operator[](Domain domain) const { return energies_[index(domain)]; }
-  Banded<Joules>& operator[](Domain domain) { return energies_[index(domain)]; }
+  const Estimate<Joules>& operator[](Domain domain) const { return energies_[index(domain)]; }
+  Estimate<Joules>& operator[](Domain domain) { return energies_[index(domain)]; }
 
-  Banded<Joules> total() const;
+  Estimate<Joules> total() const;
   DomainEnergies& operator+=(const DomainEnergies& o);
 
  private:
-  std::array<Banded<Joules>, kDomainCount> energies_{};
+  std::array<Estimate<Joules>, kDomainCount> energies_{};
 };
 
 /// Whether the platform has energy figures.

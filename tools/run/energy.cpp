@@ -6,11 +6,11 @@
 namespace leviosim::tools {
 namespace {
 
-using sim::Banded;
+using sim::Estimate;
 
-std::optional<Banded<Watts>> power_over(const Banded<Joules>& energy, Seconds time) {
+std::optional<Estimate<Watts>> power_over(const Estimate<Joules>& energy, Seconds time) {
   if (!(time > Seconds(0))) return std::nullopt;
-  return sim::each(energy, [&](Joules e) { return e / time; });
+  return energy / time;
 }
 
 EnergyRow row_of(const RunResult& run, const StageResult& stage, const sim::ChipConfig& chip) {
@@ -26,11 +26,10 @@ EnergyRow row_of(const RunResult& run, const StageResult& stage, const sim::Chip
           sim::energy_of(activity, chip)};
 }
 
-/// Of the rows with this property.
-Seconds time_of(const std::vector<EnergyRow>& rows, bool on_controller) {
+Seconds cluster_time(const std::vector<EnergyRow>& rows) {
   Seconds sum;
   for (const EnergyRow& row : rows)
-    if (row.on_controller == on_controller) sum += row.time;
+    if (!row.on_controller) sum += row.time;
   return sum;
 }
 
@@ -48,18 +47,14 @@ RunEnergy energy_on(const RunResult& run, const sim::ChipConfig& chip) {
   energy.frames = static_cast<std::int64_t>(run.frames.size());
   energy.time = duration(run, chip);
   for (const StageResult& stage : run.stages) energy.rows.push_back(row_of(run, stage, chip));
-  const auto rest = [&](bool on_controller) {
-    return std::max(energy.time - time_of(energy.rows, on_controller), Seconds(0));
-  };
-  const Seconds idle = rest(false);
-  energy.rows.push_back(
-      {kIdle, "frame", false, energy.frames, idle,
-       sim::energy_of(sim::idle_activity(chip, run.cores, idle, rest(true)), chip)});
+  const Seconds idle = std::max(energy.time - cluster_time(energy.rows), Seconds(0));
+  energy.rows.push_back({kIdle, "frame", false, energy.frames, idle,
+                         sim::energy_of(sim::idle_activity(chip, run.cores, idle), chip)});
   return energy;
 }
 
-std::optional<Banded<Watts>> power_of_stages(const RunEnergy& run, bool on_controller) {
-  Banded<Joules> energy;
+std::optional<Estimate<Watts>> power_of_stages(const RunEnergy& run, bool on_controller) {
+  Estimate<Joules> energy;
   Seconds time;
   for (const EnergyRow& row : run.rows) {
     if (row.on_controller != on_controller || row.name == kIdle) continue;
@@ -71,12 +66,12 @@ std::optional<Banded<Watts>> power_of_stages(const RunEnergy& run, bool on_contr
 
 }  // namespace
 
-std::optional<Banded<Joules>> EnergyRow::per_call() const {
+std::optional<Estimate<Joules>> EnergyRow::per_call() const {
   if (calls == 0) return std::nullopt;
   return energy.total() * (1.0 / static_cast<double>(calls));
 }
 
-std::optional<Banded<Watts>> EnergyRow::power() const { return power_over(energy.total(), time); }
+std::optional<Estimate<Watts>> EnergyRow::power() const { return power_over(energy.total(), time); }
 
 sim::DomainEnergies RunEnergy::total() const {
   sim::DomainEnergies sum;
@@ -84,20 +79,20 @@ sim::DomainEnergies RunEnergy::total() const {
   return sum;
 }
 
-std::optional<Banded<Joules>> RunEnergy::per_frame() const {
+std::optional<Estimate<Joules>> RunEnergy::per_frame() const {
   if (frames == 0) return std::nullopt;
   return total().total() * (1.0 / static_cast<double>(frames));
 }
 
-std::optional<Banded<Watts>> RunEnergy::mean_power() const {
+std::optional<Estimate<Watts>> RunEnergy::mean_power() const {
   return power_over(total().total(), time);
 }
 
-std::optional<Banded<Watts>> RunEnergy::power_of_front_end() const {
+std::optional<Estimate<Watts>> RunEnergy::power_of_front_end() const {
   return power_of_stages(*this, false);
 }
 
-std::optional<Banded<Watts>> RunEnergy::power_of_controller() const {
+std::optional<Estimate<Watts>> RunEnergy::power_of_controller() const {
   return power_of_stages(*this, true);
 }
 

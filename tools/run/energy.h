@@ -22,10 +22,10 @@ struct EnergyRow {
   sim::DomainEnergies energy;
 
   /// Absent if there were no calls.
-  std::optional<sim::Banded<Joules>> per_call() const;
+  std::optional<sim::Estimate<Joules>> per_call() const;
   /// Mean while it runs: the whole chip without the controller's core for a stage of the cluster,
   /// what the controller adds to that for one of the controller.
-  std::optional<sim::Banded<Watts>> power() const;
+  std::optional<sim::Estimate<Watts>> power() const;
 };
 
 /// Name of the row for the time in which the cluster has no work.
@@ -38,11 +38,11 @@ struct RunEnergy {
   Seconds time;
 
   sim::DomainEnergies total() const;
-  std::optional<sim::Banded<Joules>> per_frame() const;
-  std::optional<sim::Banded<Watts>> mean_power() const;
+  std::optional<sim::Estimate<Joules>> per_frame() const;
+  std::optional<sim::Estimate<Watts>> mean_power() const;
   /// Of the stages of the cluster while one of them runs, and of the controller while it works.
-  std::optional<sim::Banded<Watts>> power_of_front_end() const;
-  std::optional<sim::Banded<Watts>> power_of_controller() const;
+  std::optional<sim::Estimate<Watts>> power_of_front_end() const;
+  std::optional<sim::Estimate<Watts>> power_of_controller() const;
 };
 
 /// Absent if the run was not timed, or its platform has no energy figures.

@@ -12,7 +12,7 @@
 namespace leviosim::tools {
 namespace {
 
-using sim::Banded;
+using sim::Estimate;
 
 constexpr auto kLeft = TextTable::Align::Left;
 constexpr const char* kNothing = "–";
@@ -21,7 +21,7 @@ double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6
 
 /// "12.34" and "9.87–15.43".
 template <class T>
-void add_figure(std::vector<std::string>& cells, const std::optional<Banded<T>>& figure,
+void add_figure(std::vector<std::string>& cells, const std::optional<Estimate<T>>& figure,
                 double unit) {
   if (!figure) {
     cells.insert(cells.end(), {kNothing, kNothing});
@@ -29,14 +29,14 @@ void add_figure(std::vector<std::string>& cells, const std::optional<Banded<T>>&
   }
   cells.push_back(fmt::format("{:.2f}", figure->value.count() / unit));
   cells.push_back(
-      fmt::format("{:.2f}–{:.2f}", figure->low.count() / unit, figure->high.count() / unit));
+      fmt::format("{:.2f}–{:.2f}", figure->low().count() / unit, figure->high().count() / unit));
 }
 
 template <class T>
-std::string in_words(const std::optional<Banded<T>>& figure, double unit, const char* name) {
+std::string in_words(const std::optional<Estimate<T>>& figure, double unit, const char* name) {
   if (!figure) return kNothing;
   return fmt::format("{:.2f} {} ({:.2f}–{:.2f})", figure->value.count() / unit, name,
-                     figure->low.count() / unit, figure->high.count() / unit);
+                     figure->low().count() / unit, figure->high().count() / unit);
 }
 
 std::string name_of(const EnergyRow& row) { return row.on_controller ? row.name + " ¹" : row.name; }
@@ -78,15 +78,14 @@ std::string energy_table(const RunResult& run) {
     add_figure(cells, row.power(), 1e-3);
     table.add(std::move(cells));
   }
-  return fmt::format(
-             "energy at {:g} V, cluster {:g} MHz, controller {:g} MHz (band: all energies of the "
-             "platform at the\nlow, and at the high ends of their ranges)\n",
-             run.chip.supply.voltage.count(), megahertz(run.cluster_clock),
-             megahertz(run.controller_clock)) +
+  return fmt::format("energy at {:g} V, cluster {:g} MHz, controller {:g} MHz\n",
+                     run.chip.supply.voltage.count(), megahertz(run.cluster_clock),
+                     megahertz(run.controller_clock)) +
          table.str() +
          (any_on_controller(*energy) ? "¹ what the controller adds; the rest of the chip is in the "
                                        "rows of the cluster\n"
                                      : "") +
+         "band: where the figure lies if the energies of the platform are within their ranges\n" +
          totals(*energy);
 }
 
@@ -99,7 +98,7 @@ std::string power_table(const RunResult& run) {
   TextTable table(std::move(columns));
   const auto add = [&](std::string name, const sim::DomainEnergies& energies, Seconds time) {
     std::vector<std::string> cells{std::move(name)};
-    const auto cell = [&](const Banded<Joules>& e) {
+    const auto cell = [&](const Estimate<Joules>& e) {
       return time > Seconds(0) ? fmt::format("{:.2f}", (e.value / time).count() * 1e3) : kNothing;
     };
     for (const sim::DomainInfo& info : sim::kDomains) cells.push_back(cell(energies[info.domain]));

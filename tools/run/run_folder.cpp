@@ -81,7 +81,7 @@ std::string memory_lines(std::string_view memory, Bytes size, std::string_view o
 /// One quantity of a row, in all domains and in total. @param scale  from joules to its unit
 std::string energy_lines(std::string_view stage, std::string_view quantity, std::string_view unit,
                          double scale, const sim::DomainEnergies& energies) {
-  const auto line = [&](std::string_view domain, const sim::Banded<Joules>& e) {
+  const auto line = [&](std::string_view domain, const sim::Estimate<Joules>& e) {
     const auto figure = [&](Joules joules) {
       return fmt::format("{:.6f}", joules.count() * scale);
     };
@@ -91,8 +91,8 @@ std::string energy_lines(std::string_view stage, std::string_view quantity, std:
         .add(domain)
         .add(figure(e.value))
         .add(unit)
-        .add(figure(e.low))
-        .add(figure(e.high))
+        .add(figure(e.low()))
+        .add(figure(e.high()))
         .str();
   };
   std::string text;

@@ -157,15 +157,15 @@ void add_l2(StatisticList& list, const RunResult& run) {
 /// A figure and the ends of its band.
 template <class T>
 void add_banded(StatisticList& list, const std::string& name, std::string_view unit,
-                std::string_view description, const std::optional<sim::Banded<T>>& figure,
+                std::string_view description, const std::optional<sim::Estimate<T>>& figure,
                 double scale) {
-  const auto end = [&](T sim::Banded<T>::*of) {
-    return figure ? Json(((*figure).*of).count() * scale) : Json(nullptr);
-  };
-  list.add(name, unit, description, end(&sim::Banded<T>::value));
-  list.add(name + ".low", unit, fmt::format("{}: low end", description), end(&sim::Banded<T>::low));
+  const auto value = [&](auto of) { return figure ? Json(of(*figure).count() * scale) : Json(); };
+  using E = sim::Estimate<T>;
+  list.add(name, unit, description, value([](const E& e) { return e.value; }));
+  list.add(name + ".low", unit, fmt::format("{}: low end", description),
+           value([](const E& e) { return e.low(); }));
   list.add(name + ".high", unit, fmt::format("{}: high end", description),
-           end(&sim::Banded<T>::high));
+           value([](const E& e) { return e.high(); }));
 }
 
 void add_energy_row(StatisticList& list, const EnergyRow& row) {
