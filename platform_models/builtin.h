@@ -15,4 +15,7 @@ struct BuiltinPlatform {
 /// Sorted by name.
 std::span<const BuiltinPlatform> builtin_platforms();
 
+/// Sizes of compiled code (code/*.csv), in the same form.
+std::span<const BuiltinPlatform> builtin_code();
+
 }  // namespace leviosim::platform

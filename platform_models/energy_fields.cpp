@@ -125,7 +125,8 @@ std::vector<Field> cluster_energy_fields() {
           power("energy.l1.bank_leakage", "leakage of a bank of L1"),
           [](auto& e) -> auto& { return e.l1.bank_leakage; }),
       of_energy(
-          event("energy.dma.transfer_cycle", "DMA, in a cycle of a transfer, additionally"),
+          event("energy.dma.transfer_cycle",
+                "DMA, in a cycle (of the controller's clock) of a transfer"),
           [](auto& e) -> auto& { return e.dma.transfer_cycle; }),
       of_energy(
           event("energy.dma.cycle", "DMA, in a cycle of the cluster's clock"),

@@ -24,6 +24,7 @@ void put(double& target, double value) { target = value; }
 void put(int& target, double value) { target = static_cast<int>(value); }
 void put(Bytes& target, double value) { target = Bytes(static_cast<std::int64_t>(value)); }
 void put(Hertz& target, double value) { target = Hertz(static_cast<std::int64_t>(value)); }
+void put(bool& target, double value) { target = value != 0; }
 void put(sim::Unit& target, double value) { target = static_cast<sim::Unit>(value); }
 void put(sim::FpuMapping& target, double value) { target = static_cast<sim::FpuMapping>(value); }
 
@@ -57,6 +58,11 @@ Field choice(std::string path, std::vector<std::string> choices, std::string des
   return field;
 }
 
+Field optional(Field field) {
+  field.required = false;
+  return field;
+}
+
 /// Makes a field a column of a row of several: "isa.ops.int_mul.issue" is in "isa.ops.int_mul".
 Field column(Field field) {
   const std::size_t dot = field.path.rfind('.');
@@ -87,7 +93,7 @@ class Table {
   /// @param member  returns a reference to the field's place in a CoreConfig, const or not
   template <class Member>
   void add_of_cores(const CoreSection& section, Field field, Member member) {
-    field.required = section.common();
+    field.required = field.required && section.common();
     field.set = [section, member](ChipConfig& chip, double value) {
       if (section.cluster) put(member(chip.cluster.core), value);
       if (section.controller) put(member(chip.controller.core), value);
@@ -119,9 +125,20 @@ void add_operation(Table& table, const CoreSection& section, const work::OpInfo&
       [op](auto& core) -> auto& { return core.ops[work::index(op)].stall; });
   table.add_of_cores(
       section,
-      column(choice(row + ".on", {"core", "fpu", "divider"},
+      optional(
+          column(quantity(row + ".busy", kCycles, kLeastTime, kMaxCost,
+                          fmt::format("cycles that its unit is occupied: {}", info.description)))),
+      [op](auto& core) -> auto& { return core.ops[work::index(op)].busy; });
+  table.add_of_cores(
+      section,
+      column(choice(row + ".on", {"core", "fpu", "divider", "int64", "bank"},
                     fmt::format("unit that does the work: {}", info.description))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].unit; });
+  table.add_of_cores(
+      section,
+      optional(column(choice(row + ".routine", {"false", "true"},
+                             fmt::format("whole library routine: {}", info.description)))),
+      [op](auto& core) -> auto& { return core.ops[work::index(op)].routine; });
 }
 
 /// Instruction set and code generation.
@@ -130,7 +147,7 @@ void add_core(Table& table, const CoreSection& section) {
   table.add_of_cores(
       section,
       quantity(key("instruction_overhead"), kRatio, 0.1, 10,
-               "instructions emitted per instruction accounted for by ops"),
+               "instructions emitted per instruction accounted for by ops that are no routines"),
       [](auto& core) -> auto& { return core.instruction_overhead; });
   table.add_of_cores(
       section,
@@ -169,17 +186,65 @@ void add_fpu(Table& table) {
              "unit that serves a core: fixed, core c uses unit c mod units; dynamic, any"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.mapping; });
   table.add(
-      quantity("cluster.fpu.cycles_per_op", kCycles, kLeastTime, kMaxCost,
-               "cycles that an operation occupies its floating-point unit"),
-      [](auto& chip) -> auto& { return chip.cluster.fpu.cycles_per_op; });
-  table.add(
       quantity("cluster.fpu.dividers", kUnits, 0, kMaxParts,
                "divide and square-root units that the cluster's cores share"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.dividers; });
   table.add(
-      quantity("cluster.fpu.cycles_per_division", kCycles, kLeastTime, kMaxCost,
-               "cycles that a division or square root occupies its unit"),
-      [](auto& chip) -> auto& { return chip.cluster.fpu.cycles_per_division; });
+      quantity("cluster.fpu.int64_units", kUnits, 0, kMaxParts,
+               "units for 64-bit integers that the cluster's cores share, mapped as the others"),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
+}
+
+/// Sizes and times that every instruction cache has.
+template <class Caches>
+void add_instruction_cache(Table& table, const std::string& path, const std::string& whose,
+                           Caches caches) {
+  table.add(
+      quantity(path + ".line", kSize, 1, 1024, "bytes of code fetched at once"),
+      [caches](auto& chip) -> auto& { return caches(chip).line; });
+  table.add(
+      quantity(path + ".size", kSize, 0, kMaxSize, "private instruction cache of " + whose),
+      [caches](auto& chip) -> auto& { return caches(chip).worker; });
+}
+
+void add_code_of_cluster(Table& table) {
+  const auto caches = [](auto& chip) -> auto& { return chip.cluster.icache; };
+  const std::string path = "cluster.icache";
+  add_instruction_cache(table, path, "a worker; 0 for none", caches);
+  table.add(
+      quantity(path + ".master_size", kSize, 0, kMaxSize,
+               "private instruction cache of the master"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.master; });
+  table.add(
+      quantity(path + ".shared_size", kSize, 1, kMaxSize, "instruction cache that the cores share"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared; });
+  table.add(
+      quantity(path + ".shared_banks", kBanks, 1, kMaxParts,
+               "lines that the shared instruction cache can deliver in a cycle"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared_banks; });
+  table.add(
+      quantity(path + ".shared_hit", kCycles, 0, kMaxCost,
+               "cycles waited for a line that the private cache lacks and the shared one has"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared_hit; });
+  table.add(
+      quantity(path + ".shared_miss", kCycles, kLeastTime, kMaxCost,
+               "cycles waited for a line that has to come from L2"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared_miss; });
+  table.add(
+      quantity(path + ".refills", kUnits, kLeastTime, kMaxParts,
+               "lines that the shared instruction cache can await from L2 at once"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.refills; });
+}
+
+/// The controller has no shared cache in front of L2.
+void add_code_of_controller(Table& table) {
+  add_instruction_cache(
+      table, "controller.icache", "the controller",
+      [](auto& chip) -> auto& { return chip.controller.icache; });
+  table.add(
+      quantity("controller.icache.miss", kCycles, kLeastTime, kMaxCost,
+               "cycles that the controller waits for a line that has to come from L2"),
+      [](auto& chip) -> auto& { return chip.controller.icache.shared_miss; });
 }
 
 void add_l1_and_dma(Table& table) {
@@ -248,9 +313,11 @@ std::vector<Field> all_fields() {
   add_core(table, {"isa", true, true});
   add_cores_of_cluster(table);
   add_fpu(table);
+  add_code_of_cluster(table);
   add_l1_and_dma(table);
   add_events(table);
   add_controller(table);
+  add_code_of_controller(table);
   add_l2(table);
   std::vector<Field> fields = table.take();
   for (Field& field : energy_fields()) fields.push_back(std::move(field));

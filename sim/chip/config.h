@@ -1,8 +1,9 @@
 // The numbers that describe a chip: what a platform file (platform_models/) fills in. Every
 // number's source stands beside it in the platform file; the comments here say what it means.
 //
-// Cycles are cycles of the clock domain that the structure belongs to. They are real numbers where
-// the value is an average over many events.
+// Cycles are cycles of the clock domain that the structure belongs to; what the cluster awaits from
+// L2 (loads, DMA, refills of instruction caches) belongs to the SoC, whose clock is the
+// controller's. They are real numbers where the value is an average over many events.
 #pragma once
 
 #include <array>
@@ -15,26 +16,38 @@
 namespace leviosim::sim {
 
 /// Which unit an operation occupies besides its core.
-enum class Unit : std::uint8_t { Core, Fpu, Divider };
+enum class Unit : std::uint8_t {
+  Core,
+  Fpu,
+  Divider,
+  Int64,
+  Bank,    ///< the one bank of L1 that holds a word which all cores use
+  Refill,  ///< of the shared instruction cache from L2; no operation's, but code's
+};
+inline constexpr std::size_t kUnitCount = 6;
 
 /// What one counted operation costs a core that is alone.
 struct OpCost {
   double issue = 0;  ///< instructions issued
   double stall = 0;  ///< cycles the pipeline waits in addition
   Unit unit = Unit::Core;
+  double busy = 1;       ///< cycles that it occupies the unit, if that is not the core
+  bool routine = false;  ///< the numbers are of a whole library routine as it was compiled
 };
 
 /// How counted operations become instructions of one instruction set, and their latencies.
 struct CoreConfig {
   std::array<OpCost, work::kOpCount> ops{};
   double instruction_overhead = 1;  ///< instructions emitted per instruction accounted for by ops
+                                    ///< that are no routines
   double load_use_fraction = 0;     ///< share of loads whose result the next instruction uses
   double load_use_stall = 0;        ///< cycles such a load waits
 
   const OpCost& operator[](work::Op op) const { return ops[work::index(op)]; }
 };
 
-/// Floating-point units shared by the cores of a cluster.
+/// Arithmetic units shared by the cores of a cluster. How long an operation occupies its unit is
+/// said with the operation (OpCost::busy).
 enum class FpuMapping : std::uint8_t {
   Fixed,   ///< core c uses unit c mod n
   Dynamic  ///< any core uses any free unit
@@ -43,9 +56,20 @@ enum class FpuMapping : std::uint8_t {
 struct FpuConfig {
   int units = 0;
   FpuMapping mapping = FpuMapping::Fixed;
-  double cycles_per_op = 1;  ///< occupation of a unit by one add, multiply, fma, …
-  int dividers = 0;          ///< divide/square-root units of the cluster
-  double cycles_per_division = 0;
+  int dividers = 0;     ///< divide/square-root units of the cluster, any core uses any
+  int int64_units = 0;  ///< units for 64-bit integers, mapped as the floating-point ones
+};
+
+/// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
+struct InstructionCacheConfig {
+  Bytes line;              ///< bytes fetched at once
+  Bytes worker;            ///< private cache of a worker (or of the controller); 0: none
+  Bytes master;            ///< private cache of the cluster's master
+  Bytes shared;            ///< cache that the cores share; 0: none
+  int shared_banks = 1;    ///< lines that the shared cache can deliver in a cycle
+  double shared_hit = 0;   ///< cycles waited for a line that the private cache lacks
+  double shared_miss = 0;  ///< cycles waited for a line that has to come from L2
+  double refills = 1;      ///< lines that the shared cache can await from L2 at once
 };
 
 struct L1Config {
@@ -73,6 +97,7 @@ struct ClusterConfig {
   int max_workers = 0;  ///< what the event unit can serve
   CoreConfig core;
   FpuConfig fpu;
+  InstructionCacheConfig icache;
   L1Config l1;
   DmaConfig dma;
   EventUnitConfig events;
@@ -82,6 +107,7 @@ struct ClusterConfig {
 struct ControllerConfig {
   Hertz clock;
   CoreConfig core;
+  InstructionCacheConfig icache;
 };
 
 struct L2Config {

@@ -7,10 +7,33 @@
 namespace leviosim::sim {
 namespace {
 
-constexpr double kWord = 4;  // bytes: width of L1 ports and of what an L2 access is counted in
+constexpr double kWord = 4;  // bytes of an access to L1 or L2
 
-double l2_words(const work::Counts& counts) {
-  return static_cast<double>(counts[work::Op::LoadL2] + counts[work::Op::StoreL2]);
+double requests(const Demand& demand, Unit unit) {
+  return demand.units[static_cast<std::size_t>(unit)].requests;
+}
+
+double f32_operations(const Demand& demand) {
+  return requests(demand, Unit::Fpu) + requests(demand, Unit::Divider);
+}
+
+/// Loads and stores of a core's own memory.
+double local_accesses(const Demand& demand) {
+  return demand.streamed + demand.scattered + requests(demand, Unit::Bank);
+}
+
+/// Loads and stores of L2 by cores that have another memory of their own, and lines of code.
+double l2_accesses(const work::Counts& counts, const Demand& demand,
+                   const InstructionCacheConfig& icache) {
+  return static_cast<double>(counts[work::Op::LoadL2] + counts[work::Op::StoreL2]) +
+         requests(demand, Unit::Refill) * static_cast<double>(icache.line.count()) / kWord;
+}
+
+/// With code fetched as cores do that are alike; caches without lines answer at once.
+Demand demand_of(const work::Counts& counts, const CoreConfig& core,
+                 const InstructionCacheConfig& icache, int sharers) {
+  if (icache.line == Bytes(0)) return price(counts, core);
+  return price(counts, core, CodeFetcher(icache, icache.worker, sharers));
 }
 
 /// The workers, used or not, and the master.
@@ -52,15 +75,16 @@ Seconds seconds(double cycles, Hertz clock) {
 Activity cluster_activity(const ChipConfig& chip, int workers, const work::Counts& counts,
                           const work::Transferred& transfers, const Account& account,
                           Cycles cycles) {
-  const Demand demand = price(counts, chip.cluster.core);
+  const Demand demand = demand_of(counts, chip.cluster.core, chip.cluster.icache, workers);
   const DmaConfig& dma = chip.cluster.dma;
   const auto bytes = static_cast<double>(transfers.bytes.count());
   const auto elapsed = static_cast<double>(cycles.count());
   Activity a;
   a.instructions = demand.alone.issue;
-  a.f32_operations = demand.fpu_ops + demand.divisions;
-  a.l1_accesses = demand.l1_accesses + bytes / kWord;
-  a.l2_accesses = l2_words(counts) + bytes / kWord;
+  a.f32_operations = f32_operations(demand);
+  a.l1_accesses = local_accesses(demand) + bytes / kWord;
+  const auto external = static_cast<double>(transfers.external.count());
+  a.l2_accesses = l2_accesses(counts, demand, chip.cluster.icache) + (bytes + external) / kWord;
   if (transfers.transfers > 0)
     a.transfer_cycles =
         static_cast<double>(transfers.transfers) * dma.first_data + bytes / dma.bytes_per_cycle;
@@ -72,12 +96,14 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
   return a;
 }
 
-Activity controller_activity(const ChipConfig& chip, const work::Counts& counts, Cycles cycles) {
-  const Demand demand = price(counts, chip.controller.core);
+Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
+                             const work::Transferred& transfers, Cycles cycles) {
+  const Demand demand = demand_of(counts, chip.controller.core, chip.controller.icache, 1);
   Activity a;
   a.controller_instructions = demand.alone.issue;
-  a.controller_f32_operations = demand.fpu_ops + demand.divisions;
-  a.l2_accesses = demand.l1_accesses + l2_words(counts);
+  a.controller_f32_operations = f32_operations(demand);
+  a.l2_accesses = local_accesses(demand) + l2_accesses(counts, demand, chip.controller.icache) +
+                  static_cast<double>(transfers.external.count()) / kWord;
   a.controller_working = seconds(static_cast<double>(cycles.count()), chip.controller.clock);
   return a;
 }

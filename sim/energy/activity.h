@@ -20,8 +20,8 @@ struct Activity {
   double instructions = 0;  ///< of the cluster's cores
   double f32_operations = 0;
   double l1_accesses = 0;      ///< by cores and DMA
-  double transfer_cycles = 0;  ///< of the cluster's clock, in which the DMA moves data
-  double l2_accesses = 0;      ///< by controller, cluster and DMA
+  double transfer_cycles = 0;  ///< of the controller's clock, in which the DMA moves data
+  double l2_accesses = 0;      ///< by controller, cluster, DMA and refills of instruction caches
   double controller_instructions = 0;
   double controller_f32_operations = 0;
 
@@ -47,7 +47,8 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
                           Cycles cycles);
 
 /// Executions of a stage on the fabric controller, whose memory is L2.
-Activity controller_activity(const ChipConfig& chip, const work::Counts& counts, Cycles cycles);
+Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
+                             const work::Transferred& transfers, Cycles cycles);
 
 /// Time during which the cluster has nothing to do.
 Activity idle_activity(const ChipConfig& chip, int workers, Seconds time);

@@ -39,7 +39,7 @@ struct EnergyConfig {
   } l1;
 
   struct Dma {
-    Joules transfer_cycle;  ///< in each cycle of a transfer, besides what follows
+    Joules transfer_cycle;  ///< in each of the controller's cycles of a transfer
     Joules cycle;           ///< in each clock cycle
     Watts leakage;
   } dma;

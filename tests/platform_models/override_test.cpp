@@ -154,20 +154,25 @@ TEST(Override, RulesBetweenParametersNameBothSides) {
   expect_parts(fault("cluster.l1.banks=12"), {"cluster.l1.banks is 12 banks", "a power of two"});
   expect_parts(fault("cluster.fpu.units=0"),
                {"cluster.fpu.units is 0 units", "isa.ops.f32_add.on is fpu (gap9.yaml:"});
+  expect_parts(fault("isa.ops.f32_div.stall=12"),
+               {"isa.ops.f32_div.busy is 14 cycles (gap9.yaml:",
+                "isa.ops.f32_div.stall is 12 cycles (-p isa.ops.f32_div.stall=12)"});
+  expect_parts(fault("cluster.fpu.int64_units=0"), {"isa.ops.int64_add.on is int64"});
   expect_parts(fault("cluster.fpu.dividers=0"), {"isa.ops.f32_div.on is divider"});
 }
 
 // The cluster may do without a unit that only the controller's operations use.
 TEST(Override, UnitsAreRequiredOfTheCoresThatShareThem) {
-  const std::vector<std::string> without = {"cluster.fpu.dividers=0",
-                                            "cluster.core.ops.f32_div.on=core",
-                                            "cluster.core.ops.f32_sqrt.on=core"};
+  const std::vector<std::string> without = {
+      "cluster.fpu.dividers=0", "cluster.core.ops.f32_div.on=core",
+      "cluster.core.ops.f32_sqrt.on=core", "cluster.core.ops.f16_div.on=core"};
   EXPECT_EQ(with(without).cluster.fpu.dividers, 0);
-  expect_parts(fault_of([] {
-                 with({"cluster.fpu.dividers=0", "isa.ops.f32_div.on=core",
-                       "isa.ops.f32_sqrt.on=core", "cluster.core.ops.f32_div.on=divider"});
-               }),
-               {"cluster.core.ops.f32_div.on is divider"});
+  expect_parts(
+      fault_of([] {
+        with({"cluster.fpu.dividers=0", "isa.ops.f32_div.on=core", "isa.ops.f32_sqrt.on=core",
+              "isa.ops.f16_div.on=core", "cluster.core.ops.f32_div.on=divider"});
+      }),
+      {"cluster.core.ops.f32_div.on is divider"});
 }
 
 }  // namespace
