@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "platform_models/energy_fields.h"
+
 namespace leviosim::platform {
 namespace {
 
@@ -317,7 +319,9 @@ std::vector<Field> all_fields() {
   add_controller(table);
   add_code_of_controller(table);
   add_l2(table);
-  return table.take();
+  std::vector<Field> fields = table.take();
+  for (Field& field : energy_fields()) fields.push_back(std::move(field));
+  return fields;
 }
 
 }  // namespace leviosim::platform

@@ -28,8 +28,16 @@ namespace {
 sim::ChipConfig configure(const Schema& schema, const Document& document) {
   sim::ChipConfig config;
   config.name = document.name;
-  for (std::size_t i = 0; i < schema.fields().size(); ++i)
-    if (const auto& setting = document.settings[i]) schema.fields()[i].set(config, setting->base);
+  for (std::size_t i = 0; i < schema.fields().size(); ++i) {
+    const Field& field = schema.fields()[i];
+    const auto& setting = document.settings[i];
+    if (!setting) continue;
+    field.set(config, setting->base);
+    const auto& range = setting->parameter.range;
+    if (!range || !field.set_band) continue;
+    const double factor = field.dimension->find(setting->parameter.unit)->factor;
+    field.set_band(config, range->low * factor, range->high * factor);
+  }
   return config;
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <string_view>
 
+#include "platform_models/supply_rules.h"
 #include "sim/error.h"
 
 namespace leviosim::platform {
@@ -14,12 +15,8 @@ class Rules {
  public:
   Rules(const Schema& schema, const Settings& settings) : schema_(schema), settings_(settings) {}
 
-  /// "cluster.workers is 9 cores (-p cluster.workers=9)"
   std::string state(std::string_view path) const {
-    const Setting& setting = settings_[schema_.find(path)].value();
-    const Parameter& p = setting.parameter;
-    return fmt::format("{} is {}{}{} ({})", path, p.value, p.unit.empty() ? "" : " ", p.unit,
-                       setting.where);
+    return platform::state(settings_[schema_.find(path)].value());
   }
 
   void require(bool ok, std::string_view path, std::string_view expected) const {
@@ -71,6 +68,12 @@ class Rules {
 
 }  // namespace
 
+std::string state(const Setting& setting) {
+  const Parameter& p = setting.parameter;
+  return fmt::format("{} is {}{}{} ({})", p.path, p.value, p.unit.empty() ? "" : " ", p.unit,
+                     setting.where);
+}
+
 void check_rules(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip) {
   const Rules rules(schema, settings);
   const sim::ClusterConfig& cluster = chip.cluster;
@@ -84,6 +87,7 @@ void check_rules(const Schema& schema, const Settings& settings, const sim::Chip
   rules.require_units("divider", "cluster.fpu.dividers", cluster.fpu.dividers);
   rules.require_units("int64", "cluster.fpu.int64_units", cluster.fpu.int64_units);
   for (const work::OpInfo& info : work::kOps) rules.require_latency(info, cluster.core[info.op]);
+  check_supply(schema, settings, chip);
 }
 
 }  // namespace leviosim::platform

@@ -9,6 +9,7 @@
 #include <array>
 #include <string>
 
+#include "sim/energy/config.h"
 #include "sim/units.h"
 #include "sim/work/op.h"
 
@@ -118,6 +119,8 @@ struct ChipConfig {
   ClusterConfig cluster;
   ControllerConfig controller;
   L2Config l2;
+  SupplyConfig supply{};
+  EnergyRange energy{};
 };
 
 }  // namespace leviosim::sim

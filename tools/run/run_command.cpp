@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "sim/energy/model.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/progress_line.h"
@@ -73,6 +74,8 @@ std::string heading(const RunOptions& options, const RunResult& run) {
   if (run.timed)
     text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,
                         mhz(run.cluster_clock), mhz(run.controller_clock));
+  if (run.timed && sim::knows_energy(run.chip))
+    text += fmt::format(", {:g} V", run.chip.supply.voltage.count());
   return text + "\n\n";
 }
 
