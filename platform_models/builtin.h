@@ -1,6 +1,5 @@
 // Files that are part of the program, so that it needs none beside itself. The tables are generated
-// from platform_models/*.yaml and platform_models/isa/*.yaml when the program is built
-// (embed.cmake).
+// from platform_models/*.yaml, isa/*.yaml and code/*.csv when the program is built (embed.cmake).
 #pragma once
 
 #include <span>
@@ -13,8 +12,10 @@ struct BuiltinFile {
   std::string_view text;
 };
 
-/// Both sorted by name.
+/// All sorted by name.
 std::span<const BuiltinFile> builtin_platforms();
 std::span<const BuiltinFile> builtin_instruction_sets();
+/// Sizes of compiled code (code/*.csv).
+std::span<const BuiltinFile> builtin_code();
 
 }  // namespace leviosim::platform

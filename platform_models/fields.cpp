@@ -129,7 +129,7 @@ void add_operation(Table& table, const CoreSection& section, const work::OpInfo&
       [op](auto& core) -> auto& { return core.ops[work::index(op)].busy; });
   table.add_of_cores(
       section,
-      column(choice(row + ".on", {"core", "fpu", "divider", "int64"},
+      column(choice(row + ".on", {"core", "fpu", "divider", "int64", "bank"},
                     fmt::format("unit that does the work: {}", info.description))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].unit; });
   table.add_of_cores(
@@ -191,6 +191,58 @@ void add_fpu(Table& table) {
       quantity("cluster.fpu.int64_units", kUnits, 0, kMaxParts,
                "units for 64-bit integers that the cluster's cores share, mapped as the others"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
+}
+
+/// Sizes and times that every instruction cache has.
+template <class Caches>
+void add_instruction_cache(Table& table, const std::string& path, const std::string& whose,
+                           Caches caches) {
+  table.add(
+      quantity(path + ".line", kSize, 1, 1024, "bytes of code fetched at once"),
+      [caches](auto& chip) -> auto& { return caches(chip).line; });
+  table.add(
+      quantity(path + ".size", kSize, 0, kMaxSize, "private instruction cache of " + whose),
+      [caches](auto& chip) -> auto& { return caches(chip).worker; });
+}
+
+void add_code_of_cluster(Table& table) {
+  const auto caches = [](auto& chip) -> auto& { return chip.cluster.icache; };
+  const std::string path = "cluster.icache";
+  add_instruction_cache(table, path, "a worker; 0 for none", caches);
+  table.add(
+      quantity(path + ".master_size", kSize, 0, kMaxSize,
+               "private instruction cache of the master"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.master; });
+  table.add(
+      quantity(path + ".shared_size", kSize, 1, kMaxSize, "instruction cache that the cores share"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared; });
+  table.add(
+      quantity(path + ".shared_banks", kBanks, 1, kMaxParts,
+               "lines that the shared instruction cache can deliver in a cycle"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared_banks; });
+  table.add(
+      quantity(path + ".shared_hit", kCycles, 0, kMaxCost,
+               "cycles waited for a line that the private cache lacks and the shared one has"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared_hit; });
+  table.add(
+      quantity(path + ".shared_miss", kCycles, kLeastTime, kMaxCost,
+               "cycles waited for a line that has to come from L2"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.shared_miss; });
+  table.add(
+      quantity(path + ".refills", kUnits, kLeastTime, kMaxParts,
+               "lines that the shared instruction cache can await from L2 at once"),
+      [](auto& chip) -> auto& { return chip.cluster.icache.refills; });
+}
+
+/// The controller has no shared cache in front of L2.
+void add_code_of_controller(Table& table) {
+  add_instruction_cache(
+      table, "controller.icache", "the controller",
+      [](auto& chip) -> auto& { return chip.controller.icache; });
+  table.add(
+      quantity("controller.icache.miss", kCycles, kLeastTime, kMaxCost,
+               "cycles that the controller waits for a line that has to come from L2"),
+      [](auto& chip) -> auto& { return chip.controller.icache.shared_miss; });
 }
 
 void add_l1_and_dma(Table& table) {
@@ -259,9 +311,11 @@ std::vector<Field> all_fields() {
   add_core(table, {"isa", true, true});
   add_cores_of_cluster(table);
   add_fpu(table);
+  add_code_of_cluster(table);
   add_l1_and_dma(table);
   add_events(table);
   add_controller(table);
+  add_code_of_controller(table);
   add_l2(table);
   return table.take();
 }

@@ -1,8 +1,9 @@
 // The numbers that describe a chip: what a platform file (platform_models/) fills in. Every
 // number's source stands beside it in the platform file; the comments here say what it means.
 //
-// Cycles are cycles of the clock domain that the structure belongs to. They are real numbers where
-// the value is an average over many events.
+// Cycles are cycles of the clock domain that the structure belongs to; what the cluster awaits from
+// L2 (loads, DMA, refills of instruction caches) belongs to the SoC, whose clock is the
+// controller's. They are real numbers where the value is an average over many events.
 #pragma once
 
 #include <array>
@@ -14,8 +15,15 @@
 namespace leviosim::sim {
 
 /// Which unit an operation occupies besides its core.
-enum class Unit : std::uint8_t { Core, Fpu, Divider, Int64 };
-inline constexpr std::size_t kUnitCount = 4;
+enum class Unit : std::uint8_t {
+  Core,
+  Fpu,
+  Divider,
+  Int64,
+  Bank,    ///< the one bank of L1 that holds a word which all cores use
+  Refill,  ///< of the shared instruction cache from L2; no operation's, but code's
+};
+inline constexpr std::size_t kUnitCount = 6;
 
 /// What one counted operation costs a core that is alone.
 struct OpCost {
@@ -51,6 +59,18 @@ struct FpuConfig {
   int int64_units = 0;  ///< units for 64-bit integers, mapped as the floating-point ones
 };
 
+/// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
+struct InstructionCacheConfig {
+  Bytes line;              ///< bytes fetched at once
+  Bytes worker;            ///< private cache of a worker (or of the controller); 0: none
+  Bytes master;            ///< private cache of the cluster's master
+  Bytes shared;            ///< cache that the cores share; 0: none
+  int shared_banks = 1;    ///< lines that the shared cache can deliver in a cycle
+  double shared_hit = 0;   ///< cycles waited for a line that the private cache lacks
+  double shared_miss = 0;  ///< cycles waited for a line that has to come from L2
+  double refills = 1;      ///< lines that the shared cache can await from L2 at once
+};
+
 struct L1Config {
   Bytes size;
   int banks = 1;
@@ -76,6 +96,7 @@ struct ClusterConfig {
   int max_workers = 0;  ///< what the event unit can serve
   CoreConfig core;
   FpuConfig fpu;
+  InstructionCacheConfig icache;
   L1Config l1;
   DmaConfig dma;
   EventUnitConfig events;
@@ -85,6 +106,7 @@ struct ClusterConfig {
 struct ControllerConfig {
   Hertz clock;
   CoreConfig core;
+  InstructionCacheConfig icache;
 };
 
 struct L2Config {

@@ -14,7 +14,7 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr int kMaxRounds = 16;
 constexpr double kSettled = 1e-9;
 
-constexpr std::array kShared = {Unit::Fpu, Unit::Divider, Unit::Int64};
+constexpr std::array kShared = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::Refill};
 
 constexpr std::size_t index(Unit unit) { return static_cast<std::size_t>(unit); }
 
@@ -59,7 +59,8 @@ void apply(const std::vector<Request>& requests, double fair, std::vector<double
 
 Runner Runner::of(int core, const Demand& demand) {
   const double cycles = std::max(demand.cycles(), 1.0);
-  Runner runner{core, demand.units, demand.l1_accesses / cycles};
+  Runner runner{core, demand.units, demand.streamed / cycles, demand.scattered / cycles,
+                demand.fetches / cycles};
   for (UnitDemand& unit : runner.units) {
     unit.requests /= cycles;
     unit.cycles /= cycles;
@@ -67,7 +68,9 @@ Runner Runner::of(int core, const Demand& demand) {
   return runner;
 }
 
-Contention::Contention(const FpuConfig& fpu, const L1Config& l1) : banks_(l1.banks) {
+Contention::Contention(const ClusterConfig& config)
+    : banks_(config.l1.banks), code_banks_(config.icache.shared_banks) {
+  const FpuConfig& fpu = config.fpu;
   const auto mapped = [&](int units) {
     return fpu.mapping == FpuMapping::Fixed ? Pools{units, 1.0}
                                             : Pools{1, static_cast<double>(units)};
@@ -75,6 +78,8 @@ Contention::Contention(const FpuConfig& fpu, const L1Config& l1) : banks_(l1.ban
   pools_[index(Unit::Fpu)] = mapped(fpu.units);
   pools_[index(Unit::Divider)] = {1, static_cast<double>(fpu.dividers)};
   pools_[index(Unit::Int64)] = mapped(fpu.int64_units);
+  pools_[index(Unit::Bank)] = {1, 1.0};
+  pools_[index(Unit::Refill)] = {1, config.icache.refills};
 }
 
 /// Finds the highest rates that the units of one kind allow at the present rates.
@@ -103,24 +108,65 @@ double Contention::allowed(std::size_t runner, std::size_t except) const {
   return rate;
 }
 
-double Contention::bank_delay(const std::vector<Runner>& runners, std::size_t i) const {
-  double others = 0;
-  for (std::size_t j = 0; j < runners.size(); ++j)
-    if (j != i) others += runners[j].accesses * rate_[j];
-  return runners[i].accesses * others / (2.0 * banks_);
+void Contention::sum_up(const std::vector<Runner>& runners, double dma_words) {
+  runners_ = &runners;
+  dma_words_ = dma_words;
+  all_streamed_ = all_scattered_ = all_fetches_ = 0;
+  for (std::size_t i = 0; i < runners.size(); ++i) {
+    all_streamed_ += runners[i].streamed * rate_[i];
+    all_scattered_ += runners[i].scattered * rate_[i];
+    all_fetches_ += runners[i].fetches * rate_[i];
+  }
 }
 
-void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress) {
+double Contention::l1_delay(std::size_t i) const {
+  const Runner& me = (*runners_)[i];
+  const double scattered = all_scattered_ - me.scattered * rate_[i] + dma_words_;
+  const double streamed = all_streamed_ - me.streamed * rate_[i];
+  return (me.scattered * (scattered + streamed) + me.streamed * scattered) / (2.0 * banks_);
+}
+
+double Contention::fetch_delay(std::size_t i) const {
+  const Runner& me = (*runners_)[i];
+  return me.fetches * (all_fetches_ - me.fetches * rate_[i]) / (2.0 * code_banks_);
+}
+
+/// Books the time that a runner loses on what it waits for.
+void Contention::blame(std::size_t i, Progress& p) const {
+  p.banks = p.rate * l1_delay(i);
+  p.fetch = p.rate * fetch_delay(i);
+  const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch);
+  const auto tightest = std::min_element(kShared.begin(), kShared.end(), [&](Unit a, Unit b) {
+    return limits_[index(a)][i] < limits_[index(b)][i];
+  });
+  switch (*tightest) {
+    case Unit::Divider:
+      p.divider = lost;
+      break;
+    case Unit::Bank:
+      p.banks += lost;
+      break;
+    case Unit::Refill:
+      p.fetch += lost;
+      break;
+    default:
+      p.fpu = lost;
+  }
+}
+
+void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
+                       double dma_words) {
   const std::size_t n = runners.size();
   rate_.assign(n, 1.0);
   for (std::vector<double>& limits : limits_) limits.assign(n, kUnlimited);
   progress.assign(n, Progress{});
-  if (n < 2) return;
+  if (n < 2 && dma_words == 0) return;
 
-  std::vector<double> free_rate(n);  // without shared arithmetic units
+  std::vector<double> free_rate(n);  // without units that serve in turn
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0;
-    for (std::size_t i = 0; i < n; ++i) free_rate[i] = 1.0 / (1.0 + bank_delay(runners, i));
+    sum_up(runners, dma_words);
+    for (std::size_t i = 0; i < n; ++i) free_rate[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i));
     // Each unit's limit is found with what the *other* limits leave of the demand.
     for (const Unit unit : kShared) {
       for (std::size_t i = 0; i < n; ++i)
@@ -134,13 +180,8 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
     }
     if (change < kSettled) break;
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    Progress& p = progress[i];
-    p.banks = p.rate * bank_delay(runners, i);
-    const double lost = std::max(0.0, 1.0 - p.rate - p.banks);
-    const bool by_divider = limits_[index(Unit::Divider)][i] < allowed(i, index(Unit::Divider));
-    (by_divider ? p.divider : p.fpu) = lost;
-  }
+  sum_up(runners, dma_words);
+  for (std::size_t i = 0; i < n; ++i) blame(i, progress[i]);
 }
 
 }  // namespace leviosim::sim

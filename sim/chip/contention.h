@@ -6,12 +6,16 @@
 // cores dividing in single and four in half precision take 4·14 + 4·10 cycles a round), so when its
 // demand exceeds its capacity, the requesters that are held back get equal request rates and the
 // others all they ask for. How long a request occupies its unit is the mean over the operations of
-// the segment that use this kind of unit. L1 banks add a small delay to each access instead: with
-// requesters j making p_j accesses per cycle on B interleaved banks, an access waits Σ p_j / (2B)
-// cycles (hw_facts 4.1).
+// the segment that use this kind of unit. Refills of the shared instruction cache are served so,
+// too.
 //
-// Left out: transients of a few cycles until requesters have interleaved, and the alignment of
-// lock-step accesses to particular banks.
+// Banks add a small delay to each access instead: with requesters j making p_j accesses per cycle
+// on B interleaved banks, an access waits Σ p_j / (2B) cycles (hw_facts 4.1). That is how code
+// waits for the shared instruction cache, and scattered accesses for L1. Streams walk from bank to
+// bank all at the same pace: one that meets another waits once and is out of its way for good, so
+// streams wait only for scattered accesses and for the DMA.
+//
+// Left out: transients of a few cycles until requesters have interleaved.
 #pragma once
 
 #include <cstdint>
@@ -28,13 +32,16 @@ struct Progress {
   double fpu = 0;      ///< share of the time lost to floating-point and 64-bit integer units
   double divider = 0;  ///< … to the divider
   double banks = 0;    ///< … to L1 bank conflicts
+  double fetch = 0;    ///< … to the shared instruction cache and its refills
 };
 
 /// One running segment as the solver sees it.
 struct Runner {
   int core = 0;                              ///< id, decides the unit under a fixed mapping
   std::array<UnitDemand, kUnitCount> units;  ///< per lone cycle
-  double accesses = 0;                       ///< L1 accesses per lone cycle
+  double streamed = 0;                       ///< L1 accesses by streams per lone cycle
+  double scattered = 0;                      ///< other L1 accesses per lone cycle
+  double fetches = 0;  ///< lines from the shared instruction cache per lone cycle
 
   static Runner of(int core, const Demand& demand);
 };
@@ -42,9 +49,11 @@ struct Runner {
 /// Solves the rates of all runners at once. Results are in the order of the runners.
 class Contention {
  public:
-  Contention(const FpuConfig& fpu, const L1Config& l1);
+  explicit Contention(const ClusterConfig& config);
 
-  void solve(const std::vector<Runner>& runners, std::vector<Progress>& progress);
+  /// @param dma_words  words per cycle that the DMA moves in L1
+  void solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
+             double dma_words = 0);
 
  private:
   /// Units of one kind: `pools` groups of `capacity` units; core c uses group c mod pools.
@@ -55,10 +64,21 @@ class Contention {
 
   void limit(std::size_t unit, const std::vector<Runner>& runners);
   double allowed(std::size_t runner, std::size_t except) const;
-  double bank_delay(const std::vector<Runner>& runners, std::size_t i) const;
+  /// Cycles per lone cycle that a runner waits for L1 banks, and for those of the instruction
+  /// cache.
+  double l1_delay(std::size_t runner) const;
+  double fetch_delay(std::size_t runner) const;
+  void sum_up(const std::vector<Runner>& runners, double dma_words);
+  void blame(std::size_t runner, Progress& progress) const;
 
   std::array<Pools, kUnitCount> pools_;
   int banks_;
+  int code_banks_;
+  const std::vector<Runner>* runners_ = nullptr;  ///< while solving
+  double all_streamed_ = 0;                       ///< per cycle at the present rates, by everybody
+  double all_scattered_ = 0;
+  double all_fetches_ = 0;
+  double dma_words_ = 0;
   std::vector<double> rate_;                            ///< current estimate
   std::array<std::vector<double>, kUnitCount> limits_;  ///< highest rate that each unit allows
 };

@@ -7,7 +7,7 @@ namespace leviosim::sim {
 Task<JobTiming> Controller::run(const work::Job& job) {
   JobTiming timing{kernel_.now(), kernel_.now(), {}};
   for (const work::StageRun& stage : job.stages) {
-    const Demand demand = price(work::counts_of(stage), config_.core);
+    const Demand demand = price(work::counts_of(stage), config_.core, code_);
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
     s.cycles = Cycles(static_cast<std::int64_t>(std::ceil(demand.cycles())));
     s.account.useful = demand.alone;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/chip/config.h"
+#include "sim/chip/instruction_cache.h"
 #include "sim/chip/timing.h"
 #include "sim/kernel/kernel.h"
 #include "sim/kernel/task.h"
@@ -13,7 +14,10 @@ namespace leviosim::sim {
 class Controller {
  public:
   Controller(Kernel& kernel, const ClockDomain& clock, const ControllerConfig& config)
-      : kernel_(kernel), clock_(clock), config_(config) {}
+      : kernel_(kernel),
+        clock_(clock),
+        config_(config),
+        code_(config.icache, config.icache.worker, 1) {}
 
   /// co_await: runs the job. Forks run their shares one after the other; transfers copy nothing,
   /// since the controller works where the data lies.
@@ -25,6 +29,7 @@ class Controller {
   Kernel& kernel_;
   const ClockDomain& clock_;
   ControllerConfig config_;
+  CodeFetcher code_;
 };
 
 }  // namespace leviosim::sim

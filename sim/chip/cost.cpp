@@ -13,6 +13,7 @@ double CycleBreakdown::*stall_account(Op op) {
     case Op::LoopEntry:
     case Op::LoopIteration:
     case Op::Call:
+    case Op::JumpRegister:
       return &CycleBreakdown::control;
     case Op::LoadStream:
     case Op::LoadIndexed:
@@ -20,6 +21,8 @@ double CycleBreakdown::*stall_account(Op op) {
     case Op::StoreIndexed:
     case Op::LoadL2:
     case Op::StoreL2:
+    case Op::LoadShared:
+    case Op::StoreShared:
     case Op::Straddle:
       return &CycleBreakdown::memory;
     default:
@@ -35,14 +38,15 @@ CycleBreakdown& CycleBreakdown::operator+=(const CycleBreakdown& o) {
   control += o.control;
   memory += o.memory;
   arithmetic += o.arithmetic;
+  fetch += o.fetch;
   return *this;
 }
 
 CycleBreakdown operator*(const CycleBreakdown& b, double k) {
-  return {b.issue * k, b.load_use * k, b.control * k, b.memory * k, b.arithmetic * k};
+  return {b.issue * k, b.load_use * k, b.control * k, b.memory * k, b.arithmetic * k, b.fetch * k};
 }
 
-Demand price(const work::Counts& counts, const CoreConfig& core) {
+Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {
   Demand demand;
   for (const work::OpInfo& info : work::kOps) {
     const auto n = static_cast<double>(counts[info.op]);
@@ -58,7 +62,13 @@ Demand price(const work::Counts& counts, const CoreConfig& core) {
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   const double loads = sum(Op::LoadStream, Op::LoadIndexed);
   demand.alone.load_use = loads * core.load_use_fraction * core.load_use_stall;
-  demand.l1_accesses = loads + sum(Op::StoreStream, Op::StoreIndexed, Op::Straddle);
+  const CodeFetch fetch = code.fetch(counts.code);
+  demand.alone.fetch = fetch.stall;
+  demand.fetches = fetch.requests;
+  demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
+  // The second half of a straddling access follows the first.
+  demand.streamed = sum(Op::LoadStream, Op::StoreStream, Op::Straddle);
+  demand.scattered = sum(Op::LoadIndexed, Op::StoreIndexed);
   return demand;
 }
 

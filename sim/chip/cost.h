@@ -1,11 +1,12 @@
 // What a piece of counted work costs a core that runs alone, and what it asks of shared units.
 //
 // Models: issue slots of an in-order single-issue core, load-use and taken-branch stalls,
-// latencies. Leaves out: instruction-cache refills and the order of instructions within a piece of
+// latencies, instruction-cache refills. Leaves out: the order of instructions within a piece of
 // work.
 #pragma once
 
 #include "sim/chip/config.h"
+#include "sim/chip/instruction_cache.h"
 #include "sim/work/counts.h"
 
 namespace leviosim::sim {
@@ -17,8 +18,9 @@ struct CycleBreakdown {
   double control = 0;     ///< refilling the pipeline after branches, calls and loop entries
   double memory = 0;      ///< L2 latency and words that straddle
   double arithmetic = 0;  ///< integer divisions and floating-point latencies
+  double fetch = 0;       ///< instructions that the private cache lacks
 
-  double total() const { return issue + load_use + control + memory + arithmetic; }
+  double total() const { return issue + load_use + control + memory + arithmetic + fetch; }
   CycleBreakdown& operator+=(const CycleBreakdown& o);
   friend CycleBreakdown operator*(const CycleBreakdown& b, double k);
 };
@@ -33,11 +35,14 @@ struct UnitDemand {
 struct Demand {
   CycleBreakdown alone;
   std::array<UnitDemand, kUnitCount> units;  ///< by Unit; none of Unit::Core
-  double l1_accesses = 0;                    ///< loads and stores of the core's local memory
+  double streamed = 0;                       ///< accesses of local memory by streams
+  double scattered = 0;                      ///< … at addresses that are computed from data
+  double fetches = 0;                        ///< lines of code from the shared instruction cache
 
   double cycles() const { return alone.total(); }
 };
 
-Demand price(const work::Counts& counts, const CoreConfig& core);
+/// @param code  the caches through which the core fetches; by default unlimited ones
+Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code = {});
 
 }  // namespace leviosim::sim

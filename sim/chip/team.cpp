@@ -17,20 +17,23 @@ constexpr double kNothingLeft = 1e-6;
 
 Team::Core::Core(Kernel& kernel, int id) : end(kernel, fmt::format("end of work on core {}", id)) {}
 
-Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int cores)
+Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers)
     : kernel_(kernel),
       clock_(clock),
       core_config_(config.core),
-      contention_(config.fpu, config.l1),
+      worker_code_(config.icache, config.icache.worker, workers),
+      master_code_(config.icache, config.icache.master, 1),
+      contention_(config),
       changed_(kernel, "change of running cores") {
-  for (int id = 0; id < cores; ++id) cores_.push_back(std::make_unique<Core>(kernel, id));
+  for (int id = 0; id <= workers; ++id) cores_.push_back(std::make_unique<Core>(kernel, id));
   kernel_.spawn_server("contention", settle());
 }
 
 Task<SegmentTime> Team::execute(int id, const work::Counts& counts) {
   Core& core = *cores_.at(static_cast<std::size_t>(id));
   check(!core.running, "a core runs one piece of work at a time");
-  core.demand = price(counts, core_config_);
+  const bool master = static_cast<std::size_t>(id) + 1 == cores_.size();
+  core.demand = price(counts, core_config_, master ? master_code_ : worker_code_);
   core.remaining = core.demand.cycles();
   core.time = {};
   core.progress = {};
@@ -44,9 +47,14 @@ Task<SegmentTime> Team::execute(int id, const work::Counts& counts) {
   note_change();
   core.time.alone = core.demand.alone;
   const auto elapsed = static_cast<double>(clock_.whole_cycles(kernel_.now() - begin).count());
-  core.time.rounding =
-      elapsed - core.demand.cycles() - core.time.fpu - core.time.divider - core.time.banks;
+  core.time.rounding = elapsed - core.demand.cycles() - core.time.waiting();
   co_return core.time;
+}
+
+void Team::change_traffic(double words_per_cycle) {
+  advance();
+  dma_words_ += words_per_cycle;
+  note_change();
 }
 
 void Team::note_change() {
@@ -78,6 +86,7 @@ void Team::advance() {
     core->time.fpu += worked * core->progress.fpu;
     core->time.divider += worked * core->progress.divider;
     core->time.banks += worked * core->progress.banks;
+    core->time.fetch += worked * core->progress.fetch;
   }
 }
 
@@ -87,7 +96,7 @@ void Team::solve() {
   for (std::size_t id = 0; id < cores_.size(); ++id)
     if (cores_[id]->running)
       runners_.push_back(Runner::of(static_cast<int>(id), cores_[id]->demand));
-  contention_.solve(runners_, progress_);
+  contention_.solve(runners_, progress_, dma_words_);
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     Core& core = *cores_[static_cast<std::size_t>(runners_[i].core)];
     core.progress = progress_[i];

@@ -22,16 +22,22 @@ struct SegmentTime {
   double fpu = 0;
   double divider = 0;
   double banks = 0;
+  double fetch = 0;
   double rounding = 0;
+
+  double waiting() const { return fpu + divider + banks + fetch; }
 };
 
 class Team {
  public:
-  /// @param cores  ids 0 … cores-1
-  Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int cores);
+  /// @param workers  ids 0 … workers-1; the master is core `workers`
+  Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
 
   /// co_await: core `id` runs `counts`; at most one piece of work per core at a time.
   Task<SegmentTime> execute(int id, const work::Counts& counts);
+
+  /// The DMA moves so many words of L1 per cycle more (or less) from now on.
+  void change_traffic(double words_per_cycle);
 
  private:
   struct Core {
@@ -52,12 +58,15 @@ class Team {
   Kernel& kernel_;
   const ClockDomain& clock_;
   CoreConfig core_config_;
+  CodeFetcher worker_code_;
+  CodeFetcher master_code_;
   Contention contention_;
   std::vector<std::unique_ptr<Core>> cores_;
   std::vector<Runner> runners_;
   std::vector<Progress> progress_;
   Event changed_;
   bool change_noted_ = false;
+  double dma_words_ = 0;
   Time advanced_to_;
 };
 

@@ -7,6 +7,7 @@ Account& Account::operator+=(const Account& o) {
   fpu += o.fpu;
   divider += o.divider;
   banks += o.banks;
+  fetch += o.fetch;
   imbalance += o.imbalance;
   synchronisation += o.synchronisation;
   transfer += o.transfer;

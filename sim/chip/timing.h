@@ -11,12 +11,13 @@
 namespace leviosim::sim {
 
 /// Core-cycles of a team during a stage, by what they were spent on. With W workers, a stage of T
-/// cycles has W·T of them.
+/// cycles has W·T of them; what the master does beside them in a fork is not in it.
 struct Account {
   CycleBreakdown useful;       ///< shares of parallel work, as if each core were alone
   double fpu = 0;              ///< waiting for a shared floating-point unit
   double divider = 0;          ///< waiting for the shared divider
   double banks = 0;            ///< waiting for L1 banks
+  double fetch = 0;            ///< waiting for the shared instruction cache that others use too
   double imbalance = 0;        ///< waiting at the end of a fork for the slowest core
   double synchronisation = 0;  ///< forking, waking up, barriers
   double transfer = 0;         ///< waiting for the DMA
@@ -24,7 +25,7 @@ struct Account {
   double rounding = 0;         ///< ends of shares moved to the next clock edge
 
   double total() const {
-    return useful.total() + fpu + divider + banks + imbalance + synchronisation + transfer +
+    return useful.total() + fpu + divider + banks + fetch + imbalance + synchronisation + transfer +
            serial + rounding;
   }
   Account& operator+=(const Account& o);

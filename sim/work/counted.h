@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "sim/work/code_tracker.h"
 #include "sim/work/counts.h"
 
 namespace leviosim::work {
@@ -105,13 +106,14 @@ struct Int {
   friend Int operator<<(Int a, Int<std::int32_t> s) { return a << s.v; }
   friend Int operator>>(Int a, Int<std::int32_t> s) { return a >> s.v; }
   friend Product<Int> operator*(Int a, Int b) { return Product<Int>(wrap_mul(a.v, b.v)); }
+  /// Division by zero is defined, as it is on RISC-V: all ones, and the dividend as remainder.
   friend Int operator/(Int a, Int b) {
     count_division(b.v);
-    return Int(a.v / b.v);
+    return b.v == 0 ? Int(static_cast<Rep>(-1)) : Int(a.v / b.v);
   }
   friend Int operator%(Int a, Int b) {
     count_division(b.v);
-    return Int(a.v % b.v);
+    return b.v == 0 ? a : Int(a.v % b.v);
   }
 
   Int& operator+=(Int b) { return *this = *this + b; }
@@ -201,6 +203,12 @@ using U32 = Int<std::uint32_t>;
 using F32 =
     Float<float, Op::F32Add, Op::F32Mul, Op::F32Fma, Op::F32Div, Op::F32Compare, Op::F32Sign>;
 
+/// Counts an operation that is a routine of a library on cores without hardware for it.
+inline void count_routine(Op op, CodeName routine) {
+  count(op);
+  if (current_code != nullptr) current_code->call_routine(routine.key);
+}
+
 /// Double precision. FP32-only cores emulate it in a library without a fused form, so a product
 /// that is added counts as a product and a sum.
 struct F64 {
@@ -210,11 +218,11 @@ struct F64 {
   constexpr F64(double value) : v(value) {}
 
   friend F64 operator+(F64 a, F64 b) {
-    count(Op::F64Add);
+    count_routine(Op::F64Add, "f64_add");
     return F64(a.v + b.v);
   }
   friend F64 operator-(F64 a, F64 b) {
-    count(Op::F64Add);
+    count_routine(Op::F64Add, "f64_add");
     return F64(a.v - b.v);
   }
   friend F64 operator-(F64 a) {
@@ -222,11 +230,11 @@ struct F64 {
     return F64(-a.v);
   }
   friend F64 operator*(F64 a, F64 b) {
-    count(Op::F64Mul);
+    count_routine(Op::F64Mul, "f64_mul");
     return F64(a.v * b.v);
   }
   friend F64 operator/(F64 a, F64 b) {
-    count(Op::F64Div);
+    count_routine(Op::F64Div, "f64_div");
     return F64(a.v / b.v);
   }
   F64& operator+=(F64 b) { return *this = *this + b; }
@@ -234,11 +242,11 @@ struct F64 {
   F64& operator*=(F64 b) { return *this = *this * b; }
   F64& operator/=(F64 b) { return *this = *this / b; }
   friend Cond operator<(F64 a, F64 b) {
-    count(Op::F64Compare);
+    count_routine(Op::F64Compare, "f64_compare");
     return {a.v < b.v};
   }
   friend Cond operator>(F64 a, F64 b) {
-    count(Op::F64Compare);
+    count_routine(Op::F64Compare, "f64_compare");
     return {a.v > b.v};
   }
 };

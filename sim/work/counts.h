@@ -1,9 +1,10 @@
-// How often each operation occurred in a piece of work.
+// How often each operation occurred in a piece of work, and how much code it fetched.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "sim/work/code_reuse.h"
 #include "sim/work/op.h"
 
 namespace leviosim::work {
@@ -11,12 +12,14 @@ namespace leviosim::work {
 /// Number of operations of each kind. A plain value: add two to merge two pieces of work.
 struct Counts {
   std::array<std::uint64_t, kOpCount> n{};
+  CodeReuse code{};  ///< bytes of code fetched, by reuse distance
 
   constexpr std::uint64_t operator[](Op op) const { return n[index(op)]; }
   constexpr std::uint64_t& operator[](Op op) { return n[index(op)]; }
 
   constexpr Counts& operator+=(const Counts& other) {
     for (std::size_t i = 0; i < kOpCount; ++i) n[i] += other.n[i];
+    for (std::size_t i = 0; i < kReuseClasses; ++i) code[i] += other.code[i];
     return *this;
   }
   friend constexpr Counts operator+(Counts a, const Counts& b) { return a += b; }

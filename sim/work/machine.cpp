@@ -7,6 +7,12 @@ namespace leviosim::work {
 Machine::Machine(const MachineConfig& config)
     : config_(config), local_(config.memory, config.capacity, config.alignment) {
   check(config.cores >= 1, "a machine has at least one core");
+  if (config.record && config.code != nullptr)
+    trackers_.assign(static_cast<std::size_t>(config.cores) + 1, CodeTracker(*config.code));
+}
+
+void Machine::follow_code_of(int core) {
+  if (!trackers_.empty()) current_code = &trackers_[static_cast<std::size_t>(core)];
 }
 
 void Machine::begin_stage(std::string_view name) {
@@ -17,12 +23,14 @@ void Machine::begin_stage(std::string_view name) {
   fork_peak_ = {};
   if (!recording()) return;
   take_tally();  // what happened between stages belongs to none
+  follow_code_of(config_.cores);
   job_.stages.push_back({name, {}, {}});
 }
 
 void Machine::end_stage() {
   in_stage_ = false;
   if (!recording()) return;
+  current_code = nullptr;
   flush_serial();
   MemoryPeak& memory = job_.stages.back().memory;
   memory = fork_peak_;
@@ -36,7 +44,7 @@ void Machine::end_stage() {
 void Machine::begin_fork(std::string_view name) {
   check(in_stage_, "a fork belongs to a stage");
   scratch_sum_ = scratch_max_ = Bytes(0);
-  fork_ = {name, {}};
+  fork_ = {name, {}, false};
   if (recording()) flush_serial();
 }
 
@@ -48,6 +56,7 @@ void Machine::end_share(Bytes scratch_peak) {
 
 void Machine::end_fork() {
   if (!recording()) return;
+  follow_code_of(config_.cores);
   fork_peak_.single = std::max(fork_peak_.single, local_.used() + scratch_max_);
   if (local_.used() + scratch_sum_ > fork_peak_.parallel) {
     fork_peak_.parallel = local_.used() + scratch_sum_;
@@ -58,11 +67,20 @@ void Machine::end_fork() {
   job_.stages.back().steps.emplace_back(std::move(fork_));
 }
 
-void Machine::note_transfer(Direction direction, Bytes bytes) {
+void Machine::note_transfer(const Transfer& transfer) {
   if (!recording()) return;
   check(in_stage_, "a transfer belongs to a stage");
   flush_serial();
-  job_.stages.back().steps.emplace_back(Transfer{direction, bytes});
+  job_.stages.back().steps.emplace_back(transfer);
+}
+
+void Machine::wait(Ticket ticket) {
+  check(ticket.number_ >= 0 && ticket.number_ < background_transfers_,
+        "one waits for a transfer that was started in the same job");
+  ++waits_;
+  if (!recording()) return;
+  flush_serial();
+  job_.stages.back().steps.emplace_back(TransferWait{ticket.number_});
 }
 
 void Machine::flush_serial() {
@@ -70,6 +88,10 @@ void Machine::flush_serial() {
   if (!counts.empty()) job_.stages.back().steps.emplace_back(Serial{counts});
 }
 
-Job Machine::take_job() { return std::exchange(job_, {}); }
+Job Machine::take_job() {
+  check_equal(waits_, background_transfers_, "waits for background transfers");
+  waits_ = background_transfers_ = 0;
+  return std::exchange(job_, {});
+}
 
 }  // namespace leviosim::work

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 
+#include "sim/work/code_tracker.h"
 #include "sim/work/counted.h"
 #include "sim/work/functions.h"
 #include "sim/work/memory.h"
@@ -79,12 +80,26 @@ class DownRange {
   int end_;
 };
 
-/// Marks a function that a target compiler does not inline. `name` names the piece of code.
+/// Marks a function that a target compiler does not inline. Its name finds the size of its code
+/// (code_map.h).
 template <bool Counted>
 struct FunctionScope {
-  explicit FunctionScope(const char* /*name*/) {
-    if constexpr (Counted) count(Op::Call);
+  explicit FunctionScope(CodeName name) {
+    if constexpr (Counted) {
+      count(Op::Call);
+      code_ = current_code;
+      if (code_ != nullptr) code_->enter(name.key);
+    }
   }
+  ~FunctionScope() {
+    if constexpr (Counted)
+      if (code_ != nullptr) code_->leave();
+  }
+  FunctionScope(const FunctionScope&) = delete;
+  FunctionScope& operator=(const FunctionScope&) = delete;
+
+ private:
+  CodeTracker* code_ = nullptr;  ///< of the core that called
 };
 
 struct Native {
@@ -100,9 +115,13 @@ struct Native {
   using Span = NativeSpan<T>;
   template <class T>
   using L2Span = NativeSpan<T>;
+  template <class T>
+  using SharedSpan = NativeSpan<T>;
   template <class T, int N>
   using Array = NativeArray<T, N>;
   using Function = FunctionScope<false>;
+  /// A jump through a table: of a state machine, an interpreter.
+  static void jump_to_computed() {}
   static Range<false> range(int begin, int end) { return {begin, end}; }
   static DownRange<false> down_range(int begin, int last) { return {begin, last}; }
 };
@@ -120,9 +139,12 @@ struct Counting {
   using Span = CountedSpan<T>;
   template <class T>
   using L2Span = CountedSpan<T, Space::L2>;
+  template <class T>
+  using SharedSpan = CountedSpan<T, Space::Shared>;
   template <class T, int N>
   using Array = CountedArray<T, N>;
   using Function = FunctionScope<true>;
+  static void jump_to_computed() { count(Op::JumpRegister); }
   static Range<true> range(int begin, int end) { return {begin, end}; }
   static DownRange<true> down_range(int begin, int last) { return {begin, last}; }
   static Range<true> range(I32 begin, I32 end) { return {begin.v, end.v}; }

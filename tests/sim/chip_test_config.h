@@ -16,6 +16,8 @@ inline CoreConfig unit_cost_core() {
   core.ops[work::index(work::Op::F16Op)].unit = Unit::Fpu;
   for (const work::Op op : {work::Op::Int64Add, work::Op::Int64Mul, work::Op::Int64Mac})
     core.ops[work::index(op)].unit = Unit::Int64;
+  for (const work::Op op : {work::Op::LoadShared, work::Op::StoreShared})
+    core.ops[work::index(op)].unit = Unit::Bank;
   return core;
 }
 
@@ -34,7 +36,7 @@ inline ClusterConfig test_cluster() {
 }
 
 inline ChipConfig test_chip() {
-  return {"test", test_cluster(), {Hertz(370'000'000), unit_cost_core()}, {Bytes(1'600'000)}};
+  return {"test", test_cluster(), {Hertz(370'000'000), unit_cost_core(), {}}, {Bytes(1'600'000)}};
 }
 
 }  // namespace leviosim::sim

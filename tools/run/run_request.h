@@ -14,14 +14,14 @@
 namespace leviosim::tools {
 
 struct RunRequest {
-  std::string data;                        ///< ASL folder (the synthetic flight has been made)
+  std::string data;  ///< ASL folder (the synthetic flight has been made)
   std::string profile = "levio";
   std::optional<traces::FrameRange> frames;
   traces::ImageSize image_size{160, 120};
-  bool native = false;                     ///< no timing, any resolution
+  bool native = false;  ///< no timing, any resolution
   int cores = 8;
-  std::uint32_t seed = 1;                  ///< of the workload's random draws
-  platform::ResolvedPlatform platform;     ///< unused if native
+  std::uint32_t seed = 1;               ///< of the workload's random draws
+  platform::ResolvedPlatform platform;  ///< unused if native
 };
 
 /// Called after every frame.

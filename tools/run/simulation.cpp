@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "platform_models/compiled_code.h"
 #include "sim/check.h"
 #include "traces/evaluation.h"
 
@@ -18,7 +19,8 @@ work::MachineConfig cluster_machine(const RunRequest& request, const vio::Profil
           .memory = "L1",
           .capacity = request.native ? kUnlimited : request.platform.config.cluster.l1.size,
           .alignment = profile.l1_alignment,
-          .record = !request.native};
+          .record = !request.native,
+          .code = &platform::compiled_code()};
 }
 
 work::MachineConfig controller_machine(const RunRequest& request) {
@@ -26,7 +28,8 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .memory = "L2",
           .capacity = request.native ? kUnlimited : request.platform.config.l2.size,
           .alignment = 4,
-          .record = !request.native};
+          .record = !request.native,
+          .code = &platform::compiled_code()};
 }
 
 std::vector<StageResult> empty_stages() {

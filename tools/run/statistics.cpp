@@ -82,6 +82,17 @@ void add_blocks(StatisticList& list, const std::string& path,
              group.bytes.count());
 }
 
+/// Where code is reused tells which caches hold it.
+void add_code(StatisticList& list, const std::string& path, const StageResult& stage) {
+  for (std::size_t k = 0; k < work::kReuseClassEnds.size(); ++k)
+    if (stage.counts.code[k] > 0)
+      list.add(fmt::format("{}code.reuse_{}", path, work::kReuseClassEnds[k]), "byte",
+               "code fetched again at a reuse distance of up to so many bytes",
+               stage.counts.code[k]);
+  list.add(path + "code.first", "byte", "code fetched for the first time, or after 64 KiB of other",
+           stage.counts.code[work::kNeverFetched]);
+}
+
 void add_stage(StatisticList& list, const RunResult& run, const StageResult& stage) {
   const std::string path = fmt::format("stages.{}.", key_of(stage.name));
   list.add(path + "calls", "1", fmt::format("executions, one per {}", stage.unit), stage.calls);
@@ -91,6 +102,7 @@ void add_stage(StatisticList& list, const RunResult& run, const StageResult& sta
   add_account(list, path, stage);
   for (const work::OpInfo& op : work::kOps)
     list.add(fmt::format("{}ops.{}", path, op.name), "1", op.description, stage.counts[op.op]);
+  add_code(list, path, stage);
   list.add(path + "memory.single", "byte", "peak in its memory on one core",
            stage.memory.single.count());
   list.add(path + "memory.parallel", "byte", "peak in its memory on N cores",

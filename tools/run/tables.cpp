@@ -38,7 +38,9 @@ struct AccountColumn {
   double (*of)(const sim::Account&);
 };
 constexpr std::array kAccountColumns{
-    AccountColumn{"useful", [](const sim::Account& a) { return a.useful.total(); }},
+    AccountColumn{"useful",
+                  [](const sim::Account& a) { return a.useful.total() - a.useful.fetch; }},
+    AccountColumn{"I-cache", [](const sim::Account& a) { return a.useful.fetch + a.fetch; }},
     AccountColumn{"FPU", [](const sim::Account& a) { return a.fpu; }},
     AccountColumn{"divider", [](const sim::Account& a) { return a.divider; }},
     AccountColumn{"banks", [](const sim::Account& a) { return a.banks; }},

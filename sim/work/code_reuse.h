@@ -1,0 +1,35 @@
+// How far apart in code a core fetches the same instructions: what decides whether an instruction
+// cache still holds them, whatever its size. A *reuse distance* is the number of distinct bytes of
+// code that a core walked through since it was last in a piece of code, that piece included
+// (Mattson's stack distance, in bytes). Work carries a histogram of it, so that a recorded piece of
+// work can be priced for any cache, and two pieces of work can be added.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace leviosim::work {
+
+/// Upper ends of the classes in bytes: quarters of an octave from 256 B to 64 KiB, above and below
+/// which no instruction cache of such chips lies. One more class follows: farther, or never before.
+inline constexpr std::array<std::uint32_t, 33> kReuseClassEnds = {
+    256,   304,   362,   431,   512,   609,   724,   861,   1024,  1218,  1448,
+    1722,  2048,  2435,  2896,  3444,  4096,  4871,  5793,  6889,  8192,  9742,
+    11585, 13777, 16384, 19484, 23170, 27554, 32768, 38968, 46341, 55109, 65536};
+inline constexpr std::size_t kReuseClasses = kReuseClassEnds.size() + 1;
+inline constexpr std::size_t kNeverFetched = kReuseClasses - 1;
+inline constexpr std::uint32_t kFarthestReuse = kReuseClassEnds.back();
+
+/// Bytes of code fetched, by the class of their reuse distance.
+using CodeReuse = std::array<std::uint64_t, kReuseClasses>;
+
+/// The class of a distance in bytes.
+constexpr std::size_t reuse_class(std::uint32_t distance) {
+  return static_cast<std::size_t>(
+      std::lower_bound(kReuseClassEnds.begin(), kReuseClassEnds.end(), distance) -
+      kReuseClassEnds.begin());
+}
+
+}  // namespace leviosim::work
