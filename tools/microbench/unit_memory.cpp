@@ -18,9 +18,9 @@ constexpr int kWords = 64;
 /// Cycles of one of `kLoads` steps per core; step(words, core).
 template <class View, class Step>
 double per_step(const sim::ChipConfig& chip, int cores, Step step) {
-  static thread_local std::array<float, kWords> memory{};
+  const std::array<F32, kWords> memory{};
   return stream_cycles(as_assembly(chip), cores, kLoads, [&](work::Core&) {
-    const View words(reinterpret_cast<typename View::Element*>(memory.data()), kWords);
+    const View words(memory.data(), kWords);
     for (int i = 0; i < kLoads; ++i) step(words);
   });
 }
@@ -57,14 +57,14 @@ struct Buffers {
 
 double loads_in_step_beside_dma(const sim::ChipConfig& chip, int cores) {
   Bench bench(as_assembly(chip), cores);
-  std::array<float, kWords> memory{};
+  const std::array<F32, kWords> memory{};
   const sim::StageTiming timing = bench.run([&](work::Machine& machine) {
     Buffers buffers(machine, 1 << 16);  // more than the loads take
     const work::Machine::Ticket ticket = machine.start_copy_in(buffers.l1, buffers.l2);
     const work::Machine::Ticket more = machine.start_copy_in(buffers.l1, buffers.l2);
     const work::Machine::Ticket last = machine.start_copy_in(buffers.l1, buffers.l2);
     machine.fork("loads", [&](work::Core&) {
-      const P::Span<const F32> words(reinterpret_cast<const F32*>(memory.data()), kWords);
+      const P::Span<const F32> words(memory.data(), kWords);
       for (int i = 0; i < kLoads; ++i) [[maybe_unused]]
         const F32 x = words[0];
     });
