@@ -13,15 +13,32 @@
 #include <type_traits>
 
 #include "sim/work/functions.h"
+#include "sim/work/memory.h"
 
 namespace leviosim::work {
 
+/// Storage of a signed byte; an enumeration for the same reason as Byte.
+enum class SignedByte : std::int8_t {};
+template <>
+struct LoadedAs<SignedByte> {
+  using Type = I32;
+  static Type from(SignedByte stored) { return I32(static_cast<std::int32_t>(stored)); }
+};
+
 template <class Lane, int N, bool Counted>
-struct alignas(4) Packed {
+struct Packed {
   static_assert(sizeof(Lane) * N == 4);
   using Scalar = std::conditional_t<Counted, I32, std::int32_t>;
 
   Lane lanes[N];
+
+  /// The same 32 bits seen as lanes: nothing is counted.
+  static Packed of_register(Scalar x) {
+    Packed out;
+    const auto bits = static_cast<std::uint32_t>(value(x));
+    for (int i = 0; i < N; ++i) out.lanes[i] = static_cast<Lane>(bits >> (i * 32 / N));
+    return out;
+  }
 
   /// Lane i sign- or zero-extended into a register: one extraction.
   Scalar lane(int i) const {
@@ -95,6 +112,24 @@ Packed<Lane, N, Counted> select(const Packed<Lane, N, Counted>& a,
   static_assert(sizeof...(Index) == N && ((Index >= 0 && Index < 2 * N) && ...));
   Packed<Lane, N, Counted>::note(Op::SimdAlu);
   return {{(Index < N ? a.lanes[Index % N] : b.lanes[Index % N])...}};
+}
+
+/// The words that begin `bytes` after those of a view of four bytes each. Cores load words from any
+/// address; those that cross a word of the memory count as straddling.
+template <class Span>
+Span from_byte(const Span& words, int bytes) {
+  using Vector = std::remove_pointer_t<decltype(words.data())>;
+  static_assert(sizeof(Vector) == 4 && alignof(Vector) == 1);
+  using Raw = std::conditional_t<std::is_const_v<Vector>, const char, char>;
+  auto* at = reinterpret_cast<Vector*>(reinterpret_cast<Raw*>(words.data()) + bytes);
+  return Span(at, words.size() - (bytes + 3) / 4, bytes % 4 != 0);
+}
+
+/// The single bytes of such a view, from one of them on.
+template <class P>
+typename P::template Span<const SignedByte> bytes_of(
+    const typename P::template Span<const I8x4<P>>& words, int first) {
+  return {reinterpret_cast<const SignedByte*>(words.data()) + first, 4 * words.size() - first};
 }
 
 }  // namespace leviosim::work
