@@ -220,7 +220,8 @@ void Reader::check_keys(const std::vector<YamlEntry>& entries, const std::string
 
 Provenance Reader::read_provenance(const std::vector<YamlEntry>& entries, const std::string& path,
                                    const Place& record) const {
-  static constexpr std::array<std::string_view, 4> kWords = {"high", "medium", "low", "assumed"};
+  static constexpr std::array<std::string_view, 5> kWords = {"high", "medium", "low", "assumed",
+                                                             "calibrated"};
   const auto text = [&](const std::string& key, bool required) -> std::string {
     const YamlEntry* entry = find(entries, key);
     if (entry == nullptr && required) record.fail(fmt::format("missing key '{}'", key));

@@ -8,6 +8,7 @@
 #include "platform_models/loader.h"
 #include "platform_models/override.h"
 #include "platform_models/schema.h"
+#include "platform_models/variants.h"
 #include "sim/check.h"
 
 namespace leviosim::platform {
@@ -46,26 +47,48 @@ std::vector<Record> records_of(const Schema& schema, const ResolvedPlatform& pla
   return records;
 }
 
-/// A record has one source. If some of its columns were overridden, it names them.
+/// Changed since the file was read, by -p or by a calibration.
+bool is_changed(const Parameter& parameter, const std::string& original) {
+  return parameter.overridden || parameter.source != original;
+}
+
+/// What the file says of the record. Changed columns have other sources.
+std::string original_source_of(const Record& record) {
+  const auto begins_with = [](const std::string& text, std::string_view start) {
+    return text.rfind(start, 0) == 0;
+  };
+  for (const auto& [field, parameter] : record.columns)
+    if (!parameter->overridden && !begins_with(parameter->source, kCalibrated))
+      return parameter->source;
+  return record.columns.front().second->source;
+}
+
+/// A record has one source. If some of its columns were changed, it names them.
 std::string source_of(const Record& record) {
-  std::string overridden;
-  std::string original;
+  const std::string original = original_source_of(record);
+  std::vector<std::pair<std::string, std::string>> changed;  // source → columns
+  bool rest = false;
   for (const auto& [field, parameter] : record.columns) {
-    if (!parameter->overridden) {
-      original = parameter->source;
-      continue;
+    if (!is_changed(*parameter, original)) {
+      rest = true;
+    } else if (!changed.empty() && changed.back().first == parameter->source) {
+      changed.back().second += fmt::format(", {}", field->name);
+    } else {
+      changed.emplace_back(parameter->source, field->name);
     }
-    if (!overridden.empty()) overridden += ", ";
-    overridden += field->name;
   }
-  if (overridden.empty()) return original;
-  if (original.empty()) return kOverrideSource;
-  return fmt::format("{}: {}; the rest: {}", kOverrideSource, overridden, original);
+  if (changed.empty()) return original;
+  if (!rest && changed.size() == 1) return changed.front().first;
+  std::string text;
+  for (const auto& [source, columns] : changed)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", source, columns);
+  return rest ? fmt::format("{}; the rest: {}", text, original) : text;
 }
 
 std::string confidence_of(const Record& record) {
+  const std::string original = original_source_of(record);
   for (const auto& [field, parameter] : record.columns)
-    if (parameter->overridden) return parameter->confidence;
+    if (is_changed(*parameter, original)) return parameter->confidence;
   return record.columns.front().second->confidence;
 }
 

@@ -5,11 +5,15 @@
 #include <filesystem>
 
 #include "sim/error.h"
+#include "tools/calibrate/calibrate_command.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
+#include "tools/microbench/microbench_command.h"
 #include "tools/platforms/platforms_command.h"
 #include "tools/run/run_command.h"
+#include "tools/sensitivity/sensitivity_command.h"
 #include "tools/synth/synth_command.h"
+#include "tools/validate/validate_command.h"
 
 namespace leviosim::tools {
 namespace {
@@ -28,7 +32,10 @@ int run_program(const Words& words) {
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
   try {
     return run_command_line(
-        app, {add_run_command(app, words), add_synth_command(app), add_platforms_command(app)},
+        app,
+        {add_run_command(app, words), add_synth_command(app), add_platforms_command(app),
+         add_validate_command(app, words), add_calibrate_command(app), add_sensitivity_command(app),
+         add_microbench_command(app)},
         words);
   } catch (const InputError& error) {
     return fail(error);

@@ -2,16 +2,20 @@
 
 #include <fmt/core.h>
 
-#include <cstdlib>
 #include <memory>
+#include <string_view>
 
 #include "platform_models/loader.h"
+#include "tools/microbench/board_kernels.h"
 #include "tools/microbench/report.h"
 #include "tools/microbench/unit_benches.h"
 #include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
+
+/// The board's kernels were measured on this chip; units are compared on any other.
+constexpr std::string_view kBoard = "GAP8";
 
 struct MicrobenchOptions {
   std::string platform = "gap9";
@@ -22,8 +26,16 @@ struct MicrobenchOptions {
 void run(const MicrobenchOptions& options) {
   const platform::ResolvedPlatform chip =
       platform::resolve_platform(options.platform, options.overrides);
-  const std::vector<MicrobenchRow> rows = unit_rows(chip.config);
-  fmt::print("{}", microbench_table(chip.name, rows));
+  const bool is_board = chip.name == kBoard;
+  std::vector<MicrobenchRow> rows;
+  if (!is_board) {
+    rows = unit_rows(chip.config);
+    fmt::print("{}\n", microbench_table(chip.name, rows));
+  }
+  const std::vector<MicrobenchRow> board =
+      board_rows(is_board ? chip.config : platform::load_platform("gap8"));
+  fmt::print("{}", microbench_table(kBoard, board));
+  rows.insert(rows.end(), board.begin(), board.end());
   if (!options.out.empty()) traces::write_file_atomically(options.out, microbench_csv(rows));
 }
 

@@ -53,16 +53,17 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
     text += fmt::format("{}\n{}\n", group, table.str());
     begin = end;
   }
-  return text + fmt::format("{}: {} of {} rows within their tolerance, mean absolute error {:.1f} %\n",
-                            chip, met, rows.size(), 100 * mean_error(rows));
+  return text +
+         fmt::format("{}: {} of {} rows within their tolerance, mean absolute error {:.1f} %\n",
+                     chip, met, rows.size(), 100 * mean_error(rows));
 }
 
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
   std::string text =
       "group,name,cores,unit,reference,reference_high,simulated,error,tolerance,tier,source\n";
   for (const MicrobenchRow& row : rows)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.group, row.name, row.cores, row.unit,
-                        row.reference, row.reference_high, row.simulated, row.error(),
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.group, row.name, row.cores,
+                        row.unit, row.reference, row.reference_high, row.simulated, row.error(),
                         row.tolerance, row.tier, row.source);
   return text;
 }

@@ -30,8 +30,8 @@ double loads_of_one_word(const sim::ChipConfig& chip, int cores) {
       chip, cores, [](auto words) { [[maybe_unused]] const F32 x = words[0]; });
 }
 double loads_in_step(const sim::ChipConfig& chip, int cores) {
-  return per_step<P::Span<const F32>>(
-      chip, cores, [](auto words) { [[maybe_unused]] const F32 x = words[0]; });
+  return per_step<P::Span<const F32>>(chip, cores,
+                                      [](auto words) { [[maybe_unused]] const F32 x = words[0]; });
 }
 /// An address to compute, a load, and one more instruction.
 double loads_at_random(const sim::ChipConfig& chip, int cores) {
@@ -65,8 +65,7 @@ double loads_in_step_beside_dma(const sim::ChipConfig& chip, int cores) {
     const work::Machine::Ticket last = machine.start_copy_in(buffers.l1, buffers.l2);
     machine.fork("loads", [&](work::Core&) {
       const P::Span<const F32> words(memory.data(), kWords);
-      for (int i = 0; i < kLoads; ++i) [[maybe_unused]]
-        const F32 x = words[0];
+      for (int i = 0; i < kLoads; ++i) [[maybe_unused]] const F32 x = words[0];
     });
     machine.wait(ticket);
     machine.wait(more);
@@ -86,16 +85,17 @@ double transfer(const sim::ChipConfig& chip, int) {
 }
 
 double both_directions(const sim::ChipConfig& chip, int) {
-  return static_cast<double>(
-      Bench(chip, 1)
-          .run([](work::Machine& machine) {
-            Buffers buffers(machine, 1 << 16);
-            const work::Machine::Ticket in = machine.start_copy_in(buffers.l1, buffers.l2);
-            const work::Machine::Ticket out = machine.start_copy_out(buffers.l2, buffers.l1);
-            machine.wait(in);
-            machine.wait(out);
-          })
-          .cycles.count());
+  return static_cast<double>(Bench(chip, 1)
+                                 .run([](work::Machine& machine) {
+                                   Buffers buffers(machine, 1 << 16);
+                                   const work::Machine::Ticket in =
+                                       machine.start_copy_in(buffers.l1, buffers.l2);
+                                   const work::Machine::Ticket out =
+                                       machine.start_copy_out(buffers.l2, buffers.l1);
+                                   machine.wait(in);
+                                   machine.wait(out);
+                                 })
+                                 .cycles.count());
 }
 
 /// Straight-line code of 4-byte instructions in a loop: cycles per instruction once it is warm.

@@ -13,8 +13,8 @@ const UnitBench& bench_named(const std::string& name) {
   for (const auto benches : {stream_benches(), memory_benches()})
     for (const UnitBench& bench : benches)
       if (bench.name == name) return bench;
-  throw InputError(fmt::format("tests/validation/{}.csv: there is no program \"{}\"", kReferences,
-                               name));
+  throw InputError(
+      fmt::format("tests/validation/{}.csv: there is no program \"{}\"", kReferences, name));
 }
 
 }  // namespace

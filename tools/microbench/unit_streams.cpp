@@ -146,9 +146,8 @@ double upper_product(const sim::ChipConfig& chip, int) {
 }
 template <std::int32_t Divisor>
 double division(const sim::ChipConfig& chip, int) {
-  return sequence(as_assembly(chip), [a = I32(7)](auto) {
-    [[maybe_unused]] const I32 x = a / I32(Divisor);
-  });
+  return sequence(as_assembly(chip),
+                  [a = I32(7)](auto) { [[maybe_unused]] const I32 x = a / I32(Divisor); });
 }
 constexpr std::array kBenches = {
     UnitBench{"fp32 add", shared<&Registers::add>},

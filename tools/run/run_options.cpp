@@ -20,8 +20,7 @@ void refuse_chip_options(const CLI::App& command) {
       throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
 }
 
-void resolve_chip(const CLI::App& command, const RunOptions& options, RunRequest& request) {
-  require(command, "--platform", "the name of a chip or a platform file, or --native");
+void resolve_chip(const RunOptions& options, RunRequest& request) {
   request.platform = platform::resolve_platform(options.platform, options.overrides);
   const sim::ClusterConfig& cluster = request.platform.config.cluster;
   request.cores =
@@ -30,27 +29,59 @@ void resolve_chip(const CLI::App& command, const RunOptions& options, RunRequest
           : static_cast<int>(parse_whole("--cores", options.cores, 1, cluster.max_workers));
 }
 
-}  // namespace
+void add_text(CLI::App& command, const char* name, std::string& value, const char* type,
+              const std::string& help) {
+  command.add_option(name, value, help)->type_name(type);
+}
 
-void add_run_options(CLI::App& command, RunOptions& options) {
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command.add_option(name, value, help)->type_name(type);
-  };
-  add("--platform", options.platform, "NAME|FILE", "chip: a name (leviosim platforms) or a file");
+void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
+  add_text(command, "--platform", options.platform, "NAME|FILE",
+           "chip: a name (leviosim platforms) or a file" + by_default);
   command.add_option("-p,--set", options.overrides, "parameter of the chip; repeatable")
       ->type_name("PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
-  add("--cores", options.cores, "N", "worker cores [the chip's]");
-  command.add_flag("--native", options.native, "no chip, no timing: the golden model");
-  add("--data", options.data, "DIR|synthetic", "ASL/EuRoC folder, or the synthetic flight");
-  add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
-  add("--size", options.size, "WxH", "image size [160x120]");
-  add("--profile", options.profile, "NAME", "of the workload [levio]");
-  add("--seed", options.seed, "N", "of the workload's random draws [1]");
-  add("--out", options.out, "DIR", "folder for the results; must be new or empty");
-  command.add_flag("--force", options.force, "replace the results of an earlier run");
+  add_text(command, "--cores", options.cores, "N", "worker cores [the chip's]");
+}
+
+void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
+  add_text(command, "--data", options.data, "DIR|synthetic",
+           "ASL/EuRoC folder, or the synthetic flight" + by_default);
+  add_text(command, "--frames", options.frames, "A:B", "frames, B exclusive [all]");
+  add_text(command, "--profile", options.profile, "NAME", "of the workload [levio]");
+  add_text(command, "--seed", options.seed, "N", "of the workload's random draws [1]");
   command.add_flag("--quiet", options.quiet, "no progress");
+}
+
+/// What does not depend on the chip.
+RunRequest make_workload_request(const RunOptions& options) {
+  RunRequest request;
+  request.native = options.native;
+  request.seed = static_cast<std::uint32_t>(
+      parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
+  request.profile = options.profile;
+  vio::profile_named(options.profile, request.seed);  // refuses unknown names
+  request.image_size = parse_size(options.size);
+  if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
+  return request;
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  add_chip_options(command, options, "");
+  command.add_flag("--native", options.native, "no chip, no timing: the golden model");
+  add_workload_options(command, options, "");
+  add_text(command, "--size", options.size, "WxH", "image size [160x120]");
+  add_text(command, "--out", options.out, "DIR", "folder for the results; must be new or empty");
+  command.add_flag("--force", options.force, "replace the results of an earlier run");
+}
+
+void add_chip_run_options(CLI::App& command, RunOptions& options) {
+  options.platform = "gap9";
+  options.data = "synthetic";
+  add_chip_options(command, options, " [gap9]");
+  add_workload_options(command, options, " [synthetic]");
 }
 
 traces::ImageSize parse_size(const std::string& text) {
@@ -66,18 +97,19 @@ traces::ImageSize parse_size(const std::string& text) {
 RunRequest make_request(const CLI::App& command, const RunOptions& options) {
   require(command, "--data", "an ASL folder or 'synthetic'");
   require(command, "--out", "a folder for the results");
-  RunRequest request;
-  request.native = options.native;
-  request.seed = static_cast<std::uint32_t>(
-      parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
-  request.profile = options.profile;
-  vio::profile_named(options.profile, request.seed);  // refuses unknown names
-  request.image_size = parse_size(options.size);
-  if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
-  if (options.native)
+  RunRequest request = make_workload_request(options);
+  if (options.native) {
     refuse_chip_options(command);
-  else
-    resolve_chip(command, options, request);
+  } else {
+    require(command, "--platform", "the name of a chip or a platform file, or --native");
+    resolve_chip(options, request);
+  }
+  return request;
+}
+
+RunRequest make_chip_request(const RunOptions& options) {
+  RunRequest request = make_workload_request(options);
+  resolve_chip(options, request);
   return request;
 }
 

@@ -27,9 +27,14 @@ struct RunOptions {
 /// Declares the options on the subcommand.
 void add_run_options(CLI::App& command, RunOptions& options);
 
+/// The same for commands that always run on a chip, with what they say by default: gap9 and the
+/// synthetic flight. They declare --out themselves.
+void add_chip_run_options(CLI::App& command, RunOptions& options);
+
 /// Everything that can be checked without the data, whose folder is left for the caller to fill in.
 /// @throws InputError naming the option
 RunRequest make_request(const CLI::App& command, const RunOptions& options);
+RunRequest make_chip_request(const RunOptions& options);
 
 /// "160x120". @throws InputError
 traces::ImageSize parse_size(const std::string& text);

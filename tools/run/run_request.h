@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "platform_models/loader.h"
+#include "tools/run/run_observer.h"
 #include "tools/run/run_result.h"
 #include "traces/frame_range.h"
 #include "traces/image_source.h"
@@ -22,6 +23,7 @@ struct RunRequest {
   int cores = 8;
   std::uint32_t seed = 1;               ///< of the workload's random draws
   platform::ResolvedPlatform platform;  ///< unused if native
+  RunObserver* observer = nullptr;      ///< sees every job; unused if native
 };
 
 /// Called after every frame.

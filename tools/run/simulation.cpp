@@ -134,7 +134,7 @@ Simulation::Simulation(const RunRequest& request, Feed& feed, ProgressCallback p
       feed_(feed),
       progress_(std::move(progress)),
       chip_(request.platform.config, request.cores),
-      single_core_chip_(request.platform.config, 1),
+      single_core_(request.platform.config, 1),
       cluster_(cluster_machine(request, vio::profile_named(request.profile, request.seed))),
       controller_(controller_machine(request)),
       odometry_(vio::make_odometry(true, vio::profile_named(request.profile, request.seed),
@@ -169,10 +169,12 @@ sim::Process Simulation::front_end() {
   for (int done = 0; done < feed_.size(); ++done) {
     const int i = co_await camera_frames_.pop();
     const std::int64_t start_ns = now_ns();
-    if (optimiser_busy_) {
-      ++result_.optimiser_late;
-    } else if (odometry_->begin_optimisation()) {
+    const bool late = optimiser_busy_;
+    const bool begun = !late && odometry_->begin_optimisation();
+    if (late) ++result_.optimiser_late;
+    if (begun) {
       optimiser_busy_ = true;
+      snapshot_frame_ = done;
       snapshot_taken_.notify();
     }
     const vio::FrameReport report = odometry_->process_frame(feed_.frame(i));
@@ -180,14 +182,18 @@ sim::Process Simulation::front_end() {
     book_.add_work(job);
     const sim::JobTiming timing = co_await chip_.offload(job);
     book_.add_parallel(timing);
+    const sim::JobTiming single = single_core_.front_end(job);
+    book_.add_single(single);
 
     FrameResult frame = frame_result(i, feed_.time_ns(i), report, feed_.data().camera);
     frame.arrival_ns = feed_.time_ns(i) - feed_.time_ns(0);
     frame.start_ns = start_ns;
     frame.end_ns = now_ns();
     frame.cycles = chip_.cluster().clock().whole_cycles(timing.end - timing.begin);
-    frame.single_cycles = time_on_one_core(job);
+    frame.single_cycles = single_core_.front_end_cycles(single);
     result_.frames.push_back(frame);
+    if (request_.observer != nullptr)
+      request_.observer->on_front_end({done, begun, frame, job, timing, single});
     progress_({done + 1, feed_.size(), frame.end_ns});
   }
 }
@@ -203,22 +209,14 @@ sim::Process Simulation::optimiser() {
       const sim::JobTiming timing = co_await chip_.controller().run(job);
       book_.add_parallel(timing);
       book_.add_single(timing);  // the controller is one core
+      if (request_.observer != nullptr)
+        request_.observer->on_optimiser({snapshot_frame_, k, k + 1 == iterations, job, timing});
     }
     odometry_->publish();
     controller_.take_job();
     ++result_.optimiser_published;
     optimiser_busy_ = false;
   }
-}
-
-Cycles Simulation::time_on_one_core(const work::Job& job) {
-  sim::JobTiming timing;
-  const auto body = [](sim::Chip& chip, const work::Job& work,
-                       sim::JobTiming& out) -> sim::Process { out = co_await chip.offload(work); };
-  single_core_chip_.kernel().spawn("single core", body(single_core_chip_, job, timing));
-  single_core_chip_.kernel().run();
-  book_.add_single(timing);
-  return single_core_chip_.cluster().clock().whole_cycles(timing.end - timing.begin);
 }
 
 RunResult Simulation::take_result() {

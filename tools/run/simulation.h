@@ -12,6 +12,7 @@
 #include "sim/chip/chip.h"
 #include "sim/kernel/channel.h"
 #include "tools/run/feed.h"
+#include "tools/run/job_timer.h"
 #include "tools/run/stage_book.h"
 
 namespace leviosim::tools {
@@ -27,7 +28,6 @@ class Simulation {
   sim::Process camera();
   sim::Process front_end();
   sim::Process optimiser();
-  Cycles time_on_one_core(const work::Job& job);
   std::int64_t now_ns() const;
   RunResult take_result();
 
@@ -35,13 +35,14 @@ class Simulation {
   Feed& feed_;
   ProgressCallback progress_;
   sim::Chip chip_;
-  sim::Chip single_core_chip_;  ///< times the same jobs on one worker, in a time of its own
+  JobTimer single_core_;  ///< the same jobs on one worker
   work::Machine cluster_;
   work::Machine controller_;
   std::unique_ptr<vio::Odometry> odometry_;
   sim::Channel<int> camera_frames_;
   sim::Event snapshot_taken_;
   bool optimiser_busy_ = false;
+  int snapshot_frame_ = 0;  ///< at whose start the optimiser's snapshot was taken
   StageBook book_;
   RunResult result_;
 };

@@ -1,0 +1,30 @@
+// Times jobs one by one on a chip of its own, in a time of its own: what one core of the chip would
+// need beside the run on all, and what recorded jobs take on another chip. No camera and no queue:
+// a job does not wait for the one before.
+#pragma once
+
+#include "sim/chip/chip.h"
+#include "sim/work/program.h"
+
+namespace leviosim::tools {
+
+class JobTimer {
+ public:
+  /// @throws InputError as sim::Chip
+  JobTimer(const sim::ChipConfig& config, int workers) : chip_(config, workers) {}
+
+  /// A job of the front end: offloaded by the controller, run by the cluster.
+  sim::JobTiming front_end(const work::Job& job);
+  /// A job of the optimiser, on the controller.
+  sim::JobTiming optimiser(const work::Job& job);
+
+  /// Whole cycles of the cluster from the controller's call until it is told of the end.
+  Cycles front_end_cycles(const sim::JobTiming& timing) {
+    return chip_.cluster().clock().whole_cycles(timing.end - timing.begin);
+  }
+
+ private:
+  sim::Chip chip_;
+};
+
+}  // namespace leviosim::tools

@@ -1,0 +1,86 @@
+#include "tools/run/run_session.h"
+
+#include <fmt/core.h>
+
+#include "sim/energy/model.h"
+#include "sim/error.h"
+#include "tools/cli/interrupts.h"
+#include "tools/cli/version.h"
+#include "tools/synth/flight_cache.h"
+#include "traces/asl_reader.h"
+
+namespace leviosim::tools {
+
+namespace fs = std::filesystem;
+
+fs::path checked_out_folder(const RunOptions& options) {
+  const fs::path out = fs::absolute(options.out).lexically_normal();
+  if (!fs::exists(out)) return out;
+  if (!fs::is_directory(out))
+    throw InputError(fmt::format("--out {}: is a file; expected a folder", options.out));
+  if (fs::is_empty(out)) return out;
+  if (!fs::exists(out / "manifest.json"))
+    throw InputError(
+        fmt::format("--out {}: exists and holds something else than results; choose a new folder",
+                    options.out));
+  if (!options.force)
+    throw InputError(fmt::format(
+        "--out {}: exists and holds results; choose a new folder, or --force to replace them",
+        options.out));
+  return out;
+}
+
+void check_out_file(const RunOptions& options) {
+  if (options.out.empty()) return;
+  const fs::path file = fs::absolute(options.out);
+  if (fs::is_directory(file))
+    throw InputError(fmt::format("--out {}: is a folder; expected a file", options.out));
+  if (!fs::is_directory(file.parent_path()))
+    throw InputError(
+        fmt::format("--out {}: there is no folder {}", options.out, file.parent_path().string()));
+  if (fs::exists(file) && !options.force)
+    throw InputError(
+        fmt::format("--out {}: exists; choose a new file, or --force to replace it", options.out));
+}
+
+std::string data_folder(const RunOptions& options, ProgressLine::Style progress) {
+  return options.data == "synthetic" ? cached_flight(progress).string() : options.data;
+}
+
+RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style) {
+  ProgressLine line(style);
+  return simulate(request, [&](const Progress& p) {
+    throw_if_interrupted();
+    line.show(p.done, p.total,
+              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
+  });
+}
+
+Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words) {
+  Manifest manifest;
+  manifest.command_line = words;
+  manifest.seed = request.seed;
+  manifest.platform = options.platform;
+  manifest.overrides = options.overrides;
+  manifest.data = request.data;
+  if (request.frames) manifest.first_frame = request.frames->begin;
+  manifest.inputs = digest_inputs(traces::open_asl(request.data, {.frames = request.frames}));
+  return manifest;
+}
+
+std::string heading(const RunOptions& options, const RunResult& run) {
+  std::string text =
+      fmt::format("leviosim {}: {} on {}, {} of {}, {}x{}", version(), run.profile,
+                  run.timed ? options.platform : "the host",
+                  run.frames.size() == 1 ? "1 frame" : fmt::format("{} frames", run.frames.size()),
+                  options.data, run.image_width, run.image_height);
+  const auto mhz = [](Hertz f) { return static_cast<double>(f.count()) * 1e-6; };
+  if (run.timed)
+    text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,
+                        mhz(run.cluster_clock), mhz(run.controller_clock));
+  if (run.timed && sim::knows_energy(run.chip))
+    text += fmt::format(", {:g} V", run.chip.supply.voltage.count());
+  return text + "\n\n";
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,54 @@
+// How much hangs on each number of a platform that is not certain: every one that has a range is
+// set to both its ends, one at a time, and the jobs of one recorded run are timed again.
+//
+// Left out: what another timing would have changed in the computation (a late optimiser result),
+// and ranges that hang together, such as the halves of a cost that is known only in sum.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform_models/variants.h"
+#include "tools/sensitivity/recorded_run.h"
+
+namespace leviosim::tools {
+
+/// Mean times on one chip, in ms; absent if the run had no such job.
+struct Outcome {
+  std::optional<double> frame;        ///< front end, frames with a pose from EPnP or 8-point
+  std::optional<double> epnp;         ///< … from EPnP
+  std::optional<double> eight_point;  ///< … from the 8-point algorithm
+  std::optional<double> iteration;    ///< of the optimiser, with its share of updates
+};
+
+/// @param workers  cores of the team
+Outcome time_on(const sim::ChipConfig& chip, int workers, const RecordedRun& run);
+
+/// One number at both ends of its range.
+struct Swing {
+  platform::Parameter parameter;
+  Outcome low;
+  Outcome high;
+};
+
+struct Sensitivity {
+  Outcome base;
+  std::vector<Swing> swings;           ///< the largest effect first
+  std::vector<std::string> unbounded;  ///< uncertain numbers without a range
+};
+
+/// Change against the base in per cent; absent where one of them is, and without a base.
+std::optional<double> percent_change(std::optional<double> value, std::optional<double> base);
+
+/// Largest absolute change of the frame time at either end, in per cent.
+double effect_on_frame(const Swing& swing, const Outcome& base);
+double effect_on_iteration(const Swing& swing, const Outcome& base);
+
+/// @param threads   of the host; 0 for all. The result does not depend on it.
+/// @param progress  (chips timed, all chips); called from several threads, one at a time
+Sensitivity sensitivity(const platform::Variants& platform, int workers, const RecordedRun& run,
+                        unsigned threads, const std::function<void(int, int)>& progress);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,54 @@
+#include "tools/sensitivity/sensitivity_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "tools/cli/interrupts.h"
+#include "tools/run/run_session.h"
+#include "tools/sensitivity/sensitivity_report.h"
+#include "traces/atomic_file.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kFramesByDefault = "0:100";
+
+Sensitivity with_progress(const platform::Variants& platform, int cores, const RecordedRun& run,
+                          ProgressLine::Style style) {
+  ProgressLine line(style);
+  return sensitivity(platform, cores, run, 0, [&](int done, int total) {
+    throw_if_interrupted();
+    line.show(done, total, [&] { return fmt::format("chip {}/{}", done, total); });
+  });
+}
+
+void run(const RunOptions& options) {
+  RunRequest request = make_chip_request(options);
+  check_out_file(options);
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  request.data = data_folder(options, style);
+  RecordedRun recorded;
+  request.observer = &recorded;
+  const RunResult result = simulate_with_progress(request, style);
+  const Sensitivity found = with_progress(platform::Variants(std::move(request.platform)),
+                                          request.cores, recorded, style);
+  if (!options.out.empty()) traces::write_file_atomically(options.out, sensitivity_csv(found));
+  fmt::print("{}{}", heading(options, result), sensitivity_table(found, result.cores));
+  if (!options.out.empty()) fmt::print("table: {}\n", options.out);
+}
+
+}  // namespace
+
+Command add_sensitivity_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "sensitivity", "Sweep every uncertain number of a chip over its range, one at a time");
+  const auto options = std::make_shared<RunOptions>();
+  options->frames = kFramesByDefault;
+  add_chip_run_options(*command, *options);
+  command->add_option("--out", options->out, "CSV file to write")->type_name("FILE");
+  command->add_flag("--force", options->force, "replace the file");
+  return {command, [=] { run(*options); }};
+}
+
+}  // namespace leviosim::tools

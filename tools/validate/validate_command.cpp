@@ -1,0 +1,67 @@
+#include "tools/validate/validate_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "tools/cli/interrupts.h"
+#include "tools/run/run_folder.h"
+#include "tools/run/run_session.h"
+#include "tools/validate/validation_report.h"
+#include "traces/atomic_file.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kNotExamined = "not examined yet";
+
+/// The folder of the run, with what was found out about it.
+void write_folder(const std::filesystem::path& folder, const Validation& validation,
+                  const RunResult& run, const Manifest& manifest, const std::string& platform) {
+  write_run_folder(folder, run, manifest, platform);
+  traces::write_file_atomically(folder / "validation.csv", validation_csv(validation));
+  traces::write_file_atomically(folder / "validation.json",
+                                validation_json(validation).dump(2) + '\n');
+  std::vector<std::optional<double>> values;
+  for (const Comparison& comparison : validation.comparisons) values.push_back(comparison.value);
+  traces::write_file_atomically(
+      folder / "paper.csv",
+      updated_references("paper.csv", paper_references_text(), values, kNotExamined));
+}
+
+void run(const RunOptions& options, const Words& words) {
+  RunRequest request = make_chip_request(options);
+  const std::vector<Reference> references = paper_references();
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  std::optional<traces::StagedFolder> staged;
+  if (!options.out.empty()) staged.emplace(checked_out_folder(options));
+  request.data = data_folder(options, style);
+  FrameLog log;
+  request.observer = &log;
+  const RunResult result = simulate_with_progress(request, style);
+  const Validation validation =
+      validate(result, log, vio::profile_named(request.profile, request.seed), references);
+  if (staged) {
+    write_folder(staged->path(), validation, result, make_manifest(options, request, words),
+                 platform::to_yaml(request.platform));
+    throw_if_interrupted();
+    staged->commit();
+  }
+  fmt::print("{}{}", heading(options, result), validation_report(validation, result.cores));
+  if (staged) fmt::print("results: {}\n", options.out);
+}
+
+}  // namespace
+
+Command add_validate_command(CLI::App& app, const Words& words) {
+  CLI::App* command =
+      app.add_subcommand("validate", "Compare a run with the tables of the LEVIO paper");
+  const auto options = std::make_shared<RunOptions>();
+  add_chip_run_options(*command, *options);
+  command->add_option("--out", options->out, "folder for the results; must be new or empty")
+      ->type_name("DIR");
+  command->add_flag("--force", options->force, "replace the results of an earlier run");
+  return {command, [=, &words] { run(*options, words); }};
+}
+
+}  // namespace leviosim::tools
