@@ -34,6 +34,9 @@ inline constexpr std::array kSizeUnits{Unit{"B", 1}, Unit{"kB", 1e3}, Unit{"KiB"
                                        Unit{"MB", 1e6}, Unit{"MiB", 1024.0 * 1024.0}};
 inline constexpr std::array kCycleUnits{Unit{"cycles", 1}};
 inline constexpr std::array kRateUnits{Unit{"B/cycle", 1}};
+inline constexpr std::array kTimeUnits{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6},
+                                       Unit{"ns", 1e-9}};
+inline constexpr std::array kThroughputUnits{Unit{"B/s", 1}, Unit{"MB/s", 1e6}};
 inline constexpr std::array kRatioUnits{Unit{"ratio", 1}};
 inline constexpr std::array kCoreUnits{Unit{"cores", 1}};
 inline constexpr std::array kBankUnits{Unit{"banks", 1}};
@@ -48,6 +51,8 @@ inline constexpr Dimension kFrequency{"a frequency", kFrequencyUnits, true};
 inline constexpr Dimension kSize{"a size", kSizeUnits, true};
 inline constexpr Dimension kCycles{"a number of cycles", kCycleUnits};
 inline constexpr Dimension kRate{"a transfer rate", kRateUnits};
+inline constexpr Dimension kTime{"a time", kTimeUnits};
+inline constexpr Dimension kThroughput{"a transfer rate over time", kThroughputUnits};
 inline constexpr Dimension kRatio{"a ratio", kRatioUnits};
 inline constexpr Dimension kCores{"a number of cores", kCoreUnits, true};
 inline constexpr Dimension kBanks{"a number of banks", kBankUnits, true};

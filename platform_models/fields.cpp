@@ -300,6 +300,26 @@ void add_controller(Table& table) {
   add_core(table, {"controller.core", false, true});
 }
 
+/// A chip need not have external memory.
+void add_external_memory(Table& table) {
+  const auto optional = [](Field field) {
+    field.required = false;
+    return field;
+  };
+  table.add(
+      optional(quantity("controller.external.latency", kTime, 0, 1,
+                        "time of a transfer from or to external memory besides its data")),
+      [](auto& chip) -> auto& { return chip.controller.external.latency_seconds; });
+  table.add(
+      optional(quantity("controller.external.rate", kThroughput, 0, 1e12,
+                        "data of a transfer from or to external memory per time")),
+      [](auto& chip) -> auto& { return chip.controller.external.bytes_per_second; });
+  table.add(
+      optional(quantity("controller.external.burst", kSize, 0, 1e6,
+                        "least that a transfer from or to external memory moves")),
+      [](auto& chip) -> auto& { return chip.controller.external.burst; });
+}
+
 void add_l2(Table& table) {
   table.add(
       quantity("l2.size", kSize, 1, kMaxSize, "size of L2"),
@@ -318,6 +338,7 @@ std::vector<Field> all_fields() {
   add_events(table);
   add_controller(table);
   add_code_of_controller(table);
+  add_external_memory(table);
   add_l2(table);
   std::vector<Field> fields = table.take();
   for (Field& field : energy_fields()) fields.push_back(std::move(field));

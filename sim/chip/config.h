@@ -103,11 +103,20 @@ struct ClusterConfig {
   EventUnitConfig events;
 };
 
+/// Memory outside of the chip, which the controller copies from and to L2 (hw_facts 6.2). A
+/// transfer takes `latency` and the time of its bytes, of which at least `burst` move.
+struct ExternalMemoryConfig {
+  double latency_seconds = 0;
+  double bytes_per_second = 0;  ///< 0: there is none
+  Bytes burst{0};
+};
+
 /// The fabric controller: one core with its own floating-point unit; its memory is L2.
 struct ControllerConfig {
   Hertz clock;
   CoreConfig core;
   InstructionCacheConfig icache;
+  ExternalMemoryConfig external{};
 };
 
 struct L2Config {

@@ -51,12 +51,27 @@ sim::StageTiming Bench::fork(const std::function<void(work::Core&)>& body) {
   });
 }
 
-sim::StageTiming Bench::run(const std::function<void(work::Machine&)>& body) {
+work::Job Bench::record(const std::function<void(work::Machine&)>& body) {
   {
     const auto stage = machine_.stage(kStage);
     body(machine_);
   }
-  return time(machine_.take_job());
+  return machine_.take_job();
+}
+
+sim::StageTiming Bench::run(const std::function<void(work::Machine&)>& body) {
+  return time(record(body));
+}
+
+double Bench::controller_seconds(const std::function<void(work::Machine&)>& body) {
+  const work::Job job = record(body);
+  sim::Chip chip(config_, workers_);
+  sim::JobTiming timing;
+  const auto process = [&]() -> sim::Process { timing = co_await chip.controller().run(job); };
+  chip.kernel().spawn(std::string(kStage), process());
+  chip.kernel().run();
+  return static_cast<double>(timing.stages.at(0).cycles.count()) /
+         static_cast<double>(config_.controller.clock.count());
 }
 
 double Bench::offload_cycles() {

@@ -27,10 +27,13 @@ class Bench {
   sim::StageTiming fork(const std::function<void(work::Core&)>& body);
   /// Times one stage in which the master runs body(machine).
   sim::StageTiming run(const std::function<void(work::Machine&)>& body);
+  /// Seconds of one stage in which the controller runs body(machine).
+  double controller_seconds(const std::function<void(work::Machine&)>& body);
   /// Cycles from the controller's call until it has the result of an empty task, in its own clock.
   double offload_cycles();
 
  private:
+  work::Job record(const std::function<void(work::Machine&)>& body);
   sim::StageTiming time(const work::Job& job);
 
   sim::ChipConfig config_;

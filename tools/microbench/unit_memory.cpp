@@ -98,6 +98,15 @@ double both_directions(const sim::ChipConfig& chip, int) {
                                  .cycles.count());
 }
 
+/// MB/s of the controller's transfers from external memory.
+template <int Bytes>
+double external_read(const sim::ChipConfig& chip, int) {
+  return Bytes / (Bench(chip, 1).controller_seconds([](work::Machine& machine) {
+           Buffers buffers(machine, Bytes);
+           machine.load_external(buffers.l1, buffers.l2);
+         }) * 1e6);
+}
+
 /// Straight-line code of 4-byte instructions in a loop: cycles per instruction once it is warm.
 template <int Bytes>
 double code_loop(const sim::ChipConfig& chip, int cores) {
@@ -156,6 +165,12 @@ constexpr std::array kBenches = {
     UnitBench{"transfer of 1024 B", transfer<1024>},
     UnitBench{"transfer of 19200 B", transfer<19200>},
     UnitBench{"transfer of 65536 B", transfer<65536>},
+    UnitBench{"read of 4 B", external_read<4>},
+    UnitBench{"read of 64 B", external_read<64>},
+    UnitBench{"read of 256 B", external_read<256>},
+    UnitBench{"read of 1024 B", external_read<1024>},
+    UnitBench{"read of 4096 B", external_read<4096>},
+    UnitBench{"read of 8192 B", external_read<8192>},
     UnitBench{"65536 B in both directions at once", both_directions},
 };
 
