@@ -123,9 +123,8 @@ void Analysis::begin_library(const Symbol& symbol, bool tail, std::uint32_t back
   if (symbol.name.find("note_transfer") != std::string::npos && last_copy_.first != nullptr) {
     // That copy was done by the DMA.
     LibraryUse& use = last_copy_.first->library["memcpy"];
-    --use.calls;
-    use.instructions -= last_copy_.second;
-    last_copy_.first->host += last_copy_.second;
+    use -= last_copy_.second;
+    last_copy_.first->host += last_copy_.second.instructions;
   }
   last_copy_.first = nullptr;
 }
@@ -154,15 +153,12 @@ void Analysis::end_library() {
     return;
   }
   LibraryUse& use = account.library[symbol.name];
-  use.calls += 1;
-  use.instructions += leaf_use_.instructions;
-  use.stalls += leaf_use_.stalls;
-  use.fewest = std::min(use.fewest, leaf_use_.instructions);
-  use.most = std::max(use.most, leaf_use_.instructions);
-  use.fewest_stalls = std::min(use.fewest_stalls, leaf_use_.stalls);
-  use.most_stalls = std::max(use.most_stalls, leaf_use_.stalls);
-  use.lines += static_cast<std::uint64_t>(leaf_lines_.distinct());
-  if (symbol.name == "memcpy") last_copy_ = {&account, leaf_use_.instructions};
+  leaf_use_.calls = 1;
+  leaf_use_.fewest = leaf_use_.most = leaf_use_.instructions;
+  leaf_use_.fewest_stalls = leaf_use_.most_stalls = leaf_use_.stalls;
+  leaf_use_.lines = static_cast<std::uint64_t>(leaf_lines_.distinct());
+  use += leaf_use_;
+  if (symbol.name == "memcpy") last_copy_ = {&account, leaf_use_};
 }
 
 void Analysis::count_kind(Kind kind) {

@@ -35,6 +35,18 @@ struct LibraryUse {
   std::uint64_t fewest = ~std::uint64_t{0}, most = 0;
   std::uint64_t fewest_stalls = ~std::uint64_t{0}, most_stalls = 0;
   std::uint64_t lines = 0;
+
+  LibraryUse& operator+=(const LibraryUse& o) {
+    calls += o.calls, instructions += o.instructions, stalls += o.stalls, lines += o.lines;
+    fewest = std::min(fewest, o.fewest), most = std::max(most, o.most);
+    fewest_stalls = std::min(fewest_stalls, o.fewest_stalls);
+    most_stalls = std::max(most_stalls, o.most_stalls);
+    return *this;
+  }
+  LibraryUse& operator-=(const LibraryUse& o) {
+    calls -= o.calls, instructions -= o.instructions, stalls -= o.stalls, lines -= o.lines;
+    return *this;
+  }
 };
 
 /// What a function executed itself in a scene.
@@ -108,7 +120,7 @@ class Analysis {
   bool leaf_is_tail_ = false;
   LibraryUse leaf_use_;
   Footprint leaf_lines_;
-  std::pair<Account*, std::uint64_t> last_copy_{nullptr, 0};
+  std::pair<Account*, LibraryUse> last_copy_{nullptr, {}};
 
   std::pair<std::string, std::string> piece_key_;
   std::uint64_t piece_instructions_ = 0;

@@ -27,7 +27,7 @@ void print(const leviosim::vio::FrameReport& report) {
        {static_cast<int>(report.source), report.keyframe ? 1 : 0, report.features,
         report.world_matches, report.frame_matches, report.inliers, report.landmarks})
     put(value);
-  text[at++] = '\n';
+  text[at - 1] = '\n';
   text[at] = 0;
   leviosim::rv32::write_text(text);
 }
