@@ -14,13 +14,16 @@ namespace leviosim::work {
 /// A function's name as a number, made at compile time: a FNV-1a hash.
 struct CodeName {
   std::uint32_t key;
+  const char* text = "";  ///< only of literals
 
   constexpr explicit CodeName(std::string_view name) : key(2166136261u) {
     for (const char c : name) key = (key ^ static_cast<unsigned char>(c)) * 16777619u;
   }
   /// From a string literal, for call sites that must not compute it.
   template <std::size_t N>
-  consteval CodeName(const char (&name)[N]) : CodeName(std::string_view(name, N - 1)) {}
+  consteval CodeName(const char (&name)[N]) : CodeName(std::string_view(name, N - 1)) {
+    text = name;
+  }
 };
 
 class CodeMap {

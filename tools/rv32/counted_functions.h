@@ -17,14 +17,21 @@ bool is_scene(const char* name);
 namespace leviosim::work {
 
 template <>
+struct CodeScope<true> {
+  explicit CodeScope(CodeName name) { rv32::enter_function(name.text); }
+  ~CodeScope() { rv32::leave_function(); }
+  CodeScope(const CodeScope&) = delete;
+  CodeScope& operator=(const CodeScope&) = delete;
+};
+
+template <>
 struct FunctionScope<true> {
-  explicit FunctionScope(const char* name) {
-    rv32::enter_function(name);
-    if (!rv32::is_scene(name)) count(Op::Call);
+  explicit FunctionScope(CodeName name) : code_(name) {
+    if (!rv32::is_scene(name.text)) count(Op::Call);
   }
-  ~FunctionScope() { rv32::leave_function(); }
-  FunctionScope(const FunctionScope&) = delete;
-  FunctionScope& operator=(const FunctionScope&) = delete;
+
+ private:
+  CodeScope<true> code_;
 };
 
 }  // namespace leviosim::work

@@ -13,20 +13,19 @@
 namespace leviosim::work {
 
 template <>
-struct FunctionScope<false> {
-  /// @param source  the C++ function that the scope stands in
-  [[gnu::always_inline]] explicit FunctionScope(const char* name,
-                                                const char* source = __builtin_FUNCTION()) {
+struct CodeScope<false> {
+  /// @param source  the C++ function that the scope stands in; empty for a part of a function
+  [[gnu::always_inline]] explicit CodeScope(CodeName name, const char* source = "") {
     asm volatile inline(
         "7: .half 0x4005\n"
         ".pushsection .leviosim_marks,\"?\",@progbits\n"
         ".word 7b, %0, %1\n"
         ".popsection"
         :
-        : "i"(name), "i"(source)
+        : "i"(name.text), "i"(source)
         : "memory");
   }
-  [[gnu::always_inline]] ~FunctionScope() {
+  [[gnu::always_inline]] ~CodeScope() {
     asm volatile inline(
         "7: .half 0x4009\n"
         ".pushsection .leviosim_marks,\"?\",@progbits\n"
@@ -34,8 +33,19 @@ struct FunctionScope<false> {
         ".popsection" ::
             : "memory");
   }
-  FunctionScope(const FunctionScope&) = delete;
-  FunctionScope& operator=(const FunctionScope&) = delete;
+  CodeScope(const CodeScope&) = delete;
+  CodeScope& operator=(const CodeScope&) = delete;
+};
+
+template <>
+struct FunctionScope<false> {
+  [[gnu::always_inline]] explicit FunctionScope(CodeName name,
+                                                const char* source = __builtin_FUNCTION())
+      : code_(name, source) {}
+  [[gnu::always_inline]] ~FunctionScope() = default;
+
+ private:
+  CodeScope<false> code_;
 };
 
 }  // namespace leviosim::work
