@@ -1,5 +1,5 @@
-// Platform files that are part of the program, so that it needs no files beside itself. The table
-// is generated from platform_models/*.yaml when the program is built (embed.cmake).
+// Files that are part of the program, so that it needs none beside itself. The tables are generated
+// from platform_models/*.yaml, isa/*.yaml and code/*.csv when the program is built (embed.cmake).
 #pragma once
 
 #include <span>
@@ -7,15 +7,15 @@
 
 namespace leviosim::platform {
 
-struct BuiltinPlatform {
+struct BuiltinFile {
   std::string_view name;  ///< file name without extension
   std::string_view text;
 };
 
-/// Sorted by name.
-std::span<const BuiltinPlatform> builtin_platforms();
-
-/// Sizes of compiled code (code/*.csv), in the same form.
-std::span<const BuiltinPlatform> builtin_code();
+/// All sorted by name.
+std::span<const BuiltinFile> builtin_platforms();
+std::span<const BuiltinFile> builtin_instruction_sets();
+/// Sizes of compiled code (code/*.csv).
+std::span<const BuiltinFile> builtin_code();
 
 }  // namespace leviosim::platform

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "platform_models/builtin.h"
@@ -15,7 +16,7 @@ namespace leviosim::platform {
 namespace {
 
 constexpr double kLineBytes = 16;
-constexpr std::string_view kHeader = "function,after,lines";
+constexpr std::string_view kHeader = "function,after,lines,visits,refetches";
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -27,51 +28,65 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-double lines_in(std::string_view cell, const std::string& where) {
+/// Lines of code as bytes.
+std::uint32_t bytes_in(std::string_view cell, const std::string& where) {
   const std::string text(cell);
   char* end = nullptr;
   const double lines = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !(lines >= 0 && lines < 1e6))
-    throw InputError(fmt::format(
-        "{}: lines is \"{}\": expected a number of 16-byte lines, 0 or more", where, text));
-  return lines;
+    throw InputError(
+        fmt::format("{}: \"{}\": expected a number of 16-byte lines, 0 or more", where, text));
+  return static_cast<std::uint32_t>(std::lround(lines * kLineBytes));
 }
+
+class Reader {
+ public:
+  explicit Reader(std::string file) : file_(std::move(file)) {}
+
+  void read(std::string_view line) {
+    ++line_;
+    if (line.empty() || line.front() == '#') return;
+    const std::string where = fmt::format("{}:{}", file_, line_);
+    if (header_)
+      add(split(line), where);
+    else if (line != kHeader)
+      throw InputError(fmt::format("{}: expected the header {}", where, kHeader));
+    header_ = true;
+  }
+  work::CodeMap take() { return std::move(map_); }
+
+ private:
+  void add(const std::vector<std::string_view>& cells, const std::string& where) {
+    if (cells.size() != 5 || cells[0].empty())
+      throw InputError(fmt::format("{}: expected a row of {}", where, kHeader));
+    if (!seen_.insert({cells[0], cells[1]}).second)
+      throw InputError(
+          fmt::format("{}: {} after \"{}\" is there twice", where, cells[0], cells[1]));
+    map_.add(cells[0], cells[1], bytes_in(cells[2], where), bytes_in(cells[4], where));
+  }
+
+  std::string file_;
+  work::CodeMap map_;
+  std::set<std::pair<std::string_view, std::string_view>> seen_;
+  bool header_ = false;
+  int line_ = 0;
+};
 
 }  // namespace
 
 work::CodeMap code_map_from(const std::string& file, std::string_view text) {
-  work::CodeMap map;
-  std::set<std::pair<std::string_view, std::string_view>> seen;
-  bool header = false;
-  int number = 0;
+  Reader reader(file);
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
+    reader.read(text.substr(begin, end - begin));
     begin = end + 1;
-    ++number;
-    if (line.empty() || line.front() == '#') continue;
-    const std::string where = fmt::format("{}:{}", file, number);
-    if (!header) {
-      if (line.substr(0, kHeader.size()) != kHeader)
-        throw InputError(fmt::format("{}: expected a header that begins with {}", where, kHeader));
-      header = true;
-      continue;
-    }
-    const std::vector<std::string_view> cells = split(line);
-    if (cells.size() < 3 || cells[0].empty())
-      throw InputError(fmt::format("{}: expected a row of {}", where, kHeader));
-    if (!seen.insert({cells[0], cells[1]}).second)
-      throw InputError(
-          fmt::format("{}: {} after \"{}\" is there twice", where, cells[0], cells[1]));
-    map.add(cells[0], cells[1],
-            static_cast<std::uint32_t>(std::lround(lines_in(cells[2], where) * kLineBytes)));
   }
-  return map;
+  return reader.take();
 }
 
 const work::CodeMap& compiled_code() {
   static const work::CodeMap map = [] {
-    const BuiltinPlatform& file = builtin_code().front();
+    const BuiltinFile& file = builtin_code().front();
     return code_map_from(std::string(file.name) + ".csv", file.text);
   }();
   return map;

@@ -34,19 +34,32 @@ inline constexpr std::array kSizeUnits{Unit{"B", 1}, Unit{"kB", 1e3}, Unit{"KiB"
                                        Unit{"MB", 1e6}, Unit{"MiB", 1024.0 * 1024.0}};
 inline constexpr std::array kCycleUnits{Unit{"cycles", 1}};
 inline constexpr std::array kRateUnits{Unit{"B/cycle", 1}};
+inline constexpr std::array kTimeUnits{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6},
+                                       Unit{"ns", 1e-9}};
+inline constexpr std::array kThroughputUnits{Unit{"B/s", 1}, Unit{"MB/s", 1e6}};
 inline constexpr std::array kRatioUnits{Unit{"ratio", 1}};
 inline constexpr std::array kCoreUnits{Unit{"cores", 1}};
 inline constexpr std::array kBankUnits{Unit{"banks", 1}};
 inline constexpr std::array kUnitUnits{Unit{"units", 1}};
+inline constexpr std::array kVoltageUnits{Unit{"V", 1}, Unit{"mV", 1e-3}};
+inline constexpr std::array kEnergyUnits{Unit{"J", 1}, Unit{"uJ", 1e-6}, Unit{"nJ", 1e-9},
+                                         Unit{"pJ", 1e-12}};
+inline constexpr std::array kPowerUnits{Unit{"W", 1}, Unit{"mW", 1e-3}, Unit{"uW", 1e-6},
+                                        Unit{"nW", 1e-9}};
 
 inline constexpr Dimension kFrequency{"a frequency", kFrequencyUnits, true};
 inline constexpr Dimension kSize{"a size", kSizeUnits, true};
 inline constexpr Dimension kCycles{"a number of cycles", kCycleUnits};
 inline constexpr Dimension kRate{"a transfer rate", kRateUnits};
+inline constexpr Dimension kTime{"a time", kTimeUnits};
+inline constexpr Dimension kThroughput{"a transfer rate over time", kThroughputUnits};
 inline constexpr Dimension kRatio{"a ratio", kRatioUnits};
 inline constexpr Dimension kCores{"a number of cores", kCoreUnits, true};
 inline constexpr Dimension kBanks{"a number of banks", kBankUnits, true};
 inline constexpr Dimension kUnits{"a number of functional units", kUnitUnits, true};
+inline constexpr Dimension kVoltage{"a voltage", kVoltageUnits};
+inline constexpr Dimension kEnergy{"an energy", kEnergyUnits};
+inline constexpr Dimension kPower{"a power", kPowerUnits};
 inline constexpr Dimension kChoice{"a choice", {}};
 
 std::string_view trim(std::string_view text);

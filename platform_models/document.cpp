@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
+#include "platform_models/instruction_set.h"
 #include "platform_models/nearest.h"
 #include "platform_models/yaml_entries.h"
 
@@ -26,9 +28,13 @@ class Reader {
     document_.settings.resize(schema.fields().size());
   }
 
-  Document read(const std::string& text);
+  Document read_platform(const std::string& text, const std::optional<BaseOverride>& base);
 
  private:
+  /// @param users  the files that build on this one, outermost first
+  Document read_instruction_set(const std::string& text, std::vector<std::string> users);
+  void read_base(const std::vector<YamlEntry>& root, const std::optional<BaseOverride>& base);
+  Document finish();
   void read_header(const std::vector<YamlEntry>& root);
   void read_sources(const YamlEntry& entry);
   void read_section(const std::vector<YamlEntry>& entries, const std::string& path);
@@ -47,9 +53,14 @@ class Reader {
 
   const Schema& schema_;
   std::string file_;
+  std::vector<std::string> users_;
+  std::map<std::string, std::string> sources_of_base_;
   std::map<std::string, int> section_lines_;
   Document document_;
 };
+
+constexpr const char* kIsa = "isa";
+constexpr const char* kBase = "base";
 
 /// Keys of the root that are about the file as a whole.
 bool is_header(std::string_view path) {
@@ -62,11 +73,63 @@ const YamlEntry* find(const std::vector<YamlEntry>& entries, const std::string& 
   return nullptr;
 }
 
-Document Reader::read(const std::string& text) {
+Document Reader::read_platform(const std::string& text, const std::optional<BaseOverride>& base) {
   const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "", 1);
   read_header(root);
+  read_base(root, base);
   read_section(root, "");
   check_complete();
+  return finish();
+}
+
+Document Reader::read_instruction_set(const std::string& text, std::vector<std::string> users) {
+  users_ = std::move(users);
+  const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "", 1);
+  read_header(root);
+  for (const YamlEntry& entry : root)
+    if (!is_header(entry.key) && entry.key != kIsa)
+      place(entry, entry.key)
+          .fail(
+              "unknown key; an instruction set has name, description, sources "
+              "and isa");
+  read_base(root, {});
+  read_section(root, "");
+  return finish();
+}
+
+/// Begins with the parameters of the instruction set that this file builds on, if it names one.
+void Reader::read_base(const std::vector<YamlEntry>& root,
+                       const std::optional<BaseOverride>& other) {
+  const YamlEntry* isa = find(root, kIsa);
+  const std::vector<YamlEntry> entries = isa == nullptr
+                                             ? std::vector<YamlEntry>{}
+                                             : entries_of(isa->value, file_, isa->key, isa->line);
+  const YamlEntry* key = find(entries, kBase);
+  if (other && key == nullptr)
+    Place{other->where}.fail(
+        fmt::format("{} names no {} that could be replaced", file_, kBasePath));
+  if (key == nullptr) return;
+  const Place named = other ? Place{other->where} : place(*key, kBasePath);
+  const std::string name = other ? other->base : scalar(key->value, named);
+  const TextFile file = find_instruction_set(name, file_, named);
+
+  std::vector<std::string> users = users_;
+  users.push_back(file_);
+  if (std::find(users.begin(), users.end(), file.name) != users.end())
+    named.fail(fmt::format("'{}' builds on itself", name));
+  Document base = Reader(schema_, file.name).read_instruction_set(file.text, std::move(users));
+  document_.settings = std::move(base.settings);
+  for (const auto& [source, meaning] : base.sources) {
+    const auto own = document_.sources.find(source);
+    if (own != document_.sources.end() && own->second != meaning)
+      named.fail(fmt::format("source '{}' stands for something else in {}", source, file.name));
+  }
+  sources_of_base_ = std::move(base.sources);
+}
+
+/// What was read, with the sources of the base. (Rows of a file cite its own.)
+Document Reader::finish() {
+  document_.sources.merge(sources_of_base_);
   return std::move(document_);
 }
 
@@ -96,7 +159,7 @@ void Reader::read_sources(const YamlEntry& entry) {
 void Reader::read_section(const std::vector<YamlEntry>& entries, const std::string& path) {
   for (const YamlEntry& entry : entries) {
     const std::string inner = joined(path, entry.key);
-    if (is_header(inner)) continue;
+    if (is_header(inner) || inner == kBasePath) continue;
     if (schema_.is_section(inner)) {
       section_lines_[inner] = entry.line;
       read_section(entries_of(entry.value, file_, inner, entry.line), inner);
@@ -119,6 +182,7 @@ void Reader::read_record(const YamlEntry& entry, const std::string& path) {
   const Provenance provenance = read_provenance(entries, path, record);
   bool any = false;
   for (const std::size_t index : indices) {
+    document_.settings[index].reset();  // what the base says
     const Field& field = schema_.fields()[index];
     const bool given = find(entries, field.name) != nullptr;
     any = any || given;
@@ -246,8 +310,9 @@ void Reader::check_complete() const {
 
 }  // namespace
 
-Document read_document(const Schema& schema, const std::string& file, const std::string& text) {
-  return Reader(schema, file).read(text);
+Document read_document(const Schema& schema, const std::string& file, const std::string& text,
+                       const std::optional<BaseOverride>& base) {
+  return Reader(schema, file).read_platform(text, base);
 }
 
 }  // namespace leviosim::platform

@@ -4,9 +4,13 @@
 //
 // A parameter is one map, `workers: { value: 8, unit: cores, source: "…", confidence: high }`, and
 // may have a `range: [low, high]` for sensitivity sweeps and a `note`. Rows of the operation tables
-// have the columns `issue`, `stall` and `on` in place of `value`, with `issue_range` and
-// `stall_range`. The text of a source up to the first parenthesis is a list of keys of the file's
+// have columns such as `issue`, `stall` and `on` in place of `value`, with ranges such as
+// `issue_range`. The text of a source up to the first parenthesis is a list of keys of the file's
 // section `sources`.
+//
+// `isa: { base: NAME }` takes the parameters of an instruction set (instruction_set.h), which is a
+// file of the same format with the section `isa` only, and may have a base itself. A row that the
+// file gives again replaces the row of the base as a whole.
 #pragma once
 
 #include <map>
@@ -29,7 +33,14 @@ struct Document {
   Settings settings;
 };
 
+/// An instruction set to use in place of the one that the platform names.
+struct BaseOverride {
+  std::string base;
+  std::string where;  ///< "-p isa.base=rv32imfc"
+};
+
 /// @param file  name of the file for messages
-Document read_document(const Schema& schema, const std::string& file, const std::string& text);
+Document read_document(const Schema& schema, const std::string& file, const std::string& text,
+                       const std::optional<BaseOverride>& base = {});
 
 }  // namespace leviosim::platform

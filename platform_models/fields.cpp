@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "platform_models/energy_fields.h"
+
 namespace leviosim::platform {
 namespace {
 
@@ -22,6 +24,7 @@ void put(double& target, double value) { target = value; }
 void put(int& target, double value) { target = static_cast<int>(value); }
 void put(Bytes& target, double value) { target = Bytes(static_cast<std::int64_t>(value)); }
 void put(Hertz& target, double value) { target = Hertz(static_cast<std::int64_t>(value)); }
+void put(bool& target, double value) { target = value != 0; }
 void put(sim::Unit& target, double value) { target = static_cast<sim::Unit>(value); }
 void put(sim::FpuMapping& target, double value) { target = static_cast<sim::FpuMapping>(value); }
 
@@ -55,6 +58,11 @@ Field choice(std::string path, std::vector<std::string> choices, std::string des
   return field;
 }
 
+Field optional(Field field) {
+  field.required = false;
+  return field;
+}
+
 /// Makes a field a column of a row of several: "isa.ops.int_mul.issue" is in "isa.ops.int_mul".
 Field column(Field field) {
   const std::size_t dot = field.path.rfind('.');
@@ -85,7 +93,7 @@ class Table {
   /// @param member  returns a reference to the field's place in a CoreConfig, const or not
   template <class Member>
   void add_of_cores(const CoreSection& section, Field field, Member member) {
-    field.required = section.common();
+    field.required = field.required && section.common();
     field.set = [section, member](ChipConfig& chip, double value) {
       if (section.cluster) put(member(chip.cluster.core), value);
       if (section.controller) put(member(chip.controller.core), value);
@@ -117,9 +125,20 @@ void add_operation(Table& table, const CoreSection& section, const work::OpInfo&
       [op](auto& core) -> auto& { return core.ops[work::index(op)].stall; });
   table.add_of_cores(
       section,
-      column(choice(row + ".on", {"core", "fpu", "divider"},
+      optional(
+          column(quantity(row + ".busy", kCycles, kLeastTime, kMaxCost,
+                          fmt::format("cycles that its unit is occupied: {}", info.description)))),
+      [op](auto& core) -> auto& { return core.ops[work::index(op)].busy; });
+  table.add_of_cores(
+      section,
+      column(choice(row + ".on", {"core", "fpu", "divider", "int64", "bank"},
                     fmt::format("unit that does the work: {}", info.description))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].unit; });
+  table.add_of_cores(
+      section,
+      optional(column(choice(row + ".routine", {"false", "true"},
+                             fmt::format("whole library routine: {}", info.description)))),
+      [op](auto& core) -> auto& { return core.ops[work::index(op)].routine; });
 }
 
 /// Instruction set and code generation.
@@ -128,7 +147,7 @@ void add_core(Table& table, const CoreSection& section) {
   table.add_of_cores(
       section,
       quantity(key("instruction_overhead"), kRatio, 0.1, 10,
-               "instructions emitted per instruction accounted for by ops"),
+               "instructions emitted per instruction accounted for by ops that are no routines"),
       [](auto& core) -> auto& { return core.instruction_overhead; });
   table.add_of_cores(
       section,
@@ -167,17 +186,13 @@ void add_fpu(Table& table) {
              "unit that serves a core: fixed, core c uses unit c mod units; dynamic, any"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.mapping; });
   table.add(
-      quantity("cluster.fpu.cycles_per_op", kCycles, kLeastTime, kMaxCost,
-               "cycles that an operation occupies its floating-point unit"),
-      [](auto& chip) -> auto& { return chip.cluster.fpu.cycles_per_op; });
-  table.add(
       quantity("cluster.fpu.dividers", kUnits, 0, kMaxParts,
                "divide and square-root units that the cluster's cores share"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.dividers; });
   table.add(
-      quantity("cluster.fpu.cycles_per_division", kCycles, kLeastTime, kMaxCost,
-               "cycles that a division or square root occupies its unit"),
-      [](auto& chip) -> auto& { return chip.cluster.fpu.cycles_per_division; });
+      quantity("cluster.fpu.int64_units", kUnits, 0, kMaxParts,
+               "units for 64-bit integers that the cluster's cores share, mapped as the others"),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
 }
 
 /// Sizes and times that every instruction cache has.
@@ -285,6 +300,26 @@ void add_controller(Table& table) {
   add_core(table, {"controller.core", false, true});
 }
 
+/// A chip need not have external memory.
+void add_external_memory(Table& table) {
+  const auto optional = [](Field field) {
+    field.required = false;
+    return field;
+  };
+  table.add(
+      optional(quantity("controller.external.latency", kTime, 0, 1,
+                        "time of a transfer from or to external memory besides its data")),
+      [](auto& chip) -> auto& { return chip.controller.external.latency_seconds; });
+  table.add(
+      optional(quantity("controller.external.rate", kThroughput, 0, 1e12,
+                        "data of a transfer from or to external memory per time")),
+      [](auto& chip) -> auto& { return chip.controller.external.bytes_per_second; });
+  table.add(
+      optional(quantity("controller.external.burst", kSize, 0, 1e6,
+                        "least that a transfer from or to external memory moves")),
+      [](auto& chip) -> auto& { return chip.controller.external.burst; });
+}
+
 void add_l2(Table& table) {
   table.add(
       quantity("l2.size", kSize, 1, kMaxSize, "size of L2"),
@@ -303,8 +338,11 @@ std::vector<Field> all_fields() {
   add_events(table);
   add_controller(table);
   add_code_of_controller(table);
+  add_external_memory(table);
   add_l2(table);
-  return table.take();
+  std::vector<Field> fields = table.take();
+  for (Field& field : energy_fields()) fields.push_back(std::move(field));
+  return fields;
 }
 
 }  // namespace leviosim::platform

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <algorithm>
 #include <utility>
 
 #include "platform_models/builtin.h"
 #include "platform_models/document.h"
+#include "platform_models/instruction_set.h"
 #include "platform_models/nearest.h"
 #include "platform_models/override.h"
 #include "platform_models/rules.h"
@@ -17,23 +16,6 @@
 
 namespace leviosim::platform {
 namespace {
-
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
-bool is_path(std::string_view name) {
-  return name.find('/') != std::string_view::npos || ends_with(name, ".yaml") ||
-         ends_with(name, ".yml");
-}
-
-std::string read_file(const std::string& path) {
-  std::error_code ignored;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, ignored))
-    throw InputError(fmt::format("{}: cannot be read as a platform file", path));
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 [[noreturn]] void unknown_platform(const std::string& name) {
   const std::vector<std::string> names = platform_names();
@@ -46,24 +28,46 @@ std::string read_file(const std::string& path) {
 sim::ChipConfig configure(const Schema& schema, const Document& document) {
   sim::ChipConfig config;
   config.name = document.name;
-  for (std::size_t i = 0; i < schema.fields().size(); ++i)
-    if (const auto& setting = document.settings[i]) schema.fields()[i].set(config, setting->base);
+  for (std::size_t i = 0; i < schema.fields().size(); ++i) {
+    const Field& field = schema.fields()[i];
+    const auto& setting = document.settings[i];
+    if (!setting) continue;
+    field.set(config, setting->base);
+    const auto& range = setting->parameter.range;
+    if (!range || !field.set_band) continue;
+    const double factor = field.dimension->find(setting->parameter.unit)->factor;
+    field.set_band(config, range->low * factor, range->high * factor);
+  }
   return config;
+}
+
+/// Without the sources of rows that others replaced.
+std::vector<std::pair<std::string, std::string>> cited_only(
+    const std::map<std::string, std::string>& sources, const std::vector<Parameter>& parameters) {
+  std::vector<std::pair<std::string, std::string>> kept;
+  for (const auto& source : sources)
+    if (std::any_of(parameters.begin(), parameters.end(), [&](const Parameter& parameter) {
+          return parameter.source.find(source.first) != std::string::npos;
+        }))
+      kept.emplace_back(source);
+  return kept;
 }
 
 }  // namespace
 
 std::vector<std::string> platform_names() {
   std::vector<std::string> names;
-  for (const BuiltinPlatform& platform : builtin_platforms()) names.emplace_back(platform.name);
+  for (const BuiltinFile& platform : builtin_platforms()) names.emplace_back(platform.name);
   return names;
 }
 
 ResolvedPlatform resolve_platform_text(const std::string& file, const std::string& text,
                                        const std::vector<std::string>& overrides) {
   const Schema schema;
-  Document document = read_document(schema, file, text);
-  for (const std::string& override : overrides) apply_override(schema, document.settings, override);
+  const SplitOverrides split = split_overrides(overrides);
+  Document document = read_document(schema, file, text, split.base);
+  for (const std::string& override : split.parameters)
+    apply_override(schema, document.settings, override);
   ResolvedPlatform platform;
   platform.config = configure(schema, document);
   check_rules(schema, document.settings, platform.config);
@@ -72,15 +76,16 @@ ResolvedPlatform resolve_platform_text(const std::string& file, const std::strin
   for (const auto& setting : document.settings)
     if (setting) platform.parameters.push_back(setting->parameter);
   if (!overrides.empty()) document.sources[kOverrideKey] = kOverrideMeaning;
-  platform.sources.assign(document.sources.begin(), document.sources.end());
+  platform.sources = cited_only(document.sources, platform.parameters);
   return platform;
 }
 
 ResolvedPlatform resolve_platform(const std::string& name_or_path,
                                   const std::vector<std::string>& overrides) {
   if (is_path(name_or_path))
-    return resolve_platform_text(name_or_path, read_file(name_or_path), overrides);
-  for (const BuiltinPlatform& platform : builtin_platforms())
+    return resolve_platform_text(name_or_path, read_file(name_or_path, "a platform file"),
+                                 overrides);
+  for (const BuiltinFile& platform : builtin_platforms())
     if (platform.name == name_or_path)
       return resolve_platform_text(fmt::format("{}.yaml", platform.name),
                                    std::string(platform.text), overrides);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "platform_models/instruction_set.h"
 #include "platform_models/nearest.h"
 #include "platform_models/value.h"
 
@@ -24,6 +25,24 @@ std::string default_unit(const Field& field, const std::optional<Setting>& previ
 }
 
 }  // namespace
+
+SplitOverrides split_overrides(const std::vector<std::string>& overrides) {
+  SplitOverrides split;
+  for (const std::string& text : overrides) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos ||
+        trim(std::string_view(text).substr(0, equals)) != kBasePath) {
+      split.parameters.push_back(text);
+      continue;
+    }
+    const Place place{"-p " + text};
+    if (split.base)
+      place.fail(fmt::format("'{}' is already given by {}", kBasePath, split.base->where));
+    split.base = {std::string(trim(std::string_view(text).substr(equals + 1))), place.where};
+    if (split.base->base.empty()) place.fail("expected a value after '='");
+  }
+  return split;
+}
 
 void apply_override(const Schema& schema, Settings& settings, const std::string& text) {
   const Place place{"-p " + text};

@@ -1,7 +1,9 @@
 // Command-line overrides of platform parameters: "-p cluster.workers=4", "-p cluster.clock=240MHz".
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "platform_models/document.h"
 #include "platform_models/schema.h"
@@ -12,6 +14,14 @@ namespace leviosim::platform {
 inline constexpr const char* kOverrideKey = "override";
 inline constexpr const char* kOverrideSource = "override (-p)";
 inline constexpr const char* kOverrideMeaning = "given on the command line with -p";
+
+/// Overrides that name another instruction set ("isa.base=rv32imfc") are settled before the file is
+/// read; all others replace parameters.
+struct SplitOverrides {
+  std::optional<BaseOverride> base;
+  std::vector<std::string> parameters;
+};
+SplitOverrides split_overrides(const std::vector<std::string>& overrides);
 
 /// Replaces one setting. Without a unit, the number is in the unit of the value it replaces, or in
 /// the base unit where there is none. Such a value has no source but the person who gave it, hence

@@ -5,6 +5,7 @@
 #include <bit>
 #include <string_view>
 
+#include "platform_models/supply_rules.h"
 #include "sim/error.h"
 
 namespace leviosim::platform {
@@ -14,12 +15,8 @@ class Rules {
  public:
   Rules(const Schema& schema, const Settings& settings) : schema_(schema), settings_(settings) {}
 
-  /// "cluster.workers is 9 cores (-p cluster.workers=9)"
   std::string state(std::string_view path) const {
-    const Setting& setting = settings_[schema_.find(path)].value();
-    const Parameter& p = setting.parameter;
-    return fmt::format("{} is {}{}{} ({})", path, p.value, p.unit.empty() ? "" : " ", p.unit,
-                       setting.where);
+    return platform::state(settings_[schema_.find(path)].value());
   }
 
   void require(bool ok, std::string_view path, std::string_view expected) const {
@@ -42,6 +39,22 @@ class Rules {
     }
   }
 
+  /// A core that is alone never waits for itself: what an operation occupies its unit for must fit
+  /// into what it costs the core. (A pipelined unit is busy for one cycle, whatever the latency.)
+  void require_latency(const work::OpInfo& info, const sim::OpCost& cost) const {
+    if (cost.unit == sim::Unit::Core || cost.busy <= 1 || cost.busy <= cost.issue + cost.stall)
+      return;
+    const auto of = [&](std::string_view column) {
+      const std::string own = fmt::format("cluster.core.ops.{}.{}", info.name, column);
+      return state(settings_[schema_.find(own)] ? own
+                                                : fmt::format("isa.ops.{}.{}", info.name, column));
+    };
+    throw InputError(
+        fmt::format("{}, but {} and {}: expected issue + stall to cover the time that "
+                    "the operation occupies its unit",
+                    of("busy"), of("issue"), of("stall")));
+  }
+
  private:
   /// Whether the cluster has a value of its own in place of this one of `isa`.
   bool replaced(const Field& field) const {
@@ -55,6 +68,12 @@ class Rules {
 
 }  // namespace
 
+std::string state(const Setting& setting) {
+  const Parameter& p = setting.parameter;
+  return fmt::format("{} is {}{}{} ({})", p.path, p.value, p.unit.empty() ? "" : " ", p.unit,
+                     setting.where);
+}
+
 void check_rules(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip) {
   const Rules rules(schema, settings);
   const sim::ClusterConfig& cluster = chip.cluster;
@@ -66,6 +85,9 @@ void check_rules(const Schema& schema, const Settings& settings, const sim::Chip
                 "a power of two");
   rules.require_units("fpu", "cluster.fpu.units", cluster.fpu.units);
   rules.require_units("divider", "cluster.fpu.dividers", cluster.fpu.dividers);
+  rules.require_units("int64", "cluster.fpu.int64_units", cluster.fpu.int64_units);
+  for (const work::OpInfo& info : work::kOps) rules.require_latency(info, cluster.core[info.op]);
+  check_supply(schema, settings, chip);
 }
 
 }  // namespace leviosim::platform

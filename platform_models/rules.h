@@ -1,6 +1,8 @@
 // What must hold between parameters, whatever each of them may be on its own.
 #pragma once
 
+#include <string>
+
 #include "platform_models/document.h"
 #include "platform_models/schema.h"
 #include "sim/chip/config.h"
@@ -9,5 +11,8 @@ namespace leviosim::platform {
 
 /// Throws an InputError that names the parameters at odds and where each was given.
 void check_rules(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip);
+
+/// "cluster.workers is 9 cores (-p cluster.workers=9)"
+std::string state(const Setting& setting);
 
 }  // namespace leviosim::platform

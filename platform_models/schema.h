@@ -32,6 +32,8 @@ struct Field {
   /// Values are in base units; a choice is the index of its name.
   std::function<void(sim::ChipConfig&, double)> set;
   std::function<double(const sim::ChipConfig&)> get;
+  /// Where the chip keeps what it would be with the ends of the range; empty for most.
+  std::function<void(sim::ChipConfig&, double low, double high)> set_band;
 
   bool is_choice() const { return !choices.empty(); }
   std::string range_key() const { return name == "value" ? "range" : name + "_range"; }

@@ -39,8 +39,16 @@ class Quantity {
 using Cycles = Quantity<struct CyclesTag, std::int64_t>;  ///< clock cycles of the domain at hand
 using Bytes = Quantity<struct BytesTag, std::int64_t>;    ///< bytes
 using Hertz = Quantity<struct HertzTag, std::int64_t>;    ///< whole hertz
+using Seconds = Quantity<struct SecondsTag, double>;      ///< seconds
 using Joules = Quantity<struct JoulesTag, double>;        ///< joules
 using Watts = Quantity<struct WattsTag, double>;          ///< watts
 using Volts = Quantity<struct VoltsTag, double>;          ///< volts
+
+constexpr Joules operator*(Watts power, Seconds time) {
+  return Joules(power.count() * time.count());
+}
+constexpr Watts operator/(Joules energy, Seconds time) {
+  return Watts(energy.count() / time.count());
+}
 
 }  // namespace leviosim

@@ -79,10 +79,14 @@ void CsvRow::fail(std::size_t column, std::string_view message) const {
 
 CsvReader::CsvReader(std::filesystem::path file, Separator separator,
                      std::vector<std::string> names)
+    : CsvReader(file, separator, std::move(names), read_text_file(file)) {}
+
+CsvReader::CsvReader(std::filesystem::path file, Separator separator,
+                     std::vector<std::string> names, std::string text)
     : file_(std::move(file)),
       separator_(separator),
       names_(std::move(names)),
-      text_(read_text_file(file_)) {
+      text_(std::move(text)) {
   const auto last = text_.find_last_not_of(kBlanks);
   text_.resize(last == std::string::npos ? 0 : last + 1);
   if (std::string_view(text_).substr(0, kByteOrderMark.size()) == kByteOrderMark)

@@ -53,6 +53,9 @@ enum class Separator { comma, blanks };
 class CsvReader {
  public:
   CsvReader(std::filesystem::path file, Separator separator, std::vector<std::string> names);
+  /// The same from text that is at hand; `file` is its name for messages.
+  CsvReader(std::filesystem::path file, Separator separator, std::vector<std::string> names,
+            std::string text);
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
 

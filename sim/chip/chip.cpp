@@ -3,11 +3,28 @@
 #include <cmath>
 
 namespace leviosim::sim {
+namespace {
+
+/// What the cluster awaits from L2 takes its time on the clock of the SoC, which is the
+/// controller's (hw_facts 5): in cycles of a faster cluster it takes longer.
+ChipConfig in_cluster_cycles(ChipConfig chip) {
+  ClusterConfig& cluster = chip.cluster;
+  const double ratio = static_cast<double>(cluster.clock.count()) /
+                       static_cast<double>(chip.controller.clock.count());
+  for (const work::Op op : {work::Op::LoadL2, work::Op::StoreL2})
+    cluster.core.ops[work::index(op)].stall *= ratio;
+  cluster.icache.shared_miss *= ratio;
+  cluster.dma.first_data *= ratio;
+  cluster.dma.bytes_per_cycle /= ratio;
+  return chip;
+}
+
+}  // namespace
 
 Chip::Chip(const ChipConfig& config, int workers)
-    : config_(config),
+    : config_(in_cluster_cycles(config)),
       timebase_({{"cluster", config.cluster.clock}, {"controller", config.controller.clock}}),
-      cluster_(kernel_, timebase_.clock("cluster"), config.cluster, workers),
+      cluster_(kernel_, timebase_.clock("cluster"), config_.cluster, workers),
       controller_(kernel_, timebase_.clock("controller"), config.controller) {}
 
 Task<JobTiming> Chip::offload(const work::Job& job) {

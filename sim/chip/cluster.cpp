@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/check.h"
@@ -19,17 +20,13 @@ int checked_workers(const ClusterConfig& config, int workers) {
 
 }  // namespace
 
-double transfer_cycles(const DmaConfig& dma, Bytes bytes) {
-  const double payload = std::ceil(static_cast<double>(bytes.count()) / dma.bytes_per_cycle);
-  return dma.programming + dma.first_data + payload + dma.completion;
-}
-
 Cluster::Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers)
     : kernel_(kernel),
       clock_(clock),
       config_(config),
       workers_(checked_workers(config, workers)),
       team_(kernel, clock, config, workers),
+      dma_(kernel, clock, config.dma, team_),
       end_of_fork_(kernel, "end of fork", static_cast<std::size_t>(workers) + 1,
                    cycles(config.events.barrier)) {
   for (int id = 0; id < workers_; ++id) {
@@ -49,6 +46,7 @@ double Cluster::cycles_since(Time begin, Time end) const {
 
 Task<JobTiming> Cluster::run(const work::Job& job) {
   JobTiming timing{kernel_.now(), kernel_.now(), {}};
+  background_.clear();
   for (const work::StageRun& stage : job.stages) {
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
     for (const work::Step& variant : stage.steps) {
@@ -57,8 +55,10 @@ Task<JobTiming> Cluster::run(const work::Job& job) {
         co_await step(*serial, s.account);
       else if (const auto* fork = std::get_if<work::Fork>(&variant))
         co_await step(*fork, s.account);
+      else if (const auto* transfer = std::get_if<work::Transfer>(&variant))
+        co_await step(*transfer, s.account);
       else
-        co_await step(std::get<work::Transfer>(variant), s.account);
+        co_await step(std::get<work::TransferWait>(variant), s.account);
     }
     s.end = kernel_.now();
     s.cycles = clock_.whole_cycles(s.end - s.begin);
@@ -76,8 +76,25 @@ Task<> Cluster::step(const work::Serial& serial, Account& account) {
 
 Task<> Cluster::step(const work::Transfer& transfer, Account& account) {
   const Time begin = kernel_.now();
-  co_await kernel_.delay(cycles(transfer_cycles(config_.dma, transfer.bytes)));
+  co_await kernel_.delay(cycles(config_.dma.programming));
+  const Time arrival = dma_.start(transfer);
+  if (transfer.background)
+    background_.push_back(arrival);
+  else
+    co_await until_arrived(arrival);
   account.transfer += workers_ * cycles_since(begin, kernel_.now());
+}
+
+Task<> Cluster::step(const work::TransferWait& wait, Account& account) {
+  const Time begin = kernel_.now();
+  co_await until_arrived(background_.at(static_cast<std::size_t>(wait.number)));
+  account.transfer += workers_ * cycles_since(begin, kernel_.now());
+}
+
+/// A core sleeps on the wait instruction even if the event is there already (hw_facts 7).
+Task<> Cluster::until_arrived(Time arrival) {
+  if (arrival > kernel_.now()) co_await kernel_.at(arrival);
+  co_await kernel_.delay(cycles(config_.dma.completion));
 }
 
 Task<> Cluster::step(const work::Fork& fork, Account& account) {
@@ -85,12 +102,14 @@ Task<> Cluster::step(const work::Fork& fork, Account& account) {
   arrivals_ = 0;
   co_await kernel_.delay(cycles(config_.events.fork_master));
   for (auto& channel : dispatch_) co_await channel->push({&fork, &account, begin});
+  if (fork.master_takes_part) co_await team_.execute(workers_, fork.shares.back());
   co_await end_of_fork_.arrive();
   const double last = cycles_since(begin, last_arrival_);
   const double start_up = cycles_since(
       begin, begin + cycles(config_.events.fork_master) + cycles(config_.events.fork_worker));
-  const double barrier = cycles_since(last_arrival_, kernel_.now());
-  account.imbalance += workers_ * last - arrivals_;
+  const double after = cycles_since(last_arrival_, kernel_.now());
+  const double barrier = std::min(after, config_.events.barrier);
+  account.imbalance += workers_ * (last + after - barrier) - arrivals_;
   account.synchronisation += workers_ * (start_up + barrier);
 }
 
@@ -98,12 +117,7 @@ Process Cluster::worker(int id) {
   for (;;) {
     const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
     co_await kernel_.delay(cycles(config_.events.fork_worker));
-    const auto& shares = dispatch.fork->shares;
-    work::Counts mine;
-    for (std::size_t k = static_cast<std::size_t>(id); k < shares.size();
-         k += static_cast<std::size_t>(workers_))
-      mine += shares[k];
-    const SegmentTime time = co_await team_.execute(id, mine);
+    const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork));
     Account& account = *dispatch.account;
     account.useful += time.alone;
     account.fpu += time.fpu;
@@ -115,6 +129,14 @@ Process Cluster::worker(int id) {
     arrivals_ += cycles_since(dispatch.begin, last_arrival_);
     co_await end_of_fork_.arrive();
   }
+}
+
+work::Counts Cluster::shares_of(int id, const work::Fork& fork) const {
+  const std::size_t shares = fork.shares.size() - (fork.master_takes_part ? 1 : 0);
+  work::Counts mine;
+  for (auto k = static_cast<std::size_t>(id); k < shares; k += static_cast<std::size_t>(workers_))
+    mine += fork.shares[k];
+  return mine;
 }
 
 }  // namespace leviosim::sim

@@ -2,14 +2,14 @@
 // serial work by the master, forks on the team, DMA transfers that the master waits for.
 //
 // Models: the path of a team fork (dispatch by the master, wake-up of the workers, barrier at the
-// end), DMA programming, latency, payload and completion, contention within a team (team.h).
-// Leaves out: DMA payload competing with cores for banks (a master that waits has idle workers),
-// instruction fetches.
+// end), DMA programming, latency, payload and completion (dma.h), contention within a team
+// (team.h).
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "sim/chip/dma.h"
 #include "sim/chip/team.h"
 #include "sim/chip/timing.h"
 #include "sim/kernel/channel.h"
@@ -41,6 +41,9 @@ class Cluster {
   Task<> step(const work::Serial& serial, Account& account);
   Task<> step(const work::Fork& fork, Account& account);
   Task<> step(const work::Transfer& transfer, Account& account);
+  Task<> step(const work::TransferWait& wait, Account& account);
+  Task<> until_arrived(Time arrival);
+  work::Counts shares_of(int id, const work::Fork& fork) const;
   Duration cycles(double n) const;
   double cycles_since(Time begin, Time end) const;
 
@@ -49,14 +52,13 @@ class Cluster {
   ClusterConfig config_;
   int workers_;
   Team team_;  ///< the workers and, last, the master
+  Dma dma_;
+  std::vector<Time> background_;  ///< arrivals of the job's background transfers
   Barrier end_of_fork_;
   std::vector<std::unique_ptr<Channel<Dispatch>>> dispatch_;
   Time last_arrival_;
   double arrivals_ =
       0;  ///< arrival times of the workers after the begin of the fork, summed, cycles
 };
-
-/// Cycles that a blocking transfer takes from its programming until the master goes on.
-double transfer_cycles(const DmaConfig& dma, Bytes bytes);
 
 }  // namespace leviosim::sim

@@ -1,39 +1,53 @@
 // The numbers that describe a chip: what a platform file (platform_models/) fills in. Every
 // number's source stands beside it in the platform file; the comments here say what it means.
 //
-// Cycles are cycles of the clock domain that the structure belongs to. They are real numbers where
-// the value is an average over many events.
+// Cycles are cycles of the clock domain that the structure belongs to; what the cluster awaits from
+// L2 (loads, DMA, refills of instruction caches) belongs to the SoC, whose clock is the
+// controller's. They are real numbers where the value is an average over many events.
 #pragma once
 
 #include <array>
 #include <string>
 
+#include "sim/energy/config.h"
 #include "sim/units.h"
 #include "sim/work/op.h"
 
 namespace leviosim::sim {
 
 /// Which unit an operation occupies besides its core.
-enum class Unit : std::uint8_t { Core, Fpu, Divider };
+enum class Unit : std::uint8_t {
+  Core,
+  Fpu,
+  Divider,
+  Int64,
+  Bank,    ///< the one bank of L1 that holds a word which all cores use
+  Refill,  ///< of the shared instruction cache from L2; no operation's, but code's
+};
+inline constexpr std::size_t kUnitCount = 6;
 
 /// What one counted operation costs a core that is alone.
 struct OpCost {
   double issue = 0;  ///< instructions issued
   double stall = 0;  ///< cycles the pipeline waits in addition
   Unit unit = Unit::Core;
+  double busy = 1;       ///< cycles that it occupies the unit, if that is not the core
+  bool routine = false;  ///< the numbers are of a whole library routine as it was compiled
 };
 
 /// How counted operations become instructions of one instruction set, and their latencies.
 struct CoreConfig {
   std::array<OpCost, work::kOpCount> ops{};
   double instruction_overhead = 1;  ///< instructions emitted per instruction accounted for by ops
+                                    ///< that are no routines
   double load_use_fraction = 0;     ///< share of loads whose result the next instruction uses
   double load_use_stall = 0;        ///< cycles such a load waits
 
   const OpCost& operator[](work::Op op) const { return ops[work::index(op)]; }
 };
 
-/// Floating-point units shared by the cores of a cluster.
+/// Arithmetic units shared by the cores of a cluster. How long an operation occupies its unit is
+/// said with the operation (OpCost::busy).
 enum class FpuMapping : std::uint8_t {
   Fixed,   ///< core c uses unit c mod n
   Dynamic  ///< any core uses any free unit
@@ -42,9 +56,8 @@ enum class FpuMapping : std::uint8_t {
 struct FpuConfig {
   int units = 0;
   FpuMapping mapping = FpuMapping::Fixed;
-  double cycles_per_op = 1;  ///< occupation of a unit by one add, multiply, fma, …
-  int dividers = 0;          ///< divide/square-root units of the cluster
-  double cycles_per_division = 0;
+  int dividers = 0;     ///< divide/square-root units of the cluster, any core uses any
+  int int64_units = 0;  ///< units for 64-bit integers, mapped as the floating-point ones
 };
 
 /// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
@@ -90,11 +103,20 @@ struct ClusterConfig {
   EventUnitConfig events;
 };
 
+/// Memory outside of the chip, which the controller copies from and to L2 (hw_facts 6.2). A
+/// transfer takes `latency` and the time of its bytes, of which at least `burst` move.
+struct ExternalMemoryConfig {
+  double latency_seconds = 0;
+  double bytes_per_second = 0;  ///< 0: there is none
+  Bytes burst{0};
+};
+
 /// The fabric controller: one core with its own floating-point unit; its memory is L2.
 struct ControllerConfig {
   Hertz clock;
   CoreConfig core;
   InstructionCacheConfig icache;
+  ExternalMemoryConfig external{};
 };
 
 struct L2Config {
@@ -106,6 +128,8 @@ struct ChipConfig {
   ClusterConfig cluster;
   ControllerConfig controller;
   L2Config l2;
+  SupplyConfig supply{};
+  EnergyRange energy{};
 };
 
 }  // namespace leviosim::sim

@@ -14,27 +14,37 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr int kMaxRounds = 16;
 constexpr double kSettled = 1e-9;
 
+constexpr std::array kShared = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::Refill};
+
+constexpr std::size_t index(Unit unit) { return static_cast<std::size_t>(unit); }
+
 /// Requests of one runner to a unit: per lone cycle, and per cycle at its present rate.
 struct Request {
   std::size_t runner;
   double per_lone_cycle;
   double per_cycle;
+  double busy;  ///< cycles that one of them occupies the unit, on average
 };
 
-/// The request rate to which a unit of the given capacity (requests per cycle) holds its requesters
-/// back: infinite if it serves everybody. Water filling from the smallest demand upwards.
-double fair_rate(std::vector<Request>& requests, double capacity) {
+/// The request rate to which units of the given number hold their requesters back: infinite if they
+/// serve everybody. Water filling from the smallest demand upwards.
+double fair_rate(std::vector<Request>& requests, double units) {
   double demand = 0;
-  for (const Request& r : requests) demand += r.per_cycle;
-  if (demand <= capacity) return kUnlimited;
+  double busy = 0;  // of one request of everybody who is not served yet
+  for (const Request& r : requests) {
+    demand += r.per_cycle * r.busy;
+    busy += r.busy;
+  }
+  if (demand <= units) return kUnlimited;
   std::sort(requests.begin(), requests.end(), [](const Request& a, const Request& b) {
     return a.per_cycle != b.per_cycle ? a.per_cycle < b.per_cycle : a.runner < b.runner;
   });
-  double left = capacity;
-  for (std::size_t i = 0; i < requests.size(); ++i) {
-    const double share = left / static_cast<double>(requests.size() - i);
-    if (requests[i].per_cycle > share) return share;
-    left -= requests[i].per_cycle;
+  double left = units;
+  for (const Request& r : requests) {
+    const double share = left / busy;
+    if (r.per_cycle > share) return share;
+    left -= r.per_cycle * r.busy;
+    busy -= r.busy;
   }
   return kUnlimited;
 }
@@ -49,92 +59,129 @@ void apply(const std::vector<Request>& requests, double fair, std::vector<double
 
 Runner Runner::of(int core, const Demand& demand) {
   const double cycles = std::max(demand.cycles(), 1.0);
-  return {core,
-          demand.fpu_ops / cycles,
-          demand.divisions / cycles,
-          demand.l1_accesses / cycles,
-          demand.fetches / cycles,
-          demand.refills / cycles};
+  Runner runner{core, demand.units, demand.streamed / cycles, demand.scattered / cycles,
+                demand.fetches / cycles};
+  for (UnitDemand& unit : runner.units) {
+    unit.requests /= cycles;
+    unit.cycles /= cycles;
+  }
+  return runner;
 }
 
-void Contention::limit_fpus(const std::vector<Runner>& runners) {
-  std::fill(fpu_limit_.begin(), fpu_limit_.end(), kUnlimited);
-  if (fpu_.units == 0) return;
-  const bool fixed = fpu_.mapping == FpuMapping::Fixed;
-  const int pools = fixed ? fpu_.units : 1;
-  const double capacity = (fixed ? 1.0 : fpu_.units) / fpu_.cycles_per_op;
+Contention::Contention(const ClusterConfig& config)
+    : banks_(config.l1.banks), code_banks_(config.icache.shared_banks) {
+  const FpuConfig& fpu = config.fpu;
+  const auto mapped = [&](int units) {
+    return fpu.mapping == FpuMapping::Fixed ? Pools{units, 1.0}
+                                            : Pools{1, static_cast<double>(units)};
+  };
+  pools_[index(Unit::Fpu)] = mapped(fpu.units);
+  pools_[index(Unit::Divider)] = {1, static_cast<double>(fpu.dividers)};
+  pools_[index(Unit::Int64)] = mapped(fpu.int64_units);
+  pools_[index(Unit::Bank)] = {1, 1.0};
+  pools_[index(Unit::Refill)] = {1, config.icache.refills};
+}
+
+/// Finds the highest rates that the units of one kind allow at the present rates.
+void Contention::limit(std::size_t unit, const std::vector<Runner>& runners) {
+  std::vector<double>& limits = limits_[unit];
+  limits.assign(runners.size(), kUnlimited);
+  const Pools& kind = pools_[unit];
   std::vector<Request> requests;
-  for (int pool = 0; pool < pools; ++pool) {
+  for (int pool = 0; pool < kind.pools; ++pool) {
     requests.clear();
-    for (std::size_t i = 0; i < runners.size(); ++i)
-      if (runners[i].fpu > 0 && runners[i].core % pools == pool)
-        requests.push_back({i, runners[i].fpu, runners[i].fpu * rate_[i]});
-    apply(requests, fair_rate(requests, capacity), fpu_limit_);
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+      const UnitDemand& demand = runners[i].units[unit];
+      if (demand.requests > 0 && runners[i].core % kind.pools == pool)
+        requests.push_back(
+            {i, demand.requests, demand.requests * rate_[i], demand.cycles / demand.requests});
+    }
+    apply(requests, fair_rate(requests, kind.capacity), limits);
   }
 }
 
-void Contention::limit(const std::vector<Runner>& runners, double Runner::*requests,
-                       double capacity, std::vector<double>& limits) const {
-  std::fill(limits.begin(), limits.end(), kUnlimited);
-  std::vector<Request> all;
-  for (std::size_t i = 0; i < runners.size(); ++i)
-    if (runners[i].*requests > 0)
-      all.push_back({i, runners[i].*requests, runners[i].*requests * rate_[i]});
-  if (!all.empty()) apply(all, fair_rate(all, capacity), limits);
+/// The rate that all kinds of units but one allow a runner.
+double Contention::allowed(std::size_t runner, std::size_t except) const {
+  double rate = kUnlimited;
+  for (std::size_t unit = 0; unit < kUnitCount; ++unit)
+    if (unit != except) rate = std::min(rate, limits_[unit][runner]);
+  return rate;
 }
 
-double Contention::bank_delay(const std::vector<Runner>& runners, double Runner::*accesses,
-                              int banks, std::size_t i) const {
-  double others = 0;
-  for (std::size_t j = 0; j < runners.size(); ++j)
-    if (j != i) others += runners[j].*accesses * rate_[j];
-  return runners[i].*accesses * others / (2.0 * banks);
+void Contention::sum_up(const std::vector<Runner>& runners, double dma_words) {
+  runners_ = &runners;
+  dma_words_ = dma_words;
+  all_streamed_ = all_scattered_ = all_fetches_ = 0;
+  for (std::size_t i = 0; i < runners.size(); ++i) {
+    all_streamed_ += runners[i].streamed * rate_[i];
+    all_scattered_ += runners[i].scattered * rate_[i];
+    all_fetches_ += runners[i].fetches * rate_[i];
+  }
 }
 
-void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress) {
+double Contention::l1_delay(std::size_t i) const {
+  const Runner& me = (*runners_)[i];
+  const double scattered = all_scattered_ - me.scattered * rate_[i] + dma_words_;
+  const double streamed = all_streamed_ - me.streamed * rate_[i];
+  return (me.scattered * (scattered + streamed) + me.streamed * scattered) / (2.0 * banks_);
+}
+
+double Contention::fetch_delay(std::size_t i) const {
+  const Runner& me = (*runners_)[i];
+  return me.fetches * (all_fetches_ - me.fetches * rate_[i]) / (2.0 * code_banks_);
+}
+
+/// Books the time that a runner loses on what it waits for.
+void Contention::blame(std::size_t i, Progress& p) const {
+  p.banks = p.rate * l1_delay(i);
+  p.fetch = p.rate * fetch_delay(i);
+  const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch);
+  const auto tightest = std::min_element(kShared.begin(), kShared.end(), [&](Unit a, Unit b) {
+    return limits_[index(a)][i] < limits_[index(b)][i];
+  });
+  switch (*tightest) {
+    case Unit::Divider:
+      p.divider = lost;
+      break;
+    case Unit::Bank:
+      p.banks += lost;
+      break;
+    case Unit::Refill:
+      p.fetch += lost;
+      break;
+    default:
+      p.fpu = lost;
+  }
+}
+
+void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
+                       double dma_words) {
   const std::size_t n = runners.size();
   rate_.assign(n, 1.0);
-  fpu_limit_.assign(n, kUnlimited);
-  div_limit_.assign(n, kUnlimited);
-  refill_limit_.assign(n, kUnlimited);
+  for (std::vector<double>& limits : limits_) limits.assign(n, kUnlimited);
   progress.assign(n, Progress{});
-  if (n < 2) return;
+  if (n < 2 && dma_words == 0) return;
 
-  const auto l1_delay = [&](std::size_t i) {
-    return bank_delay(runners, &Runner::accesses, banks_, i);
-  };
-  const auto fetch_delay = [&](std::size_t i) {
-    return bank_delay(runners, &Runner::fetches, code_.shared_banks, i);
-  };
   std::vector<double> free_rate(n);  // without units that serve in turn
-  // Each unit's limit is found with what the *other* limits leave of the demand.
-  const auto leave = [&](const std::vector<double>& a, const std::vector<double>& b) {
-    for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min({free_rate[i], a[i], b[i]});
-  };
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0;
+    sum_up(runners, dma_words);
     for (std::size_t i = 0; i < n; ++i) free_rate[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i));
-    leave(div_limit_, refill_limit_);
-    limit_fpus(runners);
-    leave(fpu_limit_, refill_limit_);
-    limit(runners, &Runner::divisions, fpu_.dividers / fpu_.cycles_per_division, div_limit_);
-    leave(fpu_limit_, div_limit_);
-    limit(runners, &Runner::refills, code_.refills / code_.shared_miss, refill_limit_);
+    // Each unit's limit is found with what the *other* limits leave of the demand.
+    for (const Unit unit : kShared) {
+      for (std::size_t i = 0; i < n; ++i)
+        rate_[i] = std::min(free_rate[i], allowed(i, index(unit)));
+      limit(index(unit), runners);
+    }
     for (std::size_t i = 0; i < n; ++i) {
-      const double rate = std::min({free_rate[i], fpu_limit_[i], div_limit_[i], refill_limit_[i]});
+      const double rate = std::min(free_rate[i], allowed(i, index(Unit::Core)));
       change = std::max(change, std::abs(rate - progress[i].rate));
       rate_[i] = progress[i].rate = rate;
     }
     if (change < kSettled) break;
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    Progress& p = progress[i];
-    p.banks = p.rate * l1_delay(i);
-    p.fetch = p.rate * fetch_delay(i);
-    const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch);
-    const double tightest = std::min({fpu_limit_[i], div_limit_[i], refill_limit_[i]});
-    (tightest == fpu_limit_[i] ? p.fpu : tightest == div_limit_[i] ? p.divider : p.fetch) += lost;
-  }
+  sum_up(runners, dma_words);
+  for (std::size_t i = 0; i < n; ++i) blame(i, progress[i]);
 }
 
 }  // namespace leviosim::sim

@@ -5,13 +5,17 @@
 // contention. A shared unit serves requests in turn (round robin by request, hw_facts 3.2: four
 // cores dividing in single and four in half precision take 4·14 + 4·10 cycles a round), so when its
 // demand exceeds its capacity, the requesters that are held back get equal request rates and the
-// others all they ask for. L1 banks add a small delay to each access instead: with requesters j
-// making p_j accesses per cycle on B interleaved banks, an access waits Σ p_j / (2B) cycles
-// (hw_facts 4.1). The banks of the shared instruction cache delay private misses in the same way,
-// and its refills from L2 are served in turn like divisions.
+// others all they ask for. How long a request occupies its unit is the mean over the operations of
+// the segment that use this kind of unit. Refills of the shared instruction cache are served so,
+// too.
 //
-// Left out: transients of a few cycles until requesters have interleaved, and the alignment of
-// lock-step accesses to particular banks.
+// Banks add a small delay to each access instead: with requesters j making p_j accesses per cycle
+// on B interleaved banks, an access waits Σ p_j / (2B) cycles (hw_facts 4.1). That is how code
+// waits for the shared instruction cache, and scattered accesses for L1. Streams walk from bank to
+// bank all at the same pace: one that meets another waits once and is out of its way for good, so
+// streams wait only for scattered accesses and for the DMA.
+//
+// Left out: transients of a few cycles until requesters have interleaved.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +29,7 @@ namespace leviosim::sim {
 /// What slows a core down while it runs beside others, per cycle of its running time.
 struct Progress {
   double rate = 1;     ///< cycles of lone progress per cycle
-  double fpu = 0;      ///< share of the time lost to floating-point units
+  double fpu = 0;      ///< share of the time lost to floating-point and 64-bit integer units
   double divider = 0;  ///< … to the divider
   double banks = 0;    ///< … to L1 bank conflicts
   double fetch = 0;    ///< … to the shared instruction cache and its refills
@@ -33,12 +37,11 @@ struct Progress {
 
 /// One running segment as the solver sees it.
 struct Runner {
-  int core = 0;          ///< id, decides the floating-point unit under a fixed mapping
-  double fpu = 0;        ///< floating-point operations per lone cycle
-  double divisions = 0;  ///< divisions per lone cycle
-  double accesses = 0;   ///< L1 accesses per lone cycle
-  double fetches = 0;    ///< lines from the shared instruction cache per lone cycle
-  double refills = 0;    ///< lines from L2 per lone cycle
+  int core = 0;                              ///< id, decides the unit under a fixed mapping
+  std::array<UnitDemand, kUnitCount> units;  ///< per lone cycle
+  double streamed = 0;                       ///< L1 accesses by streams per lone cycle
+  double scattered = 0;                      ///< other L1 accesses per lone cycle
+  double fetches = 0;  ///< lines from the shared instruction cache per lone cycle
 
   static Runner of(int core, const Demand& demand);
 };
@@ -46,27 +49,38 @@ struct Runner {
 /// Solves the rates of all runners at once. Results are in the order of the runners.
 class Contention {
  public:
-  explicit Contention(const ClusterConfig& config)
-      : fpu_(config.fpu), code_(config.icache), banks_(config.l1.banks) {}
+  explicit Contention(const ClusterConfig& config);
 
-  void solve(const std::vector<Runner>& runners, std::vector<Progress>& progress);
+  /// @param dma_words  words per cycle that the DMA moves in L1
+  void solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
+             double dma_words = 0);
 
  private:
-  void limit_fpus(const std::vector<Runner>& runners);
-  /// Limits of units that serve everybody in turn.
-  void limit(const std::vector<Runner>& runners, double Runner::*requests, double capacity,
-             std::vector<double>& limits) const;
-  /// Cycles per lone cycle that runner i waits for banks that others use at the same time.
-  double bank_delay(const std::vector<Runner>& runners, double Runner::*accesses, int banks,
-                    std::size_t i) const;
+  /// Units of one kind: `pools` groups of `capacity` units; core c uses group c mod pools.
+  struct Pools {
+    int pools = 0;
+    double capacity = 0;
+  };
 
-  FpuConfig fpu_;
-  InstructionCacheConfig code_;
+  void limit(std::size_t unit, const std::vector<Runner>& runners);
+  double allowed(std::size_t runner, std::size_t except) const;
+  /// Cycles per lone cycle that a runner waits for L1 banks, and for those of the instruction
+  /// cache.
+  double l1_delay(std::size_t runner) const;
+  double fetch_delay(std::size_t runner) const;
+  void sum_up(const std::vector<Runner>& runners, double dma_words);
+  void blame(std::size_t runner, Progress& progress) const;
+
+  std::array<Pools, kUnitCount> pools_;
   int banks_;
-  std::vector<double> rate_;          ///< current estimate
-  std::vector<double> fpu_limit_;     ///< highest rate that the floating-point units allow
-  std::vector<double> div_limit_;     ///< … the dividers
-  std::vector<double> refill_limit_;  ///< … the refills of the shared instruction cache
+  int code_banks_;
+  const std::vector<Runner>* runners_ = nullptr;  ///< while solving
+  double all_streamed_ = 0;                       ///< per cycle at the present rates, by everybody
+  double all_scattered_ = 0;
+  double all_fetches_ = 0;
+  double dma_words_ = 0;
+  std::vector<double> rate_;                            ///< current estimate
+  std::array<std::vector<double>, kUnitCount> limits_;  ///< highest rate that each unit allows
 };
 
 }  // namespace leviosim::sim

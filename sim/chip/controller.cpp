@@ -1,6 +1,9 @@
 #include "sim/chip/controller.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "sim/check.h"
 
 namespace leviosim::sim {
 
@@ -9,15 +12,32 @@ Task<JobTiming> Controller::run(const work::Job& job) {
   for (const work::StageRun& stage : job.stages) {
     const Demand demand = price(work::counts_of(stage), config_.core, code_);
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
-    s.cycles = Cycles(static_cast<std::int64_t>(std::ceil(demand.cycles())));
+    const double transfer = transfer_cycles(stage);
+    s.cycles = Cycles(static_cast<std::int64_t>(std::ceil(demand.cycles() + transfer)));
     s.account.useful = demand.alone;
-    s.account.rounding = static_cast<double>(s.cycles.count()) - demand.cycles();
+    s.account.transfer = transfer;
+    s.account.rounding = static_cast<double>(s.cycles.count()) - demand.cycles() - transfer;
     co_await kernel_.delay(clock_.duration(s.cycles));
     s.end = kernel_.now();
     timing.stages.push_back(s);
   }
   timing.end = kernel_.now();
   co_return timing;
+}
+
+/// Only external memory is far from a controller.
+double Controller::transfer_cycles(const work::StageRun& stage) const {
+  const ExternalMemoryConfig& memory = config_.external;
+  double seconds = 0;
+  for (const work::Step& step : stage.steps) {
+    const auto* transfer = std::get_if<work::Transfer>(&step);
+    if (transfer == nullptr || work::is_between_l1_and_l2(transfer->direction)) continue;
+    check(memory.bytes_per_second > 0, "a transfer from or to external memory needs one");
+    const Bytes moved = std::max(transfer->bytes, memory.burst);
+    seconds +=
+        memory.latency_seconds + static_cast<double>(moved.count()) / memory.bytes_per_second;
+  }
+  return seconds * static_cast<double>(config_.clock.count());
 }
 
 }  // namespace leviosim::sim

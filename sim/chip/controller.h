@@ -20,12 +20,14 @@ class Controller {
         code_(config.icache, config.icache.worker, 1) {}
 
   /// co_await: runs the job. Forks run their shares one after the other; transfers copy nothing,
-  /// since the controller works where the data lies.
+  /// since the controller works where the data lies, except for those from and to external memory.
   Task<JobTiming> run(const work::Job& job);
 
   const ClockDomain& clock() const { return clock_; }
 
  private:
+  double transfer_cycles(const work::StageRun& stage) const;
+
   Kernel& kernel_;
   const ClockDomain& clock_;
   ControllerConfig config_;

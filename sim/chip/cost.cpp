@@ -13,6 +13,7 @@ double CycleBreakdown::*stall_account(Op op) {
     case Op::LoopEntry:
     case Op::LoopIteration:
     case Op::Call:
+    case Op::JumpRegister:
       return &CycleBreakdown::control;
     case Op::LoadStream:
     case Op::LoadIndexed:
@@ -20,6 +21,8 @@ double CycleBreakdown::*stall_account(Op op) {
     case Op::StoreIndexed:
     case Op::LoadL2:
     case Op::StoreL2:
+    case Op::LoadShared:
+    case Op::StoreShared:
     case Op::Straddle:
       return &CycleBreakdown::memory;
     default:
@@ -48,10 +51,13 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
   for (const work::OpInfo& info : work::kOps) {
     const auto n = static_cast<double>(counts[info.op]);
     const OpCost& cost = core[info.op];
-    demand.alone.issue += n * cost.issue * core.instruction_overhead;
+    // A routine was counted with its moves and spills.
+    demand.alone.issue += n * cost.issue * (cost.routine ? 1.0 : core.instruction_overhead);
     demand.alone.*stall_account(info.op) += n * cost.stall;
-    if (cost.unit == Unit::Fpu) demand.fpu_ops += n;
-    if (cost.unit == Unit::Divider) demand.divisions += n;
+    if (cost.unit == Unit::Core) continue;
+    UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];
+    unit.requests += n;
+    unit.cycles += n * cost.busy;
   }
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   const double loads = sum(Op::LoadStream, Op::LoadIndexed);
@@ -59,8 +65,10 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
   const CodeFetch fetch = code.fetch(counts.code);
   demand.alone.fetch = fetch.stall;
   demand.fetches = fetch.requests;
-  demand.refills = fetch.refills;
-  demand.l1_accesses = loads + sum(Op::StoreStream, Op::StoreIndexed, Op::Straddle);
+  demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
+  // The second half of a straddling access follows the first.
+  demand.streamed = sum(Op::LoadStream, Op::StoreStream, Op::Straddle);
+  demand.scattered = sum(Op::LoadIndexed, Op::StoreIndexed);
   return demand;
 }
 

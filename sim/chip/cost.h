@@ -25,14 +25,19 @@ struct CycleBreakdown {
   friend CycleBreakdown operator*(const CycleBreakdown& b, double k);
 };
 
+/// What a segment asks of one kind of shared unit.
+struct UnitDemand {
+  double requests = 0;
+  double cycles = 0;  ///< of occupation, over all requests
+};
+
 /// Demands of one segment.
 struct Demand {
   CycleBreakdown alone;
-  double fpu_ops = 0;      ///< operations of the shared floating-point units
-  double divisions = 0;    ///< operations of the shared divider
-  double l1_accesses = 0;  ///< loads and stores of the core's local memory
-  double fetches = 0;      ///< lines of code from the shared instruction cache
-  double refills = 0;      ///< lines of code that the shared instruction cache gets from L2
+  std::array<UnitDemand, kUnitCount> units;  ///< by Unit; none of Unit::Core
+  double streamed = 0;                       ///< accesses of local memory by streams
+  double scattered = 0;                      ///< … at addresses that are computed from data
+  double fetches = 0;                        ///< lines of code from the shared instruction cache
 
   double cycles() const { return alone.total(); }
 };

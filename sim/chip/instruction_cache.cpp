@@ -46,7 +46,8 @@ double miss_share(double reuse, int sharers) {
   return misses;
 }
 
-CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers) {
+CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers)
+    : shared_miss_(config.shared_miss) {
   const auto line = static_cast<double>(config.line.count());
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) {
     const double requests = k == work::kNeverFetched ? 1 : miss_share_of_class(k, own, 1);
@@ -67,6 +68,7 @@ CodeFetch CodeFetcher::fetch(const work::CodeReuse& code) const {
     sum.requests += bytes * per_byte_[k].requests;
     sum.refills += bytes * per_byte_[k].refills;
   }
+  sum.refill_cycles = sum.refills * shared_miss_;
   return sum;
 }
 

@@ -30,9 +30,10 @@ double miss_share(double reuse, int sharers);
 
 /// What a piece of work fetches from beyond a core's private cache.
 struct CodeFetch {
-  double stall = 0;     ///< cycles that a lone core waits
-  double requests = 0;  ///< lines that the private cache asks the shared one for
-  double refills = 0;   ///< lines that the shared cache asks L2 for
+  double stall = 0;          ///< cycles that a lone core waits
+  double requests = 0;       ///< lines that the private cache asks the shared one for
+  double refills = 0;        ///< lines that the shared cache asks L2 for
+  double refill_cycles = 0;  ///< for which it awaits them
 };
 
 /// The caches as one core sees them, its misses worked out for every class of reuse distance.
@@ -47,6 +48,7 @@ class CodeFetcher {
   CodeFetch fetch(const work::CodeReuse& code) const;
 
  private:
+  double shared_miss_ = 0;
   struct PerByte {
     double stall = 0;
     double requests = 0;

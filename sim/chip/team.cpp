@@ -51,6 +51,12 @@ Task<SegmentTime> Team::execute(int id, const work::Counts& counts) {
   co_return core.time;
 }
 
+void Team::change_traffic(double words_per_cycle) {
+  advance();
+  dma_words_ += words_per_cycle;
+  note_change();
+}
+
 void Team::note_change() {
   if (change_noted_) return;
   change_noted_ = true;
@@ -90,7 +96,7 @@ void Team::solve() {
   for (std::size_t id = 0; id < cores_.size(); ++id)
     if (cores_[id]->running)
       runners_.push_back(Runner::of(static_cast<int>(id), cores_[id]->demand));
-  contention_.solve(runners_, progress_);
+  contention_.solve(runners_, progress_, dma_words_);
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     Core& core = *cores_[static_cast<std::size_t>(runners_[i].core)];
     core.progress = progress_[i];

@@ -36,6 +36,9 @@ class Team {
   /// co_await: core `id` runs `counts`; at most one piece of work per core at a time.
   Task<SegmentTime> execute(int id, const work::Counts& counts);
 
+  /// The DMA moves so many words of L1 per cycle more (or less) from now on.
+  void change_traffic(double words_per_cycle);
+
  private:
   struct Core {
     explicit Core(Kernel& kernel, int id);
@@ -63,6 +66,7 @@ class Team {
   std::vector<Progress> progress_;
   Event changed_;
   bool change_noted_ = false;
+  double dma_words_ = 0;
   Time advanced_to_;
 };
 

@@ -11,7 +11,7 @@
 namespace leviosim::sim {
 
 /// Core-cycles of a team during a stage, by what they were spent on. With W workers, a stage of T
-/// cycles has W·T of them.
+/// cycles has W·T of them; what the master does beside them in a fork is not in it.
 struct Account {
   CycleBreakdown useful;       ///< shares of parallel work, as if each core were alone
   double fpu = 0;              ///< waiting for a shared floating-point unit

@@ -8,12 +8,13 @@
 
 namespace leviosim::work {
 
-void CodeMap::add(std::string_view function, std::string_view after, std::uint32_t bytes) {
+void CodeMap::add(std::string_view function, std::string_view after, std::uint32_t bytes,
+                  std::uint32_t again_bytes) {
   const std::uint32_t then = after.empty() ? kEntry : CodeName(after).key;
   const std::uint64_t key = piece_key(CodeName(function).key, then);
   check(find(key) == kUnknown,
         fmt::format("piece of code \"{}\" after \"{}\" is there already", function, after));
-  pieces_.push_back({key, bytes});
+  pieces_.push_back({key, bytes, again_bytes});
   rebuild_table();
 }
 

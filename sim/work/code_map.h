@@ -14,25 +14,30 @@ namespace leviosim::work {
 /// A function's name as a number, made at compile time: a FNV-1a hash.
 struct CodeName {
   std::uint32_t key;
+  const char* text = "";  ///< only of literals
 
   constexpr explicit CodeName(std::string_view name) : key(2166136261u) {
     for (const char c : name) key = (key ^ static_cast<unsigned char>(c)) * 16777619u;
   }
   /// From a string literal, for call sites that must not compute it.
   template <std::size_t N>
-  consteval CodeName(const char (&name)[N]) : CodeName(std::string_view(name, N - 1)) {}
+  consteval CodeName(const char (&name)[N]) : CodeName(std::string_view(name, N - 1)) {
+    text = name;
+  }
 };
 
 class CodeMap {
  public:
   struct Piece {
     std::uint64_t key;
-    std::uint32_t bytes;
+    std::uint32_t bytes;        ///< distinct ones, fetched in a visit
+    std::uint32_t again_bytes;  ///< fetched again in the same visit, by a loop about as large
   };
 
   /// Adds the piece of `function` that runs after `after` has returned; after entry if that is
   /// empty. Each piece once; two names with the same hash are an internal fault.
-  void add(std::string_view function, std::string_view after, std::uint32_t bytes);
+  void add(std::string_view function, std::string_view after, std::uint32_t bytes,
+           std::uint32_t again_bytes = 0);
 
   static constexpr std::uint64_t piece_key(std::uint32_t function, std::uint32_t after) {
     return (std::uint64_t{function} << 32) | after;

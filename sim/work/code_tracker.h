@@ -2,8 +2,8 @@
 // (code_reuse.h), from the entries and returns of named functions and the sizes of their compiled
 // pieces (code_map.h).
 //
-// Left out: code outside of named functions, and order and repetition within a piece, whose loops
-// are taken to be fetched once per visit (tools/rv32 measures that this is so).
+// Left out: code outside of named functions, and the order of fetches within a piece. Small loops
+// are fetched once per visit; what larger ones fetch again is part of the map.
 #pragma once
 
 #include <cstdint>

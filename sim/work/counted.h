@@ -106,13 +106,14 @@ struct Int {
   friend Int operator<<(Int a, Int<std::int32_t> s) { return a << s.v; }
   friend Int operator>>(Int a, Int<std::int32_t> s) { return a >> s.v; }
   friend Product<Int> operator*(Int a, Int b) { return Product<Int>(wrap_mul(a.v, b.v)); }
+  /// Division by zero is defined, as it is on RISC-V: all ones, and the dividend as remainder.
   friend Int operator/(Int a, Int b) {
     count_division(b.v);
-    return Int(a.v / b.v);
+    return b.v == 0 ? Int(static_cast<Rep>(-1)) : Int(a.v / b.v);
   }
   friend Int operator%(Int a, Int b) {
     count_division(b.v);
-    return Int(a.v % b.v);
+    return b.v == 0 ? a : Int(a.v % b.v);
   }
 
   Int& operator+=(Int b) { return *this = *this + b; }

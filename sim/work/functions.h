@@ -18,7 +18,15 @@ inline float max(float a, float b) { return a < b ? b : a; }
 inline std::int32_t abs(std::int32_t x) { return x < 0 ? -x : x; }
 inline std::int32_t min(std::int32_t a, std::int32_t b) { return b < a ? b : a; }
 inline std::int32_t max(std::int32_t a, std::int32_t b) { return a < b ? b : a; }
-inline std::int32_t popcount(std::uint32_t x) { return std::popcount(x); }
+/// Sums of pairs, nibbles and bytes. The host vectorises it; std::popcount would be a library call
+/// on hosts whose baseline has no such instruction.
+inline std::int32_t popcount(std::uint32_t x) {
+  x -= (x >> 1) & 0x55555555u;
+  x = (x & 0x33333333u) + ((x >> 2) & 0x33333333u);
+  x = (x + (x >> 4)) & 0x0f0f0f0fu;
+  x += x >> 8;
+  return static_cast<std::int32_t>((x + (x >> 16)) & 0x3fu);
+}
 inline float to_f32(std::int32_t x) { return static_cast<float>(x); }
 inline float to_f32(double x) { return static_cast<float>(x); }
 inline double to_f64(float x) { return static_cast<double>(x); }

@@ -44,7 +44,7 @@ void Machine::end_stage() {
 void Machine::begin_fork(std::string_view name) {
   check(in_stage_, "a fork belongs to a stage");
   scratch_sum_ = scratch_max_ = Bytes(0);
-  fork_ = {name, {}};
+  fork_ = {name, {}, false};
   if (recording()) flush_serial();
 }
 
@@ -67,11 +67,20 @@ void Machine::end_fork() {
   job_.stages.back().steps.emplace_back(std::move(fork_));
 }
 
-void Machine::note_transfer(Direction direction, Bytes bytes) {
+void Machine::note_transfer(const Transfer& transfer) {
   if (!recording()) return;
   check(in_stage_, "a transfer belongs to a stage");
   flush_serial();
-  job_.stages.back().steps.emplace_back(Transfer{direction, bytes});
+  job_.stages.back().steps.emplace_back(transfer);
+}
+
+void Machine::wait(Ticket ticket) {
+  check(ticket.number_ >= 0 && ticket.number_ < background_transfers_,
+        "one waits for a transfer that was started in the same job");
+  ++waits_;
+  if (!recording()) return;
+  flush_serial();
+  job_.stages.back().steps.emplace_back(TransferWait{ticket.number_});
 }
 
 void Machine::flush_serial() {
@@ -79,6 +88,10 @@ void Machine::flush_serial() {
   if (!counts.empty()) job_.stages.back().steps.emplace_back(Serial{counts});
 }
 
-Job Machine::take_job() { return std::exchange(job_, {}); }
+Job Machine::take_job() {
+  check_equal(waits_, background_transfers_, "waits for background transfers");
+  waits_ = background_transfers_ = 0;
+  return std::exchange(job_, {});
+}
 
 }  // namespace leviosim::work

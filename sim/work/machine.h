@@ -93,14 +93,63 @@ class Machine {
     end_fork();
   }
 
+  /// The same with the master as one more core, whose id is the last.
+  template <class Body>
+  void fork_with_master(std::string_view name, Body&& body) {
+    begin_fork(name);
+    fork_.master_takes_part = true;
+    const int cores = config_.cores + 1;
+    for (int id = 0; id < cores; ++id) {
+      Arena scratch = local_.lend("scratch", cores, id);
+      Core core{id, cores, scratch};
+      follow_code_of(id);
+      body(core);
+      end_share(scratch.peak());
+    }
+    end_fork();
+  }
+
   /// DMA from L2 into local memory, and back. The host copies at once.
   template <class To, class From>
   void copy_in(To to, From from) {
-    copy(Direction::L2ToL1, to, from);
+    copy(Direction::L2ToL1, to, from, false);
   }
   template <class To, class From>
   void copy_out(To to, From from) {
-    copy(Direction::L1ToL2, to, from);
+    copy(Direction::L1ToL2, to, from, false);
+  }
+
+  /// DMA in the background. The host copies at once; on the chip the data are there after wait(),
+  /// which every transfer needs in the same job.
+  class Ticket {
+   public:
+    Ticket() = default;
+
+   private:
+    friend class Machine;
+    explicit Ticket(std::int32_t number) : number_(number) {}
+    std::int32_t number_ = -1;
+  };
+  template <class To, class From>
+  [[nodiscard]] Ticket start_copy_in(To to, From from) {
+    copy(Direction::L2ToL1, to, from, true);
+    return Ticket(background_transfers_++);
+  }
+  template <class To, class From>
+  [[nodiscard]] Ticket start_copy_out(To to, From from) {
+    copy(Direction::L1ToL2, to, from, true);
+    return Ticket(background_transfers_++);
+  }
+  void wait(Ticket ticket);
+
+  /// Between L2 and external memory; only a controller's machine can do it.
+  template <class To, class From>
+  void load_external(To to, From from) {
+    copy(Direction::ExternalToL2, to, from, false);
+  }
+  template <class To, class From>
+  void store_external(To to, From from) {
+    copy(Direction::L2ToExternal, to, from, false);
   }
 
   /// What was recorded since the last call.
@@ -108,11 +157,12 @@ class Machine {
 
  private:
   template <class To, class From>
-  void copy(Direction direction, To to, From from) {
+  void copy(Direction direction, To to, From from, bool background) {
     const auto n = static_cast<std::size_t>(std::min(to.size(), from.size()));
     static_assert(sizeof(*to.data()) == sizeof(*from.data()));
     if (n > 0) std::memcpy(static_cast<void*>(to.data()), from.data(), n * sizeof(*to.data()));
-    note_transfer(direction, Bytes(static_cast<std::int64_t>(n * sizeof(*to.data()))));
+    note_transfer(
+        {direction, Bytes(static_cast<std::int64_t>(n * sizeof(*to.data()))), background});
   }
 
   void begin_stage(std::string_view name);
@@ -120,7 +170,7 @@ class Machine {
   void begin_fork(std::string_view name);
   void end_share(Bytes scratch_peak);
   void end_fork();
-  void note_transfer(Direction direction, Bytes bytes);
+  void note_transfer(const Transfer& transfer);
   void flush_serial();
   /// From now on the host executes the code of this core; the master's id is cores().
   void follow_code_of(int core);
@@ -129,6 +179,8 @@ class Machine {
   Arena local_;
   Job job_;
   bool in_stage_ = false;
+  std::int32_t background_transfers_ = 0;  ///< of the job so far
+  std::int32_t waits_ = 0;
   Fork fork_;
   Bytes scratch_sum_{0};
   Bytes scratch_max_{0};

@@ -17,7 +17,8 @@ namespace leviosim::work {
 
 /// Where the memory of a view lies, seen from the core that works on it. Local is the core's own
 /// memory: L1 for cluster cores, L2 for the fabric controller.
-enum class Space : std::uint8_t { Local, L2 };
+/// Shared is one word of local memory that all cores of the team use at the same time.
+enum class Space : std::uint8_t { Local, L2, Shared };
 
 /// Storage of a byte under the counting policy. A type of its own, because a store through
 /// `unsigned char*` may touch any object, so that the compiler would have to keep the counters in
@@ -67,12 +68,12 @@ class Cell {
 
   operator Value() const {
     count(Load);
-    count(Op::Straddle, straddles_);
+    count_straddle();
     return LoadedAs<std::remove_const_t<T>>::from(*where_);
   }
   const Cell& operator=(T stored) const requires(!std::is_const_v<T>) {
     count(Store);
-    count(Op::Straddle, straddles_);
+    count_straddle();
     *where_ = stored;
     return *this;
   }
@@ -90,6 +91,11 @@ class Cell {
   { return *this = static_cast<T>(Value(*this) - x); }
 
  private:
+  /// A byte lies in one word wherever it is.
+  void count_straddle() const {
+    if constexpr (sizeof(T) > 1) count(Op::Straddle, straddles_);
+  }
+
   T* where_;
   std::uint8_t straddles_;
 };
@@ -98,11 +104,13 @@ class Cell {
 /// do not lie on their natural boundary in the target's memory, so that each access takes two.
 template <class T, Space S = Space::Local>
 class CountedSpan {
-  static constexpr bool kLocal = S == Space::Local;
-  using Stream =
-      Cell<T, kLocal ? Op::LoadStream : Op::LoadL2, kLocal ? Op::StoreStream : Op::StoreL2>;
-  using Indexed =
-      Cell<T, kLocal ? Op::LoadIndexed : Op::LoadL2, kLocal ? Op::StoreIndexed : Op::StoreL2>;
+  static constexpr Op in(Op local, Op l2, Op shared) {
+    return S == Space::Local ? local : S == Space::L2 ? l2 : shared;
+  }
+  using Stream = Cell<T, in(Op::LoadStream, Op::LoadL2, Op::LoadShared),
+                      in(Op::StoreStream, Op::StoreL2, Op::StoreShared)>;
+  using Indexed = Cell<T, in(Op::LoadIndexed, Op::LoadL2, Op::LoadShared),
+                       in(Op::StoreIndexed, Op::StoreL2, Op::StoreShared)>;
 
  public:
   CountedSpan() = default;

@@ -8,7 +8,8 @@
 //
 // Native: the types *are* float, std::int32_t, std::uint8_t… Counting: thin wrappers that also
 // count. Both compute the same bits. Nobody writes operation counts by hand: loops are written with
-// P::range, functions that are real calls on the target start with `typename P::Function`.
+// P::range, functions that are real calls on the target start with `typename P::Function`, large
+// bodies of loops with `typename P::Code`.
 #pragma once
 
 #include <cstdint>
@@ -80,26 +81,36 @@ class DownRange {
   int end_;
 };
 
-/// Marks a function that a target compiler does not inline. Its name finds the size of its code
-/// (code_map.h).
+/// Marks a stretch of code, so that the size of its compiled form is known by its name (code_map.h):
+/// the body of a loop that calls nothing and is large. Costs nothing by itself.
 template <bool Counted>
-struct FunctionScope {
-  explicit FunctionScope(CodeName name) {
+struct CodeScope {
+  explicit CodeScope(CodeName name) {
     if constexpr (Counted) {
-      count(Op::Call);
       code_ = current_code;
       if (code_ != nullptr) code_->enter(name.key);
     }
   }
-  ~FunctionScope() {
+  ~CodeScope() {
     if constexpr (Counted)
       if (code_ != nullptr) code_->leave();
   }
-  FunctionScope(const FunctionScope&) = delete;
-  FunctionScope& operator=(const FunctionScope&) = delete;
+  CodeScope(const CodeScope&) = delete;
+  CodeScope& operator=(const CodeScope&) = delete;
 
  private:
-  CodeTracker* code_ = nullptr;  ///< of the core that called
+  CodeTracker* code_ = nullptr;  ///< of the core that entered
+};
+
+/// Marks a function that a target compiler does not inline: the same, and a call.
+template <bool Counted>
+struct FunctionScope {
+  explicit FunctionScope(CodeName name) : code_(name) {
+    if constexpr (Counted) count(Op::Call);
+  }
+
+ private:
+  CodeScope<Counted> code_;
 };
 
 struct Native {
@@ -115,9 +126,14 @@ struct Native {
   using Span = NativeSpan<T>;
   template <class T>
   using L2Span = NativeSpan<T>;
+  template <class T>
+  using SharedSpan = NativeSpan<T>;
   template <class T, int N>
   using Array = NativeArray<T, N>;
   using Function = FunctionScope<false>;
+  using Code = CodeScope<false>;
+  /// A jump through a table: of a state machine, an interpreter.
+  static void jump_to_computed() {}
   static Range<false> range(int begin, int end) { return {begin, end}; }
   static DownRange<false> down_range(int begin, int last) { return {begin, last}; }
 };
@@ -135,9 +151,13 @@ struct Counting {
   using Span = CountedSpan<T>;
   template <class T>
   using L2Span = CountedSpan<T, Space::L2>;
+  template <class T>
+  using SharedSpan = CountedSpan<T, Space::Shared>;
   template <class T, int N>
   using Array = CountedArray<T, N>;
   using Function = FunctionScope<true>;
+  using Code = CodeScope<true>;
+  static void jump_to_computed() { count(Op::JumpRegister); }
   static Range<true> range(int begin, int end) { return {begin, end}; }
   static DownRange<true> down_range(int begin, int last) { return {begin, last}; }
   static Range<true> range(I32 begin, I32 end) { return {begin.v, end.v}; }

@@ -25,18 +25,31 @@ struct Serial {
 /// The master offloads one share of work to each worker and waits for all of them.
 struct Fork {
   std::string_view name;
-  std::vector<Counts> shares;  ///< one per worker, in the order of their ids
+  std::vector<Counts> shares;      ///< one per worker, in the order of their ids
+  bool master_takes_part = false;  ///< then the last share is the master's own
 };
 
-enum class Direction : std::uint8_t { L2ToL1, L1ToL2 };
+/// External memory is reached from L2 only, by the controller.
+enum class Direction : std::uint8_t { L2ToL1, L1ToL2, ExternalToL2, L2ToExternal };
 
-/// One blocking DMA transfer, programmed by the master core.
+constexpr bool is_between_l1_and_l2(Direction direction) {
+  return direction == Direction::L2ToL1 || direction == Direction::L1ToL2;
+}
+
+/// One transfer, programmed by the master core, which waits for it unless it goes on in the
+/// background.
 struct Transfer {
   Direction direction;
   Bytes bytes;
+  bool background = false;
 };
 
-using Step = std::variant<Serial, Fork, Transfer>;
+/// The master waits for a background transfer of the same job: number 0 is the first.
+struct TransferWait {
+  std::int32_t number;
+};
+
+using Step = std::variant<Serial, Fork, Transfer, TransferWait>;
 
 /// Highest occupation of a memory during a stage.
 struct MemoryPeak {

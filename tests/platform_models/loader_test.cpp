@@ -50,10 +50,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "name: L1",
                 {"cluster.l1.name", "unknown key"}},
         BadEdit{"unknown_operation",
-                "    popcount:",
-                "    pop_count:",
-                "pop_count",
-                {"isa.ops.pop_count", "unknown key", "'isa.ops.popcount'"}},
+                "    load_l2:",
+                "    loadl2:",
+                "loadl2",
+                {"isa.ops.loadl2", "unknown key", "'isa.ops.load_l2'"}},
         BadEdit{"unknown_key_of_a_parameter",
                 "value: 8, unit: cores, source",
                 "value: 8, unit: cores, sorce",
@@ -80,10 +80,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "  l1:\n",
                 {"cluster.l1.banks", "missing key", "word-interleaved banks"}},
         BadEdit{"missing_column",
-                "f32_add: { issue: 1, stall: 0,",
-                "f32_add: { issue: 1,",
-                "f32_add: {",
-                {"isa.ops.f32_add", "missing key 'stall'"}},
+                "load_l2: { issue: 1, stall: 12,",
+                "load_l2: { issue: 1,",
+                "load_l2: {",
+                {"isa.ops.load_l2", "missing key 'stall'"}},
         BadEdit{"missing_value",
                 "value: 8, unit: cores, source",
                 "unit: cores, source",
@@ -180,10 +180,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "fxed",
                 {"cluster.fpu.mapping.value", "'fxed'", "fixed, dynamic", "did you mean 'fixed'"}},
         BadEdit{"unknown_unit_of_the_chip",
-                "on: divider",
-                "on: dividr",
-                "dividr",
-                {"isa.ops.f32_div.on", "'dividr'", "core, fpu, divider", "'divider'"}},
+                "on: core",
+                "on: coer",
+                "coer",
+                {"isa.ops.load_l2.on", "'coer'", "core, fpu, divider, int64", "'core'"}},
         BadEdit{"reversed_range",
                 "range: [0, 0.6]",
                 "range: [0.6, 0]",
@@ -300,16 +300,5 @@ TEST(Loader, OrderOfSectionsDoesNotMatter) {
 }
 
 // A chip without floating-point hardware is one whose operations run on the core.
-TEST(Loader, ChipsWithoutFpu) {
-  std::string text = gap9_text();
-  for (const char* unit : {"on: fpu", "on: divider"})
-    while (text.find(unit) != std::string::npos) text = replaced(text, unit, "on: core");
-  const sim::ChipConfig chip =
-      resolve_platform_text("soft.yaml", text, {"cluster.fpu.units=0", "cluster.fpu.dividers=0"})
-          .config;
-  EXPECT_EQ(chip.cluster.fpu.units, 0);
-  EXPECT_EQ(chip.cluster.core[work::Op::F32Add].unit, sim::Unit::Core);
-}
-
 }  // namespace
 }  // namespace leviosim::platform

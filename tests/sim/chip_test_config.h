@@ -11,7 +11,13 @@ inline CoreConfig unit_cost_core() {
   for (const work::Op op : {work::Op::F32Add, work::Op::F32Mul, work::Op::F32Fma})
     core.ops[work::index(op)].unit = Unit::Fpu;
   for (const work::Op op : {work::Op::F32Div, work::Op::F32Sqrt})
-    core.ops[work::index(op)] = {1, 13, Unit::Divider};
+    core.ops[work::index(op)] = {1, 13, Unit::Divider, 14};
+  core.ops[work::index(work::Op::F16Div)] = {1, 9, Unit::Divider, 10};
+  core.ops[work::index(work::Op::F16Op)].unit = Unit::Fpu;
+  for (const work::Op op : {work::Op::Int64Add, work::Op::Int64Mul, work::Op::Int64Mac})
+    core.ops[work::index(op)].unit = Unit::Int64;
+  for (const work::Op op : {work::Op::LoadShared, work::Op::StoreShared})
+    core.ops[work::index(op)].unit = Unit::Bank;
   return core;
 }
 
@@ -22,7 +28,7 @@ inline ClusterConfig test_cluster() {
   c.workers = 8;
   c.max_workers = 8;
   c.core = unit_cost_core();
-  c.fpu = {4, FpuMapping::Fixed, 1.0, 1, 14.0};
+  c.fpu = {4, FpuMapping::Fixed, 1, 4};
   c.l1 = {Bytes(128 * 1024), 16};
   c.dma = {25, 16, 8, 8};
   c.events = {40, 20, 10, 300};

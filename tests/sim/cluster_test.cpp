@@ -45,6 +45,41 @@ TEST(Cluster, TransferOfNBytes) {
   }
 }
 
+TEST(Cluster, BackgroundTransfersOverlapWithWorkAndWithTheOtherDirection) {
+  const work::Transfer in{work::Direction::L2ToL1, Bytes(8000), true};
+  const work::Transfer out{work::Direction::L1ToL2, Bytes(8000), true};
+  const auto cycles = [](std::vector<work::Step> steps) {
+    return run(one_stage(std::move(steps))).stages[0].cycles.count();
+  };
+  const work::TransferWait first{0};
+  const work::TransferWait second{1};
+  constexpr std::int64_t kAlone = 25 + 16 + 1000 + 8;
+  EXPECT_EQ(cycles({in, first}), kAlone) << "as a blocking one";
+  EXPECT_EQ(cycles({in, work::Serial{alu(500)}, first}), kAlone) << "hidden work";
+  EXPECT_EQ(cycles({in, work::Serial{alu(5000)}, first}), 25 + 5000 + 8) << "hidden transfer";
+  EXPECT_EQ(cycles({in, out, first, second}), 25 + kAlone + 8) << "both directions at once";
+  EXPECT_EQ(cycles({in, in, first, second}), kAlone + 1000 + 8) << "one behind the other";
+}
+
+TEST(Cluster, TheDmaTakesBanksFromTheCores) {
+  Counts work;
+  work[Op::LoadStream] = 10'000;
+  const work::Transfer in{work::Direction::L2ToL1, Bytes(1'000'000), true};
+  work::Fork fork{"fork", std::vector<Counts>(8, work)};
+  const JobTiming t = run(one_stage({in, fork, work::TransferWait{0}}));
+  // Two words per cycle on 16 banks: an access waits 2/(2·16) cycles.
+  EXPECT_NEAR(t.stages[0].account.banks, 8 * 10'000 * 2.0 / 32, 8 * 3);
+}
+
+TEST(Cluster, AMasterThatTakesPartIsOneMoreCore) {
+  work::Fork fork{"fork", std::vector<Counts>(9, alu(100)), true};
+  fork.shares.back() = alu(1000);
+  const JobTiming t = run(one_stage({fork}));
+  EXPECT_EQ(t.stages[0].cycles.count(), 40 + 1000 + 10) << "the master needs no wake-up";
+  EXPECT_EQ(t.stages[0].account.useful.total(), 800) << "of the workers";
+  EXPECT_NEAR(t.stages[0].account.total(), 8 * 1050, 1e-6);
+}
+
 TEST(Cluster, ABarrierReleasesOnTheLastArrival) {
   work::Fork fork{"fork", {}};
   for (std::uint64_t k = 1; k <= 8; ++k) fork.shares.push_back(alu(100 * k));
@@ -94,6 +129,25 @@ TEST(Cluster, TheAccountOfAStageAddsUpToItsCoreCycles) {
 TEST(Cluster, EveryTeamSizeUpToTheEventUnitsLimit) {
   EXPECT_THROW(run(one_stage({work::Serial{alu(1)}}), 9), InputError);
   EXPECT_THROW(run(one_stage({work::Serial{alu(1)}}), 0), InputError);
+}
+
+TEST(Chip, L2AnswersOnTheClockOfTheSoc) {
+  ChipConfig config = test_chip();
+  config.cluster.core.ops[work::index(Op::LoadL2)] = {1, 12, Unit::Core};
+  config.controller.clock = Hertz(185'000'000);  // half the cluster's
+  Counts loads;
+  loads[Op::LoadL2] = 100;
+  const auto cycles = [&](work::Step step) {
+    Chip chip(config, 8);
+    JobTiming timing;
+    const work::Job job = one_stage({step});
+    const auto body = [&]() -> Process { timing = co_await chip.cluster().run(job); };
+    chip.kernel().spawn("test", body());
+    chip.kernel().run();
+    return timing.stages[0].cycles.count();
+  };
+  EXPECT_EQ(cycles(work::Serial{loads}), 100 * (1 + 2 * 12));
+  EXPECT_EQ(cycles(work::Transfer{work::Direction::L2ToL1, Bytes(800)}), 25 + 2 * 16 + 200 + 8);
 }
 
 TEST(Chip, AnOffloadCostsBothWays) {

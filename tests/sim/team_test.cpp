@@ -115,6 +115,9 @@ TEST(Team, VendorCalibrationTableWithinFivePercent) {
       {"fdiv.s", Op::F32Div, 0, {14.02, 70.05, 112.09, 126.10}},
       {"fsqrt.s", Op::F32Sqrt, 0, {14.02, 70.05, 112.09, 126.10}},
       {"fdiv.s and nop", Op::F32Div, 1, {7.5, 35.3, 56.1, 63.1}},
+      {"vfmac.h stream", Op::F16Op, 0, {1.02, 2.02, 2.02, 3.02}},
+      {"int64 stream", Op::Int64Mac, 0, {1.02, 2.02, 2.02, 3.02}},
+      {"fdiv.h", Op::F16Div, 0, {10.02, 50.05, 80.10, 90.10}},
   };
   const int cores[] = {1, 5, 8, 9};
   for (const CalibrationRow& row : rows)
@@ -133,12 +136,75 @@ TEST(Team, TheDividerIsIndependentOfTheFpus) {
   EXPECT_NEAR(static_cast<double>(o.cycles[0]) / kN, 14.11, 0.05 * 14.11);
 }
 
+/// Cycles per operation of eight cores, the first `some` of which run a stream of `a`, the others
+/// one of `b`.
+double mixed(std::size_t some, Op a, Op b) {
+  std::vector<Counts> work(8, counts({{b, kN}}));
+  for (std::size_t i = 0; i < some; ++i) work[i] = counts({{a, kN}});
+  const Outcome o = run_together(work);
+  return static_cast<double>(*std::max_element(o.cycles.begin(), o.cycles.end())) / kN;
+}
+
+TEST(Team, DivisionsOfDifferentLengthTakeTurns) {
+  EXPECT_NEAR(mixed(4, Op::F32Div, Op::F16Div), 96.09, 0.05 * 96.09);
+  EXPECT_NEAR(mixed(2, Op::F32Div, Op::F16Div), 88.09, 0.05 * 88.09);
+}
+
+TEST(Team, TheInt64UnitsAreIndependentOfTheFpus) {
+  EXPECT_NEAR(mixed(4, Op::Int64Add, Op::F32Add), 1.04, 0.05 * 1.04);
+}
+
 TEST(Team, BankConflictsDelayEachAccessByTheOthersDemand) {
   // Eight cores, each cycle an access: an access waits 7·r/(2·16), r the accesses per cycle.
-  const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadStream, kN}})));
+  const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadIndexed, kN}})));
   const double r = (-1 + std::sqrt(1 + 4 * 7.0 / 32)) / (2 * 7.0 / 32);  // r = 1/(1 + 7 r/32)
   EXPECT_NEAR(static_cast<double>(o.cycles[0]), kN / r, 2);
   EXPECT_NEAR(o.time[0].banks, kN / r - kN, 2);
+}
+
+TEST(Team, StreamsGetOutOfEachOthersWay) {
+  const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadStream, kN}})));
+  for (const std::int64_t cycles : o.cycles) EXPECT_EQ(cycles, static_cast<std::int64_t>(kN));
+  std::vector<Counts> mixed(8, counts({{Op::LoadStream, kN}}));
+  mixed[0] = counts({{Op::LoadIndexed, kN}});
+  EXPECT_GT(run_together(mixed).cycles[1], static_cast<std::int64_t>(kN)) << "but not of others'";
+}
+
+TEST(Team, CoresOnOneWordTakeTurns) {
+  const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadShared, kN}})));
+  EXPECT_NEAR(static_cast<double>(o.cycles[0]), 8.0 * kN, 2);
+  EXPECT_NEAR(o.time[0].banks, 7.0 * kN, 2);
+}
+
+/// Cycles per line that the cores wait for code of which each byte is `farther` than their caches.
+SegmentTime fetching(int cores, std::size_t reuse_class) {
+  ClusterConfig config = test_cluster();
+  config.icache = {Bytes(16), Bytes(512), Bytes(2048), Bytes(4096), 2, 2.0, 20.0, 1.0};
+  Counts work = counts({{Op::IntAlu, 10 * kN}});
+  work.code[reuse_class] = 16 * kN;  // a line every 10 instructions
+  return run_together(std::vector<Counts>(static_cast<std::size_t>(cores), work), config).time[0];
+}
+
+TEST(Team, CodeThatTheSharedCacheHoldsCostsEachCoreItsPrivateMisses) {
+  const std::size_t class_of_3k = work::reuse_class(3000);
+  const SegmentTime alone = fetching(1, class_of_3k);
+  EXPECT_NEAR(alone.alone.fetch, 2.0 * kN, 0.02 * kN);
+  EXPECT_EQ(alone.fetch, 0);
+  // Seven others with a line per 12 cycles on two banks: 7/12/(2·2) cycles a line, or a little
+  // less.
+  const SegmentTime together = fetching(8, class_of_3k);
+  EXPECT_NEAR(together.fetch, 7.0 / 12 / 4 * kN, 0.02 * kN);
+}
+
+TEST(Team, RefillsFromL2AreServedInTurn) {
+  EXPECT_NEAR(fetching(1, work::kNeverFetched).alone.fetch, 20.0 * kN, 1);
+  // One of eight fetches a line for all; the refills of eight cores take 8·20/8 cycles a line, less
+  // than the 10 instructions and the wait of each.
+  const SegmentTime all = fetching(8, work::kNeverFetched);
+  EXPECT_NEAR(all.alone.fetch, (20.0 / 8 + 2.0 * 7 / 8) * kN, 1);
+  // Code of 64 KiB of which a team shares nothing: 20 cycles a line and core, one at a time.
+  const SegmentTime far = fetching(8, work::reuse_class(65536));
+  EXPECT_GT(far.alone.fetch + far.fetch, 8 * 20.0 * 0.9 * kN - 10.0 * kN);
 }
 
 TEST(Team, MixedDemandsNeverExceedAUnitAndLeaveNoneIdleNeedlessly) {

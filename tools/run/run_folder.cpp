@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/run/energy.h"
 #include "tools/run/summary.h"
 #include "traces/atomic_file.h"
 #include "traces/trajectory.h"
@@ -77,6 +78,38 @@ std::string memory_lines(std::string_view memory, Bytes size, std::string_view o
   return text;
 }
 
+/// One quantity of a row, in all domains and in total. @param scale  from joules to its unit
+std::string energy_lines(std::string_view stage, std::string_view quantity, std::string_view unit,
+                         double scale, const sim::DomainEnergies& energies) {
+  const auto line = [&](std::string_view domain, const sim::Estimate<Joules>& e) {
+    const auto figure = [&](Joules joules) {
+      return fmt::format("{:.6f}", joules.count() * scale);
+    };
+    return CsvLine()
+        .add(stage)
+        .add(quantity)
+        .add(domain)
+        .add(figure(e.value))
+        .add(unit)
+        .add(figure(e.low()))
+        .add(figure(e.high()))
+        .str();
+  };
+  std::string text;
+  for (const sim::DomainInfo& info : sim::kDomains) text += line(info.name, energies[info.domain]);
+  return text + line("total", energies.total());
+}
+
+std::string energy_lines(const EnergyRow& row) {
+  std::string text = energy_lines(row.name, "energy", "mJ", 1e3, row.energy);
+  if (row.calls > 0)
+    text += energy_lines(row.name, fmt::format("energy per {}", row.unit), "uJ",
+                         1e6 / static_cast<double>(row.calls), row.energy);
+  if (row.time > Seconds(0))
+    text += energy_lines(row.name, "power", "mW", 1e3 / row.time.count(), row.energy);
+  return text;
+}
+
 }  // namespace
 
 std::string stages_csv(const RunResult& run) {
@@ -122,6 +155,15 @@ std::string memory_csv(const RunResult& run) {
   return text;
 }
 
+std::string energy_csv(const RunResult& run) {
+  const std::optional<RunEnergy> energy = energy_of(run);
+  if (!energy) return {};
+  std::string text = "stage,quantity,domain,value,unit,low,high\n";
+  for (const EnergyRow& row : energy->rows) text += energy_lines(row);
+  return text +
+         energy_lines({"all", "frame", false, energy->frames, energy->time, energy->total()});
+}
+
 void write_run_folder(const std::filesystem::path& folder, const RunResult& run,
                       const Manifest& manifest, const std::string& platform_yaml) {
   const auto write = [&](const char* name, const std::string& text) {
@@ -135,6 +177,7 @@ void write_run_folder(const std::filesystem::path& folder, const RunResult& run,
   write("platform.yaml", platform_yaml);
   write("stages.csv", stages_csv(run));
   write("memory.csv", memory_csv(run));
+  if (const std::string energy = energy_csv(run); !energy.empty()) write("energy.csv", energy);
 }
 
 }  // namespace leviosim::tools

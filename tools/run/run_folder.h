@@ -7,9 +7,11 @@
 //   stages.csv       a row per stage: calls, cycles, account, operations
 //   frames.csv       a row per frame
 //   memory.csv       a row per peak, and per block alive at it
+//   energy.csv       a row per stage, quantity and domain of the chip, with its band
 //   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
 //
-// A native run has no platform.yaml, stages.csv and memory.csv, and no timing columns.
+// A native run has no platform.yaml, stages.csv, memory.csv and energy.csv, and no timing columns. A
+// platform without energy figures leaves no energy.csv.
 #pragma once
 
 #include <filesystem>
@@ -30,5 +32,6 @@ void write_run_folder(const std::filesystem::path& folder, const RunResult& run,
 std::string stages_csv(const RunResult& run);
 std::string frames_csv(const RunResult& run);
 std::string memory_csv(const RunResult& run);
+std::string energy_csv(const RunResult& run);
 
 }  // namespace leviosim::tools

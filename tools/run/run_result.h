@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/chip/config.h"
 #include "sim/chip/timing.h"
 #include "sim/units.h"
 #include "sim/work/program.h"
+#include "sim/work/transfers.h"
 #include "traces/evaluation.h"
 #include "traces/trajectory.h"
 #include "workload/pipeline/odometry.h"
@@ -30,6 +32,7 @@ struct StageResult {
   work::Counts counts;      ///< operations executed
   work::MemoryPeak memory;  ///< highest peak over the calls, of L1 (L2 for the controller)
   std::vector<work::Block> persistent;  ///< filled in for the controller's L2 only
+  work::Transferred transfers;          ///< between L1 and L2
 };
 
 using vio::PoseSource;
@@ -78,6 +81,7 @@ struct RunResult {
   std::vector<traces::StampedPose> trajectory;
   std::optional<traces::Evaluation> ate;  ///< where ground truth exists
   double host_seconds = 0;  ///< wall time; not part of anything that must be reproducible
+  sim::ChipConfig chip{};   ///< that the run was timed on; unused if not timed
 };
 
 }  // namespace leviosim::tools

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "sim/energy/model.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
@@ -77,6 +78,8 @@ std::string heading(const RunOptions& options, const RunResult& run) {
   if (run.timed)
     text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,
                         mhz(run.cluster_clock), mhz(run.controller_clock));
+  if (run.timed && sim::knows_energy(run.chip))
+    text += fmt::format(", {:g} V", run.chip.supply.voltage.count());
   return text + "\n\n";
 }
 

@@ -86,6 +86,7 @@ void describe(RunResult& result, const RunRequest& request, const Feed& feed,
   result.cores = request.cores;
   result.cluster_clock = chip.cluster.clock;
   result.controller_clock = chip.controller.clock;
+  if (result.timed) result.chip = chip;
   result.l1_size = chip.cluster.l1.size;
   result.l2_size = chip.l2.size;
   result.frame_period_ns = std::llround(1e9 / feed.data().camera.rate_hz);

@@ -18,6 +18,7 @@ void StageBook::add_work(const work::Job& job) {
     StageResult& stage = find(run.stage);
     ++stage.calls;
     stage.counts += work::counts_of(run);
+    stage.transfers += work::transferred_by(run);
     stage.memory.single = std::max(stage.memory.single, run.memory.single);
     if (run.memory.parallel > stage.memory.parallel) {
       stage.memory.parallel = run.memory.parallel;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/run/energy.h"
 #include "tools/run/summary.h"
 
 namespace leviosim::tools {
@@ -165,6 +166,45 @@ void add_l2(StatisticList& list, const RunResult& run) {
   }
 }
 
+/// A figure and the ends of its band.
+template <class T>
+void add_banded(StatisticList& list, const std::string& name, std::string_view unit,
+                std::string_view description, const std::optional<sim::Estimate<T>>& figure,
+                double scale) {
+  const auto value = [&](auto of) { return figure ? Json(of(*figure).count() * scale) : Json(); };
+  using E = sim::Estimate<T>;
+  list.add(name, unit, description, value([](const E& e) { return e.value; }));
+  list.add(name + ".low", unit, fmt::format("{}: low end", description),
+           value([](const E& e) { return e.low(); }));
+  list.add(name + ".high", unit, fmt::format("{}: high end", description),
+           value([](const E& e) { return e.high(); }));
+}
+
+void add_energy_row(StatisticList& list, const EnergyRow& row) {
+  const std::string path = fmt::format("energy.{}.", key_of(row.name));
+  add_banded(list, path + "call", "uJ", fmt::format("energy per {}", row.unit), row.per_call(),
+             1e6);
+  add_banded(list, path + "power", "mW", "mean power while it runs", row.power(), 1e3);
+  for (const sim::DomainInfo& info : sim::kDomains)
+    add_banded(list, fmt::format("{}domain.{}", path, info.name), "mJ", info.description,
+               std::optional(row.energy[info.domain]), 1e3);
+}
+
+void add_energy(StatisticList& list, const RunResult& run) {
+  const std::optional<RunEnergy> energy = energy_of(run);
+  if (!energy) return;
+  list.add("run.voltage", "V", "supply of the chip", run.chip.supply.voltage.count());
+  for (const EnergyRow& row : energy->rows) add_energy_row(list, row);
+  add_banded(list, "energy.total", "mJ", "of the whole run", std::optional(energy->total().total()),
+             1e3);
+  add_banded(list, "energy.frame", "mJ", "per frame, idle time included", energy->per_frame(), 1e3);
+  add_banded(list, "energy.mean_power", "mW", "over the whole run", energy->mean_power(), 1e3);
+  add_banded(list, "energy.front_end_power", "mW", "while the cluster works",
+             energy->power_of_front_end(), 1e3);
+  add_banded(list, "energy.controller_power", "mW", "that the controller adds while it works",
+             energy->power_of_controller(), 1e3);
+}
+
 void add_accuracy(StatisticList& list, const RunResult& run) {
   list.add("trajectory.poses", "1", "poses of the trajectory", run.trajectory.size());
   list.add("trajectory.length", "m", "of the estimated path", rounded(path_length(run.trajectory)));
@@ -197,6 +237,7 @@ Json statistics(const RunResult& run) {
   if (run.timed) {
     add_latencies(list, run);
     add_l2(list, run);
+    add_energy(list, run);
     list.add("optimiser.published", "1", "results that reached the front end",
              run.optimiser_published);
     list.add("optimiser.late", "1", "frames at whose start the controller was still busy",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/run/energy_tables.h"
 #include "tools/run/summary.h"
 #include "tools/run/text_table.h"
 
@@ -285,8 +286,9 @@ std::string host_line(const RunResult& run) {
 std::string report(const RunResult& run) {
   std::string text;
   if (run.timed)
-    for (const auto table : {stage_table, account_table, latency_table, memory_table})
-      text += table(run) + '\n';
+    for (const auto table : {stage_table, account_table, latency_table, memory_table, energy_table,
+                             power_table, operating_point_table})
+      if (const std::string lines = table(run); !lines.empty()) text += lines + '\n';
   return text + frame_summary(run) + trajectory_summary(run) + host_line(run);
 }
 

@@ -1,5 +1,6 @@
 #include "workload/geometry/epnp.h"
 
+#include "workload/geometry/camera_matrix.h"
 #include "workload/geometry/epnp_betas.h"
 #include "workload/math/svd.h"
 
@@ -215,13 +216,12 @@ typename P::F32 mean_reprojection_error(const Pose<P>& T_camera_world, const Sam
                                         const PinholeCamera& camera) {
   using F = typename P::F32;
   const typename P::Function function("mean_reprojection_error");
+  const CameraMatrix<P> K = CameraMatrix<P>::of(camera);
   F sum = 0.0f;
   for (int i : P::range(0, sample.size())) {
     const Vec3<P> x = T_camera_world * row_of<P>(sample.points, i);
-    const F inverse = F(1.0f) / x.z;
-    const F du = camera.fx * x.x * inverse + camera.cx - F(sample.pixels(i, 0));
-    const F dv = camera.fy * x.y * inverse + camera.cy - F(sample.pixels(i, 1));
-    sum += work::sqrt(du * du + dv * dv);
+    const Vec2<P> d = reprojection_difference<P>(K, x, sample.pixels(i, 0), sample.pixels(i, 1));
+    sum += work::sqrt(d.x * d.x + d.y * d.y);
   }
   return sum * F(1.0f / static_cast<float>(sample.size()));
 }

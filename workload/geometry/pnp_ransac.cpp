@@ -1,6 +1,7 @@
 #include "workload/geometry/pnp_ransac.h"
 
 #include "sim/check.h"
+#include "workload/geometry/camera_matrix.h"
 #include "workload/geometry/random.h"
 
 namespace leviosim::vio {
@@ -43,7 +44,7 @@ Score<P> count_inliers(const Pose<P>& T_camera_world, const PnpInput<P>& input, 
   const typename P::Function function("count_inliers");
   const auto points = input.points;
   const auto pixels = input.pixels;
-  const PinholeCamera camera = input.camera;
+  const CameraMatrix<P> K = CameraMatrix<P>::of(input.camera);
   const F limit = inlier_px * inlier_px;
   I32 inliers = 0;
   F sum = 0.0f;
@@ -51,10 +52,8 @@ Score<P> count_inliers(const Pose<P>& T_camera_world, const PnpInput<P>& input, 
     const Vec3<P> world{F(points[3 * i]), F(points[3 * i + 1]), F(points[3 * i + 2])};
     const Vec3<P> x = T_camera_world * world;
     if (x.z > 0.0f) {
-      const F inverse = F(1.0f) / x.z;
-      const F du = camera.fx * x.x * inverse + camera.cx - F(pixels[2 * i]);
-      const F dv = camera.fy * x.y * inverse + camera.cy - F(pixels[2 * i + 1]);
-      const F squared = du * du + dv * dv;
+      const Vec2<P> d = reprojection_difference<P>(K, x, pixels[2 * i], pixels[2 * i + 1]);
+      const F squared = d.x * d.x + d.y * d.y;
       if (squared < limit) {
         inliers += 1;
         sum += work::sqrt(squared);

@@ -43,6 +43,7 @@ typename P::I32 linearise_landmark(const Window<P>& window, const PixelModel<P>&
   const Vec3<P> point = load_vec3<P>(window.state.points, 3 * i);
   I32 valid = 0;
   for (int j : P::range(0, number)) {
+    const typename P::Code code("linearise_observation");
     const auto slot = records.slot(i, j);
     const Pose<P> T = pose_of<P>(window.state, window.observation_keyframes[first + j]);
     const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
@@ -65,6 +66,7 @@ typename P::I32 linearise_landmark(const Window<P>& window, const PixelModel<P>&
 template <class P>
 bool invert_landmark(const Records<P>& records, int i, int number, typename P::F32 lambda) {
   using F = typename P::F32;
+  const typename P::Code code("invert_landmark");
   Mat3<P> H = Mat3<P>::zero();
   Vec3<P> b{0.0f, 0.0f, 0.0f};
   for (int j : P::range(0, number)) {
@@ -104,6 +106,7 @@ template <class P>
 void form_coupling(const Floats<P>& slot, const Mat3<P>& inverse, const Vec3<P>& landmark_rhs,
                    const Floats<P>& rhs, const Floats<P>& W, const Floats<P>& Y) {
   using F = typename P::F32;
+  const typename P::Code code("form_coupling");
   const Vec3<P> l0 = load_vec3<P>(slot, Records<P>::kByPoint);
   const Vec3<P> l1 = load_vec3<P>(slot, Records<P>::kByPoint + 3);
   const F r0 = slot[Records<P>::kResidual], r1 = slot[Records<P>::kResidual + 1];
@@ -128,6 +131,7 @@ void form_coupling(const Floats<P>& slot, const Mat3<P>& inverse, const Vec3<P>&
 template <class P>
 void add_pose_block(const Floats<P>& slot, const Floats<P>& matrix, int stride) {
   using F = typename P::F32;
+  const typename P::Code code("add_pose_block");
   for (int r : P::range(0, 6)) {
     const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
     for (int half : P::range(0, r < 3 ? 1 : 2)) {
@@ -150,6 +154,7 @@ void add_pose_block(const Floats<P>& slot, const Floats<P>& matrix, int stride) 
 template <class P>
 void subtract_elimination(const Floats<P>& Y, const Floats<P>& W, bool diagonal,
                           const Floats<P>& matrix, int stride) {
+  const typename P::Code code("subtract_elimination");
   for (int r : P::range(0, 6)) {
     const Vec3<P> y = load_vec3<P>(Y, 3 * r);
     for (int half : P::range(0, diagonal && r < 3 ? 1 : 2)) {

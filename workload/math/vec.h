@@ -1,5 +1,6 @@
 // Small vectors and rotation matrices as *register values*: their components are plain scalars of the
-// policy, so reading them counts no load. Anything larger than a 3×3 lives in memory (matrix.h).
+// policy, so reading them counts no load, but products of two matrices load and store. Anything
+// larger than a 3×3 lives in memory (matrix.h).
 #pragma once
 
 #include "sim/work/policy.h"
@@ -52,11 +53,23 @@ template <class P>
 Vec3<P> operator*(const Mat3<P>& a, const Vec3<P>& v) {
   return {dot(a.row(0), v), dot(a.row(1), v), dot(a.row(2), v)};
 }
+/// A function of its own, since two matrices and their product fit into no core's registers: it
+/// loads its operands, one row and one matrix at a time, and stores the product.
 template <class P>
-Mat3<P> operator*(const Mat3<P>& a, const Mat3<P>& b) {
+[[gnu::noinline]] Mat3<P> operator*(const Mat3<P>& a, const Mat3<P>& b) {
+  using F = typename P::F32;
+  using Row = typename P::template Span<const F>;
+  const typename P::Function function("mat3_multiply");
+  const Mat3<P> right{{{F(Row(b.m[0], 3)[0]), F(Row(b.m[0], 3)[1]), F(Row(b.m[0], 3)[2])},
+                       {F(Row(b.m[1], 3)[0]), F(Row(b.m[1], 3)[1]), F(Row(b.m[1], 3)[2])},
+                       {F(Row(b.m[2], 3)[0]), F(Row(b.m[2], 3)[1]), F(Row(b.m[2], 3)[2])}}};
   Mat3<P> c;
-  for (int i = 0; i < 3; ++i)  // unrolled by every compiler: not a counted loop
-    for (int j = 0; j < 3; ++j) c.m[i][j] = dot(a.row(i), b.column(j));
+  for (int i : P::range(0, 3)) {
+    const Row row(a.m[i], 3);
+    const Vec3<P> left{F(row[0]), F(row[1]), F(row[2])};
+    const typename P::template Span<F> to(c.m[i], 3);
+    for (int j = 0; j < 3; ++j) to[j] = F(dot(left, right.column(j)));
+  }
   return c;
 }
 template <class P>

@@ -32,6 +32,7 @@ FrontEnd<P>::FrontEnd(const Profile& profile, const Rig& rig, work::Machine& clu
                       work::Arena& keyframe_memory, const PoseGraph<P>& graph)
     : profile_(profile),
       rig_(rig),
+      inverse_camera_matrix_(CameraMatrix<P>::inverse_of(rig.camera)),
       R_camera_body_(matrix_from<P>(rig.R_camera_body)),
       machine_(cluster),
       keyframe_(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
@@ -212,9 +213,8 @@ void FrontEnd<P>::match_keyframe(Frame& frame) {
 
 template <class P>
 Vec2<P> FrontEnd<P>::normalised(I32 u, I32 v) const {
-  const PinholeCamera& k = rig_.camera;
-  return {(work::to_f32(u) - F(k.cx)) * F(1.0f / k.fx),
-          (work::to_f32(v) - F(k.cy)) * F(1.0f / k.fy)};
+  const Vec3<P> x = inverse_camera_matrix_ * Vec3<P>{work::to_f32(u), work::to_f32(v), 1.0f};
+  return {x.x, x.y};
 }
 
 /// From the essential matrix; its translation has the length that the last velocity suggests.

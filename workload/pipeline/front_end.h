@@ -8,6 +8,7 @@
 #include "sim/work/machine.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/pipeline/keyframe_record.h"
+#include "workload/geometry/camera_matrix.h"
 #include "workload/pipeline/odometry.h"
 
 namespace leviosim::vio {
@@ -59,6 +60,7 @@ class FrontEnd {
 
   const Profile& profile_;
   Rig rig_;
+  CameraMatrix<P> inverse_camera_matrix_;
   Mat3<P> R_camera_body_;
   work::Machine& machine_;
   KeyframeRecord<P> keyframe_;

@@ -1,0 +1,58 @@
+#include "platform_models/instruction_set.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "platform_models/builtin.h"
+#include "platform_models/nearest.h"
+#include "sim/error.h"
+
+namespace leviosim::platform {
+namespace {
+
+bool ends_with(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+}  // namespace
+
+bool is_path(std::string_view name) {
+  return name.find('/') != std::string_view::npos || ends_with(name, ".yaml") ||
+         ends_with(name, ".yml");
+}
+
+std::string read_file(const std::string& path, std::string_view what) {
+  std::error_code ignored;
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path, ignored))
+    throw InputError(fmt::format("{}: cannot be read as {}", path, what));
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+TextFile find_instruction_set(const std::string& base, const std::string& from,
+                              const Place& place) {
+  if (is_path(base)) {
+    const std::string path =
+        (std::filesystem::path(from).parent_path() / base).lexically_normal().string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+      place.fail(fmt::format("there is no file '{}'", path));
+    return {path, read_file(path, "an instruction set")};
+  }
+  std::vector<std::string> names;
+  for (const BuiltinFile& file : builtin_instruction_sets()) {
+    if (file.name == base) return {fmt::format("isa/{}.yaml", file.name), std::string(file.text)};
+    names.emplace_back(file.name);
+  }
+  place.fail(
+      fmt::format("unknown instruction set '{}'{} (built in: {}; a file is given by a path "
+                  "that contains '/' or ends in .yaml)",
+                  base, did_you_mean(base, names), fmt::join(names, ", ")));
+}
+
+}  // namespace leviosim::platform

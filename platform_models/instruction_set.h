@@ -1,0 +1,30 @@
+// The file that a section `isa` builds on: `isa: { base: rv32imfc_xpulp }`.
+#pragma once
+
+#include <string>
+
+#include "platform_models/value.h"
+
+namespace leviosim::platform {
+
+/// The key that names it.
+inline constexpr const char* kBasePath = "isa.base";
+
+struct TextFile {
+  std::string name;  ///< for messages: "isa/rv32imfc.yaml"
+  std::string text;
+};
+
+/// @param base   name of a built-in instruction set, or path of a file (what contains a '/' or ends
+///               in .yaml or .yml), relative to the folder of `from`
+/// @param from   the file that names it
+/// @param place  where it does; begins the message if there is no such file
+TextFile find_instruction_set(const std::string& base, const std::string& from, const Place& place);
+
+/// Whether a platform or an instruction set is given by path and not by name.
+bool is_path(std::string_view name);
+
+/// Throws InputError "PATH: cannot be read as WHAT".
+std::string read_file(const std::string& path, std::string_view what);
+
+}  // namespace leviosim::platform

@@ -1,0 +1,48 @@
+// The cluster's DMA: one channel from L2 into L1 and one back, which overlap. A channel delivers
+// its transfers in the order in which they were programmed, the payload of one right behind that of
+// the one before; a transfer that finds its channel idle waits for the first data (hw_facts 6.1).
+// While data flow, they take banks of L1 from the cores (contention.h).
+//
+// Left out: the depth of the command queues, bursts and the number that may be under way (eight of
+// 256 bytes hide the latency of L2), 2D transfers, and waits of the DMA itself for banks (its ports
+// are wider than the payload).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/chip/config.h"
+#include "sim/chip/team.h"
+#include "sim/kernel/kernel.h"
+#include "sim/kernel/task.h"
+#include "sim/work/program.h"
+
+namespace leviosim::sim {
+
+/// Cycles that a blocking transfer takes from its programming until the master goes on, if no other
+/// transfer is under way.
+double transfer_cycles(const DmaConfig& dma, Bytes bytes);
+
+class Dma {
+ public:
+  Dma(Kernel& kernel, const ClockDomain& clock, const DmaConfig& config, Team& team);
+
+  /// A transfer that has just been programmed. Returns when its last data arrive.
+  Time start(const work::Transfer& transfer);
+
+ private:
+  struct Channel {
+    Time free;  ///< the last data of all transfers so far have arrived
+  };
+
+  Process disturb(Time begin, Time end);
+  Duration cycles(double n) const;
+
+  Kernel& kernel_;
+  const ClockDomain& clock_;
+  DmaConfig config_;
+  Team& team_;
+  std::array<Channel, 2> channels_{};  ///< by direction
+};
+
+}  // namespace leviosim::sim

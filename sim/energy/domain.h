@@ -1,0 +1,34 @@
+// The parts of a chip that energy is told apart by. Together they are the chip.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace leviosim::sim {
+
+enum class Domain : std::uint8_t { Cores, Fpu, L1, Dma, Cluster, Controller, L2, Soc };
+
+struct DomainInfo {
+  Domain domain;
+  std::string_view name;  ///< key in statistics, title in tables
+  std::string_view description;
+};
+
+inline constexpr std::array kDomains{
+    DomainInfo{Domain::Cores, "cores", "instructions and leakage of the cluster's cores"},
+    DomainInfo{Domain::Fpu, "fpu", "operations of the cluster's floating-point units"},
+    DomainInfo{Domain::L1, "l1", "accesses and leakage of L1"},
+    DomainInfo{Domain::Dma, "dma", "transfers, clock and leakage of the cluster's DMA"},
+    DomainInfo{Domain::Cluster, "cluster", "clock, interconnect and leakage of the cluster"},
+    DomainInfo{Domain::Controller, "controller", "fabric controller with its floating-point unit"},
+    DomainInfo{Domain::L2, "l2", "accesses of L2"},
+    DomainInfo{Domain::Soc, "soc", "clock of the rest of the chip, leakage, regulator"},
+};
+
+inline constexpr std::size_t kDomainCount = kDomains.size();
+
+constexpr std::size_t index(Domain domain) { return static_cast<std::size_t>(domain); }
+
+}  // namespace leviosim::sim

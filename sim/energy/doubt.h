@@ -1,0 +1,51 @@
+// What the energy figures of a chip may be wrong about. Numbers that share a doubt err together;
+// different doubts have nothing to do with each other. Estimates (estimate.h) follow from this.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "sim/energy/config.h"
+
+namespace leviosim::sim {
+
+struct Doubt {
+  std::string_view description;
+  /// Copies the numbers that the doubt is about.
+  void (*copy)(const EnergyConfig& from, EnergyConfig& to);
+};
+
+inline constexpr std::array kDoubts{
+    Doubt{"energies of cores, L1, DMA and cluster: one table, of which voltage and clock",
+          [](const EnergyConfig& from, EnergyConfig& to) {
+            const Joules f32_operation = to.core.f32_operation;
+            const double idle_clock = to.cluster.idle_clock;
+            to.core = from.core;
+            to.l1 = from.l1;
+            to.dma = from.dma;
+            to.cluster = from.cluster;
+            to.core.f32_operation = f32_operation;
+            to.cluster.idle_clock = idle_clock;
+          }},
+    Doubt{"energy of a floating-point operation",
+          [](const EnergyConfig& from, EnergyConfig& to) {
+            to.core.f32_operation = from.core.f32_operation;
+          }},
+    Doubt{"energy of an access to L2",
+          [](const EnergyConfig& from, EnergyConfig& to) { to.l2 = from.l2; }},
+    Doubt{"energy of a clock cycle of the rest of the chip",
+          [](const EnergyConfig& from, EnergyConfig& to) { to.soc.cycle = from.soc.cycle; }},
+    Doubt{"static power of the rest of the chip",
+          [](const EnergyConfig& from, EnergyConfig& to) {
+            to.soc.static_power = from.soc.static_power;
+          }},
+    Doubt{"whether the clock of an idle cluster goes on",
+          [](const EnergyConfig& from, EnergyConfig& to) {
+            to.cluster.idle_clock = from.cluster.idle_clock;
+          }},
+};
+
+inline constexpr std::size_t kDoubtCount = kDoubts.size();
+
+}  // namespace leviosim::sim

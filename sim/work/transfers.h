@@ -1,0 +1,38 @@
+// How much a piece of work moved between memories.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/work/program.h"
+
+namespace leviosim::work {
+
+/// A plain value: add two to merge two pieces of work.
+struct Transferred {
+  std::int64_t transfers = 0;  ///< between L1 and L2
+  Bytes bytes;                 ///< of these, both directions
+  Bytes external;              ///< between L2 and external memory
+
+  Transferred& operator+=(const Transferred& o) {
+    transfers += o.transfers;
+    bytes += o.bytes;
+    external += o.external;
+    return *this;
+  }
+};
+
+/// All transfers of a stage.
+inline Transferred transferred_by(const StageRun& stage) {
+  Transferred sum;
+  for (const Step& step : stage.steps) {
+    const auto* transfer = std::get_if<Transfer>(&step);
+    if (transfer == nullptr) continue;
+    if (is_between_l1_and_l2(transfer->direction))
+      sum += {1, transfer->bytes, Bytes(0)};
+    else
+      sum += {0, Bytes(0), transfer->bytes};
+  }
+  return sum;
+}
+
+}  // namespace leviosim::work

@@ -1,0 +1,59 @@
+#include "tools/microbench/microbench_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <string_view>
+
+#include "platform_models/loader.h"
+#include "tools/microbench/board_kernels.h"
+#include "tools/microbench/report.h"
+#include "tools/microbench/unit_benches.h"
+#include "traces/atomic_file.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// The board's kernels were measured on this chip; units are compared on any other.
+constexpr std::string_view kBoard = "GAP8";
+
+struct MicrobenchOptions {
+  std::string platform = "gap9";
+  std::vector<std::string> overrides;
+  std::string out;
+};
+
+void run(const MicrobenchOptions& options) {
+  const platform::ResolvedPlatform chip =
+      platform::resolve_platform(options.platform, options.overrides);
+  const bool is_board = chip.name == kBoard;
+  std::vector<MicrobenchRow> rows;
+  if (!is_board) {
+    rows = unit_rows(chip.config);
+    fmt::print("{}\n", microbench_table(chip.name, rows));
+  }
+  const std::vector<MicrobenchRow> board =
+      board_rows(is_board ? chip.config : platform::load_platform("gap8"));
+  fmt::print("{}", microbench_table(kBoard, board));
+  rows.insert(rows.end(), board.begin(), board.end());
+  if (!options.out.empty()) traces::write_file_atomically(options.out, microbench_csv(rows));
+}
+
+}  // namespace
+
+Command add_microbench_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("microbench", "Compare small programs with measured hardware");
+  const auto options = std::make_shared<MicrobenchOptions>();
+  command->add_option("--platform", options->platform, "chip: a name or a file")
+      ->type_name("NAME|FILE")
+      ->capture_default_str();
+  command->add_option("-p,--set", options->overrides, "parameter of it; repeatable")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--out", options->out, "write the rows to a CSV file")->type_name("FILE");
+  return {command, [=] { run(*options); }};
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,51 @@
+// Included before everything else when the workload is compiled for RV32: the scopes of named
+// functions leave marks in the code, so that a trace of addresses can be cut into named functions
+// whatever the compiler inlined.
+//
+// A mark is one 2-byte HINT instruction (c.li zero, imm: no effect) at the beginning of the
+// function and one at its end. Where they are, and for which function, stands in the section
+// .leviosim_marks, which is not loaded. `asm inline` and no operands but constants: the mark
+// neither counts as a long statement when the compiler decides what to inline nor holds a register.
+#pragma once
+
+#include "sim/work/policy.h"
+
+namespace leviosim::work {
+
+template <>
+struct CodeScope<false> {
+  /// @param source  the C++ function that the scope stands in; empty for a part of a function
+  [[gnu::always_inline]] explicit CodeScope(CodeName name, const char* source = "") {
+    asm volatile inline(
+        "7: .half 0x4005\n"
+        ".pushsection .leviosim_marks,\"?\",@progbits\n"
+        ".word 7b, %0, %1\n"
+        ".popsection"
+        :
+        : "i"(name.text), "i"(source)
+        : "memory");
+  }
+  [[gnu::always_inline]] ~CodeScope() {
+    asm volatile inline(
+        "7: .half 0x4009\n"
+        ".pushsection .leviosim_marks,\"?\",@progbits\n"
+        ".word 7b, 0, 0\n"
+        ".popsection" ::
+            : "memory");
+  }
+  CodeScope(const CodeScope&) = delete;
+  CodeScope& operator=(const CodeScope&) = delete;
+};
+
+template <>
+struct FunctionScope<false> {
+  [[gnu::always_inline]] explicit FunctionScope(CodeName name,
+                                                const char* source = __builtin_FUNCTION())
+      : code_(name, source) {}
+  [[gnu::always_inline]] ~FunctionScope() = default;
+
+ private:
+  CodeScope<false> code_;
+};
+
+}  // namespace leviosim::work

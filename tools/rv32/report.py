@@ -1,0 +1,293 @@
+#!/usr/bin/env python3
+"""Turns what the traces and the counts say into the tables of the repository (see README.md)."""
+import argparse
+import collections
+import csv
+import pathlib
+
+LIBRARY = {
+    "f64_add": ["__adddf3", "__subdf3"],
+    "f64_mul": ["__muldf3"],
+    "f64_div": ["__divdf3"],
+    "f64_compare": ["__ltdf2", "__ledf2", "__gtdf2", "__gedf2", "__eqdf2", "__nedf2"],
+    "f64_convert": ["__extendsfdf2", "__truncdfsf2"],
+    "f32_add": ["__addsf3", "__subsf3"],
+    "f32_mul": ["__mulsf3"],
+    "f32_div": ["__divsf3"],
+    "f32_sqrt": ["digit_by_digit_sqrtf"],
+    "f32_compare": ["__ltsf2", "__lesf2", "__gtsf2", "__gesf2", "__eqsf2", "__nesf2"],
+    "f32_convert": ["__floatsisf", "__fixsfsi"],
+    "popcount": ["__popcountsi2"],
+    "memset": ["memset"],
+}
+OPERATION_OF = {symbol: op for op, symbols in LIBRARY.items() for symbol in symbols}
+
+# Instructions of the trace and operations of the counts that are set against each other.
+CLASSES = [
+    ("load", ["load", "float_load"], ["load_stream", "load_indexed", "load_l2"]),
+    ("store", ["store", "float_store"], ["store_stream", "store_indexed", "store_l2"]),
+    ("branch", ["branch"], ["branch_taken", "branch_not_taken", "loop_iteration"]),
+    ("branch taken", ["branch_taken"], ["branch_taken", "loop_iteration"]),
+    ("jump, call, return", ["jump", "call", "return", "indirect_jump"], ["call", "call"]),
+    ("integer alu", ["alu", "move"], ["int_alu", "int_min_max", "int_mac", "loop_iteration"]),
+    ("integer mul", ["mul", "mul_high"], ["int_mul", "int_mac"]),
+    ("integer div", ["div"], ["int_div"]),
+    ("float add, mul, fma", ["f32_add", "f32_mul", "f32_fma"], ["f32_add", "f32_mul", "f32_fma"]),
+    ("float div, sqrt", ["f32_div", "f32_sqrt"], ["f32_div", "f32_sqrt"]),
+    ("float compare, convert", ["f32_compare", "f32_convert"], ["f32_compare", "f32_convert"]),
+    ("float sign", ["f32_sign"], ["f32_sign"]),
+    ("float move", ["f32_move"], []),
+    ("double calls", ["f64"], ["f64_add", "f64_mul", "f64_div", "f64_compare", "f64_convert"]),
+    ("popcount calls", ["popcount"], ["popcount"]),
+]
+NO_INSTRUCTION = {"visits", "branch_taken", "load_use", "host"}
+SCENE = "scene: "
+GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
+
+
+class Trace:
+    """What the trace plugin wrote."""
+
+    def __init__(self, path):
+        self.pieces = []  # (function, after, visits, lines, refetches)
+        self.kinds = collections.defaultdict(collections.Counter)  # by (scene, function)
+        self.library = collections.defaultdict(list)  # by symbol: rows of numbers
+        self.calls = collections.defaultdict(collections.Counter)  # by (scene, function)
+        self.function_lines, self.scene_lines = {}, {}
+        for line in open(path):
+            kind, *row = line.rstrip("\n").split("\t")
+            if kind == "piece":
+                self.pieces.append((row[0], row[1], *map(int, row[2:5])))
+            elif kind == "account":
+                self.kinds[row[0], row[1]][row[2]] += int(row[3])
+            elif kind == "library":
+                symbol = "digit_by_digit_sqrtf" if "digit_by_digit" in row[2] else row[2]
+                numbers = list(map(int, row[3:]))
+                if numbers[0] > 0:
+                    self.library[symbol].append(numbers)
+                    self.calls[row[0], row[1]][symbol, "calls"] += numbers[0]
+                    self.calls[row[0], row[1]][symbol, "instructions"] += numbers[1]
+            elif kind == "function":
+                self.function_lines[row[0]] = int(row[1])
+            elif kind == "scene":
+                self.scene_lines[row[0]] = int(row[1])
+
+    def routine(self, symbol):
+        """(calls, mean, least, most of instructions, the same of stalls, mean lines)"""
+        rows = self.library[symbol]
+        n = sum(r[0] for r in rows)
+        mean = lambda i: sum(r[i] for r in rows) / n
+        return (n, mean(1), min(r[2] for r in rows), max(r[3] for r in rows),
+                mean(4), min(r[5] for r in rows), max(r[6] for r in rows), mean(7))
+
+    def lines_of(self, operation):
+        rows = [r for s in LIBRARY[operation] for r in self.library.get(s, [])]
+        n = sum(r[0] for r in rows)
+        return (sum(r[7] for r in rows) / n, n) if n else (0, 0)
+
+
+def read_counts(path):
+    counts = collections.defaultdict(collections.Counter)
+    for line in open(path):
+        _, scene, function, what, n = line.rstrip("\n").split("\t")
+        counts[scene, function][what] += int(n)
+    return counts
+
+
+def read_costs(path):
+    lines = [line for line in open(path) if not line.startswith("#")]
+    return {row["op"]: float(row["issue"]) for row in csv.DictReader(lines)}
+
+
+def by_scene(accounts):
+    total = collections.defaultdict(collections.Counter)
+    for (scene, _), account in accounts.items():
+        total[scene].update(account)
+    return total
+
+
+# ---- footprints ----
+
+FOOTPRINT_HEADER = """\
+Code footprints of the workload's named functions on RV32IMFC,
+%s.
+A row is a piece of a function: from its entry (`after` empty), or from the return of the named
+function `after`, to its next call of a named function or its end.
+lines      distinct 16-byte lines fetched per visit, mean
+visits     how often the piece was executed
+refetches  lines per visit that a 512-byte cache (fully associative, LRU, empty at the begin)
+           loses and fetches again, mean: large where a loop of the piece does not fit
+Rows f64_*, popcount, memset are routines of the library; calls of these do not end a piece.
+""" % GENERATED
+
+STAGE_HEADER = """\
+Code of the stages that belongs to no named function, on RV32IMFC: columns as in
+platform_models/code/rv32imfc.csv, with the scene (scenes.h) in the place of the function;
+%s.
+""" % GENERATED
+
+STATIC_HEADER = """\
+Distinct 16-byte lines that were ever executed: of named functions (all copies that the compiler
+made) and of whole stages, library routines included;
+%s.
+""" % GENERATED
+
+
+def write_csv(path, header, columns, rows):
+    with open(path, "w") as file:
+        for line in header.splitlines():
+            file.write(f"# {line}\n")
+        file.write(",".join(columns) + "\n")
+        for row in rows:
+            file.write(",".join(f"{x:.2f}" if isinstance(x, float) else str(x) for x in row) + "\n")
+
+
+def piece_rows(trace, scenes):
+    return [(f.removeprefix(SCENE), after, lines / visits, visits, refetches / visits)
+            for f, after, visits, lines, refetches in trace.pieces if f.startswith(SCENE) == scenes]
+
+
+def write_footprints(trace, code, here):
+    columns = ["function", "after", "lines", "visits", "refetches"]
+    rows = piece_rows(trace, False)
+    for operation in LIBRARY:
+        lines, calls = trace.lines_of(operation)
+        if calls:
+            rows.append((operation, "", lines, calls, 0.0))
+    write_csv(code, FOOTPRINT_HEADER, columns, sorted(rows))
+    write_csv(here / "stage_code.csv", STAGE_HEADER, ["stage"] + columns[1:],
+              sorted(piece_rows(trace, True)))
+    static = [("stage", s.removeprefix(SCENE), n) for s, n in trace.scene_lines.items()]
+    static += [("function", f, n) for f, n in trace.function_lines.items() if not f.startswith(SCENE)]
+    write_csv(here / "static_lines.csv", STATIC_HEADER, ["what", "name", "lines"], sorted(static))
+
+
+# ---- counted against executed ----
+
+def class_totals(kinds, calls):
+    """Executed instructions by the names of CLASSES, and the total with and without library."""
+    amounts = collections.Counter(kinds)
+    library = 0
+    for (symbol, what), n in calls.items():
+        operation = OPERATION_OF.get(symbol, "memory")
+        if what == "calls":
+            amounts["f64" if operation.startswith("f64") else operation] += n
+        else:
+            library += n
+    own = sum(n for kind, n in kinds.items() if kind not in NO_INSTRUCTION)
+    return amounts, own, library
+
+
+def check_same_control_flow(trace, counts):
+    for key, account in counts.items():
+        executed = trace.kinds[key]["visits"]
+        if executed != account["visits"]:
+            raise SystemExit(f"{key}: executed {executed} times, counted {account['visits']} times")
+
+
+def write_cross_check(trace, contracted, counts, costs, here):
+    check_same_control_flow(trace, counts)
+    counted, kinds, calls = by_scene(counts), by_scene(trace.kinds), by_scene(trace.calls)
+    kinds_fused, calls_fused = by_scene(contracted.kinds), by_scene(contracted.calls)
+    scenes = list(dict.fromkeys(s for s, _ in counts))
+    unfused = dict(costs, f32_fma=2.0)
+    price = lambda c, table: sum(n * table[op] for op, n in c.items() if op != "visits")
+    summary, detail = [], []
+    for scene in scenes:
+        amounts, own, library = class_totals(kinds[scene], calls[scene])
+        _, own_fused, library_fused = class_totals(kinds_fused[scene], calls_fused[scene])
+        priced = price(counted[scene], unfused)
+        summary.append((scene.removeprefix(SCENE), priced, own + library, library,
+                        (own + library) / priced, price(counted[scene], costs),
+                        own_fused + library_fused))
+        for name, executed, operations in CLASSES:
+            detail.append((scene.removeprefix(SCENE), name,
+                           sum(counted[scene][op] for op in operations)
+                           + (counted[scene]["f32_fma"] if name == "float add, mul, fma" else 0),
+                           sum(amounts[k] for k in executed)))
+    functions = []
+    for (scene, function), account in counts.items():
+        if function.startswith(SCENE):
+            continue
+        functions.append((function, price(account, unfused),
+                          sum(class_totals(trace.kinds[scene, function], trace.calls[scene, function])[1:]),
+                          account["visits"]))
+    write_csv(here / "cross_check.csv",
+              f"Counted operations and executed instructions by class;\n{GENERATED}.",
+              ["kernel", "class", "counted", "executed"], detail)
+    write_cross_check_page(summary, detail, functions, here / "cross_check.md")
+
+
+def write_cross_check_page(summary, detail, functions, path):
+    with open(path, "w") as out:
+        out.write(f"<!-- {GENERATED} -->\n# Counted against executed instructions\n\n")
+        out.write("RV32IMFC without Xpulp. *priced*: counted operations times `rv32imfc_costs.csv`; "
+                  "*executed*: the\ntrace, library routines included, marks and the simulator's "
+                  "book-keeping left out. Both from code\nwithout contraction, which computes the "
+                  "same bits as the host and so runs the same iterations; a\nfused multiply-add "
+                  "costs two there. The last column is the code with contraction.\n\n")
+        out.write("| kernel | priced | executed | of it library | executed / priced | with contraction |\n")
+        out.write("| --- | ---: | ---: | ---: | ---: | ---: |\n")
+        for name, priced, executed, library, ratio, _, fused in summary:
+            out.write(f"| {name} | {priced:,.0f} | {executed:,} | {library:,} | {ratio:.2f} | {fused:,} |\n")
+        out.write("\n## By class: executed / counted\n\nIn thousands. A dash: neither.\n\n")
+        kernels = [row[0] for row in summary]
+        names = [name for name, _, _ in CLASSES]
+        table = {(k, c): (a, b) for k, c, a, b in detail}
+        out.write("| kernel | " + " | ".join(names) + " |\n")
+        out.write("| --- |" + " ---: |" * len(names) + "\n")
+        for kernel in kernels:
+            cells = []
+            for name in names:
+                a, b = table[kernel, name]
+                cells.append("–" if a == b == 0 else f"{b / 1000:.1f} / {a / 1000:.1f}")
+            out.write(f"| {kernel} | " + " | ".join(cells) + " |\n")
+        out.write("\n## By named function\n\nSelf, all scenes.\n\n")
+        out.write("| function | visits | priced per visit | executed per visit | ratio |\n")
+        out.write("| --- | ---: | ---: | ---: | ---: |\n")
+        total = collections.defaultdict(lambda: [0, 0, 0])
+        for function, priced, executed, visits in functions:
+            for i, x in enumerate((priced, executed, visits)):
+                total[function][i] += x
+        for function in sorted(total, key=lambda f: -total[f][1]):
+            priced, executed, visits = total[function]
+            out.write(f"| {function} | {visits:,} | {priced / visits:,.0f} | {executed / visits:,.0f} "
+                      f"| {executed / priced:.2f} |\n")
+
+
+# ---- library routines ----
+
+def write_library(soft, hard, path):
+    with open(path, "w") as out:
+        out.write(f"<!-- {GENERATED} -->\n# Library routines of emulated arithmetic\n\n")
+        for title, trace in (("Core without FPU: libgcc for rv32imac", soft),
+                             ("Core with single precision: libgcc for rv32imafc", hard)):
+            out.write(f"## {title}\n\n| routine | instructions, mean (min–max) | stalls, mean (min–max) "
+                      "| lines |\n| --- | ---: | ---: | ---: |\n")
+            for symbol in sorted(trace.library, key=lambda s: (OPERATION_OF.get(s, "z"), s)):
+                if symbol in ("memset", "memcpy"):
+                    continue
+                _, mean, least, most, stall, s_least, s_most, lines = trace.routine(symbol)
+                if trace is hard and "sqrtf" in symbol:
+                    continue
+                out.write(f"| `{symbol}` | {mean:.0f} ({least}–{most}) | {stall:.0f} ({s_least}–{s_most}) "
+                          f"| {lines:.0f} |\n")
+            out.write("\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the raw results")
+    parser.add_argument("--code", type=pathlib.Path, required=True, help="table of footprints to write")
+    parser.add_argument("--here", type=pathlib.Path, required=True, help="folder of the other tables")
+    arguments = parser.parse_args()
+    work, here = arguments.work, arguments.here
+    contracted = Trace(work / "scenes.tsv")
+    write_footprints(contracted, arguments.code, here)
+    write_cross_check(Trace(work / "scenes_uncontracted.tsv"), contracted,
+                      read_counts(work / "counted.tsv"), read_costs(here / "rv32imfc_costs.csv"), here)
+    write_library(Trace(work / "library_soft.tsv"), Trace(work / "library_hard.tsv"), here / "library.md")
+
+
+if __name__ == "__main__":
+    main()

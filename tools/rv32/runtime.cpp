@@ -1,0 +1,124 @@
+// What a C++ program needs to run under qemu-riscv32 without an operating system's libraries: an
+// entry, memory, and output. Debian has no C++ library for this target; what only error paths need
+// (exceptions, fmt) stays unresolved and is address 0.
+#include <cstddef>
+#include <cstdint>
+
+#include "tools/rv32/runtime.h"
+
+namespace {
+
+constexpr std::size_t kHeapBytes = std::size_t{256} << 20;
+alignas(16) unsigned char heap[kHeapBytes];
+alignas(16) unsigned char thread_storage[4096];
+std::size_t heap_used = 0;
+
+std::int32_t system_call(std::int32_t number, std::int32_t a, std::int32_t b, std::int32_t c) {
+  register std::int32_t a0 asm("a0") = a;
+  register std::int32_t a1 asm("a1") = b;
+  register std::int32_t a2 asm("a2") = c;
+  register std::int32_t a7 asm("a7") = number;
+  asm volatile("ecall" : "+r"(a0) : "r"(a1), "r"(a2), "r"(a7) : "memory");
+  return a0;
+}
+
+constexpr std::int32_t kWrite = 64, kExit = 93;
+
+}  // namespace
+
+int main();
+using Initialiser = void (*)();
+extern "C" Initialiser __init_array_start[], __init_array_end[];
+
+extern "C" {
+
+[[noreturn]] void exit_program(std::int32_t status) {
+  for (;;) system_call(kExit, status, 0, 0);
+}
+
+[[gnu::used]] void start_program() {
+  asm volatile("mv tp, %0" : : "r"(thread_storage));
+  for (Initialiser* i = __init_array_start; i != __init_array_end; ++i) (*i)();
+  exit_program(main());
+}
+
+asm(".globl _start\n"
+    "_start:\n"
+    ".option push\n.option norelax\n"
+    "la gp, __global_pointer$\n"
+    ".option pop\n"
+    "andi sp, sp, -16\n"
+    "call start_program\n");
+
+[[noreturn]] void abort() noexcept { exit_program(3); }
+[[noreturn]] void __cxa_pure_virtual() { exit_program(4); }
+int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }
+void* __dso_handle = nullptr;
+
+// Word by word where both sides allow it, as embedded C libraries do.
+void* memcpy(void* to, const void* from, std::size_t n) noexcept {
+  auto* d = static_cast<unsigned char*>(to);
+  auto* s = static_cast<const unsigned char*>(from);
+  const bool words =
+      ((reinterpret_cast<std::uintptr_t>(d) | reinterpret_cast<std::uintptr_t>(s)) & 3) == 0;
+  if (words)
+    for (; n >= 4; n -= 4, d += 4, s += 4)
+      *reinterpret_cast<std::uint32_t*>(d) = *reinterpret_cast<const std::uint32_t*>(s);
+  for (; n > 0; --n) *d++ = *s++;
+  return to;
+}
+
+void* memmove(void* to, const void* from, std::size_t n) noexcept {
+  auto* d = static_cast<unsigned char*>(to);
+  auto* s = static_cast<const unsigned char*>(from);
+  if (d <= s || d >= s + n) return memcpy(to, from, n);
+  while (n-- > 0) d[n] = s[n];
+  return to;
+}
+
+void* memset(void* to, int value, std::size_t n) noexcept {
+  auto* d = static_cast<unsigned char*>(to);
+  const std::uint32_t word = 0x01010101u * static_cast<unsigned char>(value);
+  for (; n > 0 && (reinterpret_cast<std::uintptr_t>(d) & 3) != 0; --n)
+    *d++ = static_cast<unsigned char>(value);
+  for (; n >= 4; n -= 4, d += 4) *reinterpret_cast<std::uint32_t*>(d) = word;
+  for (; n > 0; --n) *d++ = static_cast<unsigned char>(value);
+  return to;
+}
+
+int memcmp(const void* a, const void* b, std::size_t n) noexcept {
+  auto* x = static_cast<const unsigned char*>(a);
+  auto* y = static_cast<const unsigned char*>(b);
+  for (; n > 0; --n, ++x, ++y)
+    if (*x != *y) return *x - *y;
+  return 0;
+}
+
+std::size_t strlen(const char* s) noexcept {
+  std::size_t n = 0;
+  while (s[n] != 0) ++n;
+  return n;
+}
+
+}  // extern "C"
+
+void* operator new(std::size_t n) {
+  const std::size_t begin = heap_used;
+  heap_used += (n + 15) & ~std::size_t{15};
+  if (heap_used > kHeapBytes) exit_program(5);
+  return heap + begin;
+}
+void* operator new[](std::size_t n) { return operator new(n); }
+void operator delete(void*) noexcept {}
+void operator delete[](void*) noexcept {}
+void operator delete(void*, std::size_t) noexcept {}
+void operator delete[](void*, std::size_t) noexcept {}
+
+namespace leviosim::rv32 {
+
+void write_text(const char* text) {
+  system_call(kWrite, 2, static_cast<std::int32_t>(reinterpret_cast<std::intptr_t>(text)),
+              static_cast<std::int32_t>(strlen(text)));
+}
+
+}  // namespace leviosim::rv32

@@ -1,0 +1,324 @@
+// What is measured: every stage of the workload, and small pieces of it, on fixed inputs. The same
+// source runs twice: natively on RV32, where a trace of addresses is taken, and on the host on
+// counted scalars, which tells what was counted for it. A scene is the life of a Function named
+// "scene: …"; what is outside of scenes is not measured.
+//
+// One worker: the forks of a team of eight do the same, in eight shares.
+#pragma once
+
+#include <vector>
+
+#include "sim/work/machine.h"
+#include "tools/rv32/inputs.h"
+#include "workload/geometry/essential_ransac.h"
+#include "workload/geometry/pnp_ransac.h"
+#include "workload/geometry/recover_pose.h"
+#include "workload/graph/optimiser.h"
+#include "workload/inertial/initialisation.h"
+#include "workload/math/inverse_power.h"
+#include "workload/math/solve.h"
+#include "workload/math/svd.h"
+#include "workload/pipeline/odometry.h"
+#include "workload/vision/extractor.h"
+#include "workload/vision/matcher.h"
+
+namespace leviosim::rv32 {
+
+constexpr int kWidth = 160, kHeight = 120, kFrames = 16;
+
+/// A number that the compiler cannot know, as sizes are for code in another file.
+inline int opaque(int n) {
+  asm volatile("" : "+r"(n));
+  return n;
+}
+
+/// Numbers in [-1, 1), the same on both sides: integers scaled by a power of two.
+class Noise {
+ public:
+  std::uint32_t bits() {
+    state_ = state_ * 1664525u + 1013904223u;
+    std::uint32_t z = state_;
+    z = (z ^ (z >> 16)) * 0x85ebca6bu;
+    return z ^ (z >> 13);
+  }
+  float next() { return static_cast<float>(static_cast<std::int32_t>(bits()) >> 8) * 0x1p-23f; }
+
+ private:
+  std::uint32_t state_ = 1;
+};
+
+template <class P>
+class Scenes {
+  template <class T>
+  using Span = typename P::template Span<T>;
+  using F = typename P::F32;
+  using Byte = typename P::Byte;
+  using U32 = typename P::U32;
+  using Function = typename P::Function;
+
+ public:
+  explicit Scenes(const unsigned char* inputs) : inputs_(inputs) {}
+
+  void run() {
+    read_flight();
+    vision();
+    two_views();
+    optimiser();
+    inertial();
+    linear_algebra();
+    functions();
+    pipeline();
+  }
+
+ private:
+  struct Frame {
+    Inputs::Block motion, pixels;
+  };
+
+  static work::MachineConfig machine(std::string_view name) {
+    return {
+        .cores = 1, .memory = name, .capacity = Bytes(4 << 20), .alignment = 4, .record = false};
+  }
+
+  template <class T>
+  Span<T> load(const Inputs::Block& block) {
+    const Span<T> span = data_.alloc<Span<T>>("input", block.size<T>());
+    block.copy_to(span.data(), span.size());
+    return span;
+  }
+  Span<F> noise(int n, float scale) {
+    const Span<F> span = data_.alloc<Span<F>>("noise", n);
+    for (int i = 0; i < n; ++i) span.data()[i] = F(noise_.next() * scale);
+    return span;
+  }
+  vio::MatrixView<P> matrix(int rows, int cols) {
+    rows = opaque(rows), cols = opaque(cols);
+    return {noise(rows * cols, 1.0f), rows, cols};
+  }
+  /// A positive definite matrix.
+  vio::MatrixView<P> square(int n) {
+    const auto m = matrix(n, n), a = matrix(n, n);
+    vio::multiply_transposed<P>(m, a, a);
+    return m;
+  }
+
+  /// Uses a result, so that the compiler cannot drop what made it.
+  void keep(const vio::Vec3<P>& v) { kept_ = kept_ + v; }
+
+  void read_flight() {
+    rig_ = inputs_.next();
+    for (Frame& frame : flight_) frame = {inputs_.next(), inputs_.next()};
+  }
+  vio::PinholeCamera camera() const {
+    return {rig_.real(0), rig_.real(1), rig_.real(2), rig_.real(3)};
+  }
+
+  void vision() {
+    const vio::ImageView<P> image{load<Byte>(flight_[0].pixels), kWidth, kHeight};
+    const vio::ExtractorOptions options;
+    auto features = vio::alloc_features<P>(data_, options.max_features(kWidth, kHeight));
+    {
+      const auto stage = machine_.stage("extraction");
+      const Function scene("scene: feature extraction");
+      vio::extract_features<P>(machine_, image, options, features);
+    }
+    // References: most are current descriptors with some bits flipped, in another order.
+    constexpr int kCurrent = 300, kReferences = 500;
+    const auto words = data_.alloc<Span<U32>>("descriptors", 8 * (kCurrent + kReferences));
+    for (int i = 0; i < words.size(); ++i) {
+      const int from = 8 * ((i / 8 * 7) % kCurrent) + i % 8;
+      std::uint32_t word = noise_.bits();
+      if (i >= 8 * kCurrent && i < 8 * (kCurrent + 250))
+        word = work::value(U32(words.data()[from])) ^ (word & noise_.bits() & noise_.bits());
+      words.data()[i] = U32(word);
+    }
+    auto matches = vio::alloc_matches<P>(data_, kCurrent);
+    const auto stage = machine_.stage("matching");
+    const Function scene("scene: matching");
+    vio::match_two_way<P>(machine_, words.subspan(0, 8 * kCurrent), kCurrent,
+                          words.subspan(8 * kCurrent, 8 * kReferences), kReferences, {}, matches);
+  }
+
+  void two_views() {
+    const Span<F> points = load<F>(inputs_.next()), pixels = load<F>(inputs_.next());
+    {
+      vio::PnpOptions options;
+      options.iterations = 32;
+      const auto stage = machine_.stage("EPnP");
+      const Function scene("scene: EPnP RANSAC");
+      vio::estimate_pose_epnp<P>(machine_, {points, pixels, points.size() / 3, camera()}, options);
+    }
+    const Span<F> a = load<F>(inputs_.next()), b = load<F>(inputs_.next());
+    const vio::TwoViewMatches<P> matches{a, b, a.size() / 2};
+    const Span<Byte> inliers = load<Byte>(inputs_.next());
+    const Inputs::Block E = inputs_.next(), pose = inputs_.next();
+    {
+      vio::EssentialOptions options;
+      options.iterations = 80;
+      const Span<Byte> mask = data_.alloc<Span<Byte>>("mask", matches.n);
+      const auto stage = machine_.stage("8-point");
+      const Function scene("scene: 8-point RANSAC");
+      vio::estimate_essential<P>(machine_, matches, camera().fx, options, mask);
+    }
+    vio::Mat3<P> essential, R;
+    vio::Vec3<P> t{F(pose.real(9)), F(pose.real(10)), F(pose.real(11))};
+    for (int i = 0; i < 9; ++i) {
+      essential.m[i / 3][i % 3] = F(E.real(i));
+      R.m[i / 3][i % 3] = F(pose.real(i));
+    }
+    {
+      const auto stage = machine_.stage("pose recovery");
+      const Function scene("scene: pose recovery");
+      vio::recover_pose<P>(machine_, matches, inliers, essential);
+    }
+    const vio::Pose<P> first = vio::Pose<P>::identity(), second{R, t};
+    const Function scene("scene: triangulation");
+    for (int i = 0; i < opaque(40); ++i)
+      vio::triangulate<P>(first, second, matches.in_a(i), matches.in_b(i), machine_.local());
+  }
+
+  void optimiser() {
+    work::Machine controller(machine("L2"));
+    vio::PoseGraph<P> graph(controller.local(), vio::GraphCapacity{});
+    std::apply([&](auto&... span) { (inputs_.next().copy_to(span.data(), span.size()), ...); },
+               graph.blocks());
+    vio::Window<P> window(controller.local(), graph.capacity);
+    vio::OptimiserOptions options;
+    {
+      const Function scene("scene: optimiser snapshot");
+      vio::take_snapshot<P>(graph, vio::ImuNoise{}, controller.local(), window);
+    }
+    vio::LmState<P> damping(options);
+    for (int i = 0; i < 2; ++i) {
+      const auto stage = controller.stage("optimiser");
+      const Function scene("scene: optimiser iteration");
+      vio::optimise_once<P>(controller, window, damping, options);
+    }
+  }
+
+  void inertial() {
+    constexpr int kSamples = 40;
+    const Span<F> readings = noise(6 * (kSamples + 1), 0.5f);
+    const Span<F> record = data_.alloc<Span<F>>("record", vio::Preintegration<P>::kFloats);
+    const vio::Preintegration<P> interval(record);
+    interval.reset(vio::ImuBias<P>::zero());
+    const auto sample = [&](int i) {
+      return vio::ImuSample<P>{F(0.005f), vio::load_vec3<P>(readings, 6 * i),
+                               vio::load_vec3<P>(readings, 6 * i + 3)};
+    };
+    const vio::ImuNoise noise_model;
+    {
+      const Function scene("scene: IMU pre-integration");
+      for (int i = 0; i < opaque(kSamples); ++i)
+        interval.integrate(sample(i), sample(i + 1), noise_model);
+    }
+    const vio::StillnessOptions options;
+    const Span<F> memory = noise(vio::StillnessDetector<P>::floats(options), 0.1f);
+    vio::StillnessDetector<P> still(options, memory);
+    for (int i = 0; i < opaque(25); ++i) {
+      still.add(sample(i));
+      if (i > 21) keep(still.evaluate().accel_mean);
+      still.end_frame();
+    }
+    keep(vio::mean_force<P>(readings, opaque(30)));
+  }
+
+  void linear_algebra() {
+    using vio::DiagonalPrecision;
+    const auto V12 = matrix(12, 12), A12 = square(12);
+    {
+      const Function scene("scene: Jacobi 12x12");
+      vio::jacobi_eigen_classical<P>(A12, V12, opaque(120), F(1e-8f), DiagonalPrecision::Double);
+    }
+    const auto V3 = matrix(3, 3), A3 = square(3);
+    {
+      const Function scene("scene: Jacobi 3x3");
+      vio::jacobi_eigen_classical<P>(A3, V3, opaque(10), F(1e-8f), DiagonalPrecision::Double);
+    }
+    const auto A64 = matrix(6, 4);
+    const Span<F> b6 = noise(6, 1.0f), x4 = noise(4, 1.0f);
+    {
+      const Function scene("scene: QR 6x4");
+      vio::solve_qr<P>(A64, b6, x4);
+    }
+    const auto A9 = matrix(9, 9), H9 = square(9);
+    const Span<F> b9 = noise(9, 1.0f), x9 = noise(9, 1.0f);
+    {
+      const Function scene("scene: Gauss 9x9");
+      vio::solve_gauss<P>(A9, b9, x9);
+    }
+    {
+      const Function scene("scene: inverse power 9x9");
+      vio::smallest_eigenvector<P>(H9, x9, machine_.local(), opaque(15), F(1e-8f));
+    }
+    vio::Mat3<P> E, U, V;
+    vio::Vec3<P> s;
+    for (int i = 0; i < 9; ++i) E.m[i / 3][i % 3] = F(noise_.next());
+    const Function scene("scene: SVD 3x3");
+    vio::svd3<P>(E, U, s, V);
+  }
+
+  /// Elementary functions, a hundred times each.
+  void functions() {
+    const Span<F> x = noise(101, 3.0f);
+    const Span<F> y = noise(100, 1.0f);
+    {
+      const Function scene("scene: sin");
+      for (int i = 0; i < opaque(100); ++i) y.data()[i] = vio::sin_of<P>(x.data()[i]);
+    }
+    {
+      const Function scene("scene: cos");
+      for (int i = 0; i < opaque(100); ++i) y.data()[i] = vio::cos_of<P>(x.data()[i]);
+    }
+    const Function scene("scene: atan2");
+    for (int i = 0; i < opaque(100); ++i)
+      y.data()[i] = vio::atan2_of<P>(x.data()[i], x.data()[i + 1]);
+  }
+
+  /// Everything together, with fewer hypotheses than in earnest: who calls what, and what comes
+  /// after what.
+  void pipeline() {
+    vio::Profile profile;
+    profile.optimiser.anchor.rotation = 0.01f;
+    profile.pnp.iterations = 16;
+    profile.essential.iterations = 40;
+    profile.keyframe_parallax = 0.02f;
+    vio::Rig rig{camera(), kWidth, kHeight, {}};
+    for (int i = 0; i < 9; ++i) rig.R_camera_body[static_cast<std::size_t>(i)] = rig_.real(4 + i);
+    work::Machine cluster(machine("L1")), controller(machine("L2"));
+    const auto odometry = vio::make_odometry(P::kCounting, profile, rig, cluster, controller);
+    vio::FrameInput input;
+    std::vector<std::uint8_t> pixels(kWidth * kHeight);
+    const Function scene("scene: pipeline");
+    for (const Frame& frame : flight_) {
+      frame.pixels.copy_to(pixels.data(), kWidth * kHeight);
+      input = {pixels.data(), kWidth, kHeight, frame.motion.real(0), {}};
+      for (int i = 1; i < frame.motion.template size<float>(); i += 7) {
+        const auto v = [&](int k) { return frame.motion.real(i + k); };
+        input.imu.push_back({v(0), {v(1), v(2), v(3)}, {v(4), v(5), v(6)}});
+      }
+      const bool optimising = odometry->begin_optimisation();
+      const vio::FrameReport report = odometry->process_frame(input);
+      if (optimising) {
+        odometry->optimise();
+        odometry->publish();
+      }
+      reports_.push_back(report);
+    }
+  }
+
+ public:
+  const std::vector<vio::FrameReport>& reports() const { return reports_; }
+
+ private:
+  Inputs inputs_;
+  Inputs::Block rig_;
+  Frame flight_[kFrames];
+  work::Arena data_{"data", Bytes(4 << 20)};
+  work::Machine machine_{machine("L1")};
+  Noise noise_;
+  vio::Vec3<P> kept_{F(0.0f), F(0.0f), F(0.0f)};
+  std::vector<vio::FrameReport> reports_;
+};
+
+}  // namespace leviosim::rv32
