@@ -175,7 +175,12 @@ std::vector<Reference> parse_references(const std::string& file, std::string_vie
   return references;
 }
 
-std::string_view paper_references_text() { return builtin_references().front().text; }
+std::string_view paper_references_text() {
+  for (const BuiltinReferences& file : builtin_references())
+    if (file.name == "paper") return file.text;
+  check(false, "paper.csv is part of the program");
+  return {};
+}
 
 std::vector<Reference> paper_references() {
   return parse_references(std::string(kFile), paper_references_text());
