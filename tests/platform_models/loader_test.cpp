@@ -247,8 +247,9 @@ TEST(Loader, RefusesFilesThatAreNoPlatforms) {
 }
 
 TEST(Loader, UnknownPlatformListsTheKnownOnes) {
-  expect_parts(fault_of([] { load_platform("gap8x"); }),
-               {"unknown platform 'gap8x'", "did you mean 'gap9'", "built in: gap9", ".yaml"});
+  expect_parts(
+      fault_of([] { load_platform("gap8x"); }),
+      {"unknown platform 'gap8x'", "did you mean 'gap8'", "built in: gap8, gap9", ".yaml"});
 }
 
 TEST(Loader, UnreadableFileIsNamed) {
