@@ -1,6 +1,9 @@
 #include "tools/validate/normalised.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <functional>
 
 #include "tools/run/summary.h"
@@ -27,6 +30,18 @@ Value mean_over(const FrameLog& log, const std::function<bool(const LoggedFrame&
     ++n;
   }
   return n > 0 ? Value(sum / static_cast<double>(n)) : std::nullopt;
+}
+
+const PaperStage& paper_stage(std::string_view key) {
+  return *std::find_if(kPaperStages.begin(), kPaperStages.end(),
+                       [&](const PaperStage& stage) { return stage.key == key; });
+}
+
+/// Landmarks in the map, over the frames that the average of world matching stands for.
+Value mean_of_map(const FrameLog& log) {
+  const StageSum sum = sum_over(log.frames(), paper_stage("world_matching"));
+  if (sum.frames == 0) return std::nullopt;
+  return static_cast<double>(sum.landmarks) / static_cast<double>(sum.frames);
 }
 
 bool every(const LoggedFrame&) { return true; }
@@ -106,11 +121,10 @@ const std::array kUnits{
 
 NormalisedFigure figure_of(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
                            const Unit& unit) {
-  const auto* const stage = std::find_if(kPaperStages.begin(), kPaperStages.end(),
-                                         [&](const PaperStage& s) { return s.key == unit.stage; });
-  const StageSum sum = sum_over(log.frames(), *stage);
+  const PaperStage& stage = paper_stage(unit.stage);
+  const StageSum sum = sum_over(log.frames(), stage);
   NormalisedFigure figure;
-  figure.stage = stage->title;
+  figure.stage = stage.title;
   figure.unit = unit.name;
   figure.paper_units = unit.paper;
   figure.paper_single = paper_single(unit.stage);
@@ -145,7 +159,6 @@ NormalisedFigure optimiser_figure(const FrameLog& log) {
 std::vector<InputFigure> inputs_of(const RunResult& run, const FrameLog& log,
                                    const vio::Profile& profile) {
   const auto has_keyframe = [](const LoggedFrame& f) { return f.keyframe_features > 0; };
-  const auto has_landmarks = [](const LoggedFrame& f) { return f.landmarks_before > 0; };
   const auto ran_epnp = [](const LoggedFrame& f) { return f.find(vio::stages::kEpnp) != nullptr; };
   const auto from = [](PoseSource source) {
     return [source](const LoggedFrame& f) { return f.result.source == source; };
@@ -169,7 +182,7 @@ std::vector<InputFigure> inputs_of(const RunResult& run, const FrameLog& log,
       {"landmarks compared with",
        "landmarks",
        "1",
-       mean_over(log, has_landmarks, [](const LoggedFrame& f) { return f.landmarks_before; }),
+       mean_of_map(log),
        {},
        "not printed; at most 1000"},
       {"world matches of a frame that ran EPnP",

@@ -1,0 +1,129 @@
+// Sweeps over tiny jobs whose times are closed formulas.
+#include "tools/sensitivity/sensitivity.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "platform_models/loader.h"
+#include "tools/sensitivity/sensitivity_report.h"
+
+namespace leviosim::tools {
+namespace {
+
+using work::Op;
+
+constexpr double kMsPerCycle = 1e3 / 370e6;
+
+work::Job job_of(std::string_view stage, std::vector<work::Step> steps) {
+  work::Job job;
+  job.stages.push_back({stage, std::move(steps), {}});
+  return job;
+}
+
+work::Serial serial(Op op, std::uint64_t n) {
+  work::Counts counts;
+  counts[op] = n;
+  return {counts};
+}
+
+void add_frame(RecordedRun& run, PoseSource source, const work::Job& job) {
+  FrameResult result;
+  result.source = source;
+  const sim::JobTiming timing;
+  run.on_front_end({0, false, result, job, timing, timing});
+}
+
+/// 10'000 integer operations with EPnP, a transfer of 8'000 bytes with 8-point, and an optimiser of
+/// 1'000 calls.
+RecordedRun example() {
+  RecordedRun run;
+  add_frame(run, PoseSource::First, job_of("start", {serial(Op::IntAlu, 1'000'000)}));
+  add_frame(run, PoseSource::Epnp, job_of("e", {serial(Op::IntAlu, 10'000)}));
+  add_frame(run, PoseSource::EightPoint,
+            job_of("m", {work::Transfer{work::Direction::L2ToL1, Bytes(8'000)}}));
+  const sim::JobTiming timing;
+  run.on_optimiser({0, 0, true, job_of("o", {serial(Op::Call, 1'000)}), timing});
+  return run;
+}
+
+platform::Variants gap9() { return platform::Variants(platform::resolve_platform("gap9")); }
+
+Sensitivity sweep(unsigned threads = 1) {
+  return sensitivity(gap9(), 8, example(), threads, [](int, int) {});
+}
+
+const Swing& swing(const Sensitivity& s, const std::string& path) {
+  const auto it = std::find_if(s.swings.begin(), s.swings.end(),
+                               [&](const Swing& w) { return w.parameter.path == path; });
+  EXPECT_NE(it, s.swings.end()) << path;
+  return *it;
+}
+
+constexpr double kOffloads = 2 * 300;  // there and back
+
+TEST(Sensitivity, TheBaseIsWhatTheJobsTake) {
+  const Outcome base = time_on(gap9().config({}), 8, example());
+  EXPECT_NEAR(base.epnp.value(), (10'000 + kOffloads) * kMsPerCycle, 1e-9);
+  // programming 25, first data 16, 8 bytes per cycle, completion 8
+  EXPECT_NEAR(base.eight_point.value(), (25 + 16 + 1'000 + 8 + kOffloads) * kMsPerCycle, 1e-9);
+  EXPECT_NEAR(base.frame.value(), (base.epnp.value() + base.eight_point.value()) / 2, 1e-9);
+  EXPECT_NEAR(base.iteration.value(), 1'000 * 14 * kMsPerCycle, 1e-9);
+}
+
+TEST(Sensitivity, BothEndsOfARangeFollowTheFormula) {
+  const Sensitivity s = sweep();
+  const Swing& overhead = swing(s, "isa.instruction_overhead");  // 1 to 1.6
+  EXPECT_EQ(overhead.low.epnp, s.base.epnp);
+  EXPECT_NEAR(overhead.high.epnp.value(), (16'000 + kOffloads) * kMsPerCycle, 1e-9);
+  EXPECT_EQ(overhead.high.eight_point, s.base.eight_point);
+  EXPECT_NEAR(overhead.high.iteration.value(), 1'000 * (1.6 * 12 + 2) * kMsPerCycle, 1e-9);
+  const Swing& rate = swing(s, "cluster.dma.bytes_per_cycle");  // 4 to 8
+  EXPECT_NEAR(rate.low.eight_point.value() - s.base.eight_point.value(), 1'000 * kMsPerCycle, 1e-9);
+  EXPECT_EQ(rate.high.eight_point, s.base.eight_point);
+  const Swing& call = swing(s, "isa.ops.call.issue");  // 2 to 30
+  EXPECT_NEAR(percent_change(call.low.iteration, s.base.iteration).value(), -100 * 10 / 14.0, 1e-9);
+  EXPECT_EQ(effect_on_frame(call, s.base), 0);
+}
+
+TEST(Sensitivity, TheLargestEffectOnTheFrameComesFirst) {
+  const Sensitivity s = sweep();
+  EXPECT_EQ(s.swings[0].parameter.path, "isa.instruction_overhead");
+  for (std::size_t i = 1; i < s.swings.size(); ++i)
+    EXPECT_GE(effect_on_frame(s.swings[i - 1], s.base), effect_on_frame(s.swings[i], s.base));
+}
+
+TEST(Sensitivity, CoversEveryNumberThatHasARange) {
+  const platform::ResolvedPlatform platform = platform::resolve_platform("gap9");
+  const auto ranges =
+      std::count_if(platform.parameters.begin(), platform.parameters.end(),
+                    [](const platform::Parameter& p) { return p.range.has_value(); });
+  const Sensitivity s = sweep();
+  EXPECT_EQ(s.swings.size(), static_cast<std::size_t>(ranges));
+  EXPECT_TRUE(s.unbounded.empty()) << s.unbounded[0] << " is uncertain and has no range";
+}
+
+TEST(Sensitivity, DoesNotDependOnTheHostsThreads) {
+  EXPECT_EQ(sensitivity_csv(sweep(1)), sensitivity_csv(sweep(4)));
+}
+
+TEST(Sensitivity, WhatARunDoesNotHaveIsAbsent) {
+  const Sensitivity s = sensitivity(gap9(), 8, RecordedRun{}, 2, [](int, int) {});
+  EXPECT_FALSE(s.base.frame.has_value());
+  EXPECT_FALSE(percent_change(s.swings[0].low.frame, s.base.frame).has_value());
+  EXPECT_NE(sensitivity_table(s, 8).find("front end – on 8 cores"), std::string::npos);
+}
+
+TEST(Sensitivity, TableAndFileShowTheEffect) {
+  const Sensitivity s = sweep();
+  const std::string text = sensitivity_table(s, 8);
+  EXPECT_NE(text.find("+0.00 … +56.60"), std::string::npos) << text;  // 6000 of 10600
+  EXPECT_NE(text.find("changing nothing"), std::string::npos);
+  const std::string csv = sensitivity_csv(s);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
+            s.swings.size() + 1);
+  EXPECT_NE(csv.find("isa.instruction_overhead,assumed,ratio,1,1,1.6,"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace leviosim::tools
