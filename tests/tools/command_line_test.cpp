@@ -92,7 +92,7 @@ TEST_F(CommandLine, NamesMissingOptions) {
 }
 
 TEST_F(CommandLine, SuggestsPlatformsAndTheirParameters) {
-  expect_refusal({"run", "--platform", "gap8", "--data", "x", "--out", out()}, {"gap8", "gap9"});
+  expect_refusal({"run", "--platform", "gap7", "--data", "x", "--out", out()}, {"gap7", "gap8"});
   expect_run_refused({"-p", "cluster.fpus=2"}, {"cluster.fpus", "did you mean 'cluster.fpu"});
   expect_run_refused({"--profile", "levoi"}, {"levoi", "levio"});
 }

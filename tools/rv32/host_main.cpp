@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
                     static_cast<unsigned long long>(account.counts[info.op]));
   }
   for (const vio::FrameReport& r : scenes.reports())
-    std::fprintf(stderr, "%d %d %d %d %d %d %d\n", static_cast<int>(r.source), r.keyframe, r.features,
-                 r.world_matches, r.frame_matches, r.inliers, r.landmarks);
+    std::fprintf(stderr, "%d %d %d %d %d %d %d\n", static_cast<int>(r.source), r.keyframe,
+                 r.features, r.world_matches, r.frame_matches, r.inliers, r.landmarks);
   return 0;
 }
