@@ -9,6 +9,7 @@
 #include "tools/microbench/bench.h"
 #include "tools/microbench/board_programs.h"
 #include "tools/microbench/reference.h"
+#include "tools/validate/builtin_references.h"
 
 namespace leviosim::tools {
 namespace {

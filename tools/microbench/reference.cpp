@@ -1,9 +1,5 @@
 #include "tools/microbench/reference.h"
 
-#include <fmt/format.h>
-
-#include "sim/check.h"
-#include "tools/validate/builtin_references.h"
 #include "traces/csv.h"
 
 namespace leviosim::tools {
@@ -32,12 +28,6 @@ std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string t
     rows.push_back(std::move(r));
   }
   return rows;
-}
-
-std::string_view reference_text(std::string_view name) {
-  for (const BuiltinReferences& file : builtin_references())
-    if (file.name == name) return file.text;
-  check_failed(fmt::format("no reference file {}", name), SourceLine::current());
 }
 
 }  // namespace leviosim::tools

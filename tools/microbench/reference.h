@@ -14,7 +14,4 @@ namespace leviosim::tools {
 /// @throws InputError with file, line and column
 std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string text, int tier);
 
-/// The text of tests/validation/NAME.csv.
-std::string_view reference_text(std::string_view name);
-
 }  // namespace leviosim::tools

@@ -3,6 +3,7 @@
 #include "sim/error.h"
 #include "tools/microbench/reference.h"
 #include "tools/microbench/unit_benches.h"
+#include "tools/validate/builtin_references.h"
 
 namespace leviosim::tools {
 namespace {

@@ -175,12 +175,13 @@ std::vector<Reference> parse_references(const std::string& file, std::string_vie
   return references;
 }
 
-std::string_view paper_references_text() {
+std::string_view reference_text(std::string_view name) {
   for (const BuiltinReferences& file : builtin_references())
-    if (file.name == "paper") return file.text;
-  check(false, "paper.csv is part of the program");
-  return {};
+    if (file.name == name) return file.text;
+  check_failed(fmt::format("no reference file {}", name), SourceLine::current());
 }
+
+std::string_view paper_references_text() { return reference_text("paper"); }
 
 std::vector<Reference> paper_references() {
   return parse_references(std::string(kFile), paper_references_text());
