@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "platform_models/builtin.h"
+#include "platform_models/configure.h"
 #include "platform_models/document.h"
 #include "platform_models/instruction_set.h"
 #include "platform_models/nearest.h"
@@ -23,22 +24,6 @@ namespace {
       fmt::format("unknown platform '{}'{} (built in: {}; a file is given by a path that contains "
                   "'/' or ends in .yaml)",
                   name, did_you_mean(name, names), fmt::join(names, ", ")));
-}
-
-sim::ChipConfig configure(const Schema& schema, const Document& document) {
-  sim::ChipConfig config;
-  config.name = document.name;
-  for (std::size_t i = 0; i < schema.fields().size(); ++i) {
-    const Field& field = schema.fields()[i];
-    const auto& setting = document.settings[i];
-    if (!setting) continue;
-    field.set(config, setting->base);
-    const auto& range = setting->parameter.range;
-    if (!range || !field.set_band) continue;
-    const double factor = field.dimension->find(setting->parameter.unit)->factor;
-    field.set_band(config, range->low * factor, range->high * factor);
-  }
-  return config;
 }
 
 /// Without the sources of rows that others replaced.
@@ -69,7 +54,7 @@ ResolvedPlatform resolve_platform_text(const std::string& file, const std::strin
   for (const std::string& override : split.parameters)
     apply_override(schema, document.settings, override);
   ResolvedPlatform platform;
-  platform.config = configure(schema, document);
+  platform.config = configure(schema, document.name, document.settings);
   check_rules(schema, document.settings, platform.config);
   platform.name = document.name;
   platform.description = document.description;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "platform_models/configure.h"
 #include "platform_models/nearest.h"
 #include "platform_models/rules.h"
 #include "platform_models/value.h"
@@ -49,10 +50,7 @@ Settings Variants::changed(const std::vector<Change>& changes) const {
 }
 
 sim::ChipConfig Variants::configured(const Settings& settings) const {
-  sim::ChipConfig config;
-  config.name = platform_.config.name;
-  for (std::size_t i = 0; i < settings.size(); ++i)
-    if (settings[i]) schema_.fields()[i].set(config, settings[i]->base);
+  const sim::ChipConfig config = configure(schema_, platform_.name, settings);
   check_rules(schema_, settings, config);
   return config;
 }

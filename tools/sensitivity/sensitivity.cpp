@@ -27,11 +27,22 @@ double end_of(const Trial& trial) {
   return trial.high ? trial.parameter->range->high : trial.parameter->range->low;
 }
 
+/// Energies and what the supply allows have no effect on time.
+bool is_of_time(const platform::Parameter& parameter) {
+  for (const std::string_view section : {"energy.", "supply."})
+    if (std::string_view(parameter.path).substr(0, section.size()) == section) return false;
+  return true;
+}
+
+bool is_swept(const platform::Parameter& parameter) {
+  return parameter.range && is_of_time(parameter);
+}
+
 /// The base, then both ends of every range, except where an end is the value itself.
 std::vector<Trial> trials_of(const platform::ResolvedPlatform& platform) {
   std::vector<Trial> trials{Trial{}};
   for (const platform::Parameter& parameter : platform.parameters) {
-    if (!parameter.range) continue;
+    if (!is_swept(parameter)) continue;
     for (const bool high : {false, true}) {
       const Trial trial{&parameter, high};
       if (end_of(trial) != value_of(parameter)) trials.push_back(trial);
@@ -41,7 +52,7 @@ std::vector<Trial> trials_of(const platform::ResolvedPlatform& platform) {
 }
 
 bool is_uncertain(const platform::Parameter& parameter) {
-  return parameter.confidence != "high" && !parameter.unit.empty();
+  return parameter.confidence != "high" && !parameter.unit.empty() && is_of_time(parameter);
 }
 
 class Average {
@@ -68,7 +79,7 @@ std::vector<Swing> collect(const platform::ResolvedPlatform& platform,
                            const std::vector<Trial>& trials, const std::vector<Outcome>& outcomes) {
   std::vector<Swing> swings;
   for (const platform::Parameter& parameter : platform.parameters) {
-    if (!parameter.range) continue;
+    if (!is_swept(parameter)) continue;
     Swing swing{parameter, outcomes[0], outcomes[0]};
     for (std::size_t i = 1; i < trials.size(); ++i)
       if (trials[i].parameter == &parameter)

@@ -1,8 +1,10 @@
 // How much hangs on each number of a platform that is not certain: every one that has a range is
 // set to both its ends, one at a time, and the jobs of one recorded run are timed again.
 //
-// Left out: what another timing would have changed in the computation (a late optimiser result),
-// and ranges that hang together, such as the halves of a cost that is known only in sum.
+// Left out: energies and supply voltages, which no time depends on (their bands are carried through
+// the energy model, sim/energy/estimate.h); what another timing would have changed in the
+// computation (a late optimiser result), and ranges that hang together, such as the halves of a
+// cost that is known only in sum.
 #pragma once
 
 #include <functional>
