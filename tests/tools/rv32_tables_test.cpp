@@ -77,10 +77,13 @@ TEST(Rv32Code, IsSortedWithoutRepetitionAndPlausible) {
     EXPECT_GE(piece.visits, 1) << piece.function;
     EXPECT_GE(piece.refetches, 0) << piece.function;
     // What fits into the small cache is fetched once.
-    if (piece.lines <= 25) EXPECT_LT(piece.refetches, piece.lines + 1) << piece.function;
-    if (i > 0)
+    if (piece.lines <= 25) {
+      EXPECT_LT(piece.refetches, piece.lines + 1) << piece.function;
+    }
+    if (i > 0) {
       EXPECT_LT(std::pair(table[i - 1].function, table[i - 1].after),
                 std::pair(piece.function, piece.after));
+    }
   }
 }
 
