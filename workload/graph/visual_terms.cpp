@@ -231,7 +231,9 @@ VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
   for (int i : P::range(0, window.landmarks)) {
     const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
     const int number = work::value(I32(window.observation_numbers[i]));
-    if (valid < I32(2) || !invert_landmark<P>(records, i, number, lambda)) {
+    const bool usable = valid >= I32(2) && invert_landmark<P>(records, i, number, lambda);
+    window.lost[i] = work::narrow<typename P::Byte>(I32(usable ? 0 : 1));
+    if (!usable) {
       freeze_landmark<P>(records, i);
       continue;
     }

@@ -8,7 +8,8 @@
 // grows by the factor 1 + λ) before it is inverted.
 //
 // A landmark whose damped block is not positive definite, or with fewer than two observations that
-// are not lost (reprojection.h), is left out of the iteration and stays where it is.
+// are not lost (reprojection.h), is left out of the iteration, stays where it is, and is marked as
+// lost in the window.
 #pragma once
 
 #include "workload/graph/landmark_records.h"
