@@ -51,9 +51,12 @@ template <class P>
 void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
                  const ReducedSystem<P>& solved, typename P::template Span<typename P::F32> to);
 
-/// Cost of all observations at `state`, a state of `window`.
+/// Puts back the points of `trial` that their step led out of sight, where they are better off
+/// unmoved: the depth of a landmark with little parallax is hardly determined, and its step may
+/// lead anywhere. Without this a single such landmark has the steps of all others rejected.
+/// @return the cost of all observations at `trial` then
 template <class P>
-typename P::F32 visual_cost(const Window<P>& window, const WindowState<P>& state,
-                            const PixelModel<P>& model);
+typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& trial,
+                              const PixelModel<P>& model);
 
 }  // namespace leviosim::vio
