@@ -62,7 +62,7 @@ struct FpuConfig {
 
 /// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
 struct InstructionCacheConfig {
-  Bytes line;              ///< bytes fetched at once
+  Bytes line;              ///< bytes fetched at once; 0: fetching code costs nothing
   Bytes worker;            ///< private cache of a worker (or of the controller); 0: none
   Bytes master;            ///< private cache of the cluster's master
   Bytes shared;            ///< cache that the cores share; 0: none

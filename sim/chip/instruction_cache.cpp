@@ -48,6 +48,7 @@ double miss_share(double reuse, int sharers) {
 
 CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers)
     : shared_miss_(config.shared_miss) {
+  if (config.line == Bytes(0)) return;
   const auto line = static_cast<double>(config.line.count());
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) {
     const double requests = k == work::kNeverFetched ? 1 : miss_share_of_class(k, own, 1);

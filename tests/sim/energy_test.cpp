@@ -1,6 +1,8 @@
 // Energy against closed formulas, and what the voltage and the clock do to it.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/sim/energy_test_config.h"
 
 namespace leviosim::sim {
@@ -217,9 +219,9 @@ TEST(EnergyBand, OneDoubtAddsUpAndDoubtsCombineAsRootSumSquare) {
   counts[Op::LoadL2] = 500;
   const Estimate<Joules> total =
       energy_of(cluster_activity(chip, 8, counts, {}, Account{}, Cycles(0)), chip).total();
-  EXPECT_DOUBLE_EQ(total.value.count() - total.low().count(), 1500 * 1e-12);
-  EXPECT_DOUBLE_EQ(total.high().count() - total.value.count(),
-                   std::hypot(1500 * 2e-12 + 1000 * 1e-12, 500 * 6e-12));
+  EXPECT_NEAR(total.value.count() - total.low().count(), 1500 * 1e-12, 1e-20);
+  EXPECT_NEAR(total.high().count() - total.value.count(),
+              std::hypot(1500 * 2e-12 + 1000 * 1e-12, 500 * 6e-12), 1e-20);
 }
 
 TEST(EnergyBand, OfASumIsNoWiderThanTheBandsOfItsParts) {

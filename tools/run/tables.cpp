@@ -249,13 +249,13 @@ std::string frame_summary(const RunResult& run) {
   const std::int64_t keyframes = std::count_if(run.frames.begin(), run.frames.end(),
                                                [](const FrameResult& f) { return f.keyframe; });
   std::string text = fmt::format(
-      "frames: {} (EPnP {}, 8-point {}, pose kept {}), keyframes {}\n"
+      "frames: {} (EPnP {}, 8-point {}, pose kept {}, predicted after EPnP {}), keyframes {}\n"
       "        per frame {:.1f} features, {:.1f} world matches, {:.1f} frame matches, "
       "{:.1f} landmarks\n",
       run.frames.size(), count_of(run, PoseSource::Epnp), count_of(run, PoseSource::EightPoint),
-      count_of(run, PoseSource::Kept), keyframes, mean_of(run, &FrameResult::features),
-      mean_of(run, &FrameResult::world_matches), mean_of(run, &FrameResult::frame_matches),
-      mean_of(run, &FrameResult::landmarks));
+      count_of(run, PoseSource::Kept), count_of(run, PoseSource::Predicted), keyframes,
+      mean_of(run, &FrameResult::features), mean_of(run, &FrameResult::world_matches),
+      mean_of(run, &FrameResult::frame_matches), mean_of(run, &FrameResult::landmarks));
   if (run.timed)
     text += fmt::format("optimiser: {} results published, still busy at the start of {} frames\n",
                         run.optimiser_published, run.optimiser_late);

@@ -201,6 +201,7 @@ void Analysis::at_mark(const Mark& mark, const Instruction& in) {
 }
 
 void Analysis::enter_named(const Mark& mark, const Instruction& in) {
+  if (!measuring() && !is_scene(mark.name)) return;  // preparation of a scene
   const bool own = !is_scene(mark.name) && in_prologue_ && !frames_.empty() &&
                    frames_.back().symbol != nullptr && in.pc >= frames_.back().symbol->begin &&
                    in.pc < frames_.back().symbol->end &&

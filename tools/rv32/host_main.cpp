@@ -24,9 +24,10 @@ struct Ledger {
   std::vector<Account*> running;
   std::string scene;
 
+  bool measuring() const { return !running.empty() && running.back() != nullptr; }
   void settle() {
     const work::Counts counts = work::take_tally();
-    if (!running.empty()) running.back()->counts += counts;
+    if (measuring()) running.back()->counts += counts;
   }
 };
 
@@ -42,7 +43,12 @@ bool is_scene(const char* name) { return std::strncmp(name, "scene: ", 7) == 0; 
 void enter_function(const char* name) {
   Ledger& l = ledger();
   l.settle();
-  if (is_scene(name)) l.scene = name;
+  if (is_scene(name)) {
+    l.scene = name;
+  } else if (!l.measuring()) {  // preparation of a scene
+    l.running.push_back(nullptr);
+    return;
+  }
   Account& account = l.accounts[{l.scene, name}];
   ++account.visits;
   l.running.push_back(&account);

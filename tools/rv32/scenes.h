@@ -214,6 +214,7 @@ class Scenes {
     }
     const vio::StillnessOptions options;
     const Span<F> memory = noise(vio::StillnessDetector<P>::floats(options), 0.1f);
+    const Function scene("scene: standstill");
     vio::StillnessDetector<P> still(options, memory);
     for (int i = 0; i < opaque(25); ++i) {
       still.add(sample(i));
@@ -286,10 +287,10 @@ class Scenes {
     vio::Rig rig{camera(), kWidth, kHeight, {}};
     for (int i = 0; i < 9; ++i) rig.R_camera_body[static_cast<std::size_t>(i)] = rig_.real(4 + i);
     work::Machine cluster(machine("L1")), controller(machine("L2"));
+    const Function scene("scene: pipeline");
     const auto odometry = vio::make_odometry(P::kCounting, profile, rig, cluster, controller);
     vio::FrameInput input;
     std::vector<std::uint8_t> pixels(kWidth * kHeight);
-    const Function scene("scene: pipeline");
     for (const Frame& frame : flight_) {
       frame.pixels.copy_to(pixels.data(), kWidth * kHeight);
       input = {pixels.data(), kWidth, kHeight, frame.motion.real(0), {}};

@@ -72,6 +72,14 @@ bool agrees_with_view(const Pose<P>& T_camera_world, const Vec3<P>& point, const
   return in_camera.z > F(0.0f) && error_sq_in_view<P>(in_camera, seen, camera) < F(max_error_sq);
 }
 
+template <class P>
+bool agrees_with_infinity(const Pose<P>& T_a_world, const Pose<P>& T_b_world, const Vec2<P>& a,
+                          const Vec2<P>& b, const PinholeCamera& camera, float max_error_sq) {
+  using F = typename P::F32;
+  const Vec3<P> ray = T_b_world.R * (transpose(T_a_world.R) * Vec3<P>{a.x, a.y, 1.0f});
+  return ray.z > F(0.0f) && error_sq_in_view<P>(ray, b, camera) < F(max_error_sq);
+}
+
 template Triangulated<work::Native> triangulate(const Pose<work::Native>&,
                                                 const Pose<work::Native>&,
                                                 const Vec2<work::Native>&,
@@ -82,6 +90,9 @@ template work::Native::F32 reprojection_error_sq(const Pose<work::Native>&,
                                                  const Vec2<work::Native>&, const PinholeCamera&);
 template bool agrees_with_view(const Pose<work::Native>&, const Vec3<work::Native>&,
                                const Vec2<work::Native>&, const PinholeCamera&, float);
+template bool agrees_with_infinity(const Pose<work::Native>&, const Pose<work::Native>&,
+                                   const Vec2<work::Native>&, const Vec2<work::Native>&,
+                                   const PinholeCamera&, float);
 
 template Triangulated<work::Counting> triangulate(const Pose<work::Counting>&,
                                                   const Pose<work::Counting>&,
@@ -94,5 +105,8 @@ template work::Counting::F32 reprojection_error_sq(const Pose<work::Counting>&,
                                                    const PinholeCamera&);
 template bool agrees_with_view(const Pose<work::Counting>&, const Vec3<work::Counting>&,
                                const Vec2<work::Counting>&, const PinholeCamera&, float);
+template bool agrees_with_infinity(const Pose<work::Counting>&, const Pose<work::Counting>&,
+                                   const Vec2<work::Counting>&, const Vec2<work::Counting>&,
+                                   const PinholeCamera&, float);
 
 }  // namespace leviosim::vio

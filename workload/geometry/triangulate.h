@@ -47,4 +47,11 @@ template <class P>
 bool agrees_with_view(const Pose<P>& T_camera_world, const Vec3<P>& point, const Vec2<P>& seen,
                       const PinholeCamera& camera, float max_error_sq = kLandmarkErrorSq);
 
+/// Whether a point infinitely far away would be seen at `a` and `b` as well, with a squared error
+/// below `max_error_sq` px²: then the two views say nothing about its depth.
+template <class P>
+bool agrees_with_infinity(const Pose<P>& T_a_world, const Pose<P>& T_b_world, const Vec2<P>& a,
+                          const Vec2<P>& b, const PinholeCamera& camera,
+                          float max_error_sq = kLandmarkErrorSq);
+
 }  // namespace leviosim::vio

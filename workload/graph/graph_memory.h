@@ -56,7 +56,7 @@ inline constexpr std::array kGraphBlocks = {
     GraphBlock{"keyframe velocities", 3, &GraphCapacity::keyframes},
     GraphBlock{"IMU intervals", Preintegration<work::Native>::kFloats, &GraphCapacity::keyframes},
     GraphBlock{"keyframe numbers", 1, &GraphCapacity::keyframes},
-    GraphBlock{"biases and gravity", 9, nullptr},
+    GraphBlock{"biases and gravity", 17, nullptr},
     GraphBlock{"graph header", kGraphHeaderWords, nullptr},
     GraphBlock{"observed landmarks", 1, &GraphCapacity::observations},
     GraphBlock{"observed u", 1, &GraphCapacity::observations},
@@ -111,7 +111,7 @@ struct GraphMemory {
   Span<F> keyframe_velocities;             ///< world frame, m/s
   Span<F> keyframe_intervals;              ///< motion since the keyframe before
   Span<I32> keyframe_ids;                  ///< serial number; -1 for an empty slot
-  Span<F> environment;                     ///< gyro bias, accelerometer bias, gravity
+  Span<F> environment;                     ///< biases, gravity, prior of the biases
   Span<I32> header;                        ///< counters, see PoseGraph
   Span<U16> observation_landmarks;         ///< slot
   Span<U16> observation_u, observation_v;  ///< pixel, in the unit of the camera's intrinsics

@@ -102,6 +102,13 @@ AnchorResidual<P> anchor_residual(const Window<P>& window, const WindowState<P>&
 }
 
 template <class P>
+float velocity_information(const Window<P>& window, const AnchorOptions& options) {
+  using I32 = typename P::I32;
+  const bool first_of_all = bool(I32(window.keyframe_ids[0]) == I32(0));
+  return information(first_of_all ? options.initial_velocity : options.velocity);
+}
+
+template <class P>
 void add_held(const ReducedSystem<P>& system, int at, const Vec3<P>& residual, float weight) {
   using F = typename P::F32;
   const F w = weight;
@@ -115,12 +122,11 @@ void add_held(const ReducedSystem<P>& system, int at, const Vec3<P>& residual, f
 
 template <class P>
 typename P::F32 held_cost(const AnchorResidual<P>& r, const AnchorOptions& options,
-                          bool with_velocity) {
+                          float of_velocity) {
   using F = typename P::F32;
   F cost = F(dot(r.rotation, r.rotation)) * F(0.5f * information(options.rotation));
   cost += F(dot(r.position, r.position)) * F(0.5f * information(options.position));
-  if (with_velocity)
-    cost += F(dot(r.velocity, r.velocity)) * F(0.5f * information(options.velocity));
+  if (of_velocity > 0) cost += F(dot(r.velocity, r.velocity)) * F(0.5f * of_velocity);
   return cost;
 }
 
@@ -175,16 +181,17 @@ typename P::F32 add_anchor(const Window<P>& window, const AnchorOptions& options
   const AnchorResidual<P> r = anchor_residual<P>(window, window.state);
   add_held<P>(system, kRotation, r.rotation, information(options.rotation));
   add_held<P>(system, kPositionColumn, r.position, information(options.position));
-  if (with_velocity)
-    add_held<P>(system, kVelocityColumn, r.velocity, information(options.velocity));
-  return held_cost<P>(r, options, with_velocity);
+  const float of_velocity = with_velocity ? velocity_information<P>(window, options) : 0.0f;
+  if (with_velocity) add_held<P>(system, kVelocityColumn, r.velocity, of_velocity);
+  return held_cost<P>(r, options, of_velocity);
 }
 
 template <class P>
 typename P::F32 anchor_cost(const Window<P>& window, const WindowState<P>& state,
                             const AnchorOptions& options, bool with_velocity) {
   const typename P::Function function("anchor_cost");
-  return held_cost<P>(anchor_residual<P>(window, state), options, with_velocity);
+  return held_cost<P>(anchor_residual<P>(window, state), options,
+                      with_velocity ? velocity_information<P>(window, options) : 0.0f);
 }
 
 template work::Native::F32 add_inertial_terms(const Window<work::Native>&,

@@ -8,7 +8,9 @@
 //
 // The anchor holds the oldest keyframe to where it was when the snapshot was taken: position and
 // heading, which neither sensor observes, and, weakly tied, what the window has forgotten. Its
-// derivative by the rotation is taken as the identity, which its small residual allows.
+// derivative by the rotation is taken as the identity, which its small residual allows. The
+// velocity of the very first keyframe has not been estimated by any window before; it is tied more
+// weakly.
 #pragma once
 
 #include "workload/graph/reduced_system.h"
@@ -18,9 +20,10 @@ namespace leviosim::vio {
 
 /// Standard deviations of the oldest keyframe around the anchor; 0 leaves a part free.
 struct AnchorOptions {
-  float rotation = 1e-3f;  ///< rad
-  float position = 1e-3f;  ///< m
-  float velocity = 0.0f;   ///< m/s; only with IMU
+  float rotation = 1e-3f;         ///< rad
+  float position = 1e-3f;         ///< m
+  float velocity = 0.0f;          ///< m/s; only with IMU
+  float initial_velocity = 0.0f;  ///< instead, while the oldest keyframe is the first of all
 };
 
 /// Scratch for one interval: 9 rows; derivatives by both keyframes (18), then the residual.

@@ -67,10 +67,11 @@ typename P::F32 build(const Window<P>& window, const OptimiserOptions& options,
   return cost;
 }
 
+/// Cost of the trial state, whose points are settled first.
 template <class P>
-typename P::F32 cost_at(const Window<P>& window, const WindowState<P>& state,
-                        const OptimiserOptions& options, const WorkMemory<P>& memory) {
-  typename P::F32 cost = visual_cost<P>(window, state, PixelModel<P>(options.visual));
+typename P::F32 cost_of_trial(const Window<P>& window, const WindowState<P>& state,
+                              const OptimiserOptions& options, const WorkMemory<P>& memory) {
+  typename P::F32 cost = settle_points<P>(window, state, PixelModel<P>(options.visual));
   if (options.use_imu) cost += inertial_cost<P>(window, state, memory.interval);
   cost += anchor_cost<P>(window, state, options.anchor, options.use_imu);
   return cost;
@@ -105,7 +106,7 @@ IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& 
   if (report.positive_definite) {
     step_keyframes<P>(window, memory.system, memory.trial);
     step_points<P>(window, memory.records, memory.system, memory.trial.points);
-    trial_cost = cost_at<P>(window, memory.trial, options, memory);
+    trial_cost = cost_of_trial<P>(window, memory.trial, options, memory);
   }
   // Not true either if a cost is not a number.
   if (trial_cost < cost) {

@@ -14,11 +14,13 @@
 // new landmark would cost more than its triangulation, so one cursor per keyframe sweeps the slots,
 // once for each age from the oldest down.
 //
-// Left out: removal of single landmarks. One that is not seen again ages until its slot is reused.
+// A landmark leaves in two ways: one that is not seen again ages until its slot is reused, and one
+// that the optimiser has lost retires: it is the oldest from then on, and its observations are
+// void.
 #pragma once
 
 #include "workload/graph/graph_memory.h"
-#include "workload/inertial/residual.h"
+#include "workload/inertial/bias_estimation.h"
 
 namespace leviosim::vio {
 
@@ -39,7 +41,7 @@ class PoseGraph : public GraphMemory<P, Where> {
   PoseGraph(work::Arena& arena, const GraphCapacity& size) : Memory(arena, size) {}
   explicit PoseGraph(const Memory& memory) : Memory(memory) {}
 
-  /// Empties the graph.
+  /// Empties the graph; the prior of the biases is left as it is.
   void clear(const ImuBias<P>& bias, const Vec3<P>& gravity) const;
 
   /// Adds a keyframe; if all slots are taken the oldest leaves, with its observations.
@@ -59,6 +61,12 @@ class PoseGraph : public GraphMemory<P, Where> {
   /// @return its slot, or -1 if every landmark was seen by the current keyframe
   template <class Words>
   I32 add_landmark(const Vec3<P>& point, const Words& descriptor) const;
+
+  /// Gives a landmark up: it counts as the oldest, and its observations no longer mean it.
+  void retire_landmark(I32 landmark) const {
+    this->ages[landmark] = work::narrow<Byte>(I32(kOldestAge));
+    this->generations[landmark] = work::narrow<Byte>(I32(this->generations[landmark]) + I32(1));
+  }
 
   /// Replaces a landmark's descriptor by a newer one (8 words).
   template <class Words>
@@ -106,6 +114,16 @@ class PoseGraph : public GraphMemory<P, Where> {
   /// In the world frame, pointing down, m/s².
   Vec3<P> gravity() const { return load_vec3<P>(this->environment, 6); }
   void set_gravity(const Vec3<P>& gravity) const { store_vec3<P>(this->environment, 6, gravity); }
+  BiasPrior<P> bias_prior() const {
+    const auto& e = this->environment;
+    return {{load_vec3<P>(e, 9), load_vec3<P>(e, 12)}, F(e[15]), F(e[16])};
+  }
+  void set_bias_prior(const BiasPrior<P>& prior) const {
+    store_vec3<P>(this->environment, 9, prior.mean.gyro);
+    store_vec3<P>(this->environment, 12, prior.mean.accel);
+    this->environment[15] = prior.gyro_information;
+    this->environment[16] = prior.accel_information;
+  }
 
  private:
   enum Header : int {

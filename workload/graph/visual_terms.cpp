@@ -223,6 +223,35 @@ Vec3<P> landmark_step(const Window<P>& window, const Records<P>& records, int i,
   return records.inverse(i) * b;
 }
 
+template <class P>
+struct LandmarkCost {
+  typename P::F32 cost;
+  bool lost;  ///< an observation is
+};
+
+/// Cost of landmark i at `point`, seen from the keyframes of `state`.
+template <class P>
+LandmarkCost<P> landmark_cost(const Window<P>& window, const WindowState<P>& state, int i,
+                              const Vec3<P>& point, const PixelModel<P>& model) {
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  const int first = work::value(I32(window.first_observations[i]));
+  const int number = work::value(I32(window.observation_numbers[i]));
+  LandmarkCost<P> sum{0.0f, false};
+  for (int j : P::range(0, number)) {
+    const Pose<P> T = pose_of<P>(state, window.observation_keyframes[first + j]);
+    const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
+    Projection<P> at;
+    if (project<P>(model, in_camera, observed_pixel<P>(window, first + j), at)) {
+      sum.cost += huber_cost<P>(model, at.error_sq);
+    } else {
+      sum.cost += F(model.lost_cost);
+      sum.lost = true;
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 template <class P>
@@ -236,7 +265,9 @@ VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
   for (int i : P::range(0, window.landmarks)) {
     const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
     const int number = work::value(I32(window.observation_numbers[i]));
-    if (valid < I32(2) || !invert_landmark<P>(records, i, number, lambda)) {
+    const bool usable = valid >= I32(2) && invert_landmark<P>(records, i, number, lambda);
+    window.lost[i] = work::narrow<typename P::Byte>(I32(usable ? 0 : 1));
+    if (!usable) {
       freeze_landmark<P>(records, i);
       continue;
     }
@@ -258,25 +289,23 @@ void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
 }
 
 template <class P>
-typename P::F32 visual_cost(const Window<P>& window, const WindowState<P>& state,
-                            const PixelModel<P>& model) {
+typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& trial,
+                              const PixelModel<P>& model) {
   using F = typename P::F32;
-  using I32 = typename P::I32;
-  const typename P::Function function("visual_cost");
+  const typename P::Function function("settle_points");
   F cost = 0.0f;
   for (int i : P::range(0, window.landmarks)) {
-    const int first = work::value(I32(window.first_observations[i]));
-    const int number = work::value(I32(window.observation_numbers[i]));
-    const Vec3<P> point = load_vec3<P>(state.points, 3 * i);
-    for (int j : P::range(0, number)) {
-      const Pose<P> T = pose_of<P>(state, window.observation_keyframes[first + j]);
-      const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
-      Projection<P> at;
-      if (project<P>(model, in_camera, observed_pixel<P>(window, first + j), at))
-        cost += huber_cost<P>(model, at.error_sq);
-      else
-        cost += model.lost_cost;
+    LandmarkCost<P> at =
+        landmark_cost<P>(window, trial, i, load_vec3<P>(trial.points, 3 * i), model);
+    if (at.lost) {
+      const Vec3<P> before = load_vec3<P>(window.state.points, 3 * i);
+      const LandmarkCost<P> unmoved = landmark_cost<P>(window, trial, i, before, model);
+      if (unmoved.cost < at.cost) {
+        store_vec3<P>(trial.points, 3 * i, before);
+        at = unmoved;
+      }
     }
+    cost += at.cost;
   }
   return cost;
 }
@@ -296,11 +325,11 @@ template void step_points(const Window<work::Native>&, const LandmarkRecords<wor
 template void step_points(const Window<work::Counting>&, const LandmarkRecords<work::Counting>&,
                           const ReducedSystem<work::Counting>&,
                           work::Counting::Span<work::Counting::F32>);
-template work::Native::F32 visual_cost(const Window<work::Native>&,
-                                       const WindowState<work::Native>&,
-                                       const PixelModel<work::Native>&);
-template work::Counting::F32 visual_cost(const Window<work::Counting>&,
-                                         const WindowState<work::Counting>&,
-                                         const PixelModel<work::Counting>&);
+template work::Native::F32 settle_points(const Window<work::Native>&,
+                                         const WindowState<work::Native>&,
+                                         const PixelModel<work::Native>&);
+template work::Counting::F32 settle_points(const Window<work::Counting>&,
+                                           const WindowState<work::Counting>&,
+                                           const PixelModel<work::Counting>&);
 
 }  // namespace leviosim::vio

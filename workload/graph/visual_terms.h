@@ -8,7 +8,8 @@
 // grows by the factor 1 + λ) before it is inverted.
 //
 // A landmark whose damped block is not positive definite, or with fewer than two observations that
-// are not lost (reprojection.h), is left out of the iteration and stays where it is.
+// are not lost (reprojection.h), is left out of the iteration, stays where it is, and is marked as
+// lost in the window.
 #pragma once
 
 #include "workload/graph/landmark_records.h"
@@ -50,9 +51,12 @@ template <class P>
 void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
                  const ReducedSystem<P>& solved, typename P::template Span<typename P::F32> to);
 
-/// Cost of all observations at `state`, a state of `window`.
+/// Puts back the points of `trial` that their step led out of sight, where they are better off
+/// unmoved: the depth of a landmark with little parallax is hardly determined, and its step may
+/// lead anywhere. Without this a single such landmark has the steps of all others rejected.
+/// @return the cost of all observations at `trial` then
 template <class P>
-typename P::F32 visual_cost(const Window<P>& window, const WindowState<P>& state,
-                            const PixelModel<P>& model);
+typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& trial,
+                              const PixelModel<P>& model);
 
 }  // namespace leviosim::vio

@@ -98,6 +98,7 @@ void copy_landmarks(const PoseGraph<P>& graph, const SnapshotTables<P>& tables, 
     window.landmark_generations[landmarks] = work::narrow<Byte>(I32(graph.generations[slot]));
     window.first_observations[landmarks] = work::narrow<U16>(observations);
     window.observation_numbers[landmarks] = work::narrow<Byte>(I32(0));
+    window.lost[landmarks] = work::narrow<Byte>(I32(0));
     const auto point = window.state.points.subspan(work::value(I32(landmarks * I32(3))), 3);
     for (int c = 0; c < 3; ++c) point[c] = F(graph.points[3 * slot + c]);
     observations += seen;
@@ -155,6 +156,23 @@ Window<P>::Window(work::Arena& arena, const GraphCapacity& size) : capacity(size
   allocate(observation_keyframes, "window observing keyframes", size.observations);
   allocate(observation_numbers, "window observation numbers", size.landmarks);
   allocate(landmark_generations, "window landmark generations", size.landmarks);
+  allocate(lost, "window lost landmarks", size.landmarks);
+}
+
+template <class P>
+void absorb_departed_intervals(const Window<P>& window, const PoseGraph<P>& graph,
+                               const ImuNoise& noise, const BiasOptions& options) {
+  using I32 = typename P::I32;
+  const typename P::Function function("absorb_departed_intervals");
+  const I32 oldest = graph.keyframe_ids[graph.keyframe_slot(0)];
+  BiasEstimator<P> estimator(window.bias, window.gravity, noise);
+  int departed = 0;
+  for (int k : P::range(1, window.keyframes)) {
+    if (I32(window.keyframe_ids[k]) > oldest) break;
+    estimator.add(window.interval(k), window.state.keyframe(k - 1), window.state.keyframe(k));
+    ++departed;
+  }
+  if (departed > 0) graph.set_bias_prior(estimator.absorb(options, graph.bias_prior(), noise));
 }
 
 template <class P>
@@ -164,6 +182,7 @@ void take_snapshot(const PoseGraph<P>& graph, const ImuNoise& noise, work::Arena
   const work::Arena::Frame frame(arena);
   const SnapshotTables<P> tables(arena, graph.capacity.landmarks);
   window.bias = graph.bias();
+  window.bias_prior = graph.bias_prior();
   window.bias_is_new = false;
   window.gravity = graph.gravity();
   copy_keyframes<P>(graph, noise, window);
@@ -184,6 +203,10 @@ void publish(const Window<P>& window, const PoseGraph<P>& graph) {
   for (int i : P::range(0, window.landmarks)) {
     const I32 slot = window.landmark_slots[i];
     if (I32(graph.generations[slot]) != I32(window.landmark_generations[i])) continue;
+    if (I32(window.lost[i]) != I32(0)) {
+      graph.retire_landmark(slot);
+      continue;
+    }
     graph.set_point(slot, load_vec3<P>(window.state.points, 3 * i));
   }
   if (window.bias_is_new) graph.set_bias(window.bias);
@@ -195,12 +218,17 @@ void estimate_biases(Window<P>& window, const ImuNoise& noise, const BiasOptions
   BiasEstimator<P> estimator(window.bias, window.gravity, noise);
   for (int k : P::range(1, window.keyframes))
     estimator.add(window.interval(k), window.state.keyframe(k - 1), window.state.keyframe(k));
-  window.bias = estimator.solve(options);
+  window.bias = estimator.solve(options, window.bias_prior);
   window.bias_is_new = true;
 }
 
 template struct Window<work::Native>;
 template struct Window<work::Counting>;
+template void absorb_departed_intervals(const Window<work::Native>&, const PoseGraph<work::Native>&,
+                                        const ImuNoise&, const BiasOptions&);
+template void absorb_departed_intervals(const Window<work::Counting>&,
+                                        const PoseGraph<work::Counting>&, const ImuNoise&,
+                                        const BiasOptions&);
 template void take_snapshot(const PoseGraph<work::Native>&, const ImuNoise&, work::Arena&,
                             Window<work::Native>&);
 template void take_snapshot(const PoseGraph<work::Counting>&, const ImuNoise&, work::Arena&,

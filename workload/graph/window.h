@@ -15,7 +15,6 @@
 #pragma once
 
 #include "workload/graph/pose_graph.h"
-#include "workload/inertial/bias_estimation.h"
 
 namespace leviosim::vio {
 
@@ -62,6 +61,7 @@ struct Window {
   WindowState<P> state;
   KeyframeState<P> anchor;  ///< what the oldest keyframe is held to
   ImuBias<P> bias;
+  BiasPrior<P> bias_prior;
   bool bias_is_new = false;  ///< estimated since the snapshot, to be published
   Vec3<P> gravity;           ///< world frame, m/s²
 
@@ -69,6 +69,7 @@ struct Window {
   Span<typename P::I32> keyframe_slots, keyframe_ids;  ///< in the graph
   Span<typename P::U16> landmark_slots;                ///< in the graph
   Span<typename P::Byte> landmark_generations;         ///< at the time of the snapshot
+  Span<typename P::Byte> lost;  ///< 1 if the last linearisation could not use the landmark
   /// Observations of landmark i: first_observations[i] and as many as observation_numbers[i] says,
   /// in ascending order of keyframes.
   Span<typename P::U16> first_observations;
@@ -77,6 +78,12 @@ struct Window {
   Span<typename P::U16> observation_u, observation_v;
 };
 
+/// Adds to the prior of the biases what the intervals say that have left the graph since the last
+/// snapshot. Call it before the next one.
+template <class P>
+void absorb_departed_intervals(const Window<P>& window, const PoseGraph<P>& graph,
+                               const ImuNoise& noise, const BiasOptions& options);
+
 /// Fills `window` from the graph, whose capacity it has.
 /// @param arena  for some kB of scratch, freed on return
 template <class P>
@@ -84,7 +91,8 @@ void take_snapshot(const PoseGraph<P>& graph, const ImuNoise& noise, work::Arena
                    Window<P>& window);
 
 /// Writes keyframes and landmarks back to the graph, except where a slot has been reused, and the
-/// biases if they have been estimated.
+/// biases if they have been estimated. Landmarks that are lost retire: the optimiser cannot move
+/// them any more, and a map of them would contradict the window for as long as it is recognised.
 template <class P>
 void publish(const Window<P>& window, const PoseGraph<P>& graph);
 

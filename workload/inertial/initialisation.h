@@ -63,6 +63,9 @@ class StillnessDetector {
     for (int i : P::range(0, floats(options_))) memory_[i] = 0.0f;
   }
 
+  /// The sums lie here from now on, copied by the caller (between L2 and a core's own memory).
+  void move_to(Span memory) { memory_ = memory; }
+
   /// Adds one sample to the batch of the current frame.
   void add(const ImuSample<P>& sample) {
     const Span batch = memory_.subspan(current_ * kBatchFloats, kBatchFloats);

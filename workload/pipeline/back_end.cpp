@@ -16,6 +16,8 @@ template <class P>
 bool BackEnd<P>::begin() {
   if (work::value(graph_.keyframe_count()) < 2) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
+  if (profile_.use_imu)
+    absorb_departed_intervals<P>(window_, graph_, profile_.imu_noise, profile_.biases);
   take_snapshot<P>(graph_, profile_.imu_noise, machine_.local(), window_);
   damping_ = LmState<P>(profile_.optimiser);
   return true;

@@ -3,8 +3,6 @@
 #include <cstring>
 
 #include "workload/geometry/recover_pose.h"
-#include "workload/geometry/triangulate.h"
-#include "workload/inertial/initialisation.h"
 #include "workload/pipeline/stages.h"
 
 namespace leviosim::vio {
@@ -38,7 +36,8 @@ FrontEnd<P>::FrontEnd(const Profile& profile, const Rig& rig, work::Machine& clu
       keyframe_(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
                 rig.height),
       graph_(graph),
-      graph_in_l2_(seen_from_cluster<P>(graph)) {}
+      graph_in_l2_(seen_from_cluster<P>(graph)),
+      stillness_(StillnessOptions{}, keyframe_.stillness) {}
 
 template <class P>
 FrameReport FrontEnd<P>::process(const FrameInput& input) {
@@ -69,41 +68,6 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
   return report;
 }
 
-/// Adds the samples since the last frame to the motion since the last keyframe.
-template <class P>
-void FrontEnd<P>::integrate_imu(const FrameInput& input) {
-  work::Arena& local = machine_.local();
-  const work::Arena::Frame memory(local);
-  const auto record = local.alloc<Span<F>>("IMU interval", Preintegration<P>::kFloats);
-  const auto samples = local.alloc<Span<F>>("IMU samples", kImuSampleFloats * 2);
-  for (const ImuInput& in : input.imu) {
-    const auto stage = machine_.stage(stages::kImu);
-    if (&in == input.imu.data()) {
-      machine_.copy_in(record, keyframe_.interval);
-      machine_.copy_in(samples, keyframe_.last_sample);
-    }
-    const ImuSample<P> before = load_imu_sample<P>(samples, 0);
-    const ImuSample<P> sample{in.dt, R_camera_body_ * Vec3<P>{in.gyro[0], in.gyro[1], in.gyro[2]},
-                              R_camera_body_ * Vec3<P>{in.accel[0], in.accel[1], in.accel[2]}};
-    if (started_) {
-      Preintegration<P>(record).integrate(before, sample, profile_.imu_noise);
-      samples[0] = sample.dt;
-      store_vec3<P>(samples, 1, sample.gyro);
-      store_vec3<P>(samples, 4, sample.accel);
-    } else {
-      // Until the first frame there is no motion to measure; the forces are averaged for gravity.
-      const bool first = &in == input.imu.data();
-      const Vec3<P> sum = first ? Vec3<P>{0.0f, 0.0f, 0.0f} : before.accel;
-      store_vec3<P>(samples, 4, sum + sample.accel);
-      store_vec3<P>(samples, 1, sample.gyro);
-    }
-    if (&in == &input.imu.back()) {
-      machine_.copy_out(keyframe_.interval, record);
-      machine_.copy_out(keyframe_.last_sample, samples);
-    }
-  }
-}
-
 template <class P>
 void FrontEnd<P>::extract(Frame& frame) {
   const auto stage = machine_.stage(stages::kExtraction);
@@ -112,25 +76,6 @@ void FrontEnd<P>::extract(Frame& frame) {
   extract_features<P>(machine_, keyframe_.image, profile_.extractor, frame.features.list);
   for (int i : P::range(0, frame.features.list.count))
     frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
-}
-
-/// The first frame is the first keyframe; its camera frame is the world.
-template <class P>
-void FrontEnd<P>::start(Frame& frame) {
-  work::Arena& local = machine_.local();
-  const work::Arena::Frame memory(local);
-  const auto stage = machine_.stage(stages::kTriangulation);
-  const auto sample = local.alloc<Span<F>>("last IMU sample", kImuSampleFloats);
-  const auto interval = local.alloc<Span<F>>("IMU interval", Preintegration<P>::kFloats);
-  machine_.copy_in(sample, keyframe_.last_sample);
-  frame.T_world_camera = Pose<P>::identity();
-  const Vec3<P> force = load_vec3<P>(sample, 4);
-  graph_in_l2_.clear(ImuBias<P>::zero(), gravity_from_force<P>(force, frame.T_world_camera.R));
-  Preintegration<P>(interval).reset(ImuBias<P>::zero());
-  graph_in_l2_.add_keyframe({frame.T_world_camera, {0.0f, 0.0f, 0.0f}}, interval);
-  machine_.copy_out(keyframe_.interval, interval);
-  store_keyframe(frame);
-  started_ = true;
 }
 
 template <class P>
@@ -184,10 +129,10 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_landmarks(Frame& frame, FrameRepor
   options.seed += frame_number_;
   const PnpResult<P> result = estimate_pose_epnp<P>(
       machine_, {matched_points, pixels, matches.count, rig_.camera}, options);
-  if (!result.ok || result.inliers < profile_.min_epnp_inliers) return std::nullopt;
-  report.source = PoseSource::Epnp;
   report.inliers = result.inliers;
-  return inverse(result.T_camera_world);
+  const bool supported = result.ok && result.inliers >= profile_.min_epnp_inliers;
+  report.source = supported ? PoseSource::Epnp : PoseSource::Predicted;
+  return supported ? inverse(result.T_camera_world) : predicted_pose();
 }
 
 template <class P>
@@ -261,16 +206,23 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
 }
 
 /// A keyframe has moved far enough, or can hardly be matched with the last one any more. Parallax
-/// is what remains of the motion of the matches when the rotation between the two frames is undone.
+/// is what remains of the motion of the matches when the rotation since the keyframe is undone: the
+/// rotation that the gyro measured, for a wrong pose would look like parallax, and every frame
+/// after it would become a keyframe. Only without an IMU it is that of the poses.
 template <class P>
 bool FrontEnd<P>::is_keyframe(const Frame& frame) {
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
   const auto stage = machine_.stage(stages::kKeyframeSelection);
   const MatchList<P>& matches = frame.keyframe_matches;
   if (matches.count < profile_.min_frame_matches) return true;
-  const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
-  const Mat3<P> R_camera_keyframe = profile_.parallax_without_rotation
-                                        ? transpose(frame.T_world_camera.R) * last.T_world_camera.R
-                                        : Mat3<P>::identity();
+  Mat3<P> R_camera_keyframe = Mat3<P>::identity();
+  if (profile_.parallax_without_rotation && profile_.use_imu) {
+    R_camera_keyframe = transpose(motion_since_keyframe().R);
+  } else if (profile_.parallax_without_rotation) {
+    const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
+    R_camera_keyframe = transpose(frame.T_world_camera.R) * last.T_world_camera.R;
+  }
   F sum = 0.0f;
   const int old_v = keyframe_.features.list.capacity;
   for (int i : P::range(0, matches.count)) {

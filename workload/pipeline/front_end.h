@@ -41,6 +41,9 @@ class FrontEnd {
   };
 
   void integrate_imu(const FrameInput& input);
+  void detect_stillness(const Preintegration<P>& interval, float seconds);
+  ImuDelta<P> motion_since_keyframe();
+  Pose<P> predicted_pose();
   void extract(Frame& frame);
   void start(Frame& frame);
   std::optional<Pose<P>> pose_from_landmarks(Frame& frame, FrameReport& report);
@@ -50,6 +53,7 @@ class FrontEnd {
   bool is_keyframe(const Frame& frame);
   void insert_keyframe(Frame& frame);
   void register_observations(const Frame& frame, const PoseGraph<P>& graph, I32 slot);
+  bool is_in_use(const PoseGraph<P>& graph, I32 landmark) const;
   void triangulate_landmarks(const Frame& frame, const PoseGraph<P>& graph, I32 previous_slot,
                              I32 slot);
   void store_keyframe(const Frame& frame);
@@ -66,6 +70,7 @@ class FrontEnd {
   KeyframeRecord<P> keyframe_;
   PoseGraph<P> graph_;                       ///< in L2, as the source and target of transfers
   PoseGraph<P, L2FromCluster> graph_in_l2_;  ///< the same, as a cluster core reaches it
+  StillnessDetector<P> stillness_;
   bool started_ = false;
   std::uint32_t frame_number_ = 0;
   float time_since_keyframe_ = 0;

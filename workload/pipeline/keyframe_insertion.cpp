@@ -44,6 +44,12 @@ Vec3<P> FrontEnd<P>::velocity_at(const Pose<P>& T_world_camera, const PoseGraph<
   return last.velocity + graph.gravity() * delta.dt + last.T_world_camera.R * delta.v;
 }
 
+/// Not so old that it is skipped, as those are that have retired.
+template <class P>
+bool FrontEnd<P>::is_in_use(const PoseGraph<P>& graph, I32 landmark) const {
+  return bool(I32(graph.ages[landmark]) <= I32(profile_.max_landmark_age));
+}
+
 /// Landmarks that were recognised, directly or through the features of the last keyframe.
 template <class P>
 void FrontEnd<P>::register_observations(const Frame& frame, const PoseGraph<P>& graph, I32 slot) {
@@ -54,7 +60,9 @@ void FrontEnd<P>::register_observations(const Frame& frame, const PoseGraph<P>& 
     const I32 known = frame.features.landmarks[feature];
     if (known != I32(kNoLandmark)) continue;
     const I32 old = frame.keyframe_matches.reference[i];
-    frame.features.landmarks[feature] = work::narrow<U16>(I32(frame.keyframe_landmarks[old]));
+    const I32 landmark = frame.keyframe_landmarks[old];
+    if (landmark == I32(kNoLandmark) || !is_in_use(graph, landmark)) continue;
+    frame.features.landmarks[feature] = work::narrow<U16>(landmark);
   }
   const Pose<P> T_camera_world = inverse(frame.T_world_camera);
   for (int i : P::range(0, features.count)) {
@@ -76,7 +84,7 @@ void FrontEnd<P>::register_observations(const Frame& frame, const PoseGraph<P>& 
   }
 }
 
-/// Matches that show no landmark yet become one, if both views agree on it.
+/// Matches that show no landmark yet become one, if both views agree on it and tell how far it is.
 template <class P>
 void FrontEnd<P>::triangulate_landmarks(const Frame& frame, const PoseGraph<P>& graph,
                                         I32 previous_slot, I32 slot) {
@@ -88,13 +96,15 @@ void FrontEnd<P>::triangulate_landmarks(const Frame& frame, const PoseGraph<P>& 
     const I32 feature = frame.keyframe_matches.query[i];
     const I32 old = frame.keyframe_matches.reference[i];
     if (I32(frame.features.landmarks[feature]) != I32(kNoLandmark)) continue;
-    if (I32(frame.keyframe_landmarks[old]) != I32(kNoLandmark)) continue;
+    const I32 known = frame.keyframe_landmarks[old];
+    if (known != I32(kNoLandmark) && is_in_use(graph, known)) continue;
     const I32 u = frame.features.list.x[feature], v = frame.features.list.y[feature];
     const I32 old_u = frame.keyframe_pixels[old];
     const I32 old_w = frame.keyframe_pixels[I32(old + I32(old_v))];
     const Vec2<P> now = normalised(u, v), before = normalised(old_u, old_w);
-    const Triangulated<P> point = triangulate<P>(T_old, T_now, before, now, machine_.local());
     const float limit = profile_.max_landmark_error_sq;
+    if (agrees_with_infinity<P>(T_old, T_now, before, now, rig_.camera, limit)) continue;
+    const Triangulated<P> point = triangulate<P>(T_old, T_now, before, now, machine_.local());
     if (!point.valid || !agrees_with_view<P>(T_old, point.point, before, rig_.camera, limit) ||
         !agrees_with_view<P>(T_now, point.point, now, rig_.camera, limit))
       continue;

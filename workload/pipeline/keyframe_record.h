@@ -3,6 +3,7 @@
 // the camera writes the next image to.
 #pragma once
 
+#include "workload/inertial/initialisation.h"
 #include "workload/inertial/preintegration.h"
 #include "workload/vision/features.h"
 
@@ -36,6 +37,8 @@ struct KeyframeRecord {
         interval(
             arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
         last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample", kImuSampleFloats)),
+        stillness(arena.alloc<typename P::template Span<F>>(
+            "IMU sums of the last second", StillnessDetector<P>::floats(StillnessOptions{}))),
         image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
                                                                        width * height),
               width, height} {}
@@ -43,6 +46,7 @@ struct KeyframeRecord {
   ObservedFeatures<P> features;
   typename P::template Span<F> interval;     ///< pre-integrated motion since the keyframe
   typename P::template Span<F> last_sample;  ///< where the next step of it begins
+  typename P::template Span<F> stillness;    ///< of the StillnessDetector
   ImageView<P> image;
 };
 

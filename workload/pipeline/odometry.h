@@ -47,7 +47,8 @@ enum class PoseSource : std::uint8_t {
   First,       ///< the first frame defines the world
   Epnp,        ///< from matches with landmarks
   EightPoint,  ///< from matches with the previous keyframe
-  Kept         ///< too few matches: the last keyframe's pose
+  Kept,        ///< too few matches: the last keyframe's pose
+  Predicted    ///< EPnP found too few inliers: the last keyframe's pose, moved on
 };
 
 struct FrameReport {

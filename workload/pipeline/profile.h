@@ -26,15 +26,15 @@ struct Profile {
   // Pose of a frame (paper III.B.3–4).
   PnpOptions pnp;
   EssentialOptions essential;
-  int min_world_matches = 25;     ///< for EPnP, before and after the age filter
-  int min_epnp_inliers = 25;      ///< for its pose to be used; else the 8-point algorithm runs too
-  int min_frame_matches = 10;     ///< for the 8-point algorithm
-  float min_translation = 0.01f;  ///< per keyframe interval, of the 8-point pose [m]
+  int min_world_matches = 25;         ///< for EPnP, before and after the age filter
+  int min_frame_matches = 10;         ///< for the 8-point algorithm
+  int min_epnp_inliers = 10;          ///< as many; with fewer the pose is predicted instead
+  float min_translation = 0.01f;      ///< per keyframe interval, of the 8-point pose [m]
   float max_translation_time = 1.0f;  ///< that the last velocity is trusted for [s]
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates
-  bool parallax_without_rotation = true;  ///< undo the rotation between the frames first
+  bool parallax_without_rotation = true;  ///< undo the rotation since the keyframe first
   int max_landmarks = 1000;
   int max_landmark_age = 15;               ///< keyframes without being seen
   float max_landmark_error_sq = 2.0f;      ///< squared reprojection error of a new landmark [px²]

@@ -1,0 +1,102 @@
+// The tables that tools/rv32/measure.sh leaves in the repository fit the sources they were made
+// from. Nothing is compiled or traced here.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sim/work/op.h"
+#include "traces/csv.h"
+
+namespace leviosim::tools {
+namespace {
+
+const std::filesystem::path kSource = LEVIOSIM_SOURCE_DIR;
+
+/// The names in `typename P::Function function("name")` of the workload.
+std::set<std::string> named_functions() {
+  static const std::regex scope("P::Function\\s+\\w+\\(\"([^\"]+)\"\\)");
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSource / "workload")) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string text = traces::read_text_file(entry.path());
+    for (std::sregex_iterator it(text.begin(), text.end(), scope), end; it != end; ++it)
+      names.insert((*it)[1]);
+  }
+  return names;
+}
+
+struct Piece {
+  std::string function, after;
+  double lines, visits, refetches;
+};
+
+std::vector<Piece> pieces() {
+  traces::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", traces::Separator::comma,
+                        {"function", "after", "lines", "visits", "refetches"});
+  const traces::CsvRow* row = csv.next();
+  EXPECT_EQ(row->text(0), "function");
+  std::vector<Piece> result;
+  while ((row = csv.next()) != nullptr)
+    result.push_back({std::string(row->text(0)), std::string(row->text(1)), row->number(2),
+                      row->number(3), row->number(4)});
+  return result;
+}
+
+const std::set<std::string> kLibrary = {"f64_add",     "f64_mul",  "f64_div", "f64_compare",
+                                        "f64_convert", "popcount", "memset"};
+
+TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
+  std::set<std::string> measured;
+  for (const Piece& piece : pieces())
+    if (piece.after.empty()) measured.insert(piece.function);
+  const std::set<std::string> names = named_functions();
+  EXPECT_GT(names.size(), 50u);
+  for (const std::string& name : names)
+    EXPECT_TRUE(measured.contains(name)) << name << " has no footprint: run tools/rv32/measure.sh";
+}
+
+TEST(Rv32Code, NamesNoFunctionThatTheWorkloadDoesNotHave) {
+  const std::set<std::string> names = named_functions();
+  for (const Piece& piece : pieces()) {
+    EXPECT_TRUE(names.contains(piece.function) || kLibrary.contains(piece.function))
+        << piece.function << " is gone: run tools/rv32/measure.sh";
+    EXPECT_TRUE(piece.after.empty() || names.contains(piece.after)) << piece.after;
+  }
+}
+
+TEST(Rv32Code, IsSortedWithoutRepetitionAndPlausible) {
+  const std::vector<Piece> table = pieces();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const Piece& piece = table[i];
+    EXPECT_GE(piece.lines, 0) << piece.function;
+    EXPECT_LT(piece.lines, 1000) << piece.function;
+    EXPECT_GE(piece.visits, 1) << piece.function;
+    EXPECT_GE(piece.refetches, 0) << piece.function;
+    // What fits into the small cache is fetched once.
+    if (piece.lines <= 25) {
+      EXPECT_LT(piece.refetches, piece.lines + 1) << piece.function;
+    }
+    if (i > 0) {
+      EXPECT_LT(std::pair(table[i - 1].function, table[i - 1].after),
+                std::pair(piece.function, piece.after));
+    }
+  }
+}
+
+TEST(Rv32Costs, PriceEveryOperationOnce) {
+  const std::string text = traces::read_text_file(kSource / "tools/rv32/rv32imfc_costs.csv");
+  std::multiset<std::string> priced;
+  static const std::regex row("\n([a-z0-9_]+),([0-9.]+),");
+  for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it)
+    priced.insert((*it)[1]);
+  EXPECT_EQ(priced.size(), work::kOpCount);
+  for (const work::OpInfo& info : work::kOps)
+    EXPECT_EQ(priced.count(std::string(info.name)), 1u) << info.name;
+}
+
+}  // namespace
+}  // namespace leviosim::tools
