@@ -56,7 +56,7 @@ TEST(Variants, RefusesWhatFilesRefuse) {
       [&] {
         platform.config({{"cluster.core.ops.call.issue", 4}});
       },
-      {"cluster.core.ops.call.issue", "unknown parameter"});
+      {"cluster.core.ops.call.issue", "does not give"});
   expect_input_error(
       [&] {
         platform.config({{"isa.instruction_overhead", -1}});

@@ -43,12 +43,12 @@ class Notes : public RunObserver {
   std::vector<Iteration> iterations;
 };
 
-/// Two seconds of synthetic flight, made once for all tests of this program.
+/// Three seconds of synthetic flight, made once for all tests of this program.
 const std::filesystem::path& flight() {
   static const std::filesystem::path folder = [] {
     const auto path = std::filesystem::temp_directory_path() /
                       fmt::format("leviosim-{}-observer-flight", ::getpid());
-    traces::write_synthetic_flight(path, {.duration_s = 2, .texel_m = 0.01});
+    traces::write_synthetic_flight(path, {.duration_s = 3, .texel_m = 0.01});
     return path;
   }();
   return folder;
@@ -78,7 +78,9 @@ TEST_F(Observed, SeesEveryFrameAndEveryIteration) {
     begun += notes.frames[i].begun;
   }
   EXPECT_GT(begun, 0);
-  EXPECT_EQ(notes.iterations.size(), 3u * static_cast<std::size_t>(begun));
+  // The run may end before the last optimisation does.
+  EXPECT_LE(notes.iterations.size(), 3u * static_cast<std::size_t>(begun));
+  EXPECT_GT(notes.iterations.size(), 3u * static_cast<std::size_t>(begun - 1));
   for (std::size_t k = 0; k < notes.iterations.size(); ++k) {
     EXPECT_EQ(notes.iterations[k].iteration, static_cast<int>(k % 3));
     EXPECT_EQ(notes.iterations[k].last, k % 3 == 2);

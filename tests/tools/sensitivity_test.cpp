@@ -102,7 +102,14 @@ TEST(Sensitivity, CoversEveryNumberThatHasARange) {
       });
   const Sensitivity s = sweep();
   EXPECT_EQ(s.swings.size(), static_cast<std::size_t>(ranges));
-  EXPECT_TRUE(s.unbounded.empty()) << s.unbounded[0] << " is uncertain and has no range";
+}
+
+TEST(Sensitivity, NamesUncertainNumbersWithoutARange) {
+  const platform::Variants platform(
+      platform::resolve_platform("gap9", {"isa.load_use_fraction=0.3"}));
+  const Sensitivity s = sensitivity(platform, 8, RecordedRun{}, 1, [](int, int) {});
+  EXPECT_EQ(std::count(s.unbounded.begin(), s.unbounded.end(), "isa.load_use_fraction"), 1);
+  EXPECT_NE(sensitivity_table(s, 8).find("without a range"), std::string::npos);
 }
 
 TEST(Sensitivity, DoesNotDependOnTheHostsThreads) {
