@@ -5,6 +5,7 @@
 #include <string>
 
 #include "optimiser_scene.h"
+#include "workload/graph/visual_terms.h"
 
 namespace leviosim::vio::test {
 namespace {
@@ -68,6 +69,51 @@ TEST(Optimiser, ARejectedStepChangesNothingButTheDamping) {
     EXPECT_FLOAT_EQ(lm.lambda, lambda * scene.options.lambda_up);
   }
   EXPECT_TRUE(seen);
+}
+
+TEST(Optimiser, ALandmarkThatLeavesTheViewStaysWhereItWas) {
+  Scene scene;
+  const PixelModel<Native> model(scene.options.visual);
+  const Window<Native>& window = scene.window;
+  std::vector<float> points(window.state.points.data(),
+                            window.state.points.data() + 3 * window.landmarks);
+  WindowState<Native> trial = window.state;
+  trial.points = {points.data(), static_cast<int>(points.size())};
+  const float cost = settle_points<Native>(window, trial, model);
+  const Vector3d ahead = Motion::rotation(0).col(2);
+  for (int c = 0; c < 3; ++c) points[3 * 7 + c] -= static_cast<float>(20 * ahead[c]);
+  points[3 * 8] += 1e-3f;  // a harmless step
+  EXPECT_NEAR(settle_points<Native>(window, trial, model), cost, 0.01f * cost + 1);
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(points[3 * 7 + c], window.state.points[3 * 7 + c]);
+  EXPECT_NE(points[3 * 8], window.state.points[3 * 8]);
+}
+
+TEST(Optimiser, MarksLandmarksItHasLost) {
+  Scene scene;
+  const Vector3d ahead = Motion::rotation(0).col(2);
+  for (int c = 0; c < 3; ++c)
+    scene.window.state.points[3 * 7 + c] -= static_cast<float>(20 * ahead[c]);
+  scene.optimise(3);
+  int lost = 0;
+  for (int i = 0; i < scene.window.landmarks; ++i) lost += scene.window.lost[i];
+  EXPECT_EQ(scene.window.lost[7], 1);
+  EXPECT_EQ(lost, 1);
+}
+
+TEST(Optimiser, TheFirstVelocityOfAllHasAnAnchorOfItsOwn) {
+  Scene scene;
+  AnchorOptions anchor;
+  anchor.velocity = 0.1f;
+  anchor.initial_velocity = 2.0f;
+  const auto held = [&] {
+    const ReducedSystem<Native> system(scene.fc.local(), scene.window.keyframes, true);
+    system.clear();
+    add_anchor<Native>(scene.window, anchor, system);
+    return system.matrix()(6, 6);
+  };
+  EXPECT_FLOAT_EQ(held(), 0.25f);
+  scene.window.keyframe_ids[0] = 1;
+  EXPECT_FLOAT_EQ(held(), 100.0f);
 }
 
 TEST(Optimiser, DampingFallsWithSuccess) {

@@ -123,6 +123,40 @@ TEST_F(Snapshots, PublishWritesBiasesOnlyIfEstimated) {
   EXPECT_EQ(f.graph.bias().gyro.y, 0.0f);
 }
 
+TEST_F(Snapshots, PublishRetiresLostLandmarks) {
+  window.lost[place_of(2)] = 1;
+  publish<Native>(window, f.graph);
+  EXPECT_EQ(f.age(2), kOldestAge);
+  EXPECT_LT(f.age(3), kOldestAge);
+  snapshot();
+  EXPECT_EQ(place_of(2), -1) << "its observations are void";
+  EXPECT_NE(place_of(3), -1);
+  f.graph.age_landmarks();
+  EXPECT_EQ(f.add_landmark(50), 2) << "the next landmark takes its slot";
+}
+
+TEST(SnapshotIntervals, WhatLeavesTheWindowEntersThePriorOnce) {
+  const Motion motion;
+  GraphFixture<Native> f(GraphCapacity{3, 6, 30});
+  Window<Native> window(f.memory, GraphCapacity{3, 6, 30});
+  const OwnedInterval<Native> interval;
+  const ImuNoise noise;
+  const float per_interval = 0.2f / (noise.gyro * noise.gyro);
+  interval.reset(ImuBias<Native>::zero());
+  for (int k = 0; k < 6; ++k) {
+    if (k > 0)
+      integrate<Native>(motion, 0.2 * (k - 1), 0.2 * k, 40, interval, ImuBias<Native>::zero());
+    f.graph.add_keyframe(motion.state<Native>(0.2 * k), interval.record());
+    for (int again = 0; again < 2; ++again) {  // a snapshot is taken for every frame
+      absorb_departed_intervals<Native>(window, f.graph, noise, {});
+      take_snapshot<Native>(f.graph, noise, f.memory, window);
+    }
+    // Of k intervals so far, two are in a window of three keyframes.
+    const float expected = per_interval * static_cast<float>(std::max(0, k - 2));
+    EXPECT_NEAR(f.graph.bias_prior().gyro_information, expected, 0.01f * expected + 0.1f) << k;
+  }
+}
+
 TEST(SnapshotIntervals, HoldTheFactorOfCovarianceWithGravityNoise) {
   const Motion motion;
   const OwnedInterval<Native> interval;
@@ -170,9 +204,7 @@ TEST(SnapshotIntervals, BiasOfTheWindowIsEstimated) {
     f.graph.add_keyframe(motion.state<Native>(0.2 * k), interval.record());
   }
   take_snapshot<Native>(f.graph, ImuNoise{}, f.memory, window);
-  BiasOptions free;
-  free.gyro_stddev = 10;
-  estimate_biases<Native>(window, ImuNoise{}, free);
+  estimate_biases<Native>(window, ImuNoise{}, {});
   EXPECT_LT((eigen<Native>(window.bias.gyro) - gyro).norm(), 1e-3);
 }
 

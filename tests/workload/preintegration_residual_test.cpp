@@ -169,7 +169,7 @@ ImuBias<P> estimated(const Vector3d& gyro, const Vector3d& accel, const BiasOpti
     integrate<P>(motion, 0.2 * k, 0.2 * (k + 1), 40, interval, ImuBias<P>::zero(), gyro, accel);
     estimator.add(interval, motion.state<P>(0.2 * k), motion.state<P>(0.2 * (k + 1)));
   }
-  return estimator.solve(options);
+  return estimator.solve(options, BiasPrior<P>::unknown(options));
 }
 
 TEST(BiasEstimator, FindsTheGyroBiasOfTrueMotion) {
@@ -188,10 +188,55 @@ TEST(BiasEstimator, PriorHoldsTheEstimateBack) {
   const Vector3d half =
       eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
   EXPECT_NEAR(half.z(), 0.04, 1e-3);
-  const BiasOptions tight = BiasOptions::random_walk(ImuNoise{}, 1.4f);
+  options.gyro_stddev = 1e-6f;
   const Vector3d held =
-      eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), tight).gyro);
+      eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
   EXPECT_LT(held.norm(), 1e-6);
+}
+
+/// An estimator around `bias` that has seen one interval of 0.2 s whose samples carry `gyro`.
+BiasEstimator<work::Native> after_one_interval(const ImuBias<work::Native>& bias,
+                                               const Vector3d& gyro) {
+  const Motion motion;
+  const OwnedInterval<work::Native> interval;
+  integrate<work::Native>(motion, 0, 0.2, 40, interval, ImuBias<work::Native>::zero(), gyro);
+  BiasEstimator<work::Native> estimator(bias, vec3<work::Native>(motion.gravity), ImuNoise{});
+  estimator.add(interval, motion.state<work::Native>(0), motion.state<work::Native>(0.2));
+  return estimator;
+}
+
+TEST(BiasEstimator, EstimatingAgainFromTheSameIntervalChangesNothing) {
+  BiasOptions options;
+  options.gyro_stddev = 0.02f / std::sqrt(0.2f);  // meets half-way
+  const auto prior = BiasPrior<work::Native>::unknown(options);
+  ImuBias<work::Native> bias = ImuBias<work::Native>::zero();
+  for (int i = 0; i < 20; ++i) {
+    bias = after_one_interval(bias, {0, 0, 0.08}).solve(options, prior);
+    EXPECT_NEAR(bias.gyro.z, 0.04, 1e-3) << "estimate " << i;
+  }
+}
+
+TEST(BiasEstimator, ForgottenIntervalsStayInThePrior) {
+  BiasOptions options;
+  options.gyro_stddev = 0.02f / std::sqrt(0.2f);
+  const auto unknown = BiasPrior<work::Native>::unknown(options);
+  const auto zero = ImuBias<work::Native>::zero();
+  const auto prior = after_one_interval(zero, {0, 0, 0.08}).absorb(options, unknown, ImuNoise{});
+  EXPECT_NEAR(prior.mean.gyro.z, 0.04, 1e-3);
+  EXPECT_NEAR(prior.gyro_information, 2 * unknown.gyro_information, 0.1f);
+  // A second interval that says the same counts half as much as what is known by now.
+  const auto later = after_one_interval(zero, {0, 0, 0.08}).solve(options, prior);
+  EXPECT_NEAR(later.gyro.z, 0.04 + 0.04 / 3, 1e-3);
+}
+
+TEST(BiasEstimator, TheRandomWalkTakesInformationAway) {
+  BiasOptions options;
+  ImuNoise restless;
+  restless.gyro_bias = 1;  // 0.2 rad²/s² in 0.2 s: what was known is worth 1/0.2 at most
+  const auto prior = after_one_interval(ImuBias<work::Native>::zero(), {0, 0, 0})
+                         .absorb(options, BiasPrior<work::Native>::unknown(options), restless);
+  EXPECT_LT(prior.gyro_information, 5.0f);
+  EXPECT_GT(prior.gyro_information, 4.9f);
 }
 
 TEST(BiasEstimator, FindsTheAccelerometerBiasIfAsked) {
@@ -212,7 +257,7 @@ TEST(BiasEstimator, KeepsTheBiasWithoutIntervals) {
   const OwnedInterval<work::Native> empty;
   empty.reset(before);
   estimator.add(empty, motion.state<work::Native>(0), motion.state<work::Native>(0.2));
-  EXPECT_EQ(estimator.solve({}).gyro.y, 0.2f);
+  EXPECT_EQ(estimator.solve({}, {before, 0.0f, 0.0f}).gyro.y, 0.2f);
 }
 
 TEST(BiasEstimator, CountsWhatItComputesNatively) {

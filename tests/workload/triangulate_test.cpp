@@ -47,6 +47,29 @@ TEST(Triangulate, DisparityOfTheWrongSignLiesBehindTheCameras) {
   EXPECT_NEAR(seen.point.z, -2.0f, 1e-3f);
 }
 
+TEST(Triangulate, APointIsTooFarIfItsParallaxIsWithinTheError) {
+  const PinholeCamera camera{100, 100, 80, 60};
+  const Pose<Native> T_a = Pose<Native>::identity(), T_b = beside(kBaseline);
+  const auto seen_in_b = [](float depth) { return Vec2<Native>{0.1f - kBaseline / depth, 0.2f}; };
+  const auto too_far = [&](float depth) {
+    return agrees_with_infinity<Native>(T_a, T_b, {0.1f, 0.2f}, seen_in_b(depth), camera, 4.0f);
+  };
+  EXPECT_FALSE(too_far(kBaseline * 49));  // 100 px / 49 = 2.04 px of 2 px
+  EXPECT_TRUE(too_far(kBaseline * 51));
+}
+
+TEST(Triangulate, ATurnedCameraSeesNoParallax) {
+  const PinholeCamera camera{100, 100, 80, 60};
+  // A quarter turn to the left: what is straight ahead of b is to the left of a.
+  const Pose<Native> T_b{{{{0.0f, 0.0f, 1.0f}, {0.0f, 1.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}}},
+                         {0.0f, 0.0f, 0.0f}};
+  const Vec2<Native> in_a{-1.0f, 0.5f};  // the ray (-1, 0.5, 1) is (1, 0.5, 1) in b
+  EXPECT_TRUE(agrees_with_infinity<Native>(Pose<Native>::identity(), T_b, in_a, {1.0f, 0.5f},
+                                           camera, 1.0f));
+  EXPECT_FALSE(
+      agrees_with_infinity<Native>(Pose<Native>::identity(), T_b, in_a, in_a, camera, 1.0f));
+}
+
 TEST(Triangulate, ExactMeasurementsGiveThePointInTheWorldFrame) {
   HostRandom random(4);
   std::vector<double> errors;  // relative to the depth

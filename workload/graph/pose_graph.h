@@ -41,7 +41,7 @@ class PoseGraph : public GraphMemory<P, Where> {
   PoseGraph(work::Arena& arena, const GraphCapacity& size) : Memory(arena, size) {}
   explicit PoseGraph(const Memory& memory) : Memory(memory) {}
 
-  /// Empties the graph; the prior of the biases is left as it is.
+  /// Empties the graph; the prior of the biases knows nothing then.
   void clear(const ImuBias<P>& bias, const Vec3<P>& gravity) const;
 
   /// Adds a keyframe; if all slots are taken the oldest leaves, with its observations.
@@ -155,6 +155,7 @@ void PoseGraph<P, Where>::clear(const ImuBias<P>& bias, const Vec3<P>& gravity) 
   for (int i : P::range(0, this->capacity.keyframes)) this->keyframe_ids[i] = I32(-1);
   set_bias(bias);
   set_gravity(gravity);
+  set_bias_prior({bias, 0.0f, 0.0f});
 }
 
 template <class P, class Where>
