@@ -47,6 +47,7 @@ struct FrontEndTest : ::testing::Test {
   int add_landmarks(const cv::Mat& image, bool scrambled) {
     const Features features = vision_test::extract<Native>(image, 8, profile.extractor);
     const std::size_t n = features.size();
+    graph.age_landmarks();
     for (std::size_t i = 0; i < n; ++i) {
       const auto& seen = features[scrambled ? (i * 7919 + 13) % n : i];
       const float depth = 2.0f + 0.01f * static_cast<float>(i % 97);

@@ -132,7 +132,9 @@ TEST_F(Snapshots, PublishRetiresLostLandmarks) {
   EXPECT_EQ(place_of(2), -1) << "its observations are void";
   EXPECT_NE(place_of(3), -1);
   f.graph.age_landmarks();
-  EXPECT_EQ(f.add_landmark(50), 2) << "the next landmark takes its slot";
+  EXPECT_EQ(f.add_landmark(50), 4);
+  EXPECT_EQ(f.add_landmark(50), 5);
+  EXPECT_EQ(f.add_landmark(50), 2) << "after those that were never used its slot is next";
 }
 
 TEST(SnapshotIntervals, WhatLeavesTheWindowEntersThePriorOnce) {
