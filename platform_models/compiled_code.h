@@ -14,8 +14,8 @@ const work::CodeMap& compiled_code();
 
 /// From the text of such a file: comments (#), a header, then rows of
 /// function,after,lines,visits,refetches. `after` is empty for what runs from the function's entry
-/// on; lines are the mean number of distinct 16-byte lines that one visit fetches, refetches that of
-/// lines which a cache of 512 bytes loses and fetches again meanwhile. Visits are not used here.
+/// on; lines are the mean number of distinct 16-byte lines that one visit fetches, refetches that
+/// of lines which a cache of 512 bytes loses and fetches again meanwhile. Visits are not used here.
 /// @throws InputError with file and line
 work::CodeMap code_map_from(const std::string& file, std::string_view text);
 

@@ -21,8 +21,8 @@ class CameraMatrix {
   }
   /// Homogeneous pixel → direction in the camera frame, with z = 1 for z = 1.
   static CameraMatrix inverse_of(const PinholeCamera& c) {
-    return CameraMatrix({1.0f / c.fx, 0.0f, -c.cx / c.fx, 0.0f, 1.0f / c.fy, -c.cy / c.fy, 0.0f,
-                         0.0f, 1.0f});
+    return CameraMatrix(
+        {1.0f / c.fx, 0.0f, -c.cx / c.fx, 0.0f, 1.0f / c.fy, -c.cy / c.fy, 0.0f, 0.0f, 1.0f});
   }
 
   Vec3<P> operator*(const Vec3<P>& x) const {

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "sim/work/machine.h"
+#include "workload/geometry/camera_matrix.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/pipeline/keyframe_record.h"
-#include "workload/geometry/camera_matrix.h"
 #include "workload/pipeline/odometry.h"
 
 namespace leviosim::vio {
