@@ -50,6 +50,10 @@ std::vector<Piece> pieces() {
 const std::set<std::string> kLibrary = {"f64_add",     "f64_mul",  "f64_div", "f64_compare",
                                         "f64_convert", "popcount", "memset"};
 
+/// What the scenes do not come to: their map never drops a keyframe. The model takes such code to
+/// be of no size.
+const std::set<std::string> kNotReached = {"PoseGraph::remove_observations"};
+
 TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   std::set<std::string> measured;
   for (const Piece& piece : pieces())
@@ -57,7 +61,8 @@ TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   const std::set<std::string> names = named_functions();
   EXPECT_GT(names.size(), 50u);
   for (const std::string& name : names)
-    EXPECT_TRUE(measured.contains(name)) << name << " has no footprint: run tools/rv32/measure.sh";
+    EXPECT_NE(measured.contains(name), kNotReached.contains(name))
+        << name << " has no footprint: run tools/rv32/measure.sh";
 }
 
 TEST(Rv32Code, NamesNoFunctionThatTheWorkloadDoesNotHave) {

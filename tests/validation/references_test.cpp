@@ -90,7 +90,7 @@ TEST(ValidationReferences, AnUpdateJudgesItsOwnRunAsMetOrMissed) {
                          "# a comment\n"
                          "a,100,x,5 %,30.3 %,missed: new,s\n"
                          "b,100,x,5 %,,met,s\n"
-                         "c,7.46,x,0.35,1.84,missed: new,s\n"
+                         "c,7.46,x,0.35,1.85,missed: new,s\n"
                          "d,<10,x,0,2.35,missed: new,s\n"
                          "e,1,x,5 %,,met,s\n");
   const std::vector<Reference> references = parse_references("f.csv", updated);

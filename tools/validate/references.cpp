@@ -143,8 +143,7 @@ double guard_for(const Reference& reference, double error) {
   const double step = reference.tolerance.relative
                           ? 0.1
                           : std::pow(10.0, std::floor(std::log10(std::max(error, 1e-9))) - 2.0);
-  constexpr double kRounding = 1e-9;  // an error that is a multiple of the step stays one
-  double guard = std::ceil(error / step - kRounding) * step;
+  double guard = std::ceil(error / step) * step;
   if (guard <= reference.tolerance.value) guard += step;
   return guard;
 }
