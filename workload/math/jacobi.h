@@ -50,8 +50,16 @@ typename P::F32 rotated_diagonal(typename P::F32 c, typename P::F32 s, typename 
     const F cross = 2.0f * s * c;
     return first - cross * apq + last;
   }
-  const F64 cross = F64(2.0) * work::to_f64(s) * work::to_f64(c) * work::to_f64(apq);
-  return work::to_f32(F64(work::to_f64(first) - cross + work::to_f64(last)));
+  // One routine a statement: the order of operands is the compiler's, that of library calls is not.
+  F64 cross = work::to_f64(s);
+  cross = F64(2.0) * cross;
+  const F64 c64 = work::to_f64(c);
+  cross = cross * c64;
+  const F64 apq64 = work::to_f64(apq);
+  cross = cross * apq64;
+  const F64 first64 = work::to_f64(first);
+  const F64 last64 = work::to_f64(last);
+  return work::to_f32(F64(first64 - cross + last64));
 }
 
 /// (x, y) ← (c x − s y, s x + c y) for the elements of two rows.
