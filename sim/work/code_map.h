@@ -13,11 +13,14 @@ namespace leviosim::work {
 
 /// A function's name as a number, made at compile time: a FNV-1a hash.
 struct CodeName {
+  static constexpr std::uint32_t kSmallest = 1u << 28;  ///< smaller numbers mean something else
+
   std::uint32_t key;
   const char* text = "";  ///< only of literals
 
   constexpr explicit CodeName(std::string_view name) : key(2166136261u) {
     for (const char c : name) key = (key ^ static_cast<unsigned char>(c)) * 16777619u;
+    if (key < kSmallest) key += kSmallest;
   }
   /// From a string literal, for call sites that must not compute it.
   template <std::size_t N>

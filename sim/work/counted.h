@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "sim/work/code_tracker.h"
+#include "sim/work/code_events.h"
 #include "sim/work/counts.h"
 
 namespace leviosim::work {
@@ -22,12 +22,27 @@ namespace leviosim::work {
 struct Cond {
   bool v;
   explicit operator bool() const {
-    count(Op::BranchNotTaken, v);
+    count(Op::BranchNotTaken);  // of all branches, see tally
     count(Op::BranchTaken, !v);
     return v;
   }
   /// The negated condition; a compiler inverts the branch instead of computing it.
   friend Cond operator!(Cond c) { return {!c.v}; }
+};
+
+/// A condition that seldom holds, which the host may know: counting then costs nothing where it
+/// does not. What is counted is the same.
+struct UnlikelyCond {
+  bool v;
+  explicit operator bool() const {
+    count(Op::BranchNotTaken);
+    count(Op::BranchTaken);
+    if (v) [[unlikely]] {
+      count(Op::BranchTaken, static_cast<std::uint64_t>(-1));
+      return true;
+    }
+    return false;
+  }
 };
 
 /// A product whose cost is still open: a multiplication if it is used as such, a multiply-add if it
@@ -204,9 +219,9 @@ using F32 =
     Float<float, Op::F32Add, Op::F32Mul, Op::F32Fma, Op::F32Div, Op::F32Compare, Op::F32Sign>;
 
 /// Counts an operation that is a routine of a library on cores without hardware for it.
-inline void count_routine(Op op, CodeName routine) {
+inline void count_routine(Op op, Routine routine) {
   count(op);
-  if (current_code != nullptr) current_code->call_routine(routine.key);
+  code_events.call(routine);
 }
 
 /// Double precision. FP32-only cores emulate it in a library without a fused form, so a product
@@ -218,11 +233,11 @@ struct F64 {
   constexpr F64(double value) : v(value) {}
 
   friend F64 operator+(F64 a, F64 b) {
-    count_routine(Op::F64Add, "f64_add");
+    count_routine(Op::F64Add, Routine::F64Add);
     return F64(a.v + b.v);
   }
   friend F64 operator-(F64 a, F64 b) {
-    count_routine(Op::F64Add, "f64_add");
+    count_routine(Op::F64Add, Routine::F64Add);
     return F64(a.v - b.v);
   }
   friend F64 operator-(F64 a) {
@@ -230,11 +245,11 @@ struct F64 {
     return F64(-a.v);
   }
   friend F64 operator*(F64 a, F64 b) {
-    count_routine(Op::F64Mul, "f64_mul");
+    count_routine(Op::F64Mul, Routine::F64Mul);
     return F64(a.v * b.v);
   }
   friend F64 operator/(F64 a, F64 b) {
-    count_routine(Op::F64Div, "f64_div");
+    count_routine(Op::F64Div, Routine::F64Div);
     return F64(a.v / b.v);
   }
   F64& operator+=(F64 b) { return *this = *this + b; }
@@ -242,11 +257,11 @@ struct F64 {
   F64& operator*=(F64 b) { return *this = *this * b; }
   F64& operator/=(F64 b) { return *this = *this / b; }
   friend Cond operator<(F64 a, F64 b) {
-    count_routine(Op::F64Compare, "f64_compare");
+    count_routine(Op::F64Compare, Routine::F64Compare);
     return {a.v < b.v};
   }
   friend Cond operator>(F64 a, F64 b) {
-    count_routine(Op::F64Compare, "f64_compare");
+    count_routine(Op::F64Compare, Routine::F64Compare);
     return {a.v > b.v};
   }
 };

@@ -40,12 +40,15 @@ inline double value(double x) { return x; }
 inline std::int32_t value(std::int32_t x) { return x; }
 inline std::uint32_t value(std::uint32_t x) { return x; }
 inline bool value(bool x) { return x; }
+/// `if (work::unlikely(x > largest))`: for loops that look for something rare.
+inline bool unlikely(bool condition) { return condition; }
 /// The bits of a float as an integer and back: a change of view where both live in the same
 /// registers.
 inline std::int32_t bits_of(float x) { return std::bit_cast<std::int32_t>(x); }
 inline float float_of_bits(std::int32_t x) { return std::bit_cast<float>(x); }
 
 // ---- counted scalars ----
+inline UnlikelyCond unlikely(Cond condition) { return {condition.v}; }
 inline F32 sqrt(F32 x) {
   count(Op::F32Sqrt);
   return F32(std::sqrt(x.v));
@@ -83,11 +86,11 @@ inline F32 to_f32(I32 x) {
   return F32(to_f32(x.v));
 }
 inline F32 to_f32(F64 x) {
-  count_routine(Op::F64Convert, "f64_convert");
+  count_routine(Op::F64Convert, Routine::F64Convert);
   return F32(to_f32(x.v));
 }
 inline F64 to_f64(F32 x) {
-  count_routine(Op::F64Convert, "f64_convert");
+  count_routine(Op::F64Convert, Routine::F64Convert);
   return F64(to_f64(x.v));
 }
 inline I32 to_i32(F32 x) {

@@ -15,6 +15,11 @@ void Machine::follow_code_of(int core) {
   if (!trackers_.empty()) current_code = &trackers_[static_cast<std::size_t>(core)];
 }
 
+Counts Machine::counted_so_far() {
+  fetch_code();
+  return take_tally();
+}
+
 void Machine::begin_stage(std::string_view name) {
   check(!in_stage_, "stages do not nest");
   in_stage_ = true;
@@ -22,7 +27,7 @@ void Machine::begin_stage(std::string_view name) {
   local_.reset_peak();
   fork_peak_ = {};
   if (!recording()) return;
-  take_tally();  // what happened between stages belongs to none
+  counted_so_far();  // what happened between stages belongs to none
   follow_code_of(config_.cores);
   job_.stages.push_back({name, {}, {}});
 }
@@ -30,8 +35,8 @@ void Machine::begin_stage(std::string_view name) {
 void Machine::end_stage() {
   in_stage_ = false;
   if (!recording()) return;
-  current_code = nullptr;
   flush_serial();
+  current_code = nullptr;
   MemoryPeak& memory = job_.stages.back().memory;
   memory = fork_peak_;
   memory.single = std::max(memory.single, local_.peak());
@@ -51,7 +56,7 @@ void Machine::begin_fork(std::string_view name) {
 void Machine::end_share(Bytes scratch_peak) {
   scratch_sum_ += scratch_peak;
   scratch_max_ = std::max(scratch_max_, scratch_peak);
-  if (recording()) fork_.shares.push_back(take_tally());
+  if (recording()) fork_.shares.push_back(counted_so_far());
 }
 
 void Machine::end_fork() {
@@ -84,7 +89,7 @@ void Machine::wait(Ticket ticket) {
 }
 
 void Machine::flush_serial() {
-  const Counts counts = take_tally();
+  const Counts counts = counted_so_far();
   if (!counts.empty()) job_.stages.back().steps.emplace_back(Serial{counts});
 }
 

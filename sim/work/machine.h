@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "sim/work/arena.h"
+#include "sim/work/code_tracker.h"
 #include "sim/work/policy.h"
 #include "sim/work/program.h"
 
@@ -172,6 +173,8 @@ class Machine {
   void end_fork();
   void note_transfer(const Transfer& transfer);
   void flush_serial();
+  /// By the core that the host executes at the moment, since this was last asked.
+  static Counts counted_so_far();
   /// From now on the host executes the code of this core; the master's id is cores().
   void follow_code_of(int core);
 

@@ -64,16 +64,14 @@ class Cell {
  public:
   using Value = typename LoadedAs<std::remove_const_t<T>>::Type;
 
-  Cell(T* where, std::uint8_t straddles) : where_(where), straddles_(straddles) {}
+  Cell(T* where, std::uint64_t weight) : where_(where), weight_(weight) {}
 
   operator Value() const {
-    count(Load);
-    count_straddle();
+    count(Load, weight_);
     return LoadedAs<std::remove_const_t<T>>::from(*where_);
   }
   const Cell& operator=(T stored) const requires(!std::is_const_v<T>) {
-    count(Store);
-    count_straddle();
+    count(Store, weight_);
     *where_ = stored;
     return *this;
   }
@@ -91,17 +89,13 @@ class Cell {
   { return *this = static_cast<T>(Value(*this) - x); }
 
  private:
-  /// A byte lies in one word wherever it is.
-  void count_straddle() const {
-    if constexpr (sizeof(T) > 1) count(Op::Straddle, straddles_);
-  }
-
   T* where_;
-  std::uint8_t straddles_;
+  std::uint64_t weight_;
 };
 
 /// View of `size` consecutive elements under the counting policy. `straddles` is 1 if the elements
-/// do not lie on their natural boundary in the target's memory, so that each access takes two.
+/// do not lie on their natural boundary in the target's memory, so that each access takes two. A
+/// byte lies in one word wherever it is.
 template <class T, Space S = Space::Local>
 class CountedSpan {
   static constexpr Op in(Op local, Op l2, Op shared) {
@@ -115,24 +109,24 @@ class CountedSpan {
  public:
   CountedSpan() = default;
   CountedSpan(T* data, int size, bool straddles = false)
-      : data_(data), size_(size), straddles_(straddles) {}
+      : data_(data), size_(size), weight_(access_weight(sizeof(T) > 1 && straddles)) {}
   /// A read-only view of the same memory.
   operator CountedSpan<const T, S>() const requires(!std::is_const_v<T>) {
-    return {data_, size_, straddles_ != 0};
+    return {data_, size_, straddles()};
   }
 
   int size() const { return size_; }
   T* data() const { return data_; }
-  Stream operator[](int i) const { return {data_ + i, straddles_}; }
-  Indexed operator[](I32 i) const { return {data_ + i.v, straddles_}; }
-  CountedSpan subspan(int offset, int size) const {
-    return {data_ + offset, size, straddles_ != 0};
-  }
+  Stream operator[](int i) const { return {data_ + i, weight_}; }
+  Indexed operator[](I32 i) const { return {data_ + i.v, weight_}; }
+  CountedSpan subspan(int offset, int size) const { return {data_ + offset, size, straddles()}; }
 
  private:
+  bool straddles() const { return weight_ != access_weight(false); }
+
   T* data_ = nullptr;
   int size_ = 0;
-  std::uint8_t straddles_ = 0;
+  std::uint64_t weight_ = access_weight(false);
 };
 
 /// The same view under the native policy.

@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include "sim/work/code_tracker.h"
+#include "sim/work/code_events.h"
 #include "sim/work/counted.h"
 #include "sim/work/functions.h"
 #include "sim/work/memory.h"
@@ -81,25 +81,18 @@ class DownRange {
   int end_;
 };
 
-/// Marks a stretch of code, so that the size of its compiled form is known by its name (code_map.h):
-/// the body of a loop that calls nothing and is large. Costs nothing by itself.
+/// Marks a stretch of code, so that the size of its compiled form is known by its name
+/// (code_map.h): the body of a loop that calls nothing and is large. Costs nothing by itself.
 template <bool Counted>
 struct CodeScope {
   explicit CodeScope(CodeName name) {
-    if constexpr (Counted) {
-      code_ = current_code;
-      if (code_ != nullptr) code_->enter(name.key);
-    }
+    if constexpr (Counted) code_events.enter(name);
   }
   ~CodeScope() {
-    if constexpr (Counted)
-      if (code_ != nullptr) code_->leave();
+    if constexpr (Counted) code_events.leave();
   }
   CodeScope(const CodeScope&) = delete;
   CodeScope& operator=(const CodeScope&) = delete;
-
- private:
-  CodeTracker* code_ = nullptr;  ///< of the core that entered
 };
 
 /// Marks a function that a target compiler does not inline: the same, and a call.

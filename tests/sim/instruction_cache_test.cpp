@@ -31,6 +31,17 @@ InstructionCacheConfig caches() {
   return c;
 }
 
+/// What a core fetches that executes `body`, which reports to work::code_events.
+template <class Body>
+CodeReuse fetched_by(CodeTracker& tracker, const Body& body) {
+  work::take_tally();
+  work::current_code = &tracker;
+  body();
+  work::fetch_code();
+  work::current_code = nullptr;
+  return work::take_tally().code;
+}
+
 /// A function of `bytes` without calls, called in a loop that is not code itself.
 CodeReuse loop_over(std::uint32_t bytes, int rounds) {
   constexpr std::uint32_t kPart = 128;
@@ -38,13 +49,13 @@ CodeReuse loop_over(std::uint32_t bytes, int rounds) {
   for (std::uint32_t part = 0; part < bytes / kPart; ++part)
     map.add("part " + std::to_string(part), "", kPart);
   CodeTracker tracker(map);
-  work::take_tally();
-  for (int round = 0; round < rounds; ++round)
-    for (std::uint32_t part = 0; part < bytes / kPart; ++part) {
-      tracker.enter(CodeName("part " + std::to_string(part)).key);
-      tracker.leave();
-    }
-  return work::take_tally().code;
+  return fetched_by(tracker, [&] {
+    for (int round = 0; round < rounds; ++round)
+      for (std::uint32_t part = 0; part < bytes / kPart; ++part) {
+        work::code_events.enter(CodeName("part " + std::to_string(part)));
+        work::code_events.leave();
+      }
+  });
 }
 
 std::uint64_t all(const CodeReuse& code) {
@@ -66,14 +77,14 @@ TEST(CodeTracker, ReturnsFetchTheRestOfTheCaller) {
   map.add("caller", "leaf", 160);
   map.add("leaf", "", 64);
   CodeTracker tracker(map);
-  work::take_tally();
-  tracker.enter(CodeName("caller").key);
-  for (int i = 0; i < 3; ++i) {
-    tracker.enter(CodeName("leaf").key);
-    tracker.leave();
-  }
-  tracker.leave();
-  const CodeReuse code = work::take_tally().code;
+  const CodeReuse code = fetched_by(tracker, [] {
+    work::code_events.enter("caller");
+    for (int i = 0; i < 3; ++i) {
+      work::code_events.enter("leaf");
+      work::code_events.leave();
+    }
+    work::code_events.leave();
+  });
   EXPECT_EQ(code[work::kNeverFetched], 320U + 160U + 64U);
   EXPECT_EQ(code[work::reuse_class(160 + 64)], 2 * (160U + 64U)) << "leaf and what follows it";
   EXPECT_EQ(all(code), 320U + 3 * (160U + 64U));
@@ -83,10 +94,93 @@ TEST(CodeTracker, UnknownFunctionsHaveNoCode) {
   CodeMap map;
   map.add("known", "", 64);
   CodeTracker tracker(map);
-  work::take_tally();
-  tracker.enter(CodeName("unknown").key);
-  tracker.leave();
-  EXPECT_EQ(all(work::take_tally().code), 0U);
+  const CodeReuse code = fetched_by(tracker, [] {
+    work::code_events.enter("unknown");
+    work::code_events.leave();
+  });
+  EXPECT_EQ(all(code), 0U);
+}
+
+/// The same by searching the order of all pieces at every visit.
+class SearchingTracker {
+ public:
+  explicit SearchingTracker(const CodeMap& map) : map_(map) {}
+  void enter(CodeName function) {
+    callers_.push_back(function.key);
+    visit(CodeMap::piece_key(function.key, CodeMap::kEntry));
+  }
+  void leave() {
+    const std::uint32_t returned = callers_.back();
+    callers_.pop_back();
+    if (!callers_.empty()) visit(CodeMap::piece_key(callers_.back(), returned));
+  }
+  void call(work::Routine routine) {
+    const CodeName name = work::kRoutineNames[static_cast<std::size_t>(routine)];
+    visit(CodeMap::piece_key(name.key, CodeMap::kEntry));
+  }
+  CodeReuse code{};
+
+ private:
+  void visit(std::uint64_t key) {
+    const int piece = map_.find(key);
+    if (piece == CodeMap::kUnknown) return;
+    const CodeMap::Piece& found = map_.pieces()[static_cast<std::size_t>(piece)];
+    std::uint32_t distance = found.bytes;
+    auto it = order_.begin();
+    for (; it != order_.end() && *it != piece; ++it)
+      distance += map_.pieces()[static_cast<std::size_t>(*it)].bytes;
+    code[it == order_.end() ? work::kNeverFetched : work::reuse_class(distance)] += found.bytes;
+    code[work::reuse_class(found.bytes)] += found.again_bytes;
+    if (it != order_.end()) order_.erase(it);
+    order_.insert(order_.begin(), piece);
+  }
+
+  const CodeMap& map_;
+  std::vector<std::uint32_t> callers_;
+  std::vector<int> order_;
+};
+
+TEST(CodeTracker, RandomWalksFetchWhatASearchSays) {
+  const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f"};
+  CodeMap map;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    map.add(names[i], "", static_cast<std::uint32_t>(100 + 90 * i), i == 3 ? 40 : 0);
+    for (std::size_t k = i + 1; k < names.size(); ++k)
+      map.add(names[i], names[k], static_cast<std::uint32_t>(30 + 17 * i + 5 * k));
+  }
+  map.add("f64_mul", "", 200);
+  map.add("f64_add", "", 120);
+  CodeTracker tracker(map);
+  SearchingTracker search(map);
+  std::uint32_t random = 1;
+  const auto next = [&random](std::uint32_t n) {
+    random = random * 1664525u + 1013904223u;
+    return (random >> 16) % n;
+  };
+  const CodeReuse code = fetched_by(tracker, [&] {
+    int depth = 0;
+    for (int step = 0; step < 30'000; ++step) {
+      const std::uint32_t what = next(4);
+      if (what == 0 && depth < 5) {
+        const CodeName name(names[next(6)]);
+        work::code_events.enter(name);
+        search.enter(name);
+        ++depth;
+      } else if (what == 1 && depth > 0) {
+        work::code_events.leave();
+        search.leave();
+        --depth;
+      } else if (what == 2) {
+        for (std::uint32_t n = next(12); n > 0; --n) {  // of one kind, then of another
+          const auto routine = n % 3 == 0 ? work::Routine::F64Add : work::Routine::F64Mul;
+          work::code_events.call(routine);
+          search.call(routine);
+        }
+      }
+    }
+  });
+  EXPECT_EQ(code, search.code);
+  EXPECT_GT(all(code), 1'000'000U);
 }
 
 TEST(InstructionCache, NothingIsMissedBelowTheCapacity) {

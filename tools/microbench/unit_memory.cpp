@@ -119,7 +119,7 @@ double code_loop(const sim::ChipConfig& chip, int cores) {
     const auto walk = [&](work::Core&) {
       for (int round = 0; round < rounds; ++round)
         for (int part = 0; part < Bytes / kPart; ++part) {
-          work::current_code->call_routine(work::CodeName(std::to_string(part)).key);
+          const work::Counting::Code piece{work::CodeName(std::to_string(part))};
           I32 x(1);
           for (int i = 0; i < kPart / 4; ++i) x = x & x;
         }

@@ -32,7 +32,7 @@ Element<P> largest_off_diagonal(MatrixView<P> a) {
   for (int i : P::range(0, n - 1))
     for (int j : P::range(i + 1, n)) {
       const F magnitude = work::abs(F(a(i, j)));
-      if (magnitude > largest.magnitude) largest = {magnitude, i, j};
+      if (work::unlikely(magnitude > largest.magnitude)) largest = {magnitude, i, j};
     }
   return largest;
 }

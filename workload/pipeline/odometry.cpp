@@ -29,7 +29,6 @@ class OdometryOf : public Odometry {
         reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),
         back_end_(profile_, controller, graph_) {
     graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
-    work::take_tally();  // set-up happens before the first frame
   }
 
   FrameReport process_frame(const FrameInput& input) override { return front_end_.process(input); }

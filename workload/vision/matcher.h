@@ -44,6 +44,8 @@ template <class P>
 typename P::I32 hamming_distance(typename P::template Span<const typename P::U32> a,
                                  typename P::template Span<const typename P::U32> b) {
   typename P::I32 distance = 0;
+  // Unrolled before it is vectorised, this would not be vectorised at all.
+#pragma GCC unroll 1
   for (int w : P::range(0, kDescriptorWords)) distance += work::popcount(a[w] ^ b[w]);
   return distance;
 }

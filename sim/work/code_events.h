@@ -1,0 +1,83 @@
+// What the present core executes, as a stream of events: named functions entered and left, library
+// routines called. Kernels only append, which costs them next to nothing; the core's tracker
+// (code_tracker.h) reads the stream in windows.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "sim/work/code_map.h"
+
+namespace leviosim::work {
+
+/// Library routines that stand for operations which a core has no hardware for. Their code is found
+/// by these names in the sizes of compiled code. Calls of them do not cut the code of their caller
+/// into pieces.
+enum class Routine : std::uint8_t { F64Add, F64Mul, F64Div, F64Compare, F64Convert };
+
+inline constexpr std::array<CodeName, 5> kRoutineNames = {
+    CodeName("f64_add"), CodeName("f64_mul"), CodeName("f64_div"), CodeName("f64_compare"),
+    CodeName("f64_convert")};
+
+/// 0: the latest function was left. Below 2^28: up to seven calls of routines, four bits each.
+/// Else: the function with this hash (CodeName::key) was entered.
+using CodeEvent = std::uint32_t;
+
+class CodeEvents {
+ public:
+  static constexpr CodeEvent kLeave = 0;
+  static constexpr int kRoutineBits = 4;
+  static constexpr CodeEvent kRoutineMask = (1u << kRoutineBits) - 1;
+  static_assert(kRoutineNames.size() <= kRoutineMask);
+
+  void enter(CodeName function) {
+    append_routines();
+    append(function.key);
+  }
+  /// Windows end here if they can: loops then make the same windows again and again.
+  void leave() {
+    append_routines();
+    append(kLeave);
+    if (size_ >= kShortestWindow) follow_code();
+  }
+  void call(Routine routine) {
+    routines_ = routines_ << kRoutineBits | (static_cast<CodeEvent>(routine) + 1);
+    if (routines_ >= CodeName::kSmallest >> kRoutineBits) [[unlikely]]
+      append_routines();
+  }
+
+  /// Takes the events so far. They are there until the next is added.
+  std::span<const CodeEvent> take() {
+    append_routines();
+    const std::span<const CodeEvent> taken(events_.data(), size_);
+    size_ = 0;
+    return taken;
+  }
+
+ private:
+  static constexpr std::size_t kShortestWindow = 8;
+  static constexpr std::size_t kLongestWindow = 64;
+
+  /// Hands the window to the tracker of the present core, if there is one.
+  static void follow_code();
+  void append(CodeEvent event) {
+    if (size_ == kLongestWindow) [[unlikely]]
+      follow_code();
+    events_[size_++] = event;
+  }
+  void append_routines() {
+    if (routines_ != 0) append(std::exchange(routines_, 0));
+  }
+
+  CodeEvent routines_ = 0;  ///< not appended yet
+  std::size_t size_ = 0;
+  std::array<CodeEvent, kLongestWindow> events_{};
+};
+
+/// Thread-local like the tally, and for the same reason.
+inline constinit thread_local CodeEvents code_events{};
+
+}  // namespace leviosim::work
