@@ -44,11 +44,11 @@ TEST(Override, IsaSpeaksOfBothKindsOfCore) {
 
 TEST(Override, DifferencesOfACoreWinOverIsa) {
   const sim::ChipConfig chip = with({"cluster.core.ops.f32_add.issue=3", "isa.ops.f32_add.issue=2",
-                                     "controller.core.instruction_overhead=1.25"});
+                                     "controller.core.instruction_overhead=1.5"});
   EXPECT_EQ(chip.cluster.core[work::Op::F32Add].issue, 3);
   EXPECT_EQ(chip.controller.core[work::Op::F32Add].issue, 2);
-  EXPECT_EQ(chip.cluster.core.instruction_overhead, 1);
-  EXPECT_EQ(chip.controller.core.instruction_overhead, 1.25);
+  EXPECT_EQ(chip.cluster.core.instruction_overhead, with({}).cluster.core.instruction_overhead);
+  EXPECT_EQ(chip.controller.core.instruction_overhead, 1.5);
   EXPECT_EQ(chip.controller.core[work::Op::F32Div].stall, 14);
 }
 

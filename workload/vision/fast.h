@@ -55,6 +55,7 @@ typename P::Bool is_fast_corner(typename P::template Span<const typename P::Byte
                                 typename P::template Span<const typename P::I32> offsets,
                                 typename P::I32 threshold) {
   using I = typename P::I32;
+  const typename P::Code code("is_fast_corner");
   const I centre_level = image[centre];
   typename P::template Array<I, kRingSize> difference;
   for (int k : P::range(0, kRingSize)) {
