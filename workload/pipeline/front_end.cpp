@@ -55,8 +55,13 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
     report.keyframe = true;
   } else {
     std::optional<Pose<P>> pose = pose_from_landmarks(frame, report);
-    match_keyframe(frame);
-    if (!pose) pose = pose_from_keyframe(frame, report);
+    alloc_keyframe_matches(frame);
+    {
+      // The keyframe's descriptors stay until the pose is known (paper, memory table: 8-point).
+      const work::Arena::Frame descriptors(machine_.local());
+      match_keyframe(frame);
+      if (!pose) pose = pose_from_keyframe(frame, report);
+    }
     frame.T_world_camera = *pose;
     report.keyframe = is_keyframe(frame);
     if (report.keyframe) insert_keyframe(frame);
@@ -136,16 +141,22 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_landmarks(Frame& frame, FrameRepor
 }
 
 template <class P>
+void FrontEnd<P>::alloc_keyframe_matches(Frame& frame) {
+  work::Arena& local = machine_.local();
+  const ObservedFeatures<P>& old = keyframe_.features;
+  frame.keyframe_matches = alloc_matches<P>(local, frame.features.list.capacity, "frame matches");
+  frame.keyframe_pixels =
+      local.alloc<Span<U16>>("keypoints of the keyframe", 2 * old.list.capacity);
+  frame.keyframe_landmarks = local.alloc<Span<U16>>("landmarks of the keyframe", old.list.capacity);
+}
+
+/// Leaves the keyframe's descriptors in L1.
+template <class P>
 void FrontEnd<P>::match_keyframe(Frame& frame) {
   const auto stage = machine_.stage(stages::kFrameMatching);
   work::Arena& local = machine_.local();
   const ObservedFeatures<P>& old = keyframe_.features;
   const int n = old.list.count;
-  frame.keyframe_matches = alloc_matches<P>(local, frame.features.list.capacity, "frame matches");
-  frame.keyframe_pixels =
-      local.alloc<Span<U16>>("keypoints of the keyframe", 2 * old.list.capacity);
-  frame.keyframe_landmarks = local.alloc<Span<U16>>("landmarks of the keyframe", old.list.capacity);
-  const work::Arena::Frame memory(local);
   const auto descriptors = local.alloc<Span<typename P::U32>>("descriptors of the keyframe",
                                                               kDescriptorWords * old.list.capacity);
   machine_.copy_in(descriptors.subspan(0, kDescriptorWords * n), old.list.descriptors);

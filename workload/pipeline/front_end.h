@@ -48,6 +48,7 @@ class FrontEnd {
   void start(Frame& frame);
   std::optional<Pose<P>> pose_from_landmarks(Frame& frame, FrameReport& report);
   int match_landmarks(Frame& frame, const MatchList<P>& matches);
+  void alloc_keyframe_matches(Frame& frame);
   void match_keyframe(Frame& frame);
   std::optional<Pose<P>> pose_from_keyframe(const Frame& frame, FrameReport& report);
   bool is_keyframe(const Frame& frame);
