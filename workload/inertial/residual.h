@@ -94,8 +94,9 @@ Mat3<P> rotation_residual_by_gyro_bias(const Preintegration<P>& interval, const 
   const Mat3<P> by_gyro = interval.rotation_by_gyro();
   const Vec3<P> correction = by_gyro * (bias.gyro - interval.bias().gyro);
   const Mat3<P> inner = so3_right_jacobian<P>(correction) * by_gyro;
-  const Mat3<P> outer =
-      so3_right_jacobian_inverse<P>(residual.rotation) * so3_exp<P>(-residual.rotation);
+  // One call a statement: the order of operands is the compiler's, that of calls is not.
+  const Mat3<P> by_rotation = so3_right_jacobian_inverse<P>(residual.rotation);
+  const Mat3<P> outer = by_rotation * so3_exp<P>(-residual.rotation);
   return scaled<P>(F(-1.0f), outer * inner);
 }
 
