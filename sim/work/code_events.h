@@ -21,6 +21,9 @@ enum class Routine : std::uint8_t { F64Add, F64Mul, F64Div, F64Compare, F64Conve
 inline constexpr std::array<CodeName, 5> kRoutineNames = {
     CodeName("f64_add"), CodeName("f64_mul"), CodeName("f64_div"), CodeName("f64_compare"),
     CodeName("f64_convert")};
+constexpr CodeName name_of(Routine routine) {
+  return kRoutineNames[static_cast<std::size_t>(routine)];
+}
 
 /// 0: the latest function was left. Below 2^28: up to seven calls of routines, four bits each.
 /// Else: the function with this hash (CodeName::key) was entered.
@@ -29,9 +32,6 @@ using CodeEvent = std::uint32_t;
 class CodeEvents {
  public:
   static constexpr CodeEvent kLeave = 0;
-  static constexpr int kRoutineBits = 4;
-  static constexpr CodeEvent kRoutineMask = (1u << kRoutineBits) - 1;
-  static_assert(kRoutineNames.size() <= kRoutineMask);
 
   void enter(CodeName function) {
     append_routines();
@@ -49,6 +49,14 @@ class CodeEvents {
       append_routines();
   }
 
+  /// f(routine) for each call in an event of calls, in their order.
+  template <class F>
+  static void for_each_routine(CodeEvent event, F&& f) {
+    for (int shift = 32 - kRoutineBits; shift >= 0; shift -= kRoutineBits)
+      if (const CodeEvent number = event >> shift & kRoutineMask; number != 0)
+        f(static_cast<Routine>(number - 1));
+  }
+
   /// Takes the events so far. They are there until the next is added.
   std::span<const CodeEvent> take() {
     append_routines();
@@ -58,6 +66,9 @@ class CodeEvents {
   }
 
  private:
+  static constexpr int kRoutineBits = 4;
+  static constexpr CodeEvent kRoutineMask = (1u << kRoutineBits) - 1;
+  static_assert(kRoutineNames.size() <= kRoutineMask);
   static constexpr std::size_t kShortestWindow = 8;
   static constexpr std::size_t kLongestWindow = 64;
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "sim/check.h"
 #include "sim/work/counts.h"
 
 namespace leviosim::work {
@@ -87,9 +86,9 @@ void CodeTracker::walk(Place& place, CodeEvent event) {
     place.callers.pop_back();
     if (!place.callers.empty()) visit(place, CodeMap::piece_key(place.callers.back(), returned));
   } else if (event < CodeName::kSmallest) {
-    for (int shift = 28 - CodeEvents::kRoutineBits; shift >= 0; shift -= CodeEvents::kRoutineBits)
-      if (const CodeEvent number = event >> shift & CodeEvents::kRoutineMask; number != 0)
-        visit(place, CodeMap::piece_key(kRoutineNames[number - 1].key, CodeMap::kEntry));
+    CodeEvents::for_each_routine(event, [&](Routine routine) {
+      visit(place, CodeMap::piece_key(name_of(routine).key, CodeMap::kEntry));
+    });
   } else {
     place.callers.push_back(event);
     visit(place, CodeMap::piece_key(event, CodeMap::kEntry));
@@ -101,8 +100,7 @@ void CodeTracker::visit(Place& place, std::uint64_t piece_key) {
   if (piece == CodeMap::kUnknown) return;
   const std::vector<CodeMap::Piece>& pieces = map_->pieces();
   const CodeMap::Piece& code = pieces[index(piece)];
-  const auto number = static_cast<std::uint16_t>(piece);
-  check_equal(static_cast<int>(number), piece, "pieces of code fit 16 bits");
+  const auto number = static_cast<std::uint32_t>(piece);
   std::uint32_t distance = code.bytes;
   auto found = place.order.begin();
   for (; found != place.order.end() && *found != number; ++found) distance += pieces[*found].bytes;
@@ -132,8 +130,7 @@ void CodeTracker::merge_fetches(std::size_t first) {
 }
 
 std::uint32_t CodeTracker::state_of(const Place& place) {
-  const std::vector<std::uint32_t> order(place.order.begin(), place.order.end());
-  const std::uint64_t hash = hash_of(order) ^ hash_of(place.callers);
+  const std::uint64_t hash = hash_of(place.order) ^ hash_of(place.callers);
   const auto [begin, end] = state_of_hash_.equal_range(hash);
   for (auto it = begin; it != end; ++it)
     if (states_[it->second].place == place) return it->second;

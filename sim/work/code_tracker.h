@@ -35,7 +35,7 @@ class CodeTracker {
   static constexpr std::size_t kMostStates = 1 << 14;
 
   struct Place {
-    std::vector<std::uint16_t> order;    ///< pieces by index, the one visited last first
+    std::vector<std::uint32_t> order;    ///< pieces by index, the one visited last first
     std::vector<std::uint32_t> callers;  ///< functions entered and not left, by hash
     bool operator==(const Place&) const = default;
   };

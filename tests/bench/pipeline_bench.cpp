@@ -15,8 +15,8 @@
 
 #include "platform_models/compiled_code.h"
 #include "platform_models/loader.h"
-#include "sim/chip/chip.h"
 #include "tools/run/feed.h"
+#include "tools/run/job_timer.h"
 #include "traces/synthetic.h"
 
 namespace leviosim {
@@ -92,9 +92,9 @@ class Pipeline {
       const work::Job front = cluster_->take_job();
       const work::Job back = controller_->take_job();
       if (mode_ == Mode::Timed) {
-        time_on(chip_, front);
-        time_on(chip_, back);
-        time_on(single_, front);
+        benchmark::DoNotOptimize(team_.front_end(front));
+        benchmark::DoNotOptimize(team_.optimiser(back));
+        benchmark::DoNotOptimize(single_.front_end(front));
       }
     }
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -102,20 +102,12 @@ class Pipeline {
   double seconds() const { return seconds_; }
 
  private:
-  static void time_on(sim::Chip& chip, const work::Job& job) {
-    const auto body = [](sim::Chip& c, const work::Job& j) -> sim::Process {
-      co_await c.offload(j);
-    };
-    chip.kernel().spawn("job", body(chip, job));
-    chip.kernel().run();
-  }
-
   Mode mode_;
   vio::Profile profile_ = vio::profile_named("levio", 1);
   std::optional<work::Machine> cluster_, controller_;
   std::unique_ptr<vio::Odometry> odometry_;
   sim::ChipConfig config_ = platform::load_platform("gap9");
-  sim::Chip chip_{config_, 8}, single_{config_, 1};
+  tools::JobTimer team_{config_, 8}, single_{config_, 1};
   double seconds_ = 0;
 };
 

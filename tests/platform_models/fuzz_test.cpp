@@ -95,9 +95,13 @@ TEST(Fuzz, DamagedFilesNeverCrash) {
 
 TEST(Fuzz, TruncatedFilesAreRefused) {
   const std::string text = gap9_text();
+  // Supply and energies are optional and come last: a file that ends before them is whole.
+  const std::size_t last_brace = text.rfind('}', text.find("\nsupply:"));
   Random random(2);
-  for (int round = 0; round < 50; ++round)
-    EXPECT_FALSE(loads(text.substr(0, random.below(text.size() * 9 / 10))));
+  for (int round = 0; round < 50; ++round) {
+    const std::size_t size = random.below(last_brace);
+    EXPECT_FALSE(loads(text.substr(0, size))) << "the first " << size << " bytes";
+  }
 }
 
 TEST(Fuzz, NestingIsRefusedNotFollowed) {

@@ -115,8 +115,7 @@ class SearchingTracker {
     if (!callers_.empty()) visit(CodeMap::piece_key(callers_.back(), returned));
   }
   void call(work::Routine routine) {
-    const CodeName name = work::kRoutineNames[static_cast<std::size_t>(routine)];
-    visit(CodeMap::piece_key(name.key, CodeMap::kEntry));
+    visit(CodeMap::piece_key(work::name_of(routine).key, CodeMap::kEntry));
   }
   CodeReuse code{};
 
