@@ -3,6 +3,7 @@
 // (code_tracker.h) reads the stream in windows.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,8 @@ using CodeEvent = std::uint32_t;
 class CodeEvents {
  public:
   static constexpr CodeEvent kLeave = 0;
+  /// Up to a multiple of this, events are readable beyond those taken, and zero.
+  static constexpr std::size_t kBlock = 8;
 
   void enter(CodeName function) {
     append_routines();
@@ -60,6 +63,7 @@ class CodeEvents {
   /// Takes the events so far. They are there until the next is added.
   std::span<const CodeEvent> take() {
     append_routines();
+    std::fill_n(events_.begin() + size_, kBlock, CodeEvent{0});
     const std::span<const CodeEvent> taken(events_.data(), size_);
     size_ = 0;
     return taken;
@@ -85,7 +89,7 @@ class CodeEvents {
 
   CodeEvent routines_ = 0;  ///< not appended yet
   std::size_t size_ = 0;
-  std::array<CodeEvent, kLongestWindow> events_{};
+  std::array<CodeEvent, kLongestWindow + kBlock> events_{};
 };
 
 /// Thread-local like the tally, and for the same reason.

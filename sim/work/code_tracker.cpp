@@ -9,20 +9,26 @@
 namespace leviosim::work {
 namespace {
 
-/// Of 8 words at a time, in lanes that do not wait for each other. Equal hashes are compared.
+/// Equal hashes are compared.
 std::uint64_t hash_of(std::span<const std::uint32_t> words) {
-  constexpr std::array<std::uint64_t, 4> kFactors = {0x9e3779b97f4a7c15u, 0xc2b2ae3d27d4eb4fu,
-                                                     0x165667b19e3779f9u, 0xd6e8feb86659fd93u};
-  std::array<std::uint64_t, 4> lanes = {words.size(), 1, 2, 3};
-  std::size_t i = 0;
-  for (; i + 8 <= words.size(); i += 8)
-    for (std::size_t k = 0; k < 4; ++k)
-      lanes[k] =
-          (lanes[k] ^ (words[i + 2 * k] | std::uint64_t{words[i + 2 * k + 1]} << 32)) * kFactors[k];
-  for (; i < words.size(); ++i) lanes[i % 4] = (lanes[i % 4] ^ words[i]) * kFactors[i % 4];
-  std::uint64_t hash = 0;
-  for (const std::uint64_t lane : lanes) hash = (hash ^ lane ^ (lane >> 32)) * kFactors[0];
+  std::uint64_t hash = words.size();
+  for (const std::uint32_t word : words) {
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 32;
+  }
   return hash;
+}
+
+/// Whether two windows are the same. In blocks, since most windows have two, and a library call or a
+/// branch for each word would cost as much as all the rest.
+bool equal(const CodeEvent* a, const CodeEvent* b, std::size_t size) {
+  constexpr std::size_t kBlock = CodeEvents::kBlock;
+  for (std::size_t i = 0; i < size; i += kBlock) {
+    CodeEvent difference = 0;
+    for (std::size_t k = i; k < i + kBlock; ++k) difference |= a[k] ^ b[k];
+    if (difference != 0) return false;
+  }
+  return true;
 }
 
 template <class T>
@@ -32,50 +38,59 @@ std::size_t index(T number) {
 
 }  // namespace
 
+void CodeTracker::select(int core) {
+  states_of_cores_[core_] = state_;
+  core_ = index(core);
+  state_ = states_of_cores_[core_];
+}
+
 void CodeTracker::follow(std::span<const CodeEvent> events) {
   if (events.empty()) return;
-  const std::uint64_t hash = hash_of(events);
-  std::int32_t number = find_step(hash, events);
-  if (number == kNone) number = add_step(hash, events);
+  std::int32_t number = first_steps_[state_];
+  if (number == kNone || !is_step(number, events)) [[unlikely]]
+    number = find_step(events);
   const Step& step = steps_[index(number)];
   for (std::uint32_t i = step.fetches.begin; i != step.fetches.end; ++i)
     tally.code[fetches_[i].reuse] += fetches_[i].bytes;
   state_ = step.next_state;
 }
 
-std::int32_t CodeTracker::find_step(std::uint64_t hash, std::span<const CodeEvent> events) {
-  std::int32_t& first = states_[state_].first_step;
+bool CodeTracker::is_step(std::int32_t number, std::span<const CodeEvent> events) const {
+  const Step& step = steps_[index(number)];
+  return step.event_count == events.size() &&
+         equal(events.data(), events_.data() + step.first_event, events.size());
+}
+
+std::int32_t CodeTracker::find_step(std::span<const CodeEvent> events) {
+  std::int32_t& first = first_steps_[state_];
   std::int32_t* link = &first;
-  for (; *link != kNone; link = &steps_[index(*link)].sibling) {
-    const Step& step = steps_[index(*link)];
-    if (step.hash == hash &&
-        std::equal(events.begin(), events.end(), events_.begin() + step.events.begin,
-                   events_.begin() + step.events.end))
-      break;
-  }
+  while (*link != kNone && !is_step(*link, events)) link = &steps_[index(*link)].sibling;
+  if (*link == kNone) return add_step(events);
+  // To the front: loops will take it again.
   const std::int32_t found = *link;
-  if (found != kNone && found != first) {  // to the front: loops will take it again
-    *link = steps_[index(found)].sibling;
-    steps_[index(found)].sibling = std::exchange(first, found);
-  }
+  *link = steps_[index(found)].sibling;
+  steps_[index(found)].sibling = std::exchange(first, found);
   return found;
 }
 
-std::int32_t CodeTracker::add_step(std::uint64_t hash, std::span<const CodeEvent> events) {
-  if (states_.size() >= kMostStates) start_from(states_[state_].place);
-  Place place = states_[state_].place;
+std::int32_t CodeTracker::add_step(std::span<const CodeEvent> events) {
+  if (places_.size() >= kMostStates) forget();
+  Place place = places_[state_];
   const std::size_t first_event = events_.size(), first_fetch = fetches_.size();
   events_.insert(events_.end(), events.begin(), events.end());
+  events_.resize((events_.size() + CodeEvents::kBlock - 1) / CodeEvents::kBlock *
+                 CodeEvents::kBlock);
   for (const CodeEvent event : events) walk(place, event);
   merge_fetches(first_fetch);
-  const auto range = [](std::size_t begin, std::size_t end) {
-    return Range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
-  };
   const auto number = static_cast<std::int32_t>(steps_.size());
   const std::uint32_t next = state_of(place);
-  steps_.push_back({hash, states_[state_].first_step, next, range(first_event, events_.size()),
-                    range(first_fetch, fetches_.size())});
-  states_[state_].first_step = number;
+  steps_.push_back({static_cast<std::uint32_t>(first_event),
+                    static_cast<std::uint32_t>(events.size()),
+                    {static_cast<std::uint32_t>(first_fetch),
+                     static_cast<std::uint32_t>(fetches_.size())},
+                    next,
+                    first_steps_[state_]});
+  first_steps_[state_] = number;
   return number;
 }
 
@@ -133,20 +148,24 @@ std::uint32_t CodeTracker::state_of(const Place& place) {
   const std::uint64_t hash = hash_of(place.order) ^ hash_of(place.callers);
   const auto [begin, end] = state_of_hash_.equal_range(hash);
   for (auto it = begin; it != end; ++it)
-    if (states_[it->second].place == place) return it->second;
-  const auto state = static_cast<std::uint32_t>(states_.size());
-  states_.push_back({kNone, place});
+    if (places_[it->second] == place) return it->second;
+  const auto state = static_cast<std::uint32_t>(places_.size());
+  places_.push_back(place);
+  first_steps_.push_back(kNone);
   state_of_hash_.emplace(hash, state);
   return state;
 }
 
-void CodeTracker::start_from(Place place) {
-  states_.clear();
+void CodeTracker::forget() {
+  states_of_cores_[core_] = state_;
+  const std::vector<Place> places = std::exchange(places_, {});
+  first_steps_.clear();
   steps_.clear();
   events_.clear();
   fetches_.clear();
   state_of_hash_.clear();
-  state_ = state_of(place);
+  for (std::uint32_t& state : states_of_cores_) state = state_of(places[state]);
+  state_ = states_of_cores_[core_];
 }
 
 void CodeEvents::follow_code() { fetch_code(); }

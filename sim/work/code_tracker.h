@@ -1,11 +1,11 @@
-// Follows one core through the code it executes (code_events.h) and counts what it fetches by reuse
-// distance (code_reuse.h), from the sizes of the compiled pieces of functions (code_map.h).
+// Follows the cores of a machine through the code they execute (code_events.h), one at a time, and
+// counts what each fetches by reuse distance (code_reuse.h), from the sizes of the compiled pieces of functions (code_map.h).
 //
 // Programs go round in loops, so the same events come again and again while the core has last
 // fetched the same pieces in the same order. That order, with the functions entered, is therefore a
 // *state*, and what a window of events fetches is remembered with its step from state to state, as
 // lazily built automata of regular expressions do. The states are a memory only: without them the
-// same bytes are counted, at many times the cost.
+// same bytes are counted, at many times the cost. Cores execute the same program, so they share it.
 //
 // Left out: code outside of named functions, and the order of fetches within a piece. Small loops
 // are fetched once per visit; what larger ones fetch again is part of the map.
@@ -24,14 +24,17 @@ namespace leviosim::work {
 class CodeTracker {
  public:
   /// @param map  outlives the tracker
-  explicit CodeTracker(const CodeMap& map) : map_(&map) { start_from({}); }
+  explicit CodeTracker(const CodeMap& map, int cores = 1)
+      : map_(&map), states_of_cores_(static_cast<std::size_t>(cores), state_of({})) {}
 
+  /// The events that follow are those of this core.
+  void select(int core);
   /// Adds to the tally of this thread what these events fetch.
   void follow(std::span<const CodeEvent> events);
 
  private:
   static constexpr std::int32_t kNone = -1;
-  /// States kept at most; then all are forgotten but the present one.
+  /// States kept at most; then all are forgotten but the present ones.
   static constexpr std::size_t kMostStates = 1 << 14;
 
   struct Place {
@@ -39,45 +42,47 @@ class CodeTracker {
     std::vector<std::uint32_t> callers;  ///< functions entered and not left, by hash
     bool operator==(const Place&) const = default;
   };
-  struct State {
-    std::int32_t first_step = kNone;
-    Place place;
-  };
   struct Range {
     std::uint32_t begin, end;
   };
   struct Step {
-    std::uint64_t hash;    ///< of the events
-    std::int32_t sibling;  ///< another step out of the same state
+    std::uint32_t first_event, event_count;
+    Range fetches;
     std::uint32_t next_state;
-    Range events, fetches;
+    std::int32_t sibling;  ///< another step out of the same state
   };
   struct Fetch {
     std::uint32_t reuse;  ///< class of the distance
     std::uint32_t bytes;
   };
 
-  std::int32_t find_step(std::uint64_t hash, std::span<const CodeEvent> events);
-  std::int32_t add_step(std::uint64_t hash, std::span<const CodeEvent> events);
+  bool is_step(std::int32_t number, std::span<const CodeEvent> events) const;
+  /// Among those that are not the latest, or a new one.
+  std::int32_t find_step(std::span<const CodeEvent> events);
+  std::int32_t add_step(std::span<const CodeEvent> events);
   void walk(Place& place, CodeEvent event);
   /// Appends to fetches_ what visiting the piece fetches, and moves it to the front.
   void visit(Place& place, std::uint64_t piece_key);
   /// Makes one of the fetches of the same class from `first` on.
   void merge_fetches(std::size_t first);
   std::uint32_t state_of(const Place& place);
-  void start_from(Place place);
+  /// Forgets all states but those in which the cores are.
+  void forget();
 
   const CodeMap* map_;
-  std::uint32_t state_ = 0;
-  std::vector<State> states_;
+  std::vector<Place> places_;               ///< of all states
+  std::vector<std::int32_t> first_steps_;  ///< out of all states, the latest first
   std::vector<Step> steps_;
-  std::vector<CodeEvent> events_;  ///< of all steps
+  std::vector<CodeEvent> events_;  ///< of all steps, each from a block's begin on, padded with zeros
   std::vector<Fetch> fetches_;     ///< of all steps
   std::unordered_multimap<std::uint64_t, std::uint32_t> state_of_hash_;
+  std::size_t core_ = 0;     ///< the one selected
+  std::uint32_t state_ = 0;  ///< of that core
+  std::vector<std::uint32_t> states_of_cores_;  ///< of the other cores
 };
 
-/// The core that the host thread executes at the moment, or none. Thread-local like the tally, and
-/// for the same reason.
+/// Of the machine whose code the host thread executes at the moment, or none. Thread-local like the
+/// tally, and for the same reason.
 inline constinit thread_local CodeTracker* current_code = nullptr;
 
 /// Brings the tally up to date with the events of the present core, before it is read or another

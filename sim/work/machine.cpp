@@ -8,11 +8,13 @@ Machine::Machine(const MachineConfig& config)
     : config_(config), local_(config.memory, config.capacity, config.alignment) {
   check(config.cores >= 1, "a machine has at least one core");
   if (config.record && config.code != nullptr)
-    trackers_.assign(static_cast<std::size_t>(config.cores) + 1, CodeTracker(*config.code));
+    tracker_.emplace(*config.code, config.cores + 1);
 }
 
 void Machine::follow_code_of(int core) {
-  if (!trackers_.empty()) current_code = &trackers_[static_cast<std::size_t>(core)];
+  if (!tracker_) return;
+  tracker_->select(core);
+  current_code = &*tracker_;
 }
 
 Counts Machine::counted_so_far() {

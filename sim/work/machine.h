@@ -188,7 +188,7 @@ class Machine {
   Bytes scratch_sum_{0};
   Bytes scratch_max_{0};
   MemoryPeak fork_peak_;               ///< of the forks of the stage so far
-  std::vector<CodeTracker> trackers_;  ///< of every core and of the master, if their code is known
+  std::optional<CodeTracker> tracker_;  ///< of every core and of the master, if their code is known
 };
 
 }  // namespace leviosim::work

@@ -3,13 +3,13 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <vector>
 
 #include "sim/work/machine.h"
+#include "tests/bench/cpu_time.h"
 #include "workload/geometry/essential_ransac.h"
 #include "workload/geometry/pnp_ransac.h"
 #include "workload/geometry/triangulate.h"
@@ -174,9 +174,9 @@ std::function<void()> preintegration(Bench<P>& b) {
 }
 
 double seconds(const std::function<void()>& body, int times) {
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = cpu_seconds();
   for (int i = 0; i < times; ++i) body();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return cpu_seconds() - begin;
 }
 
 /// Runs both policies alternately; reports the median of the ratios.

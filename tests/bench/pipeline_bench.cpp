@@ -6,7 +6,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -15,6 +14,7 @@
 
 #include "platform_models/compiled_code.h"
 #include "platform_models/loader.h"
+#include "tests/bench/cpu_time.h"
 #include "tools/run/feed.h"
 #include "tools/run/job_timer.h"
 #include "traces/synthetic.h"
@@ -83,7 +83,7 @@ class Pipeline {
   }
 
   void process(const vio::FrameInput& frame) {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = cpu_seconds();
     const bool optimising = odometry_->begin_optimisation();
     benchmark::DoNotOptimize(odometry_->process_frame(frame));
     for (int k = 0; optimising && k < profile_.optimiser_iterations; ++k) odometry_->optimise();
@@ -97,7 +97,7 @@ class Pipeline {
         benchmark::DoNotOptimize(single_.front_end(front));
       }
     }
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    seconds_ += cpu_seconds() - begin;
   }
   double seconds() const { return seconds_; }
 

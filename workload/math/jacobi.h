@@ -25,7 +25,7 @@ struct Element {
 
 /// The largest |a(i, j)| above the diagonal.
 template <class P>
-Element<P> largest_off_diagonal(MatrixView<P> a) {
+[[gnu::always_inline]] inline Element<P> largest_off_diagonal(MatrixView<P> a) {
   using F = typename P::F32;
   const int n = a.rows();
   Element<P> largest{0.0f, 0, 1};
@@ -64,7 +64,7 @@ typename P::F32 rotated_diagonal(typename P::F32 c, typename P::F32 s, typename 
 
 /// (x, y) ← (c x − s y, s x + c y) for the elements of two rows.
 template <class P>
-void rotate_rows(typename P::template Span<typename P::F32> x_row,
+[[gnu::always_inline]] inline void rotate_rows(typename P::template Span<typename P::F32> x_row,
                  typename P::template Span<typename P::F32> y_row, typename P::F32 c,
                  typename P::F32 s) {
   using F = typename P::F32;
@@ -78,7 +78,7 @@ void rotate_rows(typename P::template Span<typename P::F32> x_row,
 
 /// The same for columns p and q of a.
 template <class P>
-void rotate_columns(MatrixView<P> a, typename P::I32 p, typename P::I32 q, typename P::F32 c,
+[[gnu::always_inline]] inline void rotate_columns(MatrixView<P> a, typename P::I32 p, typename P::I32 q, typename P::F32 c,
                     typename P::F32 s) {
   using F = typename P::F32;
   const MatrixView<P> x_column = a.from_column(p);
@@ -93,7 +93,7 @@ void rotate_columns(MatrixView<P> a, typename P::I32 p, typename P::I32 q, typen
 
 /// Annihilates a(p, q) by a similarity rotation of a, which stays symmetric to the last bit.
 template <class P>
-void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I32 p, typename P::I32 q,
+[[gnu::always_inline]] inline void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I32 p, typename P::I32 q,
             DiagonalPrecision precision) {
   using F = typename P::F32;
   const typename P::Function function("jacobi_rotation");
@@ -126,7 +126,7 @@ void set_identity(MatrixView<P> a) {
 /// @param v  n×n; its columns become the eigenvectors
 /// @return the number of rotations
 template <class P>
-int jacobi_eigen_classical(MatrixView<P> a, MatrixView<P> v, int max_rotations,
+[[gnu::always_inline]] inline int jacobi_eigen_classical(MatrixView<P> a, MatrixView<P> v, int max_rotations,
                            typename P::F32 tolerance, DiagonalPrecision precision) {
   const typename P::Function function("jacobi_eigen_classical");
   set_identity<P>(v);
