@@ -25,12 +25,12 @@ using traces::Evaluation;
 using traces::MatchedPose;
 
 constexpr double kWidth = 1000;
-constexpr double kHeight = 884;
+constexpr double kHeight = 900;
 constexpr double kLegendY = 100;
 constexpr Box kTopView{70, 134, 400, 360};
 constexpr Box kSideView{570, 134, 400, 360};
 constexpr Box kTranslation{70, 560, 900, 130};
-constexpr Box kRotation{70, 726, 900, 110};
+constexpr Box kRotation{70, 742, 900, 110};
 constexpr const char* kTruthColour = "#b4bbc4";
 constexpr const char* kInk = "#1c2733";
 constexpr const char* kErrorColour = "#203e8c";
@@ -189,25 +189,27 @@ void draw_error_panels(Svg& svg, const Picture& picture) {
 
 void draw_legend(Svg& svg, const Picture& picture) {
   constexpr double kCell = 5;
+  constexpr double kScaleX = 426;
   constexpr double kTextY = kLegendY + 4;
   svg.line({70, kLegendY}, {98, kLegendY}, {kTruthColour, kTruthWidth});
   svg.text({106, kTextY}, "ground truth", {});
   svg.text({206, kTextY}, "estimate, by translation error:", {});
-  svg.text({392, kTextY}, "0", {12, Anchor::end});
+  svg.text({kScaleX - 6, kTextY}, "0", {12, Anchor::end});
   for (int i = 0; i < plot::kColours; ++i)
-    svg.rectangle({398 + kCell * i, kLegendY - 5, kCell + (i + 1 < plot::kColours ? 0.5 : 0), 10},
-                  plot::colour(i));
-  svg.text({398 + kCell * plot::kColours + 6, kTextY},
+    svg.rectangle(
+        {kScaleX + kCell * i, kLegendY - 5, kCell + (i + 1 < plot::kColours ? 0.5 : 0), 10},
+        plot::colour(i));
+  svg.text({kScaleX + kCell * plot::kColours + 6, kTextY},
            fmt::format("{:.3g} m", picture.evaluation.translation.max), {});
-  svg.circle({610, kLegendY}, 5, "#ffffff", {kInk, 2});
-  svg.text({622, kTextY}, "start", {});
-  svg.rectangle({670, kLegendY - 4.5, 9, 9}, kInk);
-  svg.text({686, kTextY}, "end of the matched part", {});
+  svg.circle({650, kLegendY}, 5, "#ffffff", {kInk, 2});
+  svg.text({662, kTextY}, "start", {});
+  svg.rectangle({716, kLegendY - 4.5, 9, 9}, kInk);
+  svg.text({732, kTextY}, "end of the matched part", {});
 }
 
 /// The protocol, in lines that fit the picture.
 void draw_heading(Svg& svg, const Picture& picture) {
-  constexpr int kCharacters = 150;
+  constexpr int kCharacters = 125;
   const Evaluation& e = picture.evaluation;
   svg.text({70, 34},
            fmt::format("Absolute trajectory error {:.3f} m RMSE ({:.3f} m at worst), rotation "
