@@ -26,8 +26,8 @@ using traces::testing::TempFolder;
 /// A spiral of 10 s and about 12 m, 20 poses a second; `error` bends it. [m]
 Trajectory spiral(double error, std::int64_t start_ns = 5'000'000'000) {
   Trajectory trajectory;
-  for (int i = 0; i <= 200; ++i) {
-    const double s = 0.05 * i;
+  for (std::int64_t i = 0; i <= 200; ++i) {
+    const double s = 0.05 * static_cast<double>(i);
     trajectory.push_back(
         {start_ns + i * 50'000'000, Eigen::Translation3d(std::cos(s) + error * s, std::sin(s),
                                                          0.6 * s + error * std::sin(2 * s)) *

@@ -36,8 +36,8 @@ TEST(DistancesAlong, FollowTheSamplesOfTheTruthBetweenTheMatches) {
   Trajectory truth;
   const std::vector<Eigen::Vector3d> corners{{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {3, 4, 12}};
   for (std::size_t i = 0; i < corners.size(); ++i)
-    truth.push_back({static_cast<std::int64_t>(i) * 100,
-                     Eigen::Isometry3d(Eigen::Translation3d(corners[i]))});
+    truth.push_back(
+        {static_cast<std::int64_t>(i) * 100, Eigen::Isometry3d(Eigen::Translation3d(corners[i]))});
   Trajectory estimate;
   for (const std::int64_t t_ns : {50, 150, 300})
     estimate.push_back({t_ns, Eigen::Isometry3d::Identity()});

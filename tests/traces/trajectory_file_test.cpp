@@ -129,19 +129,30 @@ TEST_F(TrajectoryFiles, PosesWithoutStampsAreMatchedByNumber) {
 }
 
 TEST_F(TrajectoryFiles, FoldersHoldOne) {
-  const AslFolder flight;
-  const auto truth = flight.mav0("state_groundtruth_estimate0/data.csv");
-  EXPECT_EQ(find_trajectory(flight.root()), truth);
-  EXPECT_EQ(find_trajectory(flight.mav0("")).lexically_normal(), truth.lexically_normal());
-  expect_input_error([&] { find_trajectory(folder_.path()); },
-                     {"holds no trajectory", "trajectory.tum", "mav0/state_groundtruth"});
-  const auto run = write("trajectory.tum", kTum);
-  EXPECT_EQ(find_trajectory(folder_.path()), run);
-  ReadOptions options;  // is for files, not for what is known to be in a folder
+  const auto folder = [&](const char* name) {
+    std::filesystem::create_directories(folder_ / name / "mav0/state_groundtruth_estimate0");
+    return folder_ / name;
+  };
+  const auto flight = folder("flight");
+  const std::string csv = "mav0/state_groundtruth_estimate0/data.csv";
+  const auto truth = write("flight/" + csv, "1,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(find_trajectory(flight), truth);
+  EXPECT_EQ(find_trajectory(flight / "mav0"), truth);
+  const auto run = folder("run");
+  expect_input_error([&] { find_trajectory(run); }, {"holds no trajectory", "trajectory.tum", csv});
+  const auto trajectory = write("run/trajectory.tum", kTum);
+  EXPECT_EQ(find_trajectory(run), trajectory);
+  const auto both = folder("both");
+  write("both/" + csv, "");
+  write("both/trajectory.tum", kTum);
+  expect_input_error([&] { find_trajectory(both); }, {csv, "name the file"});
+}
+
+TEST_F(TrajectoryFiles, AForcedFormatIsNotForFolders) {
+  write("trajectory.tum", kTum);
+  ReadOptions options;
   options.format = TrajectoryFormat::kitti;
   EXPECT_EQ(read_trajectory(folder_.path(), options).format, TrajectoryFormat::tum);
-  write_file_atomically(flight.root() / "trajectory.tum", kTum);
-  expect_input_error([&] { find_trajectory(flight.root()); }, {"name the file"});
 }
 
 }  // namespace
