@@ -9,7 +9,7 @@
 namespace leviosim::traces {
 namespace {
 
-/// The pose `to` seen from `from`. Isometry3d's own inverse() is exact for rotations.
+/// The pose `to` seen from `from`.
 Eigen::Isometry3d step(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) {
   return from.inverse() * to;
 }

@@ -273,7 +273,6 @@ TEST_P(EvaluationReference, AgreesOnARecordedFlight) {
   expect_agreement(flight, options, {1, 4});
 }
 
-/// An estimate that already lies right, so that the alignment has nothing else to take away.
 TEST(EvaluationProperty, PosYawTakesAwayYawAndTranslationAndNothingElse) {
   const Flight flight = random_flight(4);
   EvaluationOptions options;
