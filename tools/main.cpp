@@ -8,6 +8,7 @@
 #include "tools/calibrate/calibrate_command.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
+#include "tools/eval/eval_command.h"
 #include "tools/microbench/microbench_command.h"
 #include "tools/platforms/platforms_command.h"
 #include "tools/run/run_command.h"
@@ -34,8 +35,8 @@ int run_program(const Words& words) {
     return run_command_line(
         app,
         {add_run_command(app, words), add_synth_command(app), add_platforms_command(app),
-         add_validate_command(app, words), add_calibrate_command(app), add_sensitivity_command(app),
-         add_microbench_command(app)},
+         add_eval_command(app), add_validate_command(app, words), add_calibrate_command(app),
+         add_sensitivity_command(app), add_microbench_command(app)},
         words);
   } catch (const InputError& error) {
     return fail(error);

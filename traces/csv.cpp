@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+constexpr std::size_t kDecimals = 9;
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(kBlanks);
@@ -28,6 +30,32 @@ std::string quoted(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   if (text.size() <= kLongest) return fmt::format("'{}'", text);
   return fmt::format("'{}...'", text.substr(0, kLongest));
+}
+
+bool all_digits(std::string_view text) {
+  return text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Digits to an integer; false if there is none or it does not fit.
+bool parse_digits(std::string_view text, std::int64_t& value) {
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && stop == text.data() + text.size();
+}
+
+/// Seconds in plain decimal notation to nanoseconds, without rounding through a double. Digits
+/// beyond the ninth are dropped.
+bool parse_plain_seconds(std::string_view text, std::int64_t& ns) {
+  const auto dot = text.find('.');
+  const std::string_view whole = text.substr(0, dot);
+  std::string decimals(dot == std::string_view::npos ? std::string_view() : text.substr(dot + 1));
+  if (!all_digits(whole) || !all_digits(decimals)) return false;
+  decimals.resize(kDecimals, '0');
+  std::int64_t seconds = 0;
+  std::int64_t fraction = 0;
+  if (!parse_digits(whole, seconds) || !parse_digits(decimals, fraction)) return false;
+  if (seconds > INT64_MAX / kNsPerSecond - 1) return false;
+  ns = seconds * kNsPerSecond + fraction;
+  return true;
 }
 
 }  // namespace
@@ -66,6 +94,16 @@ std::int64_t CsvRow::nanoseconds(std::size_t column) const {
   if (error != std::errc() || stop != end || value < 0)
     fail(column, "not a time stamp, which is a non-negative integer of nanoseconds");
   return value;
+}
+
+std::int64_t CsvRow::nanoseconds_from_seconds(std::size_t column) const {
+  constexpr double kMostSeconds = 9e9;
+  std::int64_t ns = 0;
+  if (parse_plain_seconds(cells_[column], ns)) return ns;
+  const double seconds = number(column);
+  if (seconds < 0 || seconds > kMostSeconds)
+    fail(column, "not a time stamp, which is seconds from 0 to 9e9");
+  return std::llround(seconds * static_cast<double>(kNsPerSecond));
 }
 
 void CsvRow::fail(std::string_view message) const {
@@ -121,20 +159,36 @@ void CsvReader::split(std::string_view line) {
   }
 }
 
-const CsvRow* CsvReader::next() {
+bool CsvReader::advance() {
   while (position_ < text_.size()) {
     const std::string_view line = trim(next_line());
     if (!line.empty() && line.front() == '#') continue;
     row_.line_ = line_;
     if (line.empty()) row_.fail("a blank line between rows");
     split(line);
-    if (row_.size() != names_.size())
-      row_.fail(fmt::format("{} column{} instead of {} ({} ... {})", row_.size(),
-                            row_.size() == 1 ? "" : "s", names_.size(), names_.front(),
-                            names_.back()));
-    return &row_;
+    return true;
   }
-  return nullptr;
+  return false;
+}
+
+const CsvRow* CsvReader::next() {
+  if (!advance()) return nullptr;
+  if (row_.size() != names_.size())
+    row_.fail(fmt::format("{} column{} instead of {} ({} ... {})", row_.size(),
+                          row_.size() == 1 ? "" : "s", names_.size(), names_.front(),
+                          names_.back()));
+  return &row_;
+}
+
+FirstRow first_row(const std::filesystem::path& file) {
+  const std::string text = read_text_file(file);
+  const auto look = [&](Separator separator) -> FirstRow {
+    CsvReader csv(file, separator, {}, text);
+    if (!csv.advance()) throw InputError(fmt::format("{}: holds no row", file.string()));
+    return {separator, csv.row_.size(), csv.row_.line()};
+  };
+  const FirstRow by_commas = look(Separator::comma);
+  return by_commas.columns > 1 ? by_commas : look(Separator::blanks);
 }
 
 void RisingStamps::add(const CsvRow& row, std::int64_t t_ns) {

@@ -34,6 +34,9 @@ class CsvRow {
   double number(std::size_t column) const;
   /// Nanoseconds as a non-negative integer, or InputError.
   std::int64_t nanoseconds(std::size_t column) const;
+  /// Nanoseconds from seconds, 0 to 9e9, or InputError. Plain decimals are exact, and digits beyond
+  /// the ninth dropped; scientific notation is as exact as a double is.
+  std::int64_t nanoseconds_from_seconds(std::size_t column) const;
   /// Throws an InputError about this row.
   [[noreturn]] void fail(std::string_view message) const;
   /// Throws an InputError about one cell: "..., column 2 (name): 'text' is MESSAGE".
@@ -48,6 +51,16 @@ class CsvRow {
 };
 
 enum class Separator { comma, blanks };
+
+/// What the first row of a file looks like: separated by commas if it holds one.
+struct FirstRow {
+  Separator separator = Separator::blanks;
+  std::size_t columns = 0;
+  std::size_t line = 0;
+};
+
+/// Throws InputError if the file cannot be read or has no row.
+FirstRow first_row(const std::filesystem::path& file);
 
 /// Reads a file whose rows have `names.size()` columns (the names appear in messages only).
 class CsvReader {
@@ -64,6 +77,8 @@ class CsvReader {
   const std::filesystem::path& file() const { return file_; }
 
  private:
+  friend FirstRow first_row(const std::filesystem::path& file);
+  bool advance();
   std::string_view next_line();
   void split(std::string_view line);
 

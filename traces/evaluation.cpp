@@ -12,78 +12,84 @@ namespace {
 
 constexpr double kDegreesPerRadian = 57.295779513082320876798;
 
-bool earlier(const StampedPose& pose, std::int64_t t_ns) { return pose.t_ns < t_ns; }
-
-Eigen::Isometry3d interpolate(const StampedPose& a, const StampedPose& b, std::int64_t t_ns) {
-  const double s = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
-  const Eigen::Vector3d p =
-      (1 - s) * a.T_world_body.translation() + s * b.T_world_body.translation();
-  const Eigen::Quaterniond from(a.T_world_body.linear());
-  const Eigen::Quaterniond to(b.T_world_body.linear());
-  return Eigen::Translation3d(p) * from.slerp(s, to);
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  return static_cast<double>(to_ns - from_ns) * 1e-9;
 }
 
-double rotation_angle(const Eigen::Matrix3d& rotation) {
-  return Eigen::AngleAxisd(rotation).angle();
+double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
+
+std::string aligned_words(Alignment alignment) {
+  return alignment == Alignment::none ? "not aligned"
+                                      : fmt::format("{}-aligned", name_of(alignment));
 }
 
-/// Length of the truth between two times that lie within it.
-double path_length(const Trajectory& truth, const MatchedPose& first, const MatchedPose& last) {
-  double length = 0;
-  Eigen::Vector3d here = first.truth.translation();
-  const auto walk_to = [&](const Eigen::Vector3d& there) {
-    length += (there - here).norm();
-    here = there;
-  };
-  for (auto sample = std::lower_bound(truth.begin(), truth.end(), first.t_ns, earlier);
-       sample != truth.end() && sample->t_ns < last.t_ns; ++sample)
-    walk_to(sample->T_world_body.translation());
-  walk_to(last.truth.translation());
-  return length;
+std::string matched_words(const Evaluation& result, const EvaluationOptions& options) {
+  const std::string poses = fmt::format("{} of {} poses matched", result.matched, result.estimates);
+  if (options.stamps == Stamps::pose_number) return poses + " by number";
+  return fmt::format("{} with interpolated truth (a sample within {:g} ms)", poses,
+                     milliseconds(options.max_gap_ns));
 }
 
-std::string protocol_line(const Evaluation& result, const EvaluationOptions& options) {
-  const std::string aligned = options.alignment == Alignment::none
-                                  ? "not aligned"
-                                  : fmt::format("{}-aligned", name_of(options.alignment));
-  return fmt::format(
-      "{}, {} of {} poses matched within {:g} ms, completion {:.1f} %, {:.2f} m of path", aligned,
-      result.matched, result.estimates, static_cast<double>(options.max_gap_ns) * 1e-6,
-      result.completion * 100, result.path_length_m);
+/// Also sets `completion`, which the words are about.
+std::string completion_words(const Trajectory& truth, const EvaluationOptions& options,
+                             Evaluation& result) {
+  const auto matched = static_cast<double>(result.matched);
+  std::string whole = fmt::format("{} expected poses", options.expected_poses);
+  if (options.expected_poses > 0) {
+    result.completion = matched / static_cast<double>(options.expected_poses);
+  } else if (options.stamps == Stamps::pose_number) {
+    result.completion = matched / static_cast<double>(truth.size());
+    whole = fmt::format("{} true poses", truth.size());
+  } else {
+    const double duration_s = seconds_between(truth.front().t_ns, truth.back().t_ns);
+    const double span_s = seconds_between(result.poses.front().t_ns, result.poses.back().t_ns);
+    result.completion = duration_s > 0 ? span_s / duration_s : 1;
+    whole = fmt::format("{:.2f} s of truth, longest gap {:.2f} s", duration_s,
+                        result.longest_gap_s.value_or(0));
+  }
+  return fmt::format("completion {:.1f} % ({})", result.completion * 100, whole);
 }
 
-void measure_errors(const std::vector<MatchedPose>& matches, Evaluation& result) {
+double longest_gap(const std::vector<MatchedPose>& poses) {
+  double longest_s = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    longest_s = std::max(longest_s, seconds_between(poses[i - 1].t_ns, poses[i].t_ns));
+  return longest_s;
+}
+
+Similarity alignment_of(const std::vector<MatchedPose>& matches, Alignment alignment) {
+  std::vector<Eigen::Vector3d> from;
+  std::vector<Eigen::Vector3d> to;
+  for (const MatchedPose& match : matches) {
+    from.push_back(match.estimate.translation());
+    to.push_back(match.truth.translation());
+  }
+  return align_points(from, to, alignment);
+}
+
+void align(std::vector<MatchedPose>& poses, const Similarity& by) {
+  for (MatchedPose& pose : poses) {
+    const Eigen::Vector3d position = by * pose.estimate.translation();
+    const Eigen::Matrix3d rotation = by.rotation * pose.estimate.linear();
+    pose.estimate.linear() = rotation;
+    pose.estimate.translation() = position;
+  }
+}
+
+void measure_errors(Evaluation& result) {
   std::vector<double> translation;
   std::vector<double> rotation;
-  for (const MatchedPose& match : matches) {
-    const Eigen::Vector3d position = result.alignment * match.estimate.translation();
-    translation.push_back((position - match.truth.translation()).norm());
-    rotation.push_back(rotation_angle(match.truth.linear().transpose() * result.alignment.rotation *
-                                      match.estimate.linear()));
+  for (const MatchedPose& pose : result.poses) {
+    translation.push_back(translation_error(pose));
+    rotation.push_back(rotation_error_deg(pose));
   }
   result.translation = summarize(std::move(translation));
-  result.rotation_rmse_deg = summarize(std::move(rotation)).rmse * kDegreesPerRadian;
+  result.rotation_rmse_deg = summarize(std::move(rotation)).rmse;
+  if (!std::isfinite(result.translation.rmse) || !std::isfinite(result.path_length_m))
+    throw InputError("the positions are too large to be compared; expected metres");
 }
 
 }  // namespace
-
-std::vector<MatchedPose> associate(const Trajectory& estimate, const Trajectory& truth,
-                                   std::int64_t max_gap_ns) {
-  std::vector<MatchedPose> matches;
-  for (const StampedPose& pose : estimate) {
-    const auto right = std::lower_bound(truth.begin(), truth.end(), pose.t_ns, earlier);
-    if (right == truth.end()) continue;
-    if (right->t_ns == pose.t_ns) {
-      matches.push_back({pose.t_ns, pose.T_world_body, right->T_world_body});
-      continue;
-    }
-    if (right == truth.begin()) continue;
-    const auto left = right - 1;
-    if (std::min(pose.t_ns - left->t_ns, right->t_ns - pose.t_ns) > max_gap_ns) continue;
-    matches.push_back({pose.t_ns, pose.T_world_body, interpolate(*left, *right, pose.t_ns)});
-  }
-  return matches;
-}
 
 ErrorSummary summarize(std::vector<double> errors) {
   ErrorSummary summary;
@@ -103,30 +109,37 @@ ErrorSummary summarize(std::vector<double> errors) {
   return summary;
 }
 
+double translation_error(const MatchedPose& pose) {
+  return (pose.estimate.translation() - pose.truth.translation()).norm();
+}
+
+double rotation_error_deg(const MatchedPose& pose) {
+  return angle_deg(pose.truth.linear().transpose() * pose.estimate.linear());
+}
+
+double angle_deg(const Eigen::Matrix3d& rotation) {
+  return Eigen::AngleAxisd(rotation).angle() * kDegreesPerRadian;
+}
+
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
                     const EvaluationOptions& options) {
-  const std::vector<MatchedPose> matches = associate(estimate, truth, options.max_gap_ns);
-  if (matches.empty())
+  Evaluation result;
+  result.poses = associate(estimate, truth, options.max_gap_ns);
+  if (result.poses.empty())
     throw InputError(fmt::format(
         "none of the {} estimated poses lies within {:g} ms of one of the {} ground-truth poses",
-        estimate.size(), static_cast<double>(options.max_gap_ns) * 1e-6, truth.size()));
-  std::vector<Eigen::Vector3d> from;
-  std::vector<Eigen::Vector3d> to;
-  for (const MatchedPose& match : matches) {
-    from.push_back(match.estimate.translation());
-    to.push_back(match.truth.translation());
-  }
-
-  Evaluation result;
-  result.alignment = align_points(from, to, options.alignment);
-  result.matched = matches.size();
+        estimate.size(), milliseconds(options.max_gap_ns), truth.size()));
+  result.alignment = alignment_of(result.poses, options.alignment);
+  align(result.poses, result.alignment);
+  result.matched = result.poses.size();
   result.estimates = estimate.size();
-  const std::size_t expected =
-      options.expected_poses > 0 ? options.expected_poses : estimate.size();
-  result.completion = static_cast<double>(result.matched) / static_cast<double>(expected);
-  result.path_length_m = path_length(truth, matches.front(), matches.back());
-  measure_errors(matches, result);
-  result.protocol = protocol_line(result, options);
+  if (options.stamps == Stamps::time) result.longest_gap_s = longest_gap(result.poses);
+  result.distances_m = distances_along(truth, result.poses);
+  result.path_length_m = result.distances_m.back();
+  measure_errors(result);
+  const std::string completion = completion_words(truth, options, result);
+  result.protocol = fmt::format("{}, {}, {}, {:.2f} m of path", aligned_words(options.alignment),
+                                matched_words(result, options), completion, result.path_length_m);
   return result;
 }
 

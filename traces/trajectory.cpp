@@ -3,11 +3,8 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <iterator>
-#include <string_view>
 
 #include "sim/error.h"
 #include "traces/asl_reader.h"
@@ -18,7 +15,6 @@ namespace leviosim::traces {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::size_t kDecimals = 9;
 constexpr double kQuaternionTolerance = 1e-3;
 
 /// Flips the sign so that the first component of (w, x, y, z) that is not zero is positive.
@@ -34,42 +30,6 @@ void append_number(std::string& out, double value) {
   constexpr double kPrintsAsZero = 0.5e-9;
   if (std::abs(value) < kPrintsAsZero) value = 0;
   fmt::format_to(std::back_inserter(out), " {:.9f}", value);
-}
-
-bool all_digits(std::string_view text) {
-  return text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-/// Digits to an integer; false if there is none or it does not fit.
-bool parse_digits(std::string_view text, std::int64_t& value) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && stop == text.data() + text.size();
-}
-
-/// Seconds in plain decimal notation to nanoseconds, without rounding through a double. Digits
-/// beyond the ninth are dropped.
-bool parse_plain_seconds(std::string_view text, std::int64_t& ns) {
-  const auto dot = text.find('.');
-  const std::string_view whole = text.substr(0, dot);
-  std::string decimals(dot == std::string_view::npos ? std::string_view() : text.substr(dot + 1));
-  if (!all_digits(whole) || !all_digits(decimals)) return false;
-  decimals.resize(kDecimals, '0');
-  std::int64_t seconds = 0;
-  std::int64_t fraction = 0;
-  if (!parse_digits(whole, seconds) || !parse_digits(decimals, fraction)) return false;
-  if (seconds > INT64_MAX / kNsPerSecond - 1) return false;
-  ns = seconds * kNsPerSecond + fraction;
-  return true;
-}
-
-std::int64_t parse_stamp(const CsvRow& row) {
-  constexpr double kMostSeconds = 9e9;
-  std::int64_t ns = 0;
-  if (parse_plain_seconds(row.text(0), ns)) return ns;
-  const double seconds = row.number(0);
-  if (seconds < 0 || seconds > kMostSeconds)
-    row.fail(0, "not a time stamp, which is seconds from 0 to 9e9");
-  return std::llround(seconds * static_cast<double>(kNsPerSecond));
 }
 
 }  // namespace
@@ -98,7 +58,7 @@ Trajectory read_tum(const std::filesystem::path& file) {
   RisingStamps stamps;
   Trajectory trajectory;
   while (const CsvRow* row = csv.next()) {
-    const std::int64_t t_ns = parse_stamp(*row);
+    const std::int64_t t_ns = row->nanoseconds_from_seconds(0);
     stamps.add(*row, t_ns);
     const Eigen::Quaterniond q(row->number(7), row->number(4), row->number(5), row->number(6));
     if (std::abs(q.norm() - 1) > kQuaternionTolerance)

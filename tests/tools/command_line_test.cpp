@@ -30,14 +30,7 @@ class CommandLine : public ::testing::Test {
   /// Runs the program, which must refuse with one message that contains all parts.
   void expect_refusal(const std::vector<std::string>& words,
                       const std::vector<std::string>& parts) {
-    const ProgramResult result = run_program(folder_.path(), words);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(result.err.rfind("leviosim: ", 0), 0u) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& part : parts)
-      EXPECT_NE(result.err.find(part), std::string::npos)
-          << "'" << part << "' is not in: " << result.err;
+    testing::expect_refused(run_program(folder_.path(), words), parts);
   }
   void expect_run_refused(const std::vector<std::string>& further,
                           const std::vector<std::string>& parts) {

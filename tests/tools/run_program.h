@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -67,6 +68,17 @@ class Program {
 inline ProgramResult run_program(const std::filesystem::path& folder,
                                  std::vector<std::string> words) {
   return Program(folder, std::move(words)).wait();
+}
+
+/// The program refused: exit status 2 and one message, which contains all parts.
+inline void expect_refused(const ProgramResult& result, const std::vector<std::string>& parts) {
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err.rfind("leviosim: ", 0), 0u) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  for (const std::string& part : parts)
+    EXPECT_NE(result.err.find(part), std::string::npos)
+        << "'" << part << "' is not in: " << result.err;
 }
 
 }  // namespace leviosim::tools::testing

@@ -1,8 +1,6 @@
 // validate, calibrate and sensitivity as users meet them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "platform_models/loader.h"
 #include "tests/tools/run_program.h"
 #include "traces/synthetic.h"
@@ -19,13 +17,7 @@ class StudyCommands : public ::testing::Test {
  protected:
   void expect_refusal(const std::vector<std::string>& words,
                       const std::vector<std::string>& parts) {
-    const ProgramResult result = run_program(folder_.path(), words);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& part : parts)
-      EXPECT_NE(result.err.find(part), std::string::npos)
-          << "'" << part << "' is not in: " << result.err;
+    testing::expect_refused(run_program(folder_.path(), words), parts);
   }
   /// Besides what the program printed.
   std::vector<std::string> files_left() const {

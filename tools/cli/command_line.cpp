@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "platform_models/nearest.h"
 #include "sim/error.h"
@@ -99,6 +100,19 @@ void require(const CLI::App& command, const std::string& option, const std::stri
   if (command.count(option) == 0)
     throw InputError(
         fmt::format("{}: {} is missing; expected {}", command.get_name(), option, expected));
+}
+
+void check_out_file(const std::string& option, const std::string& file, bool force) {
+  if (file.empty()) return;
+  const std::filesystem::path path = std::filesystem::absolute(file);
+  if (std::filesystem::is_directory(path))
+    throw InputError(fmt::format("{} {}: is a folder; expected a file", option, file));
+  if (!std::filesystem::is_directory(path.parent_path()))
+    throw InputError(
+        fmt::format("{} {}: there is no folder {}", option, file, path.parent_path().string()));
+  if (std::filesystem::exists(path) && !force)
+    throw InputError(
+        fmt::format("{} {}: exists; choose a new file, or --force to replace it", option, file));
 }
 
 }  // namespace leviosim::tools

@@ -31,16 +31,7 @@ fs::path checked_out_folder(const RunOptions& options) {
 }
 
 void check_out_file(const RunOptions& options) {
-  if (options.out.empty()) return;
-  const fs::path file = fs::absolute(options.out);
-  if (fs::is_directory(file))
-    throw InputError(fmt::format("--out {}: is a folder; expected a file", options.out));
-  if (!fs::is_directory(file.parent_path()))
-    throw InputError(
-        fmt::format("--out {}: there is no folder {}", options.out, file.parent_path().string()));
-  if (fs::exists(file) && !options.force)
-    throw InputError(
-        fmt::format("--out {}: exists; choose a new file, or --force to replace it", options.out));
+  check_out_file("--out", options.out, options.force);
 }
 
 std::string data_folder(const RunOptions& options, ProgressLine::Style progress) {

@@ -16,9 +16,8 @@ namespace leviosim::tools {
 ///         results and without --force
 std::filesystem::path checked_out_folder(const RunOptions& options);
 
-/// The same for commands whose --out is one file; without --out there is nothing to check. Before
-/// the run, so that nobody waits for a file that cannot be written.
-/// @throws InputError for a folder, a folder that is not there, and a file without --force
+/// The same for commands whose --out is one file: as cli/command_line.h says. Before the run, so
+/// that nobody waits for a file that cannot be written.
 void check_out_file(const RunOptions& options);
 
 /// The folder that --data names; makes the synthetic flight if it is asked for and not there yet.

@@ -3,40 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "tools/eval/accuracy.h"
 #include "tools/run/energy.h"
+#include "tools/run/statistic_list.h"
 #include "tools/run/summary.h"
 
 namespace leviosim::tools {
 namespace {
-
-Json value_of(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
-
-/// Nine decimals, as trajectory files have.
-Json rounded(double value) { return std::round(value * 1e9) / 1e9; }
-
-class StatisticList {
- public:
-  void add(const std::string& name, std::string_view unit, std::string_view description,
-           Json value) {
-    Json& entry = list_.emplace_back(Json::object());
-    entry["name"] = name;
-    entry["unit"] = unit;
-    entry["description"] = description;
-    entry["value"] = std::move(value);
-  }
-  void add_with_protocol(const std::string& name, std::string_view unit,
-                         std::string_view description, Json value, const std::string& protocol) {
-    add(name, unit, description, std::move(value));
-    list_.back()["protocol"] = protocol;
-  }
-
-  Json take() { return std::move(list_); }
-
- private:
-  Json list_ = Json::array();
-};
 
 void add_run(StatisticList& list, const RunResult& run) {
   list.add("run.profile", "text", "profile of the workload", run.profile);
@@ -208,22 +182,7 @@ void add_energy(StatisticList& list, const RunResult& run) {
 void add_accuracy(StatisticList& list, const RunResult& run) {
   list.add("trajectory.poses", "1", "poses of the trajectory", run.trajectory.size());
   list.add("trajectory.length", "m", "of the estimated path", rounded(path_length(run.trajectory)));
-  if (!run.ate) return;
-  const traces::Evaluation& ate = *run.ate;
-  const auto add = [&](const char* name, const char* unit, const char* description, Json value) {
-    list.add_with_protocol(std::string("accuracy.") + name, unit, description, std::move(value),
-                           ate.protocol);
-  };
-  add("ate.rmse", "m", "absolute trajectory error, root mean square",
-      rounded(ate.translation.rmse));
-  add("ate.mean", "m", "absolute trajectory error, mean", rounded(ate.translation.mean));
-  add("ate.median", "m", "absolute trajectory error, median", rounded(ate.translation.median));
-  add("ate.worst", "m", "absolute trajectory error, worst", rounded(ate.translation.max));
-  add("rotation.rmse", "deg", "rotation error after alignment, root mean square",
-      rounded(ate.rotation_rmse_deg));
-  add("matched", "1", "poses matched with the ground truth", ate.matched);
-  add("completion", "1", "matched over expected poses", rounded(ate.completion));
-  add("truth_length", "m", "of the true path", rounded(ate.path_length_m));
+  if (run.ate) add_ate(list, *run.ate);
 }
 
 }  // namespace
@@ -244,20 +203,11 @@ Json statistics(const RunResult& run) {
              run.optimiser_late);
   }
   add_accuracy(list, run);
-  Json document;
-  document["format"] = "leviosim statistics";
-  document["version"] = 1;
-  document["statistics"] = list.take();
-  return document;
+  return statistics_document(list.take());
 }
 
 std::string statistics_text(const RunResult& run) {
-  const Json document = statistics(run);
-  std::string lines;
-  for (const Json& entry : document.at("statistics"))
-    lines += (lines.empty() ? "\n" : ",\n") + entry.dump();
-  return fmt::format("{{\"format\": {}, \"version\": {}, \"statistics\": [{}\n]}}\n",
-                     document.at("format").dump(), document.at("version").dump(), lines);
+  return statistics_document_text(statistics(run));
 }
 
 }  // namespace leviosim::tools

@@ -3,15 +3,12 @@
 // the workload and never depends on the host. Nothing in here does.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 #include "tools/run/run_result.h"
+#include "tools/run/statistic_list.h"
 
 namespace leviosim::tools {
-
-using Json = nlohmann::ordered_json;
 
 /// {"format": "leviosim statistics", "version": 1, "statistics": [{"name", "unit", "description",
 /// "value"}, …]}. What does not exist (a mean over no calls) is null. Accuracy figures also carry

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/eval/accuracy.h"
 #include "tools/run/energy_tables.h"
 #include "tools/run/summary.h"
 #include "tools/run/text_table.h"
@@ -266,12 +267,7 @@ std::string trajectory_summary(const RunResult& run) {
   std::string text = fmt::format("trajectory: {} poses, {:.2f} m long\n", run.trajectory.size(),
                                  path_length(run.trajectory));
   if (!run.ate) return text + "ATE: no ground truth in the data\n";
-  const traces::Evaluation& ate = *run.ate;
-  return text + fmt::format(
-                    "ATE: {:.3f} m RMSE ({:.3f} mean, {:.3f} median, {:.3f} worst), "
-                    "rotation {:.2f}° RMSE\n     {}\n",
-                    ate.translation.rmse, ate.translation.mean, ate.translation.median,
-                    ate.translation.max, ate.rotation_rmse_deg, ate.protocol);
+  return text + ate_text(*run.ate);
 }
 
 std::string host_line(const RunResult& run) {

@@ -1,0 +1,72 @@
+// A small writer of SVG 1.1: shapes and text in the order in which they are added. The same calls
+// give the same bytes. Coordinates are pixels, x right, y down, printed with two decimals.
+// Left out: CSS, transforms but the rotation of text, anything interactive.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leviosim::tools::plot {
+
+struct Point {
+  double x = 0;
+  double y = 0;
+};
+
+struct Box {
+  double x = 0;
+  double y = 0;
+  double width = 0;
+  double height = 0;
+  double right() const { return x + width; }
+  double bottom() const { return y + height; }
+};
+
+struct Stroke {
+  std::string colour = "#000000";
+  double width = 1;
+  std::string dashes{};  ///< "4 3"; a full line if empty
+};
+
+enum class Anchor { start, middle, end };
+
+struct TextStyle {
+  double size = 12;  ///< [px]
+  Anchor anchor = Anchor::start;
+  std::string colour = "#333333";
+  bool bold = false;
+  bool upwards = false;  ///< turned by a quarter, read from below
+};
+
+/// Text as it may stand in XML, in attributes too: markup escaped; control characters and what is
+/// no UTF-8 replaced by U+FFFD.
+std::string escape_xml(std::string_view text);
+
+class Svg {
+ public:
+  /// On white. `title` is for readers that do not see the picture.
+  Svg(double width, double height, std::string_view title);
+
+  void line(Point from, Point to, const Stroke& stroke);
+  /// Points closer than a quarter of a pixel to the last drawn one are left out.
+  void polyline(const std::vector<Point>& points, const Stroke& stroke);
+  void rectangle(const Box& box, std::string_view fill);
+  void frame(const Box& box, const Stroke& stroke);
+  void circle(Point centre, double radius, std::string_view fill, const Stroke& stroke);
+  void text(Point at, std::string_view text, const TextStyle& style);
+  /// What is added until the end of the group is cut off at the box.
+  void begin_clip(const Box& box);
+  void end_group();
+
+  /// The whole file.
+  std::string str() const;
+
+ private:
+  std::string body_;
+  double width_;
+  double height_;
+  int clips_ = 0;
+};
+
+}  // namespace leviosim::tools::plot

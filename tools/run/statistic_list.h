@@ -1,0 +1,41 @@
+// Statistics as a list of JSON objects with name, unit, description and value, the format of
+// stats.json and of everything else that writes figures.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace leviosim::tools {
+
+using Json = nlohmann::ordered_json;
+
+/// null for what does not exist.
+Json value_of(std::optional<double> value);
+
+/// Nine decimals, as trajectory files have.
+Json rounded(double value);
+
+class StatisticList {
+ public:
+  void add(const std::string& name, std::string_view unit, std::string_view description,
+           Json value);
+  void add_with_protocol(const std::string& name, std::string_view unit,
+                         std::string_view description, Json value, const std::string& protocol);
+
+  Json take() { return std::move(list_); }
+
+ private:
+  Json list_ = Json::array();
+};
+
+/// {"format": "leviosim statistics", "version": 1, "statistics": `list`}, with the members of
+/// `about` before the statistics.
+Json statistics_document(Json list, const Json& about = Json::object());
+
+/// The text of a document with one statistic on a line, so that documents can be compared line by
+/// line. Bytes that are no UTF-8, which names of files may have, are replaced.
+std::string statistics_document_text(const Json& document);
+
+}  // namespace leviosim::tools
