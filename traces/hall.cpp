@@ -19,13 +19,14 @@ constexpr std::size_t kFaces = 6;
 constexpr double kPathStepM = 0.05;
 constexpr double kFinestTexelM = 0.005;
 constexpr double kCoarsestTexelM = 0.016;
-constexpr double kPatternDistanceM = 3;  // at which the painter's patterns have their natural size
-constexpr double kLargestPattern = 2.5;
+constexpr double kPatternDistanceM =
+    1.5;  // at which the painter's patterns have their natural size
+constexpr double kLargestPattern = 4;
 
-constexpr std::array<SurfaceStyle, kFaces> kHallStyles{SurfaceStyle::bricks,  SurfaceStyle::panels,
-                                                       SurfaceStyle::plaster, SurfaceStyle::bricks,
+constexpr std::array<SurfaceStyle, kFaces> kHallStyles{SurfaceStyle::plaster, SurfaceStyle::panels,
+                                                       SurfaceStyle::bricks,  SurfaceStyle::plaster,
                                                        SurfaceStyle::planks,  SurfaceStyle::panels};
-constexpr std::array<double, kFaces> kHallTones{115, 130, 145, 110, 100, 90};
+constexpr std::array<double, kFaces> kHallTones{95, 145, 170, 115, 90, 60};
 
 /// Positions kPathStepM apart: the whole path is within that of one of them.
 Path thinned(std::span<const Eigen::Vector3d> path) {

@@ -96,7 +96,7 @@ class Builder {
 Group Builder::free_pillar() {
   const double edge = rng_.uniform(0.25, 0.5);
   const Vector3d size(edge, edge, high().z() - low().z());
-  return {{box_at(floor_spot(edge, edge), size), SurfaceStyle::bricks, tone(85, 140)}};
+  return {{box_at(floor_spot(edge, edge), size), SurfaceStyle::plaster, tone(60, 170)}};
 }
 
 /// A large block with a smaller one on top.
@@ -107,8 +107,8 @@ Group Builder::machine() {
                       rng_.uniform(0.4, 1.2));
   const Vector3d on_top = corner + Vector3d(rng_.uniform() * (size.x() - head.x()),
                                             rng_.uniform() * (size.y() - head.y()), size.z());
-  return {{box_at(corner, size), SurfaceStyle::panels, tone(70, 150)},
-          {box_at(on_top, head), SurfaceStyle::panels, tone(60, 160)}};
+  return {{box_at(corner, size), SurfaceStyle::panels, tone(45, 185)},
+          {box_at(on_top, head), SurfaceStyle::panels, tone(40, 200)}};
 }
 
 Group Builder::stack_of_crates() {
@@ -118,7 +118,7 @@ Group Builder::stack_of_crates() {
   const int count = 1 + rng_.below(3);
   for (int i = 0; i < count; ++i) {
     const Vector3d size(edge, edge * rng_.uniform(0.8, 1.0), edge * rng_.uniform(0.6, 1.0));
-    group.push_back({box_at(corner, size), SurfaceStyle::crate, tone(90, 165)});
+    group.push_back({box_at(corner, size), SurfaceStyle::crate, tone(60, 195)});
     const double smaller = edge * rng_.uniform(0.6, 0.8);
     corner += Vector3d(rng_.uniform() * (edge - smaller), 0, size.z());
     edge = smaller;
@@ -146,7 +146,7 @@ Group Builder::table() {
       {box_at(corner + turn(length - 0.18, 0.05, 0), turn(0.08, depth - 0.1, 0.75)),
        SurfaceStyle::plaster, tone(50, 80)},
       {box_at(corner + turn(shift, 0.1, 0.81), Vector3d(edge, edge, edge)), SurfaceStyle::crate,
-       tone(90, 160)},
+       tone(60, 195)},
   };
 }
 
@@ -197,7 +197,7 @@ void Builder::add_mezzanine() {
   for (double along = rng_.uniform(0.3, 1); along < length - 1; along += rng_.uniform(1.0, 2.6)) {
     const double edge = rng_.uniform(0.5, 1.0);
     add({{against_wall(wall, along, edge, edge, floor, edge, 0.1), SurfaceStyle::crate,
-          tone(90, 160)}});
+          tone(60, 195)}});
   }
 }
 
@@ -216,7 +216,7 @@ void Builder::add_wall_pillars() {
     const double spacing = rng_.uniform(3.5, 5);
     for (double along = 0.5 * spacing; along < length - 0.5; along += spacing)
       add({{against_wall(wall, along, 0.4, 0.3, 0, high().z() - low().z() - 0.6, 0),
-            SurfaceStyle::bricks, tone(90, 140)}});
+            SurfaceStyle::bricks, tone(70, 160)}});
   }
 }
 
@@ -229,7 +229,7 @@ void Builder::furnish_wall(int wall) {
     const auto style = rng_.chance(0.5) ? SurfaceStyle::panels : SurfaceStyle::planks;
     const double height = rng_.uniform(0.9, 2.3);
     if (add({{against_wall(wall, along, width, rng_.uniform(0.4, 0.7), 0, height, 0), style,
-              tone(70, 150)}}))
+              tone(45, 185)}}))
       along += width;
   }
   for (double along = rng_.uniform(0, 1.5); along < length; along += rng_.uniform(1, 2.5)) {

@@ -178,6 +178,7 @@ void write_pictures(const fs::path& folder, const Plan& plan, const RenderedFlig
       camera, options.prepared.value_or(ImageSize{camera.width, camera.height}));
   RenderOptions render_options;
   render_options.noise = options.image_noise;
+  render_options.spot_px = options.spot_px;
   render_options.seed = derive_seed(options.seed, kImageSeed);
   if (options.prepared) render_options.wanted = preparation.pixels_read();
   const World world = make_world(plan, options);

@@ -34,6 +34,7 @@ struct RenderedFlightOptions {
   double exposure_s = 0;                 ///< of the motion blur, centred on the stamp; 0: none
   bool illumination = false;             ///< changes with time (illumination.h)
   double image_noise = 1.2;              ///< standard deviation [grey levels]
+  double spot_px = 2;                    ///< softness of the lens, RenderOptions::spot_px
   double texels = 1;                     ///< HallOptions::texels
   unsigned threads = 0;    ///< 0: as many as the host has; the result does not depend on it
   bool overwrite = false;  ///< replace an existing ASL folder (never any other folder)

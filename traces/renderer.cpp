@@ -22,7 +22,7 @@ Renderer::Renderer(const World& world, const CameraModel& camera, const RenderOp
     : world_(world),
       width_(camera.width),
       height_(camera.height),
-      pixel_angle_(static_cast<float>(1 / std::sqrt(camera.fx * camera.fy))),
+      pixel_angle_(static_cast<float>(options.spot_px / std::sqrt(camera.fx * camera.fy))),
       seed_(options.seed) {
   const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
   check(options.wanted.empty() || options.wanted.size() == pixels, "Renderer: wanted pixels");

@@ -23,6 +23,7 @@ struct RenderOptions {
   double noise = 1.2;       ///< standard deviation of the sensor noise [grey levels]
   double vignetting = 0.3;  ///< loss of light in the farthest corner, 0 ... 1
   std::uint64_t seed = 1;   ///< of the noise
+  double spot_px = 1;       ///< width over which the lens and a pixel average a surface [px]
   /// For each pixel, row by row, whether it is drawn (not 0) or left black; all if empty. The drawn
   /// pixels are those of the whole picture.
   std::vector<std::uint8_t> wanted = {};
