@@ -38,16 +38,24 @@ struct Plan {
   std::size_t first_frame;  ///< index of frames[0] in the whole flight, which selects its noise
 };
 
-void check_options(const fs::path& motion_dir, const fs::path& out_dir,
-                   const RenderedFlightOptions& options) {
-  constexpr double kLongestExposureS = 0.05;
-  if (!(options.exposure_s >= 0) || options.exposure_s > kLongestExposureS)
-    throw InputError(fmt::format("rendered flight: exposure {} s; expected 0 to {} s",
-                                 options.exposure_s, kLongestExposureS));
-  if (!(options.image_noise >= 0) || options.image_noise > 255)
-    throw InputError(fmt::format("rendered flight: image noise {}; expected 0 to 255 grey levels",
-                                 options.image_noise));
-  if (fs::exists(out_dir) && fs::exists(motion_dir) && fs::equivalent(out_dir, motion_dir))
+void check_options(const RenderedFlightOptions& options) {
+  const auto check_range = [](const char* what, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+      throw InputError(
+          fmt::format("rendered flight: {} {}; expected {} to {}", what, value, low, high));
+  };
+  check_range("exposure [s]", options.exposure_s, 0, 0.05);
+  check_range("image noise [grey levels]", options.image_noise, 0, 255);
+  check_range("lens spot [px]", options.spot_px, 0.1, 100);
+  check_range("texel width [px]", options.texels, 0.25, 20);
+}
+
+/// The recording must survive --overwrite, whether its folder or the mav0 in it was named.
+void check_not_the_recording(const fs::path& mav0, const fs::path& out_dir) {
+  if (!fs::exists(out_dir)) return;
+  const fs::path recording = fs::canonical(mav0);
+  const fs::path out = fs::canonical(out_dir);
+  if (out == recording || out == recording.parent_path())
     throw InputError(fmt::format(
         "{}: holds the recorded motion; choose another folder for the flight", out_dir.string()));
 }
@@ -202,9 +210,10 @@ void write_pictures(const fs::path& folder, const Plan& plan, const RenderedFlig
 
 void write_rendered_flight(const fs::path& motion_dir, const fs::path& out_dir,
                            const RenderedFlightOptions& options, const FlightProgress& progress) {
-  check_options(motion_dir, out_dir, options);
+  check_options(options);
   check_flight_folder(out_dir, options.overwrite);
   const Plan plan = make_plan(motion_dir, options);
+  check_not_the_recording(plan.record.mav0, out_dir);
   StagedFolder staged(out_dir);
   const fs::path mav0 = staged.path() / "mav0";
   fs::create_directories(mav0 / "cam0" / "data");

@@ -224,7 +224,10 @@ TEST(RenderedFlight, RefusesWhatCannotBeRendered) {
   };
   RenderedFlightOptions options = coarse();
   options.exposure_s = 0.2;
-  refused(AslFolder(), options, {"exposure 0.2 s"});
+  refused(AslFolder(), options, {"exposure [s] 0.2", "0 to 0.05"});
+  options = coarse();
+  options.texels = 0;
+  refused(AslFolder(), options, {"texel width [px] 0"});
   options = coarse();
   options.frames = FrameRange{4, 7};
   refused(AslFolder(), options, {"4:7", "6 frames"});
@@ -244,8 +247,9 @@ TEST(RenderedFlight, NeverReplacesTheRecordingItIsMadeFrom) {
   const AslFolder motion;
   RenderedFlightOptions options = coarse();
   options.overwrite = true;
-  expect_input_error([&] { write_rendered_flight(motion.root(), motion.root(), options); },
-                     {"holds the recorded motion"});
+  for (const fs::path& named : {motion.root(), motion.root() / "mav0"})
+    expect_input_error([&] { write_rendered_flight(named, motion.root(), options); },
+                       {"holds the recorded motion"});
   EXPECT_TRUE(fs::exists(motion.mav0("imu0/data.csv")));
 }
 
