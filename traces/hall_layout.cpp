@@ -25,8 +25,10 @@ class Builder {
     const auto margin = [this](double low, double high) {
       return std::max(clearance_m_, rng_.uniform(low, high));
     };
-    layout_.hall = Box(around.min() - Vector3d(margin(3, 4.5), margin(3, 4.5), margin(1, 1.3)),
-                       around.max() + Vector3d(margin(3, 4.5), margin(3, 4.5), margin(2.5, 3.5)));
+    // In braces the draws are made from left to right, whatever the compiler.
+    const Vector3d below{margin(3, 4.5), margin(3, 4.5), margin(1, 1.3)};
+    const Vector3d above{margin(3, 4.5), margin(3, 4.5), margin(2.5, 3.5)};
+    layout_.hall = Box(around.min() - below, around.max() + above);
   }
 
   HallLayout build() {
@@ -101,14 +103,14 @@ Group Builder::free_pillar() {
 
 /// A large block with a smaller one on top.
 Group Builder::machine() {
-  const Vector3d size(rng_.uniform(1.0, 2.6), rng_.uniform(0.9, 2.0), rng_.uniform(1.1, 2.6));
+  const Vector3d size{rng_.uniform(1.0, 2.6), rng_.uniform(0.9, 2.0), rng_.uniform(1.1, 2.6)};
   const Vector3d corner = floor_spot(size.x(), size.y());
-  const Vector3d head(size.x() * rng_.uniform(0.3, 0.6), size.y() * rng_.uniform(0.3, 0.6),
-                      rng_.uniform(0.4, 1.2));
-  const Vector3d on_top = corner + Vector3d(rng_.uniform() * (size.x() - head.x()),
-                                            rng_.uniform() * (size.y() - head.y()), size.z());
+  const Vector3d head{size.x() * rng_.uniform(0.3, 0.6), size.y() * rng_.uniform(0.3, 0.6),
+                      rng_.uniform(0.4, 1.2)};
+  const Vector3d shift{rng_.uniform() * (size.x() - head.x()),
+                       rng_.uniform() * (size.y() - head.y()), size.z()};
   return {{box_at(corner, size), SurfaceStyle::panels, tone(45, 185)},
-          {box_at(on_top, head), SurfaceStyle::panels, tone(40, 200)}};
+          {box_at(corner + shift, head), SurfaceStyle::panels, tone(40, 200)}};
 }
 
 Group Builder::stack_of_crates() {
@@ -117,7 +119,7 @@ Group Builder::stack_of_crates() {
   Vector3d corner = floor_spot(edge, edge);
   const int count = 1 + rng_.below(3);
   for (int i = 0; i < count; ++i) {
-    const Vector3d size(edge, edge * rng_.uniform(0.8, 1.0), edge * rng_.uniform(0.6, 1.0));
+    const Vector3d size{edge, edge * rng_.uniform(0.8, 1.0), edge * rng_.uniform(0.6, 1.0)};
     group.push_back({box_at(corner, size), SurfaceStyle::crate, tone(60, 195)});
     const double smaller = edge * rng_.uniform(0.6, 0.8);
     corner += Vector3d(rng_.uniform() * (edge - smaller), 0, size.z());
