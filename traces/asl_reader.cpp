@@ -52,10 +52,7 @@ fs::path require_file(const fs::path& mav0, const char* name) {
 }
 
 void select_frames(std::vector<FrameRef>& frames, const FrameRange& range, const fs::path& csv) {
-  if (range.begin >= range.end || range.end > frames.size())
-    throw InputError(fmt::format("frame range {}:{}: {} has {} frames, so at most 0:{}",
-                                 range.begin, range.end, csv.string(), frames.size(),
-                                 frames.size()));
+  check_frame_range(range, frames.size(), csv.string());
   frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(range.end), frames.end());
   frames.erase(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(range.begin));
 }
@@ -96,6 +93,19 @@ void require_no_gaps(const Dataset& data, double longest_s, const fs::path& imu_
           imu_csv.string(), seconds(to - from) * 1e3, from, to, longest_s * 1e3,
           data.imu_model.rate_hz));
   }
+}
+
+/// Poses between which a path can be interpolated.
+void require_smooth_truth(const std::vector<GroundTruthPose>& poses, const fs::path& truth_csv) {
+  if (poses.size() < 2)
+    throw InputError(
+        fmt::format("{}: one pose is no motion; expected at least 2 rows", truth_csv.string()));
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    if (seconds(poses[i].t_ns - poses[i - 1].t_ns) > kLongestTruthGapS)
+      throw InputError(fmt::format(
+          "{}: no pose for {:.3f} s between {} ns and {} ns; at most {:g} s can be interpolated",
+          truth_csv.string(), seconds(poses[i].t_ns - poses[i - 1].t_ns), poses[i - 1].t_ns,
+          poses[i].t_ns, kLongestTruthGapS));
 }
 
 }  // namespace
@@ -173,6 +183,22 @@ Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
   require_cover(data, options.imu_edge_periods * period_s, imu_csv);
   require_no_gaps(data, options.max_imu_gap_periods * period_s, imu_csv);
   return data;
+}
+
+MotionRecord open_motion(const fs::path& folder) {
+  MotionRecord record;
+  record.mav0 = find_mav0(folder);
+  const fs::path truth_csv = require_file(record.mav0, "state_groundtruth_estimate0/data.csv");
+  record.camera = read_camera_model(require_file(record.mav0, "cam0/sensor.yaml"));
+  record.imu_model = read_imu_model(require_file(record.mav0, "imu0/sensor.yaml"));
+  record.ground_truth = read_ground_truth_csv(truth_csv);
+  require_smooth_truth(record.ground_truth, truth_csv);
+  if (fs::exists(record.mav0 / "imu0/data.csv"))
+    record.imu = read_imu_csv(record.mav0 / "imu0/data.csv");
+  if (fs::exists(record.mav0 / "cam0/data.csv"))
+    for (const FrameRef& frame : read_frames_csv(record.mav0 / "cam0/data.csv"))
+      record.frame_stamps.push_back(frame.t_ns);
+  return record;
 }
 
 }  // namespace leviosim::traces

@@ -6,6 +6,7 @@
 // rosbag.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -28,6 +29,23 @@ struct OpenOptions {
 /// column or key) for anything missing, broken, out of order, or not covered by the IMU; that the
 /// images exist is checked here, what is in them when they are read.
 Dataset open_asl(const std::filesystem::path& folder, const OpenOptions& options = {});
+
+/// A flight without its pictures: how the body moved and where the camera sat on it.
+struct MotionRecord {
+  std::filesystem::path mav0;
+  CameraModel camera;
+  ImuModel imu_model;
+  std::vector<std::int64_t> frame_stamps;  ///< of cam0/data.csv; empty without that file
+  std::vector<ImuSample> imu;              ///< empty without imu0/data.csv
+  std::vector<GroundTruthPose>
+      ground_truth;  ///< at least two poses, no gap above kLongestTruthGapS
+};
+
+constexpr double kLongestTruthGapS = 0.1;
+
+/// Reads the text files of an ASL folder, whose images need not be there: both sensor.yaml and the
+/// ground truth must exist. Throws InputError as open_asl does.
+MotionRecord open_motion(const std::filesystem::path& folder);
 
 /// The single streams, for folders that lack the others. Throw InputError as open_asl does, also if
 /// there is no row.

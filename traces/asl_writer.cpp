@@ -31,12 +31,15 @@ void append(std::string& out, const Eigen::Vector3d& vector) {
 }  // namespace
 
 std::string format_camera_yaml(const CameraModel& camera, const std::string& comment) {
-  return fmt::format(
+  std::string out = fmt::format(
       "sensor_type: camera\ncomment: {}\n\n# Camera frame to body frame.\n{}\nrate_hz: {}\n"
       "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: [{}, {}, {}, {}] # fu, fv, cu, cv\n"
       "distortion_model: radial-tangential\ndistortion_coefficients: [{}, {}, {}, {}]\n",
       comment, format_extrinsics(camera.T_body_camera), camera.rate_hz, camera.width, camera.height,
       camera.fx, camera.fy, camera.cx, camera.cy, camera.k1, camera.k2, camera.p1, camera.p2);
+  if (camera.prepared)
+    out += "prepared: true # undistorted and decimated: leviosim uses the images as they are\n";
+  return out;
 }
 
 std::string format_imu_yaml(const ImuModel& imu, const std::string& comment) {

@@ -18,6 +18,8 @@ struct CameraModel {
   /// Camera frame (x right, y down, z forward) to body frame: `T_BS` of sensor.yaml [m].
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
   double rate_hz = 0;
+  /// The images are what image_preparation.h makes of a camera's, and are used as they are.
+  bool prepared = false;
 
   /// Distorts a point on the plane z = 1.
   Eigen::Vector2d distort(const Eigen::Vector2d& normalized) const;

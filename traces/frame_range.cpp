@@ -27,4 +27,10 @@ FrameRange parse_frame_range(std::string_view text) {
   return range;
 }
 
+void check_frame_range(const FrameRange& range, std::size_t count, std::string_view what) {
+  if (range.begin >= range.end || range.end > count)
+    throw InputError(fmt::format("frame range {}:{}: {} has {} frames, so at most 0:{}",
+                                 range.begin, range.end, what, count, count));
+}
+
 }  // namespace leviosim::traces

@@ -14,4 +14,7 @@ struct FrameRange {
 /// Throws InputError unless `text` is A:B with 0 <= A < B.
 FrameRange parse_frame_range(std::string_view text);
 
+/// Throws InputError, which names `what`, unless the range selects from its `count` frames.
+void check_frame_range(const FrameRange& range, std::size_t count, std::string_view what);
+
 }  // namespace leviosim::traces

@@ -1,34 +1,16 @@
-// From a recorded frame to the image the pipeline works on: read, undistort at full resolution with
-// the same camera matrix (bilinear, black outside), then take every k-th pixel, without a low-pass.
-//
-// The rule of the decimation, for a wanted size w x h of a W x H image:
-//   k = min(W / w, H / h) in whole numbers; the window of w k x h k pixels is centred,
-//   x0 = (W - w k) / 2, y0 = (H - h k) / 2; pixel (i, j) is taken at (x0 + k i + s, y0 + k j + s),
-//   where s = 1 if k > 1 and s = 0 if k = 1.
-// 752x480 to 160x120 gives k = 4 and columns 57, 61, ..., rows 1, 5, ...: those of the published
-// LEVIO. Its published intrinsics (114.66, 114.32, 77.80, 62.09) are those of the window's origin,
-// fx / k and (cx - x0) / k, without the s; we follow them, so for k > 1 the principal point is off
-// by s / k px (a quarter of a pixel at 160x120), as it is there.
-//
-// The maps are our own double arithmetic and the interpolation is OpenCV's fixed-point one, so the
-// bytes do not depend on the host. Since every output pixel is interpolated by itself, only the
-// pixels that survive the decimation are computed; the result is that of undistorting everything.
+// The frames of a dataset as the pipeline sees them: read, checked and prepared
+// (image_preparation.h).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <opencv2/core.hpp>
 #include <vector>
 
 #include "traces/dataset.h"
+#include "traces/image_preparation.h"
 
 namespace leviosim::traces {
-
-struct ImageSize {
-  int width = 160;
-  int height = 120;
-};
 
 /// 8-bit grey, row by row without padding.
 struct GrayImage {
@@ -38,20 +20,6 @@ struct GrayImage {
   std::int64_t t_ns = 0;
 };
 
-/// Which pixels of the full image remain.
-struct Decimation {
-  int factor = 1;
-  int x0 = 0, y0 = 0;  ///< origin of the window
-  int shift = 0;       ///< of the samples against the origin, in both directions
-};
-
-/// The rule above. Throws InputError if `size` is not positive or exceeds the camera's image.
-Decimation make_decimation(const CameraModel& camera, ImageSize size);
-
-/// Intrinsics of the decimated image.
-PinholeIntrinsics decimated_intrinsics(const CameraModel& camera, ImageSize size,
-                                       const Decimation& decimation);
-
 /// Reads and prepares the frames of a dataset. Immutable after construction: read() is a pure
 /// function of the frame's index and may be called from several threads.
 class ImageSource {
@@ -60,7 +28,7 @@ class ImageSource {
   ImageSource(const Dataset& data, ImageSize size);
 
   std::size_t size() const { return frames_.size(); }
-  const PinholeIntrinsics& intrinsics() const { return intrinsics_; }
+  const PinholeIntrinsics& intrinsics() const { return preparation_.intrinsics(); }
 
   /// The prepared image of frame i < size(). Throws InputError, naming image, file and line, if it
   /// cannot be decoded, has another size than sensor.yaml says, or is not 8-bit grey.
@@ -72,9 +40,7 @@ class ImageSource {
   std::filesystem::path frames_csv_;
   std::vector<FrameRef> frames_;
   cv::Size full_size_;
-  PinholeIntrinsics intrinsics_;
-  cv::Mat map_whole_;     // CV_16SC2: whole source pixel of each output pixel
-  cv::Mat map_fraction_;  // CV_16UC1: index of the bilinear weights
+  ImagePreparation preparation_;
 };
 
 }  // namespace leviosim::traces

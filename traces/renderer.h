@@ -1,16 +1,20 @@
 // Pictures of a World through a distorting camera. Each pixel's ray comes from the exact inverse of
-// the distortion; surfaces are averaged over the pixel (mip levels); then vignetting and sensor
-// noise. Left out: motion blur, exposure control, rolling shutter, anti-aliased silhouettes.
+// the distortion; surfaces are averaged over the pixel (mip levels); then vignetting, exposure and
+// sensor noise. Motion blur is the mean of pictures from several poses. Left out: exposure control,
+// rolling shutter, anti-aliased silhouettes.
 //
-// Speed: the rays are precomputed. For every tile of 16x16 pixels the objects whose bounding sphere
-// misses the tile's cone of rays are dropped first, so most pixels test the room and a few boxes.
+// Speed: the rays are precomputed and cast in packets, one for each tile of 16x16 pixels. Objects
+// whose projection does not touch the tile are dropped first, so most pixels test the room and a
+// few boxes. Pixels that nobody will read need not be drawn.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "traces/camera_model.h"
+#include "traces/screen_bounds.h"
 #include "traces/world.h"
 
 namespace leviosim::traces {
@@ -19,6 +23,17 @@ struct RenderOptions {
   double noise = 1.2;       ///< standard deviation of the sensor noise [grey levels]
   double vignetting = 0.3;  ///< loss of light in the farthest corner, 0 ... 1
   std::uint64_t seed = 1;   ///< of the noise
+  double spot_px = 1;       ///< width over which the lens and a pixel average a surface [px]
+  /// For each pixel, row by row, whether it is drawn (not 0) or left black; all if empty. The drawn
+  /// pixels are those of the whole picture.
+  std::vector<std::uint8_t> wanted = {};
+};
+
+/// One picture to be taken.
+struct Exposure {
+  std::span<const Eigen::Isometry3d> T_world_camera;  ///< poses to average over, inside the room
+  float gain = 1;                                     ///< factor on the light
+  std::uint64_t frame = 0;                            ///< selects the noise
 };
 
 class Renderer {
@@ -29,36 +44,36 @@ class Renderer {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// The picture from a pose inside the room, row by row, 8-bit grey. A pure function of its
-  /// arguments: `frame` selects the noise. Thread-safe.
+  /// The picture, row by row, 8-bit grey. A pure function of its arguments. Thread-safe.
+  std::vector<std::uint8_t> render(const Exposure& exposure) const;
+  /// The picture from one pose.
   std::vector<std::uint8_t> render(const Eigen::Isometry3d& T_world_camera,
                                    std::uint64_t frame) const;
 
  private:
+  /// The drawn pixels of a square of the picture: entries begin ... end of the arrays below.
   struct Tile {
-    int x0, y0, x1, y1;    // pixels, x1 and y1 exclusive
-    Eigen::Vector3f axis;  // unit vector, camera frame
-    float half_angle;      // of the cone around all its rays [rad]
+    std::size_t begin, end;
+    ScreenBounds bounds;  // of the rays
   };
-  void make_rays(const CameraModel& camera, double vignetting);
-  void make_tiles();
+  void make_tiles(const CameraModel& camera, const RenderOptions& options);
+  void add_pixel(const CameraModel& camera, double vignetting, int x, int y);
   void make_noise(const RenderOptions& options);
-  /// Objects that some ray of the tile may meet.
-  void candidates(const Tile& tile, const Eigen::Matrix3f& rotation, const Eigen::Vector3f& origin,
-                  std::vector<int>& found) const;
-  void render_tile(const Tile& tile, const Eigen::Matrix3f& rotation, const Eigen::Vector3f& origin,
-                   const std::vector<int>& objects, std::vector<float>& grey) const;
-  std::vector<std::uint8_t> expose(const std::vector<float>& grey, std::uint64_t frame) const;
+  /// Adds the light from one pose to every drawn pixel, in the order of the tiles.
+  void add_light(const Eigen::Isometry3d& T_world_camera, std::vector<float>& light) const;
+  std::vector<std::uint8_t> expose(const std::vector<float>& light, float gain,
+                                   std::uint64_t frame) const;
 
   const World& world_;
   int width_;
   int height_;
   float pixel_angle_;
   std::uint64_t seed_;
-  std::vector<Eigen::Vector3f> rays_;  // camera frame, z = 1
-  std::vector<float> gain_;            // vignetting
   std::vector<Tile> tiles_;
-  std::vector<float> noise_;  // a power of two of draws
+  std::vector<std::size_t> pixels_;    // index in the picture, tile by tile
+  std::vector<Eigen::Vector3f> rays_;  // camera frame, z = 1
+  std::vector<float> vignetting_;      // factor
+  std::vector<float> noise_;           // a power of two of draws
 };
 
 }  // namespace leviosim::traces

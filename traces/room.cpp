@@ -4,18 +4,14 @@
 #include <utility>
 #include <vector>
 
+#include "traces/painted_box.h"
 #include "traces/parallel_for.h"
 #include "traces/rng.h"
-#include "traces/surface_painter.h"
 #include "traces/world.h"
 
 namespace leviosim::traces {
 namespace {
 
-/// Light on the faces -x, +x, -y, +y, -z, +z of an object under lamps that hang off-centre.
-constexpr std::array<float, 6> kObjectLight{0.86f, 1.02f, 0.95f, 1.14f, 0.66f, 1.24f};
-/// The faces of the room look inwards.
-constexpr std::array<float, 6> kRoomLight{1.03f, 0.93f, 1.14f, 0.99f, 1.10f, 0.82f};
 constexpr std::array<SurfaceStyle, 6> kRoomStyles{SurfaceStyle::plaster, SurfaceStyle::bricks,
                                                   SurfaceStyle::panels,  SurfaceStyle::plaster,
                                                   SurfaceStyle::planks,  SurfaceStyle::panels};
@@ -67,48 +63,28 @@ constexpr std::array<ObjectRow, 24> kObjects{{
     {{-4.00f, -1.40f, 3.55f}, {4.00f, -1.15f, 3.85f}, kPlanks, 120},
 }};
 
-Box empty_box(const std::array<float, 3>& min, const std::array<float, 3>& max,
-              const std::array<float, 6>& light) {
-  Box box;
-  box.min = Eigen::Vector3f(min[0], min[1], min[2]);
-  box.max = Eigen::Vector3f(max[0], max[1], max[2]);
-  for (std::size_t face = 0; face < box.faces.size(); ++face) box.faces[face].light = light[face];
-  return box;
-}
-
-void paint_face(Box& box, std::size_t face, SurfaceStyle style, double tone, double texel_m,
-                std::uint64_t seed) {
-  const Eigen::Vector3d size = (box.max - box.min).cast<double>();
-  const std::size_t axis = face / 2;
-  SurfaceSpec spec;
-  spec.style = style;
-  spec.width_m = size[axis == 0 ? 1 : 0];
-  spec.height_m = size[axis == 2 ? 1 : 2];
-  spec.texel_m = texel_m;
-  spec.tone = tone;
-  spec.seed = seed;
-  box.faces[face].texture = paint_surface(spec);
-  box.faces[face].texels_per_m = static_cast<float>(1 / texel_m);
+Eigen::Vector3f vector(const std::array<float, 3>& corner) {
+  return {corner[0], corner[1], corner[2]};
 }
 
 }  // namespace
 
 World make_room(std::uint64_t seed, double texel_m, unsigned threads) {
-  Box room = empty_box({-4, -3, 0}, {4, 3, 4}, kRoomLight);
+  Box room = unpainted_box({-4, -3, 0}, {4, 3, 4}, kRoomLight);
   std::vector<Box> objects;
   for (const ObjectRow& row : kObjects)
-    objects.push_back(empty_box(row.min, row.max, kObjectLight));
+    objects.push_back(unpainted_box(vector(row.min), vector(row.max), kObjectLight));
 
   constexpr std::size_t kFaces = 6;
   parallel_for((1 + kObjects.size()) * kFaces, threads, [&](std::size_t job) {
     const std::size_t index = job / kFaces;
     const std::size_t face = job % kFaces;
-    const std::uint64_t face_seed = derive_seed(seed, job);
-    if (index == 0)
-      paint_face(room, face, kRoomStyles[face], kRoomTones[face], texel_m, face_seed);
-    else
-      paint_face(objects[index - 1], face, kObjects[index - 1].style, kObjects[index - 1].tone,
-                 texel_m, face_seed);
+    SurfaceSpec spec;
+    spec.style = index == 0 ? kRoomStyles[face] : kObjects[index - 1].style;
+    spec.tone = index == 0 ? kRoomTones[face] : kObjects[index - 1].tone;
+    spec.texel_m = texel_m;
+    spec.seed = derive_seed(seed, job);
+    paint_face(index == 0 ? room : objects[index - 1], face, spec);
   });
   return World(std::move(room), std::move(objects));
 }

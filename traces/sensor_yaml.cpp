@@ -69,6 +69,7 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
   camera.height = read_pixels(sensor, resolution[1]);
   camera.T_body_camera = read_extrinsics(sensor);
   camera.rate_hz = sensor.positive("rate_hz");
+  camera.prepared = sensor.flag("prepared", false);
   return camera;
 }
 

@@ -11,6 +11,7 @@
 namespace leviosim::traces {
 
 /// Reads cam0/sensor.yaml. Supported: camera_model pinhole, distortion_model radial-tangential.
+/// The optional key `prepared: true` is ours: CameraModel::prepared.
 CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
 
 /// Reads imu0/sensor.yaml. Its T_BS must be the identity: the body frame is the IMU frame.

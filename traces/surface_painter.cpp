@@ -147,20 +147,20 @@ Canvas::Patch random_patch(const Canvas& canvas, Rng& rng, double low_m, double 
 
 template <std::size_t N>
 void scatter(Canvas& canvas, const std::array<Stamp, N>& stamps, double per_m2, double low_m,
-             double high_m, std::uint64_t seed) {
+             double high_m, double scale, std::uint64_t seed) {
   Rng rng(seed);
-  const double area = canvas.width_m() * canvas.height_m();
+  const double area = canvas.width_m() * canvas.height_m() / (scale * scale);
   const int count = static_cast<int>(area * per_m2 + rng.uniform());
   for (int i = 0; i < count; ++i) {
-    const Canvas::Patch patch = random_patch(canvas, rng, low_m, high_m);
+    const Canvas::Patch patch = random_patch(canvas, rng, scale * low_m, scale * high_m);
     stamps[static_cast<std::size_t>(rng.below(static_cast<int>(N)))](canvas, patch, rng);
   }
 }
 
-/// Octaves from 1.6 m down; each finer one has 0.8 of the amplitude.
-void add_octaves(Canvas& canvas, float amplitude, std::uint64_t seed) {
+/// Octaves from 1.6 m (times the scale) down; each finer one has 0.8 of the amplitude.
+void add_octaves(Canvas& canvas, float amplitude, double scale, std::uint64_t seed) {
   constexpr int kOctaves = 7;
-  double cell_m = 1.6;
+  double cell_m = 1.6 * scale;
   for (int octave = 0; octave < kOctaves; ++octave) {
     canvas.add_noise(cell_m, amplitude, derive_seed(seed, static_cast<std::uint64_t>(octave)));
     cell_m *= 0.5;
@@ -173,10 +173,11 @@ void add_octaves(Canvas& canvas, float amplitude, std::uint64_t seed) {
 Texture paint_surface(const SurfaceSpec& spec) {
   const StyleRow& style = style_row(spec.style);
   Canvas canvas(spec.width_m, spec.height_m, spec.texel_m);
-  canvas.fill([&](double x, double y) { return block_tone(style.blocks, spec, x, y); });
-  scatter(canvas, kSpeckles, style.speckles_per_m2, 0.025, 0.08, derive_seed(spec.seed, 1));
-  scatter(canvas, kSheets, style.sheets_per_m2, 0.08, 0.3, derive_seed(spec.seed, 2));
-  add_octaves(canvas, style.noise, derive_seed(spec.seed, 3));
+  const double s = spec.scale;
+  canvas.fill([&](double x, double y) { return block_tone(style.blocks, spec, x / s, y / s); });
+  scatter(canvas, kSpeckles, style.speckles_per_m2, 0.025, 0.08, s, derive_seed(spec.seed, 1));
+  scatter(canvas, kSheets, style.sheets_per_m2, 0.08, 0.3, s, derive_seed(spec.seed, 2));
+  add_octaves(canvas, style.noise, s, derive_seed(spec.seed, 3));
   return canvas.texture();
 }
 

@@ -18,6 +18,7 @@ struct SurfaceSpec {
   double height_m = 1;
   double texel_m = 0.004;  ///< edge length of a texel
   double tone = 120;       ///< mean grey level
+  double scale = 1;        ///< enlarges every pattern, for surfaces that are seen from afar
   std::uint64_t seed = 0;
 };
 

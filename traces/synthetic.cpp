@@ -3,16 +3,14 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <mutex>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "sim/error.h"
 #include "traces/asl_writer.h"
 #include "traces/atomic_file.h"
+#include "traces/flight_images.h"
 #include "traces/imu_synthesis.h"
 #include "traces/motion.h"
-#include "traces/parallel_for.h"
 #include "traces/renderer.h"
 #include "traces/rng.h"
 #include "traces/world.h"
@@ -36,17 +34,6 @@ void check_options(const SyntheticOptions& options) {
   if (!(options.texel_m >= 0.001) || options.texel_m > 0.1)
     throw InputError(
         fmt::format("synthetic flight: texel {} m; expected 0.001 to 0.1 m", options.texel_m));
-}
-
-/// Folders are replaced only if asked, and only if they are what this function writes.
-void check_target(const fs::path& out_dir, bool overwrite) {
-  if (!fs::exists(out_dir)) return;
-  if (!overwrite)
-    throw InputError(fmt::format("{}: already exists; choose another folder or allow overwriting",
-                                 out_dir.string()));
-  if (!fs::is_directory(out_dir / "mav0") && !(fs::is_directory(out_dir) && fs::is_empty(out_dir)))
-    throw InputError(fmt::format("{}: is not overwritten because it is no ASL folder (no mav0)",
-                                 out_dir.string()));
 }
 
 std::int64_t step_ns(double rate_hz, std::int64_t step) {
@@ -94,40 +81,28 @@ void write_text(const fs::path& mav0, const SyntheticOptions& options, const Mot
   write("state_groundtruth_estimate0/data.csv", format_ground_truth_csv(track.truth));
 }
 
-void write_png(const fs::path& file, int width, int height, std::vector<std::uint8_t>& pixels) {
-  const cv::Mat image(height, width, CV_8UC1, pixels.data());
-  const std::vector<int> fast{cv::IMWRITE_PNG_COMPRESSION, 1};
-  if (!cv::imwrite(file.string(), image, fast))
-    throw InputError(fmt::format("{}: cannot be written", file.string()));
-}
-
 void write_images(const fs::path& folder, const SyntheticOptions& options, const Motion& motion,
-                  const std::vector<std::int64_t>& frames, const SyntheticProgress& progress) {
+                  const std::vector<std::int64_t>& frames, const FlightProgress& progress) {
   const World world =
       make_room(derive_seed(options.seed, kWorldSeed), options.texel_m, options.threads);
   RenderOptions render_options;
   render_options.noise = options.image_noise;
   render_options.seed = derive_seed(options.seed, kImageSeed);
   const Renderer renderer(world, options.camera, render_options);
-  std::mutex mutex;
-  std::size_t done = 0;
-  parallel_for(frames.size(), options.threads, [&](std::size_t i) {
+  const auto draw = [&](std::size_t i) {
     const double t_s = static_cast<double>(frames[i] - SyntheticOptions::kFirstFrameNs) * 1e-9;
-    std::vector<std::uint8_t> pixels =
-        renderer.render(motion.at(t_s).T_world_body * options.camera.T_body_camera, i);
-    write_png(folder / image_name(frames[i]), renderer.width(), renderer.height(), pixels);
-    const std::lock_guard<std::mutex> lock(mutex);
-    ++done;
-    if (progress) progress(done, frames.size());
-  });
+    return renderer.render(motion.at(t_s).T_world_body * options.camera.T_body_camera, i);
+  };
+  write_flight_images(folder, frames, {renderer.width(), renderer.height()}, draw, options.threads,
+                      progress);
 }
 
 }  // namespace
 
 void write_synthetic_flight(const fs::path& out_dir, const SyntheticOptions& options,
-                            const SyntheticProgress& progress) {
+                            const FlightProgress& progress) {
   check_options(options);
-  check_target(out_dir, options.overwrite);
+  check_flight_folder(out_dir, options.overwrite);
   StagedFolder staged(out_dir);
   const fs::path mav0 = staged.path() / "mav0";
   const HandHeldFlight motion(derive_seed(options.seed, kMotionSeed));

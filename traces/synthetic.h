@@ -6,13 +6,12 @@
 // IMU and ground truth at 200 Hz from one frame period before the first frame to the last frame.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 
 #include "traces/camera_model.h"
 #include "traces/euroc_models.h"
+#include "traces/flight_images.h"
 #include "traces/imu_model.h"
 #include "traces/world.h"
 
@@ -32,14 +31,11 @@ struct SyntheticOptions {
   ImuModel imu = euroc_imu0();
 };
 
-/// Told after each written frame; calls come one at a time but from any thread.
-using SyntheticProgress = std::function<void(std::size_t done, std::size_t total)>;
-
 /// Writes `out_dir`/mav0/... The folder appears under its name only when complete. Throws
 /// InputError for options out of range, if `out_dir` exists (unless overwrite), or if it cannot be
 /// written.
 void write_synthetic_flight(const std::filesystem::path& out_dir,
                             const SyntheticOptions& options = {},
-                            const SyntheticProgress& progress = {});
+                            const FlightProgress& progress = {});
 
 }  // namespace leviosim::traces

@@ -108,6 +108,14 @@ double YamlMap::not_negative(const std::string& key) const {
   return value;
 }
 
+bool YamlMap::flag(const std::string& key, bool by_default) const {
+  if (!node_[key].IsDefined()) return by_default;
+  const std::string spelled = text(key);
+  if (spelled != "true" && spelled != "false")
+    fail(key, fmt::format("is '{}'; expected true or false", spelled));
+  return spelled == "true";
+}
+
 std::vector<double> YamlMap::numbers(const std::string& key, std::size_t size,
                                      std::string_view meaning) const {
   const YAML::Node node = require(key);

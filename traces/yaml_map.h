@@ -23,6 +23,8 @@ class YamlMap {
   double positive(const std::string& key) const;
   /// A finite number not below zero.
   double not_negative(const std::string& key) const;
+  /// true or false; `by_default` if the key is not there.
+  bool flag(const std::string& key, bool by_default) const;
   /// A list of exactly `size` finite numbers; `meaning` says what they are.
   std::vector<double> numbers(const std::string& key, std::size_t size,
                               std::string_view meaning) const;

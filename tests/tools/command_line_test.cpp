@@ -158,6 +158,35 @@ TEST_F(CommandLine, AnOutFolderThatCannotBeMadeIsRefusedBeforeTheRun) {
   expect_refusal(run_words(data_.root().string(), (folder_ / "file/out").string()), {"file/out"});
 }
 
+TEST_F(CommandLine, RefusesOptionsOfRenderedFlightsThatDoNotFit) {
+  const auto synth = [&](std::vector<std::string> further) {
+    std::vector<std::string> words{"synth", "--out", out()};
+    words.insert(words.end(), further.begin(), further.end());
+    return words;
+  };
+  const std::string motion = data_.root().string();
+  expect_refusal(synth({"--imu", "real"}), {"--imu goes with --motion"});
+  expect_refusal(synth({"--motion", motion, "--imu", "reel"}), {"'reel'", "real or simulated"});
+  expect_refusal(synth({"--motion", motion, "--duration", "3"}), {"--frames A:B"});
+  expect_refusal(synth({"--motion", motion, "--full-size", "--size", "16x12"}),
+                 {"leave out --size"});
+  expect_refusal(synth({"--motion", motion, "--motion-blur", "-1"}), {"--motion-blur '-1'"});
+  expect_refusal(synth({"--motion", "/nonexistent"}), {"/nonexistent"});
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  expect_nothing_staged();
+}
+
+TEST_F(CommandLine, ARenderedFlightRunsAtItsSize) {
+  const ProgramResult made =
+      run_program(folder_.path(), {"synth", "--motion", data_.root().string(), "--size", "16x12",
+                                   "--out", (folder_ / "flight").string()});
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("run --size 16x12"), std::string::npos) << made.out;
+  expect_refusal(
+      {"run", "--native", "--data", (folder_ / "flight").string(), "--size", "8x6", "--out", out()},
+      {"image size 8x6", "decimated to 16x12"});
+}
+
 TEST_F(CommandLine, AnInterruptEndsTheProgramAndLeavesNothingBehind) {
   // The program is stopped as soon as its staged folder shows that it is at work.
   Program program(folder_.path(), {"synth", "--out", out()});

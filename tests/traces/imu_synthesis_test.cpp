@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/traces/imu_integration.h"
 #include "traces/euroc_models.h"
 
 namespace leviosim::traces {
@@ -29,49 +30,12 @@ std::vector<std::int64_t> grid(std::int64_t step_ns, int count) {
   return stamps;
 }
 
-struct State {
-  Vector3d p, v;
-  Eigen::Vector4d q;  // x y z w
-};
-
-State slope(const State& s, const ImuSample& sample) {
-  const Quaterniond q(s.q);
-  const Quaterniond spin(0, sample.gyro.x(), sample.gyro.y(), sample.gyro.z());
-  return {s.v, q.normalized() * sample.accel + Vector3d(0, 0, -kGravity),
-          0.5 * (q * spin).coeffs()};
-}
-
-State step(const State& s, const State& d, double h) {
-  return {s.p + h * d.p, s.v + h * d.v, s.q + h * d.q};
-}
-
-/// Runge-Kutta of fourth order over pairs of samples.
-State integrate(const ImuTrack& track) {
-  const GroundTruthPose& start = track.truth.front();
-  State s{start.T_world_body.translation(), start.velocity,
-          Quaterniond(start.T_world_body.linear()).coeffs()};
-  for (std::size_t i = 0; i + 2 < track.samples.size(); i += 2) {
-    const ImuSample& middle = track.samples[i + 1];
-    const double h = static_cast<double>(track.samples[i + 2].t_ns - track.samples[i].t_ns) * 1e-9;
-    const State k1 = slope(s, track.samples[i]);
-    const State k2 = slope(step(s, k1, h / 2), middle);
-    const State k3 = slope(step(s, k2, h / 2), middle);
-    const State k4 = slope(step(s, k3, h), track.samples[i + 2]);
-    s = step(s, k1, h / 6);
-    s = step(s, k2, h / 3);
-    s = step(s, k3, h / 3);
-    s = step(s, k4, h / 6);
-    s.q.normalize();
-  }
-  return s;
-}
-
 TEST(ImuSynthesis, IdealReadingsIntegrateToTheTruth) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const HandHeldFlight motion(seed);
     const auto stamps = grid(2'500'000, 8001);  // 20 s
     const ImuTrack track = record_imu(motion, nullptr, stamps.front(), stamps);
-    const State end = integrate(track);
+    const testing::InertialState end = testing::integrate(track);
     const GroundTruthPose& truth = track.truth.back();
     EXPECT_LT((end.p - truth.T_world_body.translation()).norm(), 1e-6);
     EXPECT_LT((end.v - truth.velocity).norm(), 1e-7);

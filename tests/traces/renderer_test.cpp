@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "traces/euroc_models.h"
@@ -134,6 +135,64 @@ TEST(Renderer, NoiseAndVignettingAreAsAskedFor) {
   const auto dim = Renderer(world, camera, {0, 0.3, 7}).render(camera_pose(), 0);
   EXPECT_EQ(dim[0], 84) << "the corner loses 30 %";
   EXPECT_EQ(dim[240 * 752 + 376], 120);
+}
+
+TEST(Renderer, DrawnPixelsAreThoseOfTheWholePicture) {
+  const Plates plates;
+  const CameraModel camera = euroc_cam0();
+  RenderOptions options;
+  const auto whole = Renderer(plates.world, camera, options).render(camera_pose(), 3);
+  Rng rng(4);
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x)
+      options.wanted.push_back(y > 100 && x < 600 && rng.chance(0.2) ? 1 : 0);
+  const auto part = Renderer(plates.world, camera, options).render(camera_pose(), 3);
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    ASSERT_EQ(part[i], options.wanted[i] != 0 ? whole[i] : 0) << i;
+}
+
+TEST(Renderer, AveragesThePosesOfAnExposure) {
+  const Plates plates;
+  const Renderer renderer(plates.world, euroc_cam0(), {0, 0, 1});
+  const std::array<Eigen::Isometry3d, 2> poses{
+      camera_pose(), camera_pose() * Eigen::AngleAxisd(0.02, Vector3d::UnitY())};
+  const auto both = renderer.render({poses, 1, 0});
+  const auto first = renderer.render(poses[0], 0), second = renderer.render(poses[1], 0);
+  int half_lit = 0;
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    ASSERT_EQ(both[i], (first[i] + second[i] + 1) / 2);
+    half_lit += both[i] == 128;
+  }
+  EXPECT_GT(half_lit, 1000);
+}
+
+TEST(Renderer, TheSpotAveragesSurfaces) {
+  // A fine checkerboard on the walls turns grey when the spot covers several of its squares.
+  Box room = plain_box({-4, -4, -4}, {4, 4, 4}, 0);
+  std::vector<std::uint8_t> checker;
+  for (int i = 0; i < 512 * 512; ++i) checker.push_back((i + i / 512) % 2 == 0 ? 0 : 200);
+  for (Surface& face : room.faces) face = {Texture(512, 512, checker), 64, 1};
+  const World world(room, {});
+  const auto contrast = [&](double spot_px) {
+    RenderOptions options{.noise = 0, .vignetting = 0, .seed = 1, .spot_px = spot_px, .wanted = {}};
+    double sum = 0;
+    for (const std::uint8_t grey : Renderer(world, euroc_cam0(), options).render(camera_pose(), 0))
+      sum += std::abs(grey - 100.0) / (752 * 480);
+    return sum;
+  };
+  EXPECT_GT(contrast(1), 20);
+  EXPECT_LT(contrast(10), 3);
+}
+
+TEST(Renderer, GainScalesTheLightBeforeTheNoise) {
+  const World world(plain_box({-4, -4, -4}, {4, 4, 4}, 120), {});
+  const Eigen::Isometry3d pose = camera_pose();
+  const Renderer quiet(world, euroc_cam0(), {0, 0, 1});
+  EXPECT_EQ(quiet.render({{&pose, 1}, 0.25f, 0})[5], 30);
+  const auto dark = Renderer(world, euroc_cam0(), {2, 0, 1}).render({{&pose, 1}, 0.25f, 0});
+  double squares = 0;
+  for (const std::uint8_t value : dark) squares += (value - 30.0) * (value - 30.0);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(dark.size())), 2, 0.1);
 }
 
 }  // namespace

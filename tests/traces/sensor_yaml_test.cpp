@@ -93,6 +93,18 @@ TEST(SensorYaml, ImpossibleValues) {
   expect_broken_imu("rate_hz: 200", "rate_hz: [200]", {"key 'rate_hz'", "a list"});
 }
 
+TEST(SensorYaml, PreparedImagesAreMarked) {
+  const AslFolder folder;
+  EXPECT_FALSE(read_camera_model(folder.mav0("cam0/sensor.yaml")).prepared);
+  CameraModel camera = folder.camera();
+  camera.prepared = true;
+  write_file_atomically(folder.mav0("cam0/sensor.yaml"), format_camera_yaml(camera, "test"));
+  EXPECT_TRUE(read_camera_model(folder.mav0("cam0/sensor.yaml")).prepared);
+  folder.replace("cam0/sensor.yaml", "prepared: true", "prepared: maybe");
+  expect_input_error([&] { read_camera_model(folder.mav0("cam0/sensor.yaml")); },
+                     {"key 'prepared'", "'maybe'", "true or false"});
+}
+
 TEST(SensorYaml, TheImuMustBeTheBody) {
   expect_broken_imu("data: [1, 0, 0, 0", "data: [1, 0, 0, 0.1", {"key 'T_BS'", "identity"});
 }

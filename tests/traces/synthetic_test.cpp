@@ -17,6 +17,7 @@ namespace leviosim::traces {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::contents;
 using testing::expect_input_error;
 using testing::TempFolder;
 
@@ -32,15 +33,6 @@ SyntheticOptions small_flight() {
   options.camera.width = 94;
   options.camera.height = 60;
   return options;
-}
-
-/// Every file below a folder with its bytes.
-std::map<std::string, std::string> contents(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file())
-      files[fs::relative(entry.path(), folder).string()] = read_text_file(entry.path());
-  return files;
 }
 
 TEST(Synthetic, SameSeedSameBytesOnAnyNumberOfThreads) {

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
@@ -22,13 +23,14 @@
 
 namespace leviosim::traces::testing {
 
-/// A folder of its own for each test, deleted at the end.
+/// A folder of its own, deleted at the end. A test may have several.
 class TempFolder {
  public:
   TempFolder() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("leviosim-{}-{}-{}", ::getpid(), info->test_suite_name(), info->name());
+    path_ = std::filesystem::temp_directory_path() / fmt::format("leviosim-{}-{}-{}-{}", ::getpid(),
+                                                                 info->test_suite_name(),
+                                                                 info->name(), ++made_);
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
@@ -42,6 +44,7 @@ class TempFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  inline static int made_ = 0;
   std::filesystem::path path_;
 };
 
@@ -57,6 +60,16 @@ inline void expect_input_error(const std::function<void()>& run,
     return;
   }
   ADD_FAILURE() << "no InputError was thrown";
+}
+
+/// Every file below a folder with its bytes.
+inline std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      files[std::filesystem::relative(entry.path(), folder).string()] =
+          read_text_file(entry.path());
+  return files;
 }
 
 /// Recorded flights: $LEVIOSIM_DATA or the folder shared/data beside the project.
