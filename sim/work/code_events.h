@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 
 #include "sim/work/code_map.h"
 
@@ -37,19 +36,21 @@ class CodeEvents {
   static constexpr std::size_t kBlock = 8;
 
   void enter(CodeName function) {
-    append_routines();
+    append_calls();
     append(function.key);
   }
   /// Windows end here if they can: loops then make the same windows again and again.
   void leave() {
-    append_routines();
+    append_calls();
     append(kLeave);
     if (size_ >= kShortestWindow) follow_code();
   }
+  /// The order of the last 32 calls since a function was entered or left is kept. More come from a
+  /// loop, and pass for repetitions of these. So nothing is decided here, and the host's compiler
+  /// makes one step of all calls in a row.
   void call(Routine routine) {
-    routines_ = routines_ << kRoutineBits | (static_cast<CodeEvent>(routine) + 1);
-    if (routines_ >= CodeName::kSmallest >> kRoutineBits) [[unlikely]]
-      append_routines();
+    calls_ = calls_ << kRoutineBits | (static_cast<CodeEvent>(routine) + 1);
+    ++call_count_;
   }
 
   /// f(routine) for each call in an event of calls, in their order.
@@ -62,7 +63,7 @@ class CodeEvents {
 
   /// Takes the events so far. They are there until the next is added.
   std::span<const CodeEvent> take() {
-    append_routines();
+    append_calls();
     std::fill_n(events_.begin() + size_, kBlock, CodeEvent{0});
     const std::span<const CodeEvent> taken(events_.data(), size_);
     size_ = 0;
@@ -70,6 +71,9 @@ class CodeEvents {
   }
 
  private:
+  __extension__ using Calls = unsigned __int128;
+  static constexpr int kKeptCalls = 32;
+  static constexpr int kCallsOfEvent = 7;
   static constexpr int kRoutineBits = 4;
   static constexpr CodeEvent kRoutineMask = (1u << kRoutineBits) - 1;
   static_assert(kRoutineNames.size() <= kRoutineMask);
@@ -83,13 +87,15 @@ class CodeEvents {
       follow_code();
     events_[size_++] = event;
   }
-  void append_routines() {
-    if (routines_ != 0) append(std::exchange(routines_, 0));
+  void append_calls() {
+    if (call_count_ != 0) append_all_calls();
   }
+  void append_all_calls();
 
-  CodeEvent routines_ = 0;  ///< not appended yet
+  Calls calls_ = 0;  ///< not appended yet: the latest, four bits each
   std::size_t size_ = 0;
   std::array<CodeEvent, kLongestWindow + kBlock> events_{};
+  int call_count_ = 0;
 };
 
 /// Thread-local like the tally, and for the same reason.

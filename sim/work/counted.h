@@ -38,7 +38,7 @@ struct UnlikelyCond {
     count(Op::BranchNotTaken);
     count(Op::BranchTaken);
     if (v) [[unlikely]] {
-      count(Op::BranchTaken, static_cast<std::uint64_t>(-1));
+      ++branches_not_taken_after_all;
       return true;
     }
     return false;

@@ -1,5 +1,7 @@
 #include "sim/work/counts.h"
 
+#include <utility>
+
 namespace leviosim::work {
 
 Counts take_tally() {
@@ -10,6 +12,7 @@ Counts take_tally() {
     taken[Op::Straddle] += taken[op] >> 32;
     taken[op] &= 0xffffffffu;
   }
+  taken[Op::BranchTaken] -= std::exchange(branches_not_taken_after_all, 0);
   taken[Op::BranchNotTaken] -= taken[Op::BranchTaken];
   return taken;
 }

@@ -31,12 +31,14 @@ struct Counts {
 /// The counters that counted scalars on this host thread add to, in the form that costs least:
 /// * a load or store also counts in its upper half whether it crosses a word (access_weight), so
 ///   that a loop over a view has one counter to keep, not two;
-/// * `branch_not_taken` counts all branches, since those of a loop are often known before it runs.
+/// * `branch_not_taken` counts all branches, since those of a loop are often known before it runs;
+/// * of conditions that seldom hold, `branch_taken` counts all too, and the others are subtracted.
 ///
 /// This is the one piece of ambient state in the project: an overloaded operator has no other place
 /// to find its counter. It is thread-local, so simulations on several host threads do not meet, and
 /// constant-initialised, so an access is one addition that the optimiser can fold over a loop.
 inline constinit thread_local Counts tally{};
+inline constinit thread_local std::uint64_t branches_not_taken_after_all = 0;
 
 inline void count(Op op, std::uint64_t times = 1) { tally[op] += times; }
 

@@ -109,24 +109,24 @@ class CountedSpan {
  public:
   CountedSpan() = default;
   CountedSpan(T* data, int size, bool straddles = false)
-      : data_(data), size_(size), weight_(access_weight(sizeof(T) > 1 && straddles)) {}
+      : data_(data), size_(size), straddles_(sizeof(T) > 1 && straddles) {}
   /// A read-only view of the same memory.
   operator CountedSpan<const T, S>() const requires(!std::is_const_v<T>) {
-    return {data_, size_, straddles()};
+    return {data_, size_, straddles_};
   }
 
   int size() const { return size_; }
   T* data() const { return data_; }
-  Stream operator[](int i) const { return {data_ + i, weight_}; }
-  Indexed operator[](I32 i) const { return {data_ + i.v, weight_}; }
-  CountedSpan subspan(int offset, int size) const { return {data_ + offset, size, straddles()}; }
+  Stream operator[](int i) const { return {data_ + i, access_weight(straddles_)}; }
+  Indexed operator[](I32 i) const { return {data_ + i.v, access_weight(straddles_)}; }
+  CountedSpan subspan(int offset, int size) const { return {data_ + offset, size, straddles_}; }
 
  private:
-  bool straddles() const { return weight_ != access_weight(false); }
-
   T* data_ = nullptr;
   int size_ = 0;
-  std::uint64_t weight_ = access_weight(false);
+  /// Not the weight itself: that has the type of counters, so that counting might change it, for
+  /// all that the compiler knows.
+  bool straddles_ = false;
 };
 
 /// The same view under the native policy.

@@ -90,6 +90,22 @@ TEST(CodeTracker, ReturnsFetchTheRestOfTheCaller) {
   EXPECT_EQ(all(code), 320U + 3 * (160U + 64U));
 }
 
+TEST(CodeTracker, LoopsOverRoutinesFetchThemInEveryRound) {
+  CodeMap map;
+  map.add("f64_mul", "", 200);
+  map.add("f64_add", "", 120);
+  CodeTracker tracker(map);
+  const CodeReuse code = fetched_by(tracker, [] {
+    for (int i = 0; i < 1000; ++i) {
+      work::code_events.call(work::Routine::F64Mul);
+      work::code_events.call(work::Routine::F64Add);
+    }
+  });
+  EXPECT_EQ(code[work::kNeverFetched], 200U + 120U);
+  EXPECT_EQ(code[work::reuse_class(200 + 120)], 999 * (200U + 120U));
+  EXPECT_EQ(all(code), 1000 * (200U + 120U));
+}
+
 TEST(CodeTracker, UnknownFunctionsHaveNoCode) {
   CodeMap map;
   map.add("known", "", 64);
@@ -158,8 +174,10 @@ TEST(CodeTracker, RandomWalksFetchWhatASearchSays) {
   };
   const CodeReuse code = fetched_by(tracker, [&] {
     int depth = 0;
+    std::uint32_t calls = 0;
     for (int step = 0; step < 30'000; ++step) {
       const std::uint32_t what = next(4);
+      if (what < 2) calls = 0;
       if (what == 0 && depth < 5) {
         const CodeName name(names[next(6)]);
         work::code_events.enter(name);
@@ -170,7 +188,7 @@ TEST(CodeTracker, RandomWalksFetchWhatASearchSays) {
         search.leave();
         --depth;
       } else if (what == 2) {
-        for (std::uint32_t n = next(12); n > 0; --n) {  // of one kind, then of another
+        for (std::uint32_t n = next(12); n > 0 && calls < 32; --n, ++calls) {
           const auto routine = n % 3 == 0 ? work::Routine::F64Add : work::Routine::F64Mul;
           work::code_events.call(routine);
           search.call(routine);

@@ -40,7 +40,7 @@ Nearest<P> find_nearest(typename P::template Span<const typename P::U32> descrip
   for (int r : P::range(0, count)) {
     const I distance =
         hamming_distance<P>(descriptor, reference.subspan(kDescriptorWords * r, kDescriptorWords));
-    if (distance < nearest.distance) nearest = {r, distance};
+    if (work::unlikely(distance < nearest.distance)) nearest = {r, distance};
   }
   return nearest;
 }
