@@ -174,18 +174,19 @@ TEST(CodeTracker, RandomWalksFetchWhatASearchSays) {
   };
   const CodeReuse code = fetched_by(tracker, [&] {
     int depth = 0;
-    std::uint32_t calls = 0;
+    std::uint32_t calls = 0;  // of routines in a row: the order of more than 32 is not kept
     for (int step = 0; step < 30'000; ++step) {
       const std::uint32_t what = next(4);
-      if (what < 2) calls = 0;
       if (what == 0 && depth < 5) {
         const CodeName name(names[next(6)]);
         work::code_events.enter(name);
         search.enter(name);
+        calls = 0;
         ++depth;
       } else if (what == 1 && depth > 0) {
         work::code_events.leave();
         search.leave();
+        calls = 0;
         --depth;
       } else if (what == 2) {
         for (std::uint32_t n = next(12); n > 0 && calls < 32; --n, ++calls) {
