@@ -71,7 +71,11 @@ class CodeEvents {
   }
 
  private:
+#ifdef __SIZEOF_INT128__
   __extension__ using Calls = unsigned __int128;
+#else  // a 32-bit target, for which the workload is compiled but not counted
+  using Calls = std::uint64_t;
+#endif
   static constexpr int kKeptCalls = 32;
   static constexpr int kCallsOfEvent = 7;
   static constexpr int kRoutineBits = 4;
