@@ -9,7 +9,7 @@
 
 namespace leviosim::traces {
 
-using Stamps = std::vector<std::int64_t>;
+using StampList = std::vector<std::int64_t>;
 
 struct TimeSpan {
   std::int64_t begin_ns = 0;
@@ -17,15 +17,15 @@ struct TimeSpan {
 };
 
 /// begin, begin + 1 / rate, ... up to end.
-Stamps regular_stamps(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz);
+StampList regular_stamps(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz);
 
-Stamps stamps_within(const Stamps& stamps, TimeSpan span);
+StampList stamps_within(const StampList& stamps, TimeSpan span);
 
 /// The first of the grid's stamps in the span and then, for each further period, the nearest one:
 /// a camera that is triggered by the clock of another sensor.
-Stamps stamps_nearest_to_period(const Stamps& grid, TimeSpan span, std::int64_t period_ns);
+StampList stamps_nearest_to_period(const StampList& grid, TimeSpan span, std::int64_t period_ns);
 
 /// The stamps in a range. Throws as check_frame_range() does.
-Stamps selected(const Stamps& stamps, const FrameRange& range, const std::string& what);
+StampList selected(const StampList& stamps, const FrameRange& range, const std::string& what);
 
 }  // namespace leviosim::traces

@@ -11,7 +11,8 @@ void CodeEvents::append_all_calls() {
   for (int left = std::exchange(call_count_, 0); left > 0; left -= kKeptCalls) {
     if (left < kKeptCalls) calls &= (Calls{1} << (left * kRoutineBits)) - 1;  // the latest
     for (int shift = kHighest; shift >= 0; shift -= kEventBits) {
-      const auto event = static_cast<CodeEvent>(calls >> shift) & ((CodeEvent{1} << kEventBits) - 1);
+      const auto event =
+          static_cast<CodeEvent>(calls >> shift) & ((CodeEvent{1} << kEventBits) - 1);
       if (event != 0) append(event);
     }
   }

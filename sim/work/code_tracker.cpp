@@ -1,7 +1,6 @@
 #include "sim/work/code_tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "sim/work/counts.h"
@@ -19,8 +18,8 @@ std::uint64_t hash_of(std::span<const std::uint32_t> words) {
   return hash;
 }
 
-/// Whether two windows are the same. In blocks, since most windows have two, and a library call or a
-/// branch for each word would cost as much as all the rest.
+/// Whether two windows are the same. In blocks, since most windows have two, and a library call or
+/// a branch for each word would cost as much as all the rest.
 bool equal(const CodeEvent* a, const CodeEvent* b, std::size_t size) {
   constexpr std::size_t kBlock = CodeEvents::kBlock;
   for (std::size_t i = 0; i < size; i += kBlock) {
@@ -84,12 +83,12 @@ std::int32_t CodeTracker::add_step(std::span<const CodeEvent> events) {
   merge_fetches(first_fetch);
   const auto number = static_cast<std::int32_t>(steps_.size());
   const std::uint32_t next = state_of(place);
-  steps_.push_back({static_cast<std::uint32_t>(first_event),
-                    static_cast<std::uint32_t>(events.size()),
-                    {static_cast<std::uint32_t>(first_fetch),
-                     static_cast<std::uint32_t>(fetches_.size())},
-                    next,
-                    first_steps_[state_]});
+  steps_.push_back(
+      {static_cast<std::uint32_t>(first_event),
+       static_cast<std::uint32_t>(events.size()),
+       {static_cast<std::uint32_t>(first_fetch), static_cast<std::uint32_t>(fetches_.size())},
+       next,
+       first_steps_[state_]});
   first_steps_[state_] = number;
   return number;
 }

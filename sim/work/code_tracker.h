@@ -1,5 +1,6 @@
 // Follows the cores of a machine through the code they execute (code_events.h), one at a time, and
-// counts what each fetches by reuse distance (code_reuse.h), from the sizes of the compiled pieces of functions (code_map.h).
+// counts what each fetches by reuse distance (code_reuse.h), from the sizes of the compiled pieces
+// of functions (code_map.h).
 //
 // Programs go round in loops, so the same events come again and again while the core has last
 // fetched the same pieces in the same order. That order, with the functions entered, is therefore a
@@ -70,14 +71,15 @@ class CodeTracker {
   void forget();
 
   const CodeMap* map_;
-  std::vector<Place> places_;               ///< of all states
+  std::vector<Place> places_;              ///< of all states
   std::vector<std::int32_t> first_steps_;  ///< out of all states, the latest first
   std::vector<Step> steps_;
-  std::vector<CodeEvent> events_;  ///< of all steps, each from a block's begin on, padded with zeros
-  std::vector<Fetch> fetches_;     ///< of all steps
+  std::vector<CodeEvent>
+      events_;                  ///< of all steps, each from a block's begin on, padded with zeros
+  std::vector<Fetch> fetches_;  ///< of all steps
   std::unordered_multimap<std::uint64_t, std::uint32_t> state_of_hash_;
-  std::size_t core_ = 0;     ///< the one selected
-  std::uint32_t state_ = 0;  ///< of that core
+  std::size_t core_ = 0;                        ///< the one selected
+  std::uint32_t state_ = 0;                     ///< of that core
   std::vector<std::uint32_t> states_of_cores_;  ///< of the other cores
 };
 

@@ -7,8 +7,7 @@ namespace leviosim::work {
 Machine::Machine(const MachineConfig& config)
     : config_(config), local_(config.memory, config.capacity, config.alignment) {
   check(config.cores >= 1, "a machine has at least one core");
-  if (config.record && config.code != nullptr)
-    tracker_.emplace(*config.code, config.cores + 1);
+  if (config.record && config.code != nullptr) tracker_.emplace(*config.code, config.cores + 1);
 }
 
 void Machine::follow_code_of(int core) {

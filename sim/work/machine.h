@@ -187,7 +187,7 @@ class Machine {
   Fork fork_;
   Bytes scratch_sum_{0};
   Bytes scratch_max_{0};
-  MemoryPeak fork_peak_;               ///< of the forks of the stage so far
+  MemoryPeak fork_peak_;                ///< of the forks of the stage so far
   std::optional<CodeTracker> tracker_;  ///< of every core and of the master, if their code is known
 };
 

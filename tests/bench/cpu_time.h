@@ -1,5 +1,5 @@
-// Time of this thread on its core. Where other programs run too, ratios of such times hold, those of
-// wall-clock times do not.
+// Time of this thread on its core. Where other programs run too, ratios of such times hold, those
+// of wall-clock times do not.
 #pragma once
 
 #include <ctime>

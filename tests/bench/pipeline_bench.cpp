@@ -1,5 +1,6 @@
-// The whole pipeline: counting against native, and the timing model on top of counting. All three
-// take every frame one after the other, so that the ratios hold on a machine whose speed drifts.
+// The whole pipeline: counting against native, without and with following the code, and the timing
+// model on top. All take every frame one after the other, so that the ratios hold on a machine
+// whose speed drifts.
 //
 // On the real frames below LEVIOSIM_DATA where that is set, else on a synthetic flight that is made
 // in a temporary folder.
@@ -62,23 +63,22 @@ const Recording& recording() {
   return frames;
 }
 
-enum class Mode { Native, Counting, Timed };
+enum class Mode { Native, CountingOperations, Counting, Timed };
 
 /// One odometry with the machines that it works on, and the time that its frames took.
 class Pipeline {
  public:
   Pipeline(Mode mode, const vio::Rig& rig) : mode_(mode) {
     const bool record = mode != Mode::Native;
+    const work::CodeMap* code =
+        mode == Mode::CountingOperations ? nullptr : &platform::compiled_code();
     cluster_.emplace(work::MachineConfig{.cores = 8,
                                          .memory = "L1",
                                          .alignment = profile_.l1_alignment,
                                          .record = record,
-                                         .code = &platform::compiled_code()});
-    controller_.emplace(work::MachineConfig{.cores = 1,
-                                            .memory = "L2",
-                                            .capacity = Bytes(1'600'000),
-                                            .record = record,
-                                            .code = &platform::compiled_code()});
+                                         .code = code});
+    controller_.emplace(work::MachineConfig{
+        .cores = 1, .memory = "L2", .capacity = Bytes(1'600'000), .record = record, .code = code});
     odometry_ = vio::make_odometry(record, profile_, rig, *cluster_, *controller_);
   }
 
@@ -119,16 +119,20 @@ double median(std::vector<double> values) {
 
 void pipeline(benchmark::State& state) {
   recording();
-  std::vector<double> counting, timing, native_ms;
+  std::vector<double> operations, counting, timing, native_ms;
   for (auto _ : state) {
-    Pipeline native(Mode::Native, recording().rig), counted(Mode::Counting, recording().rig),
-        timed(Mode::Timed, recording().rig);
+    const vio::Rig& rig = recording().rig;
+    Pipeline native(Mode::Native, rig), operation_counting(Mode::CountingOperations, rig),
+        counted(Mode::Counting, rig), timed(Mode::Timed, rig);
     for (const vio::FrameInput& frame : recording().frames)
-      for (Pipeline* pipeline : {&native, &counted, &timed}) pipeline->process(frame);
+      for (Pipeline* pipeline : {&native, &operation_counting, &counted, &timed})
+        pipeline->process(frame);
+    operations.push_back(operation_counting.seconds() / native.seconds());
     counting.push_back(counted.seconds() / native.seconds());
     timing.push_back(timed.seconds() / counted.seconds());
     native_ms.push_back(1e3 * native.seconds() / static_cast<double>(recording().frames.size()));
   }
+  state.counters["counting_operations/native"] = median(operations);
   state.counters["counting/native"] = median(counting);
   state.counters["timed/counting"] = median(timing);
   state.counters["native_ms_per_frame"] = median(native_ms);

@@ -155,7 +155,7 @@ class SearchingTracker {
   std::vector<int> order_;
 };
 
-TEST(CodeTracker, RandomWalksFetchWhatASearchSays) {
+TEST(CodeTracker, RandomWalksOfTwoCoresFetchWhatASearchSays) {
   const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f"};
   CodeMap map;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -165,17 +165,28 @@ TEST(CodeTracker, RandomWalksFetchWhatASearchSays) {
   }
   map.add("f64_mul", "", 200);
   map.add("f64_add", "", 120);
-  CodeTracker tracker(map);
-  SearchingTracker search(map);
+  struct Core {
+    SearchingTracker search;
+    int depth = 0;
+  };
+  std::vector<Core> cores(2, {SearchingTracker(map)});
+  CodeTracker tracker(map, 2);
   std::uint32_t random = 1;
   const auto next = [&random](std::uint32_t n) {
     random = random * 1664525u + 1013904223u;
     return (random >> 16) % n;
   };
   const CodeReuse code = fetched_by(tracker, [&] {
-    int depth = 0;
+    std::uint32_t core = 0;
     std::uint32_t calls = 0;  // of routines in a row: the order of more than 32 is not kept
-    for (int step = 0; step < 30'000; ++step) {
+    for (int step = 0; step < 300'000; ++step) {
+      if (next(100) == 0) {
+        work::fetch_code();
+        core = next(2);
+        tracker.select(static_cast<int>(core));
+        calls = 0;
+      }
+      auto& [search, depth] = cores[core];
       const std::uint32_t what = next(4);
       if (what == 0 && depth < 5) {
         const CodeName name(names[next(6)]);
@@ -197,7 +208,9 @@ TEST(CodeTracker, RandomWalksFetchWhatASearchSays) {
       }
     }
   });
-  EXPECT_EQ(code, search.code);
+  CodeReuse expected = cores[0].search.code;
+  for (std::size_t i = 0; i < expected.size(); ++i) expected[i] += cores[1].search.code[i];
+  EXPECT_EQ(code, expected);
   EXPECT_GT(all(code), 1'000'000U);
 }
 

@@ -127,7 +127,7 @@ TEST_F(EvalCommand, DrawsTheSamePictureAgain) {
   for (const char* name : {"a.svg", "b.svg"}) EXPECT_EQ(eval({"--plot", path(name)}).status, 0);
   const std::string picture = read_text_file(folder_ / "a.svg");
   EXPECT_EQ(picture, read_text_file(folder_ / "b.svg"));
-  EXPECT_EQ(testing::XmlCheck(picture).fault(), "");
+  EXPECT_EQ(testing::xml_fault(picture), "");
   expect_parts(picture, {"x [m]", "y [m]", "z [m]", "[deg]", "ground truth", ">start<",
                          "SE3-aligned, 201 of 201", "time since the first matched pose [s]"});
 }
@@ -140,7 +140,7 @@ TEST_F(EvalCommand, NamesOfFilesMayHoldAnything) {
       {"eval", odd.string(), path("gt.tum"), "--plot", path("o.svg"), "--json", path("o.json")});
   EXPECT_EQ(result.status, 0) << result.err;
   const std::string picture = read_text_file(folder_ / "o.svg");
-  EXPECT_EQ(testing::XmlCheck(picture).fault(), "");
+  EXPECT_EQ(testing::xml_fault(picture), "");
   expect_parts(picture, {"a &lt;b&gt; &amp; &quot;c&quot; \xEF\xBF\xBD.tum"});
   EXPECT_NO_THROW(Json::parse(read_text_file(folder_ / "o.json")));
 }
@@ -160,7 +160,7 @@ TEST_F(EvalCommand, KittiFilesNeedNoTimes) {
   result = run_program(folder_.path(), timed);
   EXPECT_EQ(result.status, 0) << result.err;
   expect_parts(result.out, {"(0.30 s of truth, longest gap 0.10 s)"});
-  EXPECT_EQ(testing::XmlCheck(read_text_file(folder_ / "k.svg")).fault(), "");
+  EXPECT_EQ(testing::xml_fault(read_text_file(folder_ / "k.svg")), "");
 }
 
 TEST_F(EvalCommand, RefusesFiles) {

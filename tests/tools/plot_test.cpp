@@ -10,11 +10,11 @@
 namespace leviosim::tools::plot {
 namespace {
 
-using tools::testing::XmlCheck;
+using tools::testing::xml_fault;
 
-TEST(XmlCheckItself, SeesFaults) {
+TEST(XmlFault, IsSeen) {
   const auto fault = [](const std::string& body) {
-    return XmlCheck("<?xml version=\"1.0\"?>\n" + body).fault();
+    return xml_fault("<?xml version=\"1.0\"?>\n" + body);
   };
   EXPECT_EQ(fault("<a x=\"1\"><b/>&amp;</a>"), "");
   for (const char* broken : {"<a>", "<a></b>", "<a/><a/>", "<a>&</a>", "<a>&nbsp;</a>", "<a x=1/>",
@@ -42,7 +42,7 @@ TEST(Svg, IsWellFormedWhateverItHolds) {
   svg.frame({1, 1, 8, 8}, {});
   svg.text({3, -0.001}, "\"quoted\" <b>", {12, Anchor::end, "#000000", true, true});
   const std::string text = svg.str();
-  EXPECT_EQ(XmlCheck(text).fault(), "") << text;
+  EXPECT_EQ(xml_fault(text), "") << text;
   EXPECT_NE(text.find("points=\"0.00,0.00 5.00,5.00 9.00,9.00\""), std::string::npos) << text;
   EXPECT_EQ(text.find("-0.00"), std::string::npos) << text;
 }

@@ -10,6 +10,8 @@
 
 #include "sim/work/policy.h"
 
+#define LEVIOSIM_HOST_INLINE inline
+
 namespace leviosim::work {
 
 template <>

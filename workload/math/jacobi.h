@@ -3,10 +3,18 @@
 // takes one arc tangent, one cosine and one sine (levio_parameters, "Pose estimation").
 //
 // Left out: cheaper rotations without trigonometry, and cyclic order, which needs no search.
+//
+// Inlined on the host, so that its compiler knows the sizes of a caller's matrices for counted
+// scalars too, whose code it takes for too large. A target's compiler decides for itself
+// (tools/rv32), so that the host's speed does not change the modelled code.
 #pragma once
 
 #include "workload/math/matrix.h"
 #include "workload/math/trig.h"
+
+#ifndef LEVIOSIM_HOST_INLINE
+#define LEVIOSIM_HOST_INLINE [[gnu::always_inline]] inline
+#endif
 
 namespace leviosim::vio {
 
@@ -25,7 +33,7 @@ struct Element {
 
 /// The largest |a(i, j)| above the diagonal.
 template <class P>
-[[gnu::always_inline]] inline Element<P> largest_off_diagonal(MatrixView<P> a) {
+LEVIOSIM_HOST_INLINE Element<P> largest_off_diagonal(MatrixView<P> a) {
   using F = typename P::F32;
   const int n = a.rows();
   Element<P> largest{0.0f, 0, 1};
@@ -64,9 +72,9 @@ typename P::F32 rotated_diagonal(typename P::F32 c, typename P::F32 s, typename 
 
 /// (x, y) ← (c x − s y, s x + c y) for the elements of two rows.
 template <class P>
-[[gnu::always_inline]] inline void rotate_rows(typename P::template Span<typename P::F32> x_row,
-                 typename P::template Span<typename P::F32> y_row, typename P::F32 c,
-                 typename P::F32 s) {
+LEVIOSIM_HOST_INLINE void rotate_rows(typename P::template Span<typename P::F32> x_row,
+                                      typename P::template Span<typename P::F32> y_row,
+                                      typename P::F32 c, typename P::F32 s) {
   using F = typename P::F32;
   for (int k : P::range(0, x_row.size())) {
     const F x = x_row[k];
@@ -78,8 +86,8 @@ template <class P>
 
 /// The same for columns p and q of a.
 template <class P>
-[[gnu::always_inline]] inline void rotate_columns(MatrixView<P> a, typename P::I32 p, typename P::I32 q, typename P::F32 c,
-                    typename P::F32 s) {
+LEVIOSIM_HOST_INLINE void rotate_columns(MatrixView<P> a, typename P::I32 p, typename P::I32 q,
+                                         typename P::F32 c, typename P::F32 s) {
   using F = typename P::F32;
   const MatrixView<P> x_column = a.from_column(p);
   const MatrixView<P> y_column = a.from_column(q);
@@ -93,8 +101,8 @@ template <class P>
 
 /// Annihilates a(p, q) by a similarity rotation of a, which stays symmetric to the last bit.
 template <class P>
-[[gnu::always_inline]] inline void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I32 p, typename P::I32 q,
-            DiagonalPrecision precision) {
+LEVIOSIM_HOST_INLINE void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I32 p,
+                                 typename P::I32 q, DiagonalPrecision precision) {
   using F = typename P::F32;
   const typename P::Function function("jacobi_rotation");
   const auto row_p = a.row(p);
@@ -126,8 +134,9 @@ void set_identity(MatrixView<P> a) {
 /// @param v  n×n; its columns become the eigenvectors
 /// @return the number of rotations
 template <class P>
-[[gnu::always_inline]] inline int jacobi_eigen_classical(MatrixView<P> a, MatrixView<P> v, int max_rotations,
-                           typename P::F32 tolerance, DiagonalPrecision precision) {
+LEVIOSIM_HOST_INLINE int jacobi_eigen_classical(MatrixView<P> a, MatrixView<P> v, int max_rotations,
+                                                typename P::F32 tolerance,
+                                                DiagonalPrecision precision) {
   const typename P::Function function("jacobi_eigen_classical");
   set_identity<P>(v);
   int rotations = 0;

@@ -70,8 +70,7 @@ void detect_in_box(ConstImageView<P> image, const PixelBox<P>& box,
   for (int y : P::range(box.y0, box.y1))
     for (int x : P::range(box.x0, box.x1)) {
       const int centre = y * image.width + x;
-      if (work::unlikely(
-              is_fast_corner<P>(image.pixels, centre, ring_offsets, fast_threshold))) {
+      if (work::unlikely(is_fast_corner<P>(image.pixels, centre, ring_offsets, fast_threshold))) {
         const I score = harris_response<P>(image.pixels, image.width, x, y);
         if (score > harris_threshold) best.offer(x, y, score);
       }
