@@ -125,28 +125,58 @@ void form_coupling(const Floats<P>& slot, const Mat3<P>& inverse, const Vec3<P>&
 }
 
 // The 6×6 blocks below are updated row by row, three columns at a time. Of a block on the diagonal,
-// what lies above the 3×3 blocks of the diagonal is left out: the matrix is symmetric.
+// what lies above the 3×3 blocks of the diagonal is left out: the matrix is symmetric. The number of
+// columns is a template parameter, so that the compiler knows all bounds.
+
+/// Row r of the block that add_pose_block() adds, its first 3·halves columns.
+template <class P, int halves>
+void add_pose_row(const Floats<P>& slot, int r, const Floats<P>& matrix, int row_begin) {
+  using F = typename P::F32;
+  const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
+  for (int half : P::range(0, halves)) {
+    const Vec3<P> q0 = load_vec3<P>(slot, Records<P>::kByPose + 3 * half);
+    const Vec3<P> q1 = load_vec3<P>(slot, Records<P>::kByPose + 6 + 3 * half);
+    const int at = row_begin + 3 * half;
+    Vec3<P> sum = load_vec3<P>(matrix, at);
+    sum.x += p0 * q0.x;
+    sum.y += p0 * q0.y;
+    sum.z += p0 * q0.z;
+    sum.x += p1 * q1.x;
+    sum.y += p1 * q1.y;
+    sum.z += p1 * q1.z;
+    store_vec3<P>(matrix, at, sum);
+  }
+}
 
 /// matrix += J_pᵀ J_p of one observation, a block on the diagonal.
 template <class P>
 void add_pose_block(const Floats<P>& slot, const Floats<P>& matrix, int stride) {
-  using F = typename P::F32;
   const typename P::Code code("add_pose_block");
   for (int r : P::range(0, 6)) {
-    const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
-    for (int half : P::range(0, r < 3 ? 1 : 2)) {
-      const Vec3<P> q0 = load_vec3<P>(slot, Records<P>::kByPose + 3 * half);
-      const Vec3<P> q1 = load_vec3<P>(slot, Records<P>::kByPose + 6 + 3 * half);
-      const int at = r * stride + 3 * half;
-      Vec3<P> sum = load_vec3<P>(matrix, at);
-      sum.x += p0 * q0.x;
-      sum.y += p0 * q0.y;
-      sum.z += p0 * q0.z;
-      sum.x += p1 * q1.x;
-      sum.y += p1 * q1.y;
-      sum.z += p1 * q1.z;
-      store_vec3<P>(matrix, at, sum);
-    }
+    if (r < 3)
+      add_pose_row<P, 1>(slot, r, matrix, r * stride);
+    else
+      add_pose_row<P, 2>(slot, r, matrix, r * stride);
+  }
+}
+
+/// The first 3·halves columns of a row of matrix -= Y Wᵀ.
+template <class P, int halves>
+void subtract_row(const Vec3<P>& y, const Floats<P>& W, const Floats<P>& matrix, int row_begin) {
+  for (int half : P::range(0, halves)) {
+    const Mat3<P> w = load_mat3<P>(W, 9 * half);
+    const int at = row_begin + 3 * half;
+    Vec3<P> sum = load_vec3<P>(matrix, at);
+    sum.x -= y.x * w.m[0][0];
+    sum.y -= y.x * w.m[1][0];
+    sum.z -= y.x * w.m[2][0];
+    sum.x -= y.y * w.m[0][1];
+    sum.y -= y.y * w.m[1][1];
+    sum.z -= y.y * w.m[2][1];
+    sum.x -= y.z * w.m[0][2];
+    sum.y -= y.z * w.m[1][2];
+    sum.z -= y.z * w.m[2][2];
+    store_vec3<P>(matrix, at, sum);
   }
 }
 
@@ -157,21 +187,10 @@ void subtract_elimination(const Floats<P>& Y, const Floats<P>& W, bool diagonal,
   const typename P::Code code("subtract_elimination");
   for (int r : P::range(0, 6)) {
     const Vec3<P> y = load_vec3<P>(Y, 3 * r);
-    for (int half : P::range(0, diagonal && r < 3 ? 1 : 2)) {
-      const Mat3<P> w = load_mat3<P>(W, 9 * half);
-      const int at = r * stride + 3 * half;
-      Vec3<P> sum = load_vec3<P>(matrix, at);
-      sum.x -= y.x * w.m[0][0];
-      sum.y -= y.x * w.m[1][0];
-      sum.z -= y.x * w.m[2][0];
-      sum.x -= y.y * w.m[0][1];
-      sum.y -= y.y * w.m[1][1];
-      sum.z -= y.y * w.m[2][1];
-      sum.x -= y.z * w.m[0][2];
-      sum.y -= y.z * w.m[1][2];
-      sum.z -= y.z * w.m[2][2];
-      store_vec3<P>(matrix, at, sum);
-    }
+    if (diagonal && r < 3)
+      subtract_row<P, 1>(y, W, matrix, r * stride);
+    else
+      subtract_row<P, 2>(y, W, matrix, r * stride);
   }
 }
 
