@@ -28,7 +28,7 @@ run() { # run NAME PRESET
   echo "check_reproducible: $1"
   tools/build.sh "$2" leviosim
   "build/$2/leviosim" synth --duration 0.2 --quiet --out "$results/$1/flight" >/dev/null
-  "build/$2/leviosim" run --platform gap9 --data "$data" "${frames[@]}" --quiet \
+  "build/$2/leviosim" run --platform gap9 --data "$data" "${frames[@]}" --record --quiet \
     --out "$results/$1/run" >/dev/null
 }
 run gcc-release release

@@ -11,6 +11,8 @@
 #include "tools/eval/eval_command.h"
 #include "tools/microbench/microbench_command.h"
 #include "tools/platforms/platforms_command.h"
+#include "tools/replay/replay_command.h"
+#include "tools/replay/trace_command.h"
 #include "tools/run/run_command.h"
 #include "tools/sensitivity/sensitivity_command.h"
 #include "tools/synth/synth_command.h"
@@ -36,7 +38,8 @@ int run_program(const Words& words) {
         app,
         {add_run_command(app, words), add_synth_command(app), add_platforms_command(app),
          add_eval_command(app), add_validate_command(app, words), add_calibrate_command(app),
-         add_sensitivity_command(app), add_microbench_command(app)},
+         add_sensitivity_command(app), add_microbench_command(app), add_replay_command(app, words),
+         add_trace_command(app)},
         words);
   } catch (const InputError& error) {
     return fail(error);

@@ -7,6 +7,7 @@ packages=(
   g++ clang cmake ninja-build git          # compilers (Clang for tools/check_reproducible.sh), build
   libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
   libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
+  libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
   libgtest-dev libexpat1-dev                                  # tests
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
 )

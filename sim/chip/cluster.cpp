@@ -114,10 +114,11 @@ Task<> Cluster::step(const work::Fork& fork, Account& account) {
 }
 
 Process Cluster::worker(int id) {
+  work::Counts sum;
   for (;;) {
     const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
     co_await kernel_.delay(cycles(config_.events.fork_worker));
-    const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork));
+    const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork, sum));
     Account& account = *dispatch.account;
     account.useful += time.alone;
     account.fpu += time.fpu;
@@ -131,12 +132,14 @@ Process Cluster::worker(int id) {
   }
 }
 
-work::Counts Cluster::shares_of(int id, const work::Fork& fork) const {
+const work::Counts& Cluster::shares_of(int id, const work::Fork& fork, work::Counts& sum) const {
   const std::size_t shares = fork.shares.size() - (fork.master_takes_part ? 1 : 0);
-  work::Counts mine;
-  for (auto k = static_cast<std::size_t>(id); k < shares; k += static_cast<std::size_t>(workers_))
-    mine += fork.shares[k];
-  return mine;
+  const auto first = static_cast<std::size_t>(id);
+  const auto step = static_cast<std::size_t>(workers_);
+  if (first < shares && first + step >= shares) return fork.shares[first];
+  sum = {};
+  for (std::size_t k = first; k < shares; k += step) sum += fork.shares[k];
+  return sum;
 }
 
 }  // namespace leviosim::sim

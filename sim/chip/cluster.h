@@ -43,7 +43,8 @@ class Cluster {
   Task<> step(const work::Transfer& transfer, Account& account);
   Task<> step(const work::TransferWait& wait, Account& account);
   Task<> until_arrived(Time arrival);
-  work::Counts shares_of(int id, const work::Fork& fork) const;
+  /// The worker's share; where it has several, their sum, which is put into `sum`.
+  const work::Counts& shares_of(int id, const work::Fork& fork, work::Counts& sum) const;
   Duration cycles(double n) const;
   double cycles_since(Time begin, Time end) const;
 

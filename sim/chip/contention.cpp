@@ -162,19 +162,39 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   progress.assign(n, Progress{});
   if (n < 2 && dma_words == 0) return;
 
+  // Rates are 1 at most: units that serve everybody at 1 never hold anybody back.
+  const auto serves_everybody = [&](Unit unit) {
+    const Pools& kind = pools_[index(unit)];
+    for (int pool = 0; pool < kind.pools; ++pool) {
+      double demand = 0;
+      for (const Runner& runner : runners) {
+        const UnitDemand& asked = runner.units[index(unit)];
+        if (asked.requests > 0 && runner.core % kind.pools == pool)
+          demand += asked.requests * (asked.cycles / asked.requests);
+      }
+      if (demand > kind.capacity) return false;
+    }
+    return true;
+  };
+  std::array<Unit, kShared.size()> scarce{};
+  std::size_t scarce_units = 0;
+  for (const Unit unit : kShared)
+    if (!serves_everybody(unit)) scarce[scarce_units++] = unit;
+
   std::vector<double> free_rate(n);  // without units that serve in turn
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0;
     sum_up(runners, dma_words);
     for (std::size_t i = 0; i < n; ++i) free_rate[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i));
     // Each unit's limit is found with what the *other* limits leave of the demand.
-    for (const Unit unit : kShared) {
-      for (std::size_t i = 0; i < n; ++i)
-        rate_[i] = std::min(free_rate[i], allowed(i, index(unit)));
-      limit(index(unit), runners);
+    for (std::size_t k = 0; k < scarce_units; ++k) {
+      const std::size_t unit = index(scarce[k]);
+      for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate[i], allowed(i, unit));
+      limit(unit, runners);
     }
     for (std::size_t i = 0; i < n; ++i) {
-      const double rate = std::min(free_rate[i], allowed(i, index(Unit::Core)));
+      const double rate =
+          scarce_units == 0 ? free_rate[i] : std::min(free_rate[i], allowed(i, index(Unit::Core)));
       change = std::max(change, std::abs(rate - progress[i].rate));
       rate_[i] = progress[i].rate = rate;
     }

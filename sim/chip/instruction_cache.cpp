@@ -6,17 +6,25 @@
 namespace leviosim::sim {
 namespace {
 
+// Substituting u = (1 - g)^(n-1), which is uniform; the midpoint rule is exact enough.
+constexpr int kSteps = 64;
+using Shares = std::array<double, kSteps>;
+
+/// The shares g of the loop since one of n cores used a line, at the middle of each step of u.
+Shares shares_since_use(int n) {
+  Shares shares{};
+  if (n == 1) return shares;
+  for (int i = 0; i < kSteps; ++i)
+    shares[static_cast<std::size_t>(i)] = 1 - std::pow((i + 0.5) / kSteps, 1.0 / (n - 1));
+  return shares;
+}
+
 /// Share of lines that survive, of n cores in the same loop: the mean of exp(-x n g) over the share
-/// g of the loop since one of them used the line. For one core g is 1.
-double survival(double x, int n) {
+/// g. For one core g is 1.
+double survival(double x, int n, const Shares& shares) {
   if (n == 1) return std::exp(-x);
-  // Substituting u = (1 - g)^(n-1), which is uniform; the midpoint rule is exact enough.
-  constexpr int kSteps = 64;
   double sum = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const double g = 1 - std::pow((i + 0.5) / kSteps, 1.0 / (n - 1));
-    sum += std::exp(-x * n * g);
-  }
+  for (const double g : shares) sum += std::exp(-x * n * g);
   return sum / kSteps;
 }
 
@@ -37,9 +45,10 @@ double miss_share_of_class(std::size_t k, Bytes cache, int sharers) {
 double miss_share(double reuse, int sharers) {
   if (reuse <= 1) return 0;
   // m = 1 - survival(m·reuse) has one root above 0. Starting from 1, m decreases towards it.
+  const Shares shares = shares_since_use(sharers);
   double misses = 1;
   for (int round = 0; round < 1000; ++round) {
-    const double next = 1 - survival(misses * reuse, sharers);
+    const double next = 1 - survival(misses * reuse, sharers, shares);
     if (misses - next < 1e-6) break;
     misses = next;
   }

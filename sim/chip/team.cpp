@@ -34,6 +34,7 @@ Task<SegmentTime> Team::execute(int id, const work::Counts& counts) {
   check(!core.running, "a core runs one piece of work at a time");
   const bool master = static_cast<std::size_t>(id) + 1 == cores_.size();
   core.demand = price(counts, core_config_, master ? master_code_ : worker_code_);
+  core.runner = Runner::of(id, core.demand);
   core.remaining = core.demand.cycles();
   core.time = {};
   core.progress = {};
@@ -93,9 +94,8 @@ void Team::advance() {
 void Team::solve() {
   advance();
   runners_.clear();
-  for (std::size_t id = 0; id < cores_.size(); ++id)
-    if (cores_[id]->running)
-      runners_.push_back(Runner::of(static_cast<int>(id), cores_[id]->demand));
+  for (const auto& core : cores_)
+    if (core->running) runners_.push_back(core->runner);
   contention_.solve(runners_, progress_, dma_words_);
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     Core& core = *cores_[static_cast<std::size_t>(runners_[i].core)];

@@ -45,6 +45,7 @@ class Team {
     Timer end;
     bool running = false;
     Demand demand;
+    Runner runner;         ///< the same as the solver sees it
     double remaining = 0;  ///< lone cycles still to do
     Progress progress;
     SegmentTime time;

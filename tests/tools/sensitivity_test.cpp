@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "platform_models/loader.h"
+#include "tools/run/summary.h"
 #include "tools/sensitivity/sensitivity_report.h"
 
 namespace leviosim::tools {
@@ -28,24 +29,27 @@ work::Serial serial(Op op, std::uint64_t n) {
   return {counts};
 }
 
-void add_frame(RecordedRun& run, PoseSource source, const work::Job& job) {
-  FrameResult result;
-  result.source = source;
-  const sim::JobTiming timing;
-  run.on_front_end({0, false, result, job, timing, timing});
-}
-
 /// 10'000 integer operations with EPnP, a transfer of 8'000 bytes with 8-point, and an optimiser of
 /// 1'000 calls.
-RecordedRun example() {
-  RecordedRun run;
-  add_frame(run, PoseSource::First, job_of("start", {serial(Op::IntAlu, 1'000'000)}));
-  add_frame(run, PoseSource::Epnp, job_of("e", {serial(Op::IntAlu, 10'000)}));
-  add_frame(run, PoseSource::EightPoint,
-            job_of("m", {work::Transfer{work::Direction::L2ToL1, Bytes(8'000)}}));
-  const sim::JobTiming timing;
-  run.on_optimiser({0, 0, true, job_of("o", {serial(Op::Call, 1'000)}), timing});
-  return run;
+traces::WorkTrace example() {
+  traces::WorkTraceWriter writer(1);
+  traces::WorkFrame frame;
+  const auto add = [&](PoseSource source, const work::Job& job) {
+    frame.t_ns += 50'000'000;
+    frame.source = key_of(source);
+    frame.front_end = job;
+    writer.add(frame);
+  };
+  add(PoseSource::First, job_of("start", {serial(Op::IntAlu, 1'000'000)}));
+  add(PoseSource::Epnp, job_of("e", {serial(Op::IntAlu, 10'000)}));
+  frame.optimised = true;
+  frame.iterations = {job_of("o", {serial(Op::Call, 1'000)})};
+  add(PoseSource::EightPoint, job_of("m", {work::Transfer{work::Direction::L2ToL1, Bytes(8'000)}}));
+  return traces::WorkTrace("example", writer.finish({}));
+}
+
+traces::WorkTrace nothing() {
+  return traces::WorkTrace("nothing", traces::WorkTraceWriter(1).finish({}));
 }
 
 platform::Variants gap9() { return platform::Variants(platform::resolve_platform("gap9")); }
@@ -113,7 +117,7 @@ TEST(Sensitivity, CoversEveryNumberThatHasARange) {
 TEST(Sensitivity, NamesUncertainNumbersWithoutARange) {
   const platform::Variants platform(
       platform::resolve_platform("gap9", {"isa.load_use_fraction=0.3"}));
-  const Sensitivity s = sensitivity(platform, 8, RecordedRun{}, 1, [](int, int) {});
+  const Sensitivity s = sensitivity(platform, 8, nothing(), 1, [](int, int) {});
   EXPECT_EQ(std::count(s.unbounded.begin(), s.unbounded.end(), "isa.load_use_fraction"), 1);
   EXPECT_NE(sensitivity_table(s, 8).find("without a range"), std::string::npos);
 }
@@ -123,7 +127,7 @@ TEST(Sensitivity, DoesNotDependOnTheHostsThreads) {
 }
 
 TEST(Sensitivity, WhatARunDoesNotHaveIsAbsent) {
-  const Sensitivity s = sensitivity(gap9(), 8, RecordedRun{}, 2, [](int, int) {});
+  const Sensitivity s = sensitivity(gap9(), 8, nothing(), 2, [](int, int) {});
   EXPECT_FALSE(s.base.frame.has_value());
   EXPECT_FALSE(percent_change(s.swings[0].low.frame, s.base.frame).has_value());
   EXPECT_NE(sensitivity_table(s, 8).find("front end – on 8 cores"), std::string::npos);

@@ -53,6 +53,10 @@ InputDigest digest_of(std::string name, const std::vector<fs::path>& files) {
 
 }  // namespace
 
+InputDigest digest_of_file(const fs::path& file) {
+  return digest_of(file.filename().string(), {file});
+}
+
 std::vector<InputDigest> digest_inputs(const traces::Dataset& data) {
   const fs::path mav0 = data.frames_csv.parent_path().parent_path();
   std::vector<InputDigest> digests;

@@ -35,6 +35,9 @@ struct InputDigest {
   std::string sha256;
 };
 
+/// @throws InputError if the file cannot be read
+InputDigest digest_of_file(const std::filesystem::path& file);
+
 /// The text files of the streams that a run reads, and its frames as one: the concatenation of
 /// their image files. @throws InputError for files that cannot be read
 std::vector<InputDigest> digest_inputs(const traces::Dataset& data);

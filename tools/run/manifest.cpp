@@ -43,6 +43,7 @@ Json manifest_json(const Manifest& manifest, const RunResult& run) {
   document["data"]["first_frame"] = manifest.first_frame;
   document["data"]["frames"] = run.frames.size();
   document["inputs"] = inputs_json(manifest.inputs);
+  if (!manifest.recording.is_null()) document["recording"] = manifest.recording;
   document["host"]["seconds"] = run.host_seconds;
   return document;
 }

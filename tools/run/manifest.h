@@ -19,6 +19,7 @@ struct Manifest {
   std::string data;                       ///< folder that was read
   std::size_t first_frame = 0;            ///< index in the folder
   std::vector<InputDigest> inputs;
+  Json recording;  ///< of a replay: what its trace says about the run that was recorded
 };
 
 /// The content of manifest.json. Its member "host" is the only part of a run folder that differs

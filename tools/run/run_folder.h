@@ -9,9 +9,11 @@
 //   memory.csv       a row per peak, and per block alive at it
 //   energy.csv       a row per stage, quantity and domain of the chip, with its band
 //   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
+//   work.trace       with --record: all work (traces/work_trace.h), for leviosim replay
+//   replay.csv       of a replay: how each frame was taken up, in the recording and now
 //
-// A native run has no platform.yaml, stages.csv, memory.csv and energy.csv, and no timing columns. A
-// platform without energy figures leaves no energy.csv.
+// A native run has no platform.yaml, stages.csv, memory.csv and energy.csv, and no timing columns.
+// A platform without energy figures leaves no energy.csv.
 #pragma once
 
 #include <filesystem>
@@ -21,6 +23,9 @@
 #include "tools/run/run_result.h"
 
 namespace leviosim::tools {
+
+inline constexpr const char* kWorkTraceFile = "work.trace";
+inline constexpr const char* kReplayFile = "replay.csv";
 
 /// Writes into an existing folder, which the caller has staged (traces/atomic_file.h).
 /// @param platform_yaml  unused for a native run

@@ -3,7 +3,8 @@
 // needs to re-time the run elsewhere is in the jobs; native runs have none.
 //
 // The observer cannot change anything. References are valid during the call; a copied job stays
-// valid as long as the program, since the names in it are literals of the workload.
+// valid as long as the program or, in a replay, as the trace: the names in it are literals of the
+// workload, or the trace's.
 #pragma once
 
 #include "tools/run/run_result.h"

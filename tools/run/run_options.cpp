@@ -15,33 +15,14 @@ constexpr std::int64_t kLargestSide = 16384;
 
 /// A native run has no chip, so options about one are a misunderstanding.
 void refuse_chip_options(const CLI::App& command) {
-  for (const char* option : {"--platform", "--cores", "--set"})
+  for (const char* option : {"--platform", "--cores", "--set", "--record"})
     if (command.count(option) > 0)
       throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
-}
-
-void resolve_chip(const RunOptions& options, RunRequest& request) {
-  request.platform = platform::resolve_platform(options.platform, options.overrides);
-  const sim::ClusterConfig& cluster = request.platform.config.cluster;
-  request.cores =
-      options.cores.empty()
-          ? cluster.workers
-          : static_cast<int>(parse_whole("--cores", options.cores, 1, cluster.max_workers));
 }
 
 void add_text(CLI::App& command, const char* name, std::string& value, const char* type,
               const std::string& help) {
   command.add_option(name, value, help)->type_name(type);
-}
-
-void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
-  add_text(command, "--platform", options.platform, "NAME|FILE",
-           "chip: a name (leviosim platforms) or a file" + by_default);
-  command.add_option("-p,--set", options.overrides, "parameter of the chip; repeatable")
-      ->type_name("PATH=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
-  add_text(command, "--cores", options.cores, "N", "worker cores [the chip's]");
 }
 
 void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
@@ -66,15 +47,40 @@ RunRequest make_workload_request(const RunOptions& options) {
   return request;
 }
 
+void resolve_chip(const RunOptions& options, RunRequest& request) {
+  request.platform = platform::resolve_platform(options.platform, options.overrides);
+  request.cores = cores_of(options, request.platform.config.cluster);
+}
+
 }  // namespace
+
+void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
+  add_text(command, "--platform", options.platform, "NAME|FILE",
+           "chip: a name (leviosim platforms) or a file" + by_default);
+  command.add_option("-p,--set", options.overrides, "parameter of the chip; repeatable")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_text(command, "--cores", options.cores, "N", "worker cores [the chip's]");
+}
+
+void add_out_options(CLI::App& command, RunOptions& options) {
+  add_text(command, "--out", options.out, "DIR", "folder for the results; must be new or empty");
+  command.add_flag("--force", options.force, "replace the results of an earlier run");
+}
+
+int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster) {
+  if (options.cores.empty()) return cluster.workers;
+  return static_cast<int>(parse_whole("--cores", options.cores, 1, cluster.max_workers));
+}
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_chip_options(command, options, "");
   command.add_flag("--native", options.native, "no chip, no timing: the golden model");
   add_workload_options(command, options, "");
   add_text(command, "--size", options.size, "WxH", "image size [160x120]");
-  add_text(command, "--out", options.out, "DIR", "folder for the results; must be new or empty");
-  command.add_flag("--force", options.force, "replace the results of an earlier run");
+  command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
+  add_out_options(command, options);
 }
 
 void add_chip_run_options(CLI::App& command, RunOptions& options) {

@@ -20,6 +20,7 @@ struct RunOptions {
   std::string out;
   std::vector<std::string> overrides;
   bool native = false;
+  bool record = false;
   bool force = false;
   bool quiet = false;
 };
@@ -31,10 +32,20 @@ void add_run_options(CLI::App& command, RunOptions& options);
 /// synthetic flight. They declare --out themselves.
 void add_chip_run_options(CLI::App& command, RunOptions& options);
 
+/// Only those of the chip. @param by_default  added to the help of --platform
+void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default);
+
+/// Those of commands that leave a folder with results.
+void add_out_options(CLI::App& command, RunOptions& options);
+
 /// Everything that can be checked without the data, whose folder is left for the caller to fill in.
 /// @throws InputError naming the option
 RunRequest make_request(const CLI::App& command, const RunOptions& options);
 RunRequest make_chip_request(const RunOptions& options);
+
+/// The number that --cores names, or by default that of the chip.
+/// @throws InputError for more cores than the chip serves
+int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster);
 
 /// "160x120". @throws InputError
 traces::ImageSize parse_size(const std::string& text);

@@ -14,6 +14,8 @@
 
 namespace leviosim::tools {
 
+struct WorkRecording;
+
 struct RunRequest {
   std::string data;  ///< ASL folder (the synthetic flight has been made)
   std::string profile = "levio";
@@ -24,6 +26,7 @@ struct RunRequest {
   std::uint32_t seed = 1;               ///< of the workload's random draws
   platform::ResolvedPlatform platform;  ///< unused if native
   RunObserver* observer = nullptr;      ///< sees every job; unused if native
+  WorkRecording* recording = nullptr;   ///< gets every job, for a trace; unused if native
 };
 
 /// Called after every frame.

@@ -1,5 +1,5 @@
-// The closed loop: camera, front end and optimiser as processes in simulated time, around a
-// workload that really computes.
+// The closed loop: camera, front end and optimiser as processes in simulated time, around a source
+// of work that, if live, really computes.
 //
 //   camera ──frames──▶ front end (cluster) ──snapshot──▶ optimiser (fabric controller)
 //                          ▲                                   │
@@ -11,38 +11,39 @@
 
 #include "sim/chip/chip.h"
 #include "sim/kernel/channel.h"
-#include "tools/run/feed.h"
+#include "tools/run/job_source.h"
 #include "tools/run/job_timer.h"
+#include "tools/run/run_request.h"
 #include "tools/run/stage_book.h"
 
 namespace leviosim::tools {
 
 class Simulation {
  public:
-  Simulation(const RunRequest& request, Feed& feed, ProgressCallback progress);
+  /// @param request  the chip and its observer; it and the source outlive the simulation
+  Simulation(const RunRequest& request, JobSource& source, ProgressCallback progress);
 
-  /// Runs all frames of the feed.
+  /// Runs all frames of the source.
   RunResult run();
 
  private:
   sim::Process camera();
   sim::Process front_end();
   sim::Process optimiser();
+  std::int64_t arrival_ns(int frame) const { return source_.time_ns(frame) - source_.time_ns(0); }
   std::int64_t now_ns() const;
   RunResult take_result();
 
   const RunRequest& request_;
-  Feed& feed_;
+  JobSource& source_;
   ProgressCallback progress_;
   sim::Chip chip_;
   JobTimer single_core_;  ///< the same jobs on one worker
-  work::Machine cluster_;
-  work::Machine controller_;
-  std::unique_ptr<vio::Odometry> odometry_;
   sim::Channel<int> camera_frames_;
   sim::Event snapshot_taken_;
   bool optimiser_busy_ = false;
-  int snapshot_frame_ = 0;  ///< at whose start the optimiser's snapshot was taken
+  int snapshot_frame_ = 0;    ///< at whose start the optimiser's snapshot was taken
+  int published_frame_ = -1;  ///< the same of the result that was published last
   StageBook book_;
   RunResult result_;
 };

@@ -6,7 +6,9 @@
 
 #include "sim/check.h"
 #include "tools/run/job_timer.h"
+#include "tools/run/summary.h"
 #include "traces/parallel_for.h"
+#include "traces/work_frames.h"
 
 namespace leviosim::tools {
 namespace {
@@ -91,24 +93,25 @@ std::vector<Swing> collect(const platform::ResolvedPlatform& platform,
 
 }  // namespace
 
-Outcome time_on(const sim::ChipConfig& chip, int workers, const RecordedRun& run) {
+Outcome time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace) {
   JobTimer timer(chip, workers);
   Average frame;
   Average epnp;
   Average eight_point;
-  for (const RecordedFrame& recorded : run.frames()) {
-    const bool from_epnp = recorded.source == PoseSource::Epnp;
-    if (!from_epnp && recorded.source != PoseSource::EightPoint) continue;
-    const sim::JobTiming timing = timer.front_end(recorded.job);
+  Average iteration;
+  traces::WorkFrames reader(trace);
+  for (traces::WorkFrame recorded; reader.next(recorded);) {
+    for (const work::Job& job : recorded.iterations) {
+      Cycles cycles;
+      for (const sim::StageTiming& stage : timer.optimiser(job).stages) cycles += stage.cycles;
+      iteration.add(static_cast<double>(cycles.count()));
+    }
+    const bool from_epnp = recorded.source == key_of(PoseSource::Epnp);
+    if (!from_epnp && recorded.source != key_of(PoseSource::EightPoint)) continue;
+    const sim::JobTiming timing = timer.front_end(recorded.front_end);
     const auto cycles = static_cast<double>(timer.front_end_cycles(timing).count());
     frame.add(cycles);
     (from_epnp ? epnp : eight_point).add(cycles);
-  }
-  Average iteration;
-  for (const work::Job& job : run.iterations()) {
-    Cycles cycles;
-    for (const sim::StageTiming& stage : timer.optimiser(job).stages) cycles += stage.cycles;
-    iteration.add(static_cast<double>(cycles.count()));
   }
   const Hertz clock = chip.cluster.clock;
   return {frame.ms(clock), epnp.ms(clock), eight_point.ms(clock),
@@ -130,8 +133,9 @@ double effect_on_iteration(const Swing& swing, const Outcome& base) {
                  percent_change(swing.high.iteration, base.iteration));
 }
 
-Sensitivity sensitivity(const platform::Variants& platform, int workers, const RecordedRun& run,
-                        unsigned threads, const std::function<void(int, int)>& progress) {
+Sensitivity sensitivity(const platform::Variants& platform, int workers,
+                        const traces::WorkTrace& trace, unsigned threads,
+                        const std::function<void(int, int)>& progress) {
   const std::vector<Trial> trials = trials_of(platform.platform());
   std::vector<Outcome> outcomes(trials.size());
   std::mutex mutex;
@@ -140,7 +144,7 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers, const R
     std::vector<platform::Change> changes;
     if (trials[i].parameter != nullptr)
       changes.push_back({trials[i].parameter->path, end_of(trials[i])});
-    outcomes[i] = time_on(platform.config(changes), workers, run);
+    outcomes[i] = time_on(platform.config(changes), workers, trace);
     const std::lock_guard<std::mutex> lock(mutex);
     progress(++done, static_cast<int>(trials.size()));
   });

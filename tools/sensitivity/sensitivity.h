@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "platform_models/variants.h"
-#include "tools/sensitivity/recorded_run.h"
+#include "traces/work_trace.h"
 
 namespace leviosim::tools {
 
@@ -25,8 +25,8 @@ struct Outcome {
   std::optional<double> iteration;    ///< of the optimiser, with its share of updates
 };
 
-/// @param workers  cores of the team
-Outcome time_on(const sim::ChipConfig& chip, int workers, const RecordedRun& run);
+/// Frame by frame, without a camera and without queues. @param workers  cores of the team
+Outcome time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace);
 
 /// One number at both ends of its range.
 struct Swing {
@@ -50,7 +50,8 @@ double effect_on_iteration(const Swing& swing, const Outcome& base);
 
 /// @param threads   of the host; 0 for all. The result does not depend on it.
 /// @param progress  (chips timed, all chips); called from several threads, one at a time
-Sensitivity sensitivity(const platform::Variants& platform, int workers, const RecordedRun& run,
-                        unsigned threads, const std::function<void(int, int)>& progress);
+Sensitivity sensitivity(const platform::Variants& platform, int workers,
+                        const traces::WorkTrace& trace, unsigned threads,
+                        const std::function<void(int, int)>& progress);
 
 }  // namespace leviosim::tools

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/cli/interrupts.h"
+#include "tools/replay/recording_source.h"
 #include "tools/run/run_session.h"
 #include "tools/sensitivity/sensitivity_report.h"
 #include "traces/atomic_file.h"
@@ -14,10 +15,10 @@ namespace {
 
 constexpr const char* kFramesByDefault = "0:100";
 
-Sensitivity with_progress(const platform::Variants& platform, int cores, const RecordedRun& run,
-                          ProgressLine::Style style) {
+Sensitivity with_progress(const platform::Variants& platform, int cores,
+                          const traces::WorkTrace& trace, ProgressLine::Style style) {
   ProgressLine line(style);
-  return sensitivity(platform, cores, run, 0, [&](int done, int total) {
+  return sensitivity(platform, cores, trace, 0, [&](int done, int total) {
     throw_if_interrupted();
     line.show(done, total, [&] { return fmt::format("chip {}/{}", done, total); });
   });
@@ -28,11 +29,12 @@ void run(const RunOptions& options) {
   check_out_file(options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   request.data = data_folder(options, style);
-  RecordedRun recorded;
-  request.observer = &recorded;
+  WorkRecording recording(request.cores);
+  request.recording = &recording;
   const RunResult result = simulate_with_progress(request, style);
-  const Sensitivity found = with_progress(platform::Variants(std::move(request.platform)),
-                                          request.cores, recorded, style);
+  const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
+  const Sensitivity found =
+      with_progress(platform::Variants(std::move(request.platform)), request.cores, trace, style);
   if (!options.out.empty()) traces::write_file_atomically(options.out, sensitivity_csv(found));
   fmt::print("{}{}", heading(options, result), sensitivity_table(found, result.cores));
   if (!options.out.empty()) fmt::print("table: {}\n", options.out);

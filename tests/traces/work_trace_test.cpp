@@ -1,0 +1,181 @@
+// A work trace gives back what was recorded, and everything else is refused.
+#include "traces/work_trace.h"
+
+#include "tests/traces/test_folder.h"
+#include "tests/traces/work_trace_example.h"
+#include "traces/rng.h"
+
+namespace leviosim::traces {
+namespace {
+
+using testing::example_frame;
+using testing::example_trace;
+using testing::expect_input_error;
+using testing::read_all;
+
+constexpr int kHeadBytes = 16;
+
+/// The container around other contents, with checksums that are right.
+std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = 1) {
+  std::string file = file_head({"LEVIOWT\n", "a work trace", version});
+  for (const std::string& content : contents) file += packed_section(content, 1);
+  return file;
+}
+
+std::vector<std::string> contents_of(const std::string& trace) {
+  std::vector<std::string> contents;
+  for (const Section& section : sections_of({"LEVIOWT\n", "a work trace", 1}, "t", trace))
+    contents.push_back(unpacked(section, "t"));
+  return contents;
+}
+
+class FramesOfTraces : public ::testing::TestWithParam<int> {};
+
+TEST_P(FramesOfTraces, ComeBackAsTheyWere) {
+  const WorkTrace trace("example", example_trace(GetParam()));
+  ASSERT_EQ(trace.frames(), GetParam());
+  WorkFrames reader(trace);
+  WorkFrame frame;  // used again for every frame, as a replay does
+  for (int i = 0; i < GetParam(); ++i) {
+    ASSERT_TRUE(reader.next(frame));
+    testing::expect_equal(frame, example_frame(i));
+  }
+  EXPECT_FALSE(reader.next(frame));
+}
+
+// A chunk has 32 frames.
+INSTANTIATE_TEST_SUITE_P(Numbers, FramesOfTraces, ::testing::Values(0, 1, 2, 32, 33, 70));
+
+TEST(WorkTrace, KeepsWhatIsTheSameForAllFrames) {
+  const WorkTrace trace("example", example_trace(3));
+  const WorkTraceInfo& info = trace.info();
+  const WorkTraceInfo expected = testing::example_info();
+  EXPECT_EQ(info.program, expected.program);
+  EXPECT_EQ(info.data, expected.data);
+  EXPECT_EQ(info.platform_yaml, expected.platform_yaml);
+  EXPECT_EQ(info.cores, 3);
+  EXPECT_EQ(info.frame_period_ns, expected.frame_period_ns);
+  ASSERT_EQ(info.stages.size(), 2u);
+  EXPECT_EQ(info.stages[1].name, "iteration");
+  EXPECT_TRUE(info.stages[1].on_controller);
+  ASSERT_EQ(info.l2.size(), 1u);
+  EXPECT_EQ(info.l2[0].blocks.at(0).name, "poses");
+  EXPECT_EQ(info.ate->translation.median, 0.1);
+  EXPECT_FALSE(info.ate->longest_gap_s.has_value());
+  EXPECT_EQ(info.inputs, expected.inputs);
+  EXPECT_EQ(info.stamps_ns.at(2), example_frame(2).t_ns);
+}
+
+TEST(WorkTrace, SameFramesSameBytes) { EXPECT_EQ(example_trace(40), example_trace(40)); }
+
+TEST(WorkTrace, ReadersOfOneTraceDoNotMeet) {
+  const WorkTrace trace("example", example_trace(40));
+  WorkFrames a(trace);
+  WorkFrames b(trace);
+  WorkFrame frame;
+  for (int i = 0; i < 35; ++i) a.next(frame);
+  ASSERT_TRUE(b.next(frame));
+  testing::expect_equal(frame, example_frame(0));
+  ASSERT_TRUE(a.next(frame));
+  testing::expect_equal(frame, example_frame(35));
+}
+
+/// A file of version 1, as it was first written; later programs read it too. Made by writing
+/// example_trace(5) to that file.
+TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
+  const WorkTrace golden(std::filesystem::path(LEVIOSIM_SOURCE_DIR) /
+                         "tests/traces/golden/version_1.trace");
+  ASSERT_EQ(golden.frames(), 5);
+  WorkFrames reader(golden);
+  WorkFrame frame;
+  for (int i = 0; reader.next(frame); ++i) testing::expect_equal(frame, example_frame(i));
+}
+
+/// Not the compressed bytes, which another version of zstd may choose otherwise.
+TEST(WorkTrace, WritesTheContentOfTheFirstVersion) {
+  const std::string golden = read_text_file(std::filesystem::path(LEVIOSIM_SOURCE_DIR) /
+                                            "tests/traces/golden/version_1.trace");
+  EXPECT_EQ(contents_of(golden), contents_of(example_trace(5)));
+}
+
+TEST(WorkTrace, EveryTruncationIsRefused) {
+  const std::string whole = example_trace(40);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_THROW(WorkTrace("cut", whole.substr(0, size)), InputError) << size;
+  EXPECT_THROW(WorkTrace("longer", whole + 'x'), InputError);
+  EXPECT_THROW(WorkTrace("twice", whole + whole.substr(kHeadBytes)), InputError);
+}
+
+TEST(WorkTrace, EveryFlippedBitIsRefused) {
+  const std::string whole = example_trace(40);
+  Rng rng(7);
+  for (std::size_t byte = 0; byte < whole.size(); ++byte) {
+    std::string flipped = whole;
+    flipped[byte] = static_cast<char>(flipped[byte] ^ (1 << (rng.next() % 8)));
+    EXPECT_THROW(WorkTrace("flipped", flipped), InputError) << byte;
+  }
+}
+
+/// Whatever a section holds: with right checksums, damage is found while reading or not at all, but
+/// never ends in anything else.
+TEST(WorkTrace, DamagedContentIsReadOrRefused) {
+  const std::vector<std::string> whole = contents_of(example_trace(5));
+  Rng rng(11);
+  int refused = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    std::vector<std::string> contents = whole;
+    std::string& content = contents[rng.next() % contents.size()];
+    content[rng.next() % content.size()] = static_cast<char>(rng.next());
+    try {
+      read_all(WorkTrace("damaged", trace_of(contents)));
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 400);
+}
+
+TEST(WorkTrace, ContentThatIsCutIsRefused) {
+  const std::vector<std::string> whole = contents_of(example_trace(5));
+  for (std::size_t section = 0; section < whole.size(); ++section)
+    for (std::size_t size = 0; size < whole[section].size(); ++size) {
+      std::vector<std::string> contents = whole;
+      contents[section].resize(size);
+      EXPECT_THROW(read_all(WorkTrace("cut", trace_of(contents))), InputError)
+          << section << " " << size;
+    }
+}
+
+TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
+  const std::string whole = example_trace(5);
+  const auto refuse = [](std::string bytes, std::initializer_list<std::string> parts) {
+    expect_input_error([&] { read_all(WorkTrace("out/work.trace", std::move(bytes))); }, parts);
+  };
+  refuse("", {"out/work.trace", "is not a work trace", "LEVIOWT"});
+  refuse("frame,t_ns,source\n", {"is not a work trace"});
+  refuse(whole.substr(0, 10), {"out/work.trace, byte 10", "truncated"});
+  refuse(whole.substr(0, kHeadBytes), {"byte 16", "truncated"});
+  refuse(whole.substr(0, whole.size() - 1), {"truncated", "section at byte"});
+  std::string damaged = whole;
+  damaged[kHeadBytes + 20] ^= 1;
+  refuse(damaged, {"byte 16", "checksum", "damaged"});
+  refuse(trace_of(contents_of(whole), 2), {"version 2", "up to 1", "newer"});
+  std::string version = whole;
+  version[8] = 2;
+  refuse(version, {"byte 8", "checksum"});
+  refuse(trace_of({contents_of(whole)[0]}), {"after 0 sections", "expected 1", "truncated"});
+  std::vector<std::string> contents = contents_of(whole);
+  contents[1] += 'x';
+  refuse(trace_of(contents), {"frames 0 to 4", "expected the end"});
+}
+
+TEST(WorkTrace, RefusesOperationsItDoesNotKnow) {
+  std::vector<std::string> contents = contents_of(example_trace(2));
+  const std::size_t at = contents[0].find("f32_fma");
+  ASSERT_NE(at, std::string::npos);
+  contents[0].replace(at, 7, "f32_fmx");
+  expect_input_error([&] { WorkTrace("t", trace_of(contents)); }, {"operation 'f32_fmx'"});
+}
+
+}  // namespace
+}  // namespace leviosim::traces

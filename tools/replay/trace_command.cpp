@@ -1,0 +1,52 @@
+#include "tools/replay/trace_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "platform_models/nearest.h"
+#include "sim/error.h"
+#include "tools/replay/replay.h"
+#include "tools/replay/trace_summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct TraceOptions {
+  std::string action;
+  std::string file;
+};
+
+/// Everything that replay reads, its platform too.
+void check_trace(const traces::WorkTrace& trace) {
+  recorded_platform(trace);
+  traces::WorkFrames reader(trace);
+  for (traces::WorkFrame frame; reader.next(frame);) {
+  }
+  fmt::print("{}: {} frames, all of them can be replayed\n", trace.name(), trace.frames());
+}
+
+void run(const CLI::App& command, const TraceOptions& options) {
+  require(command, "ACTION", "info or check");
+  require(command, "FILE", "a work trace");
+  if (options.action == "info")
+    fmt::print("{}", trace_summary(traces::WorkTrace(options.file)));
+  else if (options.action == "check")
+    check_trace(traces::WorkTrace(options.file));
+  else
+    throw InputError(fmt::format("trace: unknown action '{}'; expected info or check{}",
+                                 options.action,
+                                 platform::did_you_mean(options.action, {"info", "check"})));
+}
+
+}  // namespace
+
+Command add_trace_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("trace", "Show what a work trace holds, or check it");
+  const auto options = std::make_shared<TraceOptions>();
+  command->add_option("ACTION", options->action, "info, or check: read all of it");
+  command->add_option("FILE", options->file, "work.trace of a run with --record");
+  return {command, [=] { run(*command, *options); }};
+}
+
+}  // namespace leviosim::tools
