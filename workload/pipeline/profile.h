@@ -44,6 +44,7 @@ struct Profile {
   // keyframe and leaves open how tightly; see levio_anchor().
   bool use_imu = true;
   bool use_epnp = true;
+  bool gravity_updates = true;  ///< gravity is measured again whenever the vehicle stands still
   ImuNoise imu_noise;
   BiasOptions biases;
   OptimiserOptions optimiser;
