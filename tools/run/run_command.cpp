@@ -16,7 +16,7 @@ namespace {
 void run(const CLI::App& command, const RunOptions& options, const Words& words) {
   RunRequest request = make_request(command, options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  traces::StagedFolder staged(checked_out_folder(options));
+  traces::StagedFolder staged(checked_out_folder(options.out, options.force));
   request.data = data_folder(options, style);
   const RunResult result = simulate_with_progress(request, style);
   write_run_folder(staged.path(), result, make_manifest(options, request, words),

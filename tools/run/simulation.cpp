@@ -106,7 +106,7 @@ void describe(RunResult& result, const RunRequest& request, const Feed& feed,
 /// The golden model: the same computation without a chip. The optimiser's result of a frame is
 /// published before the next one, as on a chip that keeps up.
 RunResult run_natively(const RunRequest& request, Feed& feed, const ProgressCallback& progress) {
-  const vio::Profile profile = vio::profile_named(request.profile, request.seed);
+  const vio::Profile profile = profile_of(request);
   work::Machine cluster(cluster_machine(request, profile));
   work::Machine controller(controller_machine(request));
   const auto odometry = vio::make_odometry(false, profile, feed.rig(), cluster, controller);
@@ -135,10 +135,9 @@ Simulation::Simulation(const RunRequest& request, Feed& feed, ProgressCallback p
       progress_(std::move(progress)),
       chip_(request.platform.config, request.cores),
       single_core_(request.platform.config, 1),
-      cluster_(cluster_machine(request, vio::profile_named(request.profile, request.seed))),
+      cluster_(cluster_machine(request, profile_of(request))),
       controller_(controller_machine(request)),
-      odometry_(vio::make_odometry(true, vio::profile_named(request.profile, request.seed),
-                                   feed.rig(), cluster_, controller_)),
+      odometry_(vio::make_odometry(true, profile_of(request), feed.rig(), cluster_, controller_)),
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(feed.size())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
       book_(empty_stages()) {}
@@ -199,7 +198,7 @@ sim::Process Simulation::front_end() {
 }
 
 sim::Process Simulation::optimiser() {
-  const int iterations = vio::profile_named(request_.profile, request_.seed).optimiser_iterations;
+  const int iterations = profile_of(request_).optimiser_iterations;
   for (;;) {
     co_await snapshot_taken_.wait();
     for (int k = 0; k < iterations; ++k) {
