@@ -36,23 +36,24 @@ TEST(WorkloadParameters, EachSetsItsOwnFieldOnly) {
   for (const Parameter& p : parameters()) {
     Profile after = before;
     const double value = another(p, p.get(before));
-    apply(std::vector<Assignment>{{&p, value}}, after);
+    vio::apply(std::vector<Assignment>{{&p, value}}, after);
     EXPECT_EQ(static_cast<float>(p.get(after)), static_cast<float>(value)) << p.name;
-    for (const Parameter& other : parameters())
-      if (&other != &p)
-        EXPECT_EQ(other.get(after), other.get(before)) << p.name << ' ' << other.name;
+    for (const Parameter& other : parameters()) {
+      if (&other == &p) continue;
+      EXPECT_EQ(other.get(after), other.get(before)) << p.name << ' ' << other.name;
+    }
   }
 }
 
 TEST(WorkloadParameters, ReachTheProfile) {
   Profile profile = profile_named("levio", 1);
-  apply(std::vector<Assignment>{{find_parameter("workload.window"), 5},
-                                {find_parameter("workload.keyframe_parallax"), 0.1},
-                                {find_parameter("workload.reprojection_noise"), 2},
-                                {find_parameter("workload.imu_noise.gyro"), 0.03},
-                                {find_parameter("workload.imu_noise.accel"), 0.3},
-                                {find_parameter("workload.gravity_updates"), 0}},
-        profile);
+  vio::apply(std::vector<Assignment>{{find_parameter("workload.window"), 5},
+                                     {find_parameter("workload.keyframe_parallax"), 0.1},
+                                     {find_parameter("workload.reprojection_noise"), 2},
+                                     {find_parameter("workload.imu_noise.gyro"), 0.03},
+                                     {find_parameter("workload.imu_noise.accel"), 0.3},
+                                     {find_parameter("workload.gravity_updates"), 0}},
+             profile);
   EXPECT_EQ(profile.optimiser_keyframes, 5);
   EXPECT_EQ(profile.keyframe_parallax, 0.1f);
   EXPECT_EQ(profile.optimiser.visual.sigma_px, 2);

@@ -7,19 +7,27 @@ namespace {
 
 using Figure = PaperAccuracy::Figure;
 
-std::optional<double> paper_value(const std::vector<PaperAccuracy>& paper, const AblationRow& row,
-                                  Figure figure) {
-  for (const PaperAccuracy& p : paper)
-    if (p.sequence == row.sequence && p.profile == row.profile && p.size.width == row.size.width &&
-        p.size.height == row.size.height && p.chosen_by == Figure::ate && p.figure == figure)
-      return p.value;
-  return std::nullopt;
+bool same(const traces::ImageSize& a, const traces::ImageSize& b) {
+  return a.width == b.width && a.height == b.height;
+}
+
+std::optional<AblationRow::Paper> paper_value(const std::vector<PaperAccuracy>& paper,
+                                              const AblationRow& row, Figure figure) {
+  std::optional<AblationRow::Paper> found;
+  for (const PaperAccuracy& p : paper) {
+    if (p.sequence != row.sequence || p.profile != row.profile || p.chosen_by != Figure::ate ||
+        p.figure != figure)
+      continue;
+    if (same(p.size, row.size)) return AblationRow::Paper{p.value, p.size};
+    if (!found || p.size.width > found->size.width) found = {p.value, p.size};
+  }
+  return found;
 }
 
 bool belongs_to(const BatchRun& run, const std::string& sequence, const traces::ImageSize& size,
                 const std::string& profile) {
   return run.sequence->name == sequence && run.request.profile == profile &&
-         run.request.image_size.width == size.width && run.request.image_size.height == size.height;
+         same(run.request.image_size, size);
 }
 
 /// The mean of a figure over rows; none if one of them has none.
@@ -34,6 +42,15 @@ std::optional<double> mean_over(const std::vector<const AblationRow*>& rows, Get
   return sum / static_cast<double>(rows.size());
 }
 
+std::optional<AblationRow::Paper> mean_paper(const std::vector<const AblationRow*>& rows,
+                                             std::optional<AblationRow::Paper> AblationRow::*of) {
+  const std::optional<double> mean = mean_over(rows, [of](const AblationRow& r) {
+    return r.*of ? std::optional((r.*of)->value) : std::nullopt;
+  });
+  if (!mean) return std::nullopt;
+  return AblationRow::Paper{*mean, (rows.front()->*of)->size};
+}
+
 AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSize& size,
                      const std::string& profile) {
   AblationRow mean;
@@ -41,8 +58,7 @@ AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSiz
   mean.profile = profile;
   std::vector<const AblationRow*> rows;
   for (const AblationRow& row : all) {
-    if (row.profile != profile || row.size.width != size.width || row.size.height != size.height)
-      continue;
+    if (row.profile != profile || !same(row.size, size)) continue;
     rows.push_back(&row);
     mean.ate.runs += row.ate.runs;
     mean.ate.failed += row.ate.failed;
@@ -50,8 +66,8 @@ AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSiz
   }
   mean.ate.median = mean_over(rows, [](const AblationRow& r) { return r.ate.median; });
   mean.relative.median = mean_over(rows, [](const AblationRow& r) { return r.relative.median; });
-  mean.paper_ate = mean_over(rows, [](const AblationRow& r) { return r.paper_ate; });
-  mean.paper_relative = mean_over(rows, [](const AblationRow& r) { return r.paper_relative; });
+  mean.paper_ate = mean_paper(rows, &AblationRow::paper_ate);
+  mean.paper_relative = mean_paper(rows, &AblationRow::paper_relative);
   return mean;
 }
 

@@ -20,8 +20,12 @@ struct AblationRow {
   /// where the path is too short for any.
   Spread ate;       ///< [m]
   Spread relative;  ///< [%]
-  std::optional<double> paper_ate;
-  std::optional<double> paper_relative;
+  struct Paper {
+    double value;
+    traces::ImageSize size;  ///< of the images it was found with
+  };
+  std::optional<Paper> paper_ate;  ///< at the same size, else at the paper's largest
+  std::optional<Paper> paper_relative;
   std::optional<double> least_completion;
   std::vector<std::string> protocols;  ///< each once
 };

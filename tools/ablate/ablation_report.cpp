@@ -22,6 +22,16 @@ std::string median_text(const Spread& spread, int decimals) {
   return spread.median ? figure(spread.median, decimals) : kDiverged;
 }
 
+/// With the image size if it is another.
+std::string paper_text(const std::optional<AblationRow::Paper>& paper, const AblationRow& row,
+                       int decimals) {
+  if (!paper) return kNone;
+  const std::string text = figure(paper->value, decimals);
+  return size_text(paper->size) == size_text(row.size)
+             ? text
+             : fmt::format("{} ({})", text, size_text(paper->size));
+}
+
 /// Nothing for a mean, whose rows have spreads of their own.
 std::string range_text(const AblationRow& row, const Spread& spread, int decimals) {
   if (row.sequence.empty() || spread.runs == 0 || !spread.low) return kNone;
@@ -46,34 +56,50 @@ TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) 
     table.add(
         {row.sequence.empty() ? kMean : row.sequence, size_text(row.size), row.profile,
          fmt::format("{}", row.ate.runs), median_text(row.ate, 3), range_text(row, row.ate, 3),
-         figure(row.paper_ate, 3), median_text(row.relative, 2), range_text(row, row.relative, 2),
-         figure(row.paper_relative, 2),
+         paper_text(row.paper_ate, row, 3), median_text(row.relative, 2),
+         range_text(row, row.relative, 2), paper_text(row.paper_relative, row, 2),
          row.least_completion ? fmt::format("{:.1f} %", 100 * *row.least_completion) : kNone});
   return table;
+}
+
+std::vector<std::string> protocols_of(const std::string& sequence,
+                                      const std::vector<AblationRow>& rows) {
+  std::vector<std::string> all;
+  for (const AblationRow& row : rows)
+    if (row.sequence == sequence)
+      for (const std::string& protocol : row.protocols)
+        if (std::find(all.begin(), all.end(), protocol) == all.end()) all.push_back(protocol);
+  return all;
 }
 
 std::string notes(const BatchPlan& plan, const std::vector<AblationRow>& rows,
                   const std::string& bullet) {
   std::string text = fmt::format(
-      "{}absolute: {}. Medians over seeds and folders of a sequence; completion: the least\n",
+      "{}absolute: {}; medians over seeds and folders of a sequence; completion: the least\n",
       bullet, measure_text(plan.measure));
-  text += fmt::format("{}paper: the golden model with the parameters of least absolute error\n",
-                      bullet);
+  if (std::any_of(rows.begin(), rows.end(),
+                  [](const AblationRow& row) { return row.paper_ate.has_value(); }))
+    text += fmt::format(
+        "{}paper: its golden model on recorded images, with the parameters of least absolute error "
+        "over its sequences; in brackets the image size, if another\n",
+        bullet);
   for (const vio::Assignment& a : plan.workload)
     text += fmt::format("{}in every run: {}\n", bullet, a.text());
-  for (const std::string& name : sequence_names(plan)) {
-    std::vector<std::string> seen;
-    for (const AblationRow& row : rows)
-      if (row.sequence == name)
-        for (const std::string& protocol : row.protocols)
-          if (std::find(seen.begin(), seen.end(), protocol) == seen.end()) seen.push_back(protocol);
-    for (const std::string& protocol : seen)
+  for (const std::string& name : sequence_names(plan))
+    for (const std::string& protocol : protocols_of(name, rows))
       text += fmt::format("{}{}: {}\n", bullet, name, protocol);
-  }
   return text;
 }
 
-Json spread_json(const Spread& spread, std::string_view unit, std::optional<double> paper) {
+Json paper_json(const std::optional<AblationRow::Paper>& paper) {
+  if (!paper) return nullptr;
+  return {{"value", rounded(paper->value)},
+          {"width", paper->size.width},
+          {"height", paper->size.height}};
+}
+
+Json spread_json(const Spread& spread, std::string_view unit,
+                 const std::optional<AblationRow::Paper>& paper) {
   const auto value = [](std::optional<double> v) { return v ? rounded(*v) : Json(nullptr); };
   return {{"unit", unit},
           {"runs", spread.runs},
@@ -81,7 +107,7 @@ Json spread_json(const Spread& spread, std::string_view unit, std::optional<doub
           {"median", value(spread.median)},
           {"low", value(spread.low)},
           {"high", value(spread.high)},
-          {"paper", value_of(paper)}};
+          {"paper", paper_json(paper)}};
 }
 
 }  // namespace
