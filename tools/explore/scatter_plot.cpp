@@ -26,6 +26,8 @@ constexpr double kHeight = 680;
 constexpr Box kBox{80, 96, 560, 520};
 constexpr double kLegendX = 664;
 constexpr double kLineHeight = 20;
+/// Ten times the distance flown: an estimate that diverged, and would squeeze all others together.
+constexpr double kLargestRelative = 1000;
 constexpr const char* kInk = "#1c2733";
 constexpr std::array kColours{"#be202e", "#203e8c", "#d98e04", "#2a7f62", "#7a3b9a", "#5c6670"};
 constexpr std::array kCorners{0, 4, 3, 5, 6, 8};  ///< of the shapes; 0 is a circle
@@ -46,7 +48,7 @@ std::vector<Mark> marks_of(const BatchPlan& plan, const std::vector<ExploredPoin
     for (std::size_t s = 0; s < point.sequences.size(); ++s) {
       const std::optional<double>& ate = point.sequences[s].ate.median;
       const std::optional<double>& relative = point.sequences[s].relative.median;
-      if (ate && relative && *ate > 0 && *relative > 0)
+      if (ate && relative && *ate > 0 && *relative > 0 && *relative <= kLargestRelative)
         marks.push_back({*relative, *ate, profile, s, point.point == 0});
     }
   }
@@ -118,7 +120,8 @@ std::string scatter_plot(const BatchPlan& plan, const std::vector<ExploredPoint>
   svg.text({kBox.x, 56}, measure_text(plan.measure) + ";", {12});
   svg.text(
       {kBox.x, 74},
-      fmt::format("medians over {} and folders; images {}; {} of {} marks, the others diverged",
+      fmt::format("medians over {} and folders; images {}; {} of {} marks, the others diverged "
+                  "(beyond 1000 %)",
                   plan.seeds.size() == 1 ? "1 seed" : fmt::format("{} seeds", plan.seeds.size()),
                   size_text(plan.sizes.front()), marks.size(), all),
       {12});

@@ -10,7 +10,8 @@
 
 namespace leviosim::tools {
 
-/// A file of SVG. Points whose runs diverged are counted below the heading.
+/// A file of SVG. Points whose runs diverged, or that lie beyond 1000 % of relative error, are left
+/// out and counted below the heading.
 std::string scatter_plot(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
 
 }  // namespace leviosim::tools
