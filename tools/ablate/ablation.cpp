@@ -66,6 +66,10 @@ AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSiz
   }
   mean.ate.median = mean_over(rows, [](const AblationRow& r) { return r.ate.median; });
   mean.relative.median = mean_over(rows, [](const AblationRow& r) { return r.relative.median; });
+  // A sequence that is too short for relative errors has none to average, which is no failure.
+  if (std::any_of(rows.begin(), rows.end(),
+                  [](const AblationRow* row) { return row->relative.runs == 0; }))
+    mean.relative.runs = 0;
   mean.paper_ate = mean_paper(rows, &AblationRow::paper_ate);
   mean.paper_relative = mean_paper(rows, &AblationRow::paper_relative);
   return mean;
