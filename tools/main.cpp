@@ -5,15 +5,18 @@
 #include <filesystem>
 
 #include "sim/error.h"
+#include "tools/ablate/ablate_command.h"
 #include "tools/calibrate/calibrate_command.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
 #include "tools/eval/eval_command.h"
+#include "tools/explore/explore_command.h"
 #include "tools/microbench/microbench_command.h"
 #include "tools/platforms/platforms_command.h"
 #include "tools/replay/replay_command.h"
 #include "tools/replay/trace_command.h"
 #include "tools/run/run_command.h"
+#include "tools/run/workload_command.h"
 #include "tools/sensitivity/sensitivity_command.h"
 #include "tools/synth/synth_command.h"
 #include "tools/validate/validate_command.h"
@@ -37,9 +40,10 @@ int run_program(const Words& words) {
     return run_command_line(
         app,
         {add_run_command(app, words), add_synth_command(app), add_platforms_command(app),
-         add_eval_command(app), add_validate_command(app, words), add_calibrate_command(app),
-         add_sensitivity_command(app), add_microbench_command(app), add_replay_command(app, words),
-         add_trace_command(app)},
+         add_workload_command(app), add_eval_command(app), add_ablate_command(app, words),
+         add_explore_command(app, words), add_validate_command(app, words),
+         add_calibrate_command(app), add_sensitivity_command(app), add_microbench_command(app),
+         add_replay_command(app, words), add_trace_command(app)},
         words);
   } catch (const InputError& error) {
     return fail(error);

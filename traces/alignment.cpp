@@ -75,7 +75,7 @@ Similarity full_rotation(const Moments& m, bool with_scale) {
   result.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
   if (!with_scale) return result;
   if (!(m.variance_from > 0))
-    throw InputError("Sim3 alignment: all estimated positions coincide, so there is no scale");
+    throw NotComparable("Sim3 alignment: all estimated positions coincide, so there is no scale");
   result.scale = svd.singularValues().dot(signs) / m.variance_from;
   return result;
 }

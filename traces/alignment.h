@@ -6,7 +6,16 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/error.h"
+
 namespace leviosim::traces {
+
+/// Trajectories that no error can be given for, though they are read and matched: an estimator that
+/// diverged leaves such a one.
+class NotComparable : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 enum class Alignment {
   none,    ///< compared as they are
@@ -34,8 +43,8 @@ struct Similarity {
 
 /// The transform of the given kind that brings `from` closest to `to` (least squares). If the
 /// points leave a rotation open (all on a line), any best one is returned. Throws InputError for
-/// fewer points than needed (none: 0, posyaw: 2, se3 and sim3: 3), and for sim3 if all points of
-/// `from` coincide, which leaves the scale open.
+/// fewer points than needed (none: 0, posyaw: 2, se3 and sim3: 3), and NotComparable for sim3 if
+/// all points of `from` coincide, which leaves the scale open.
 Similarity align_points(const std::vector<Eigen::Vector3d>& from,
                         const std::vector<Eigen::Vector3d>& to, Alignment alignment);
 

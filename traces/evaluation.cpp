@@ -86,7 +86,7 @@ void measure_errors(Evaluation& result) {
   result.translation = summarize(std::move(translation));
   result.rotation_rmse_deg = summarize(std::move(rotation)).rmse;
   if (!std::isfinite(result.translation.rmse) || !std::isfinite(result.path_length_m))
-    throw InputError("the positions are too large to be compared; expected metres");
+    throw NotComparable("the positions are too large to be compared; expected metres");
 }
 
 }  // namespace
@@ -129,6 +129,8 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
     throw InputError(fmt::format(
         "none of the {} estimated poses lies within {:g} ms of one of the {} ground-truth poses",
         estimate.size(), milliseconds(options.max_gap_ns), truth.size()));
+  for (const MatchedPose& pose : result.poses)
+    if (!pose.estimate.matrix().allFinite()) throw NotComparable("an estimated pose is no number");
   result.alignment = alignment_of(result.poses, options.alignment);
   align(result.poses, result.alignment);
   result.matched = result.poses.size();

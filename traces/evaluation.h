@@ -66,8 +66,8 @@ struct Evaluation {
   std::vector<double> distances_m;      ///< of each along the true path, from the first
 };
 
-/// Throws InputError if nothing matches or too little for the alignment, and if the coordinates are
-/// too large to be compared.
+/// Throws InputError if nothing matches or too little for the alignment, and NotComparable if the
+/// coordinates are no numbers or too large to be compared.
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
                     const EvaluationOptions& options = {});
 

@@ -39,6 +39,7 @@ TEST(Svg, IsWellFormedWhateverItHolds) {
   svg.begin_clip({1, 2, 3, 4});
   svg.circle({5, 5}, 2, "#ffffff", {});
   svg.end_group();
+  svg.polygon({{1, 1}, {2, 2}, {1, 3}}, "#00ff00", {});
   svg.frame({1, 1, 8, 8}, {});
   svg.text({3, -0.001}, "\"quoted\" <b>", {12, Anchor::end, "#000000", true, true});
   const std::string text = svg.str();
@@ -80,6 +81,25 @@ TEST(Axes, MapTheRangeToTheBoxWithYUpwards) {
   EXPECT_DOUBLE_EQ(axes.at(0, -1).y, 70);
   EXPECT_DOUBLE_EQ(axes.at(1, 1).x, 110);
   EXPECT_DOUBLE_EQ(axes.at(1, 1).y, 20);
+}
+
+TEST(Axes, LogarithmicOnesMapRatiosToDistances) {
+  const Axes axes({0, 0, 300, 100}, {1, 1000}, {0.1, 10}, Scale::logarithmic);
+  EXPECT_NEAR(axes.at(10, 1).x, 100, 1e-9);
+  EXPECT_NEAR(axes.at(100, 1).x, 200, 1e-9);
+  EXPECT_NEAR(axes.at(10, 1).y, 50, 1e-9);
+}
+
+TEST(Ticks, OfLogarithmicAxesAreRound) {
+  const std::vector<double> all = logarithmic_ticks({0.9, 60}, 10);
+  ASSERT_EQ(all.size(), 6u);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(all[i], (std::vector<double>{1, 2, 5, 10, 20, 50})[i], 1e-12);
+  EXPECT_EQ(logarithmic_ticks({0.9, 6000}, 5).size(), 4u);  // powers only
+  EXPECT_GE(logarithmic_ticks({6.1, 6.4}, 6).size(), 2u);   // less than a step of 1, 2, 5
+  const Range wide = widened_logarithmically({1, 100}, 0.5);
+  EXPECT_NEAR(wide.low, 0.1, 1e-12);
+  EXPECT_NEAR(wide.high, 1000, 1e-9);
 }
 
 TEST(Axes, EqualAspectShowsCirclesAsCircles) {

@@ -92,12 +92,14 @@ TEST_F(ReplayCommand, RefusesWhatIsMissing) {
                  {"--native", "--record"});
 }
 
-TEST_F(ReplayCommand, RefusesOtherNumbersOfCores) {
+TEST_F(ReplayCommand, RefusesWhatTheRecordingCannotShow) {
   record();
   expect_refused(program({"replay", path("run"), "--cores", "4", "--out", path("o"), "--quiet"}),
                  {"8 cores", "--cores 8", "record again"});
   expect_refused(program({"replay", path("run"), "--cores", "40", "--out", path("o")}),
                  {"--cores '40'"});
+  expect_refused(program({"replay", path("run"), "-p", "workload.window=4", "--out", path("o")}),
+                 {"workload.window=4", "recorded work"});
   EXPECT_FALSE(fs::exists(folder_ / "o"));
 }
 

@@ -73,26 +73,60 @@ std::pair<Range, Range> equal_aspect(const Box& box, const Range& x, const Range
   return {around(x, box.width), around(y, box.height)};
 }
 
+std::vector<double> logarithmic_ticks(const Range& range, int most) {
+  const int first = static_cast<int>(std::floor(std::log10(range.low)));
+  const int last = static_cast<int>(std::ceil(std::log10(range.high)));
+  std::vector<double> all;
+  std::vector<double> powers;
+  for (int exponent = first; exponent <= last; ++exponent)
+    for (const double mantissa : {1.0, 2.0, 5.0}) {
+      const double value = mantissa * std::pow(10.0, exponent);
+      if (value < range.low || value > range.high) continue;
+      all.push_back(value);
+      if (mantissa == 1) powers.push_back(value);
+    }
+  if (all.size() < 2) return round_ticks(range, most).values;
+  return all.size() > static_cast<std::size_t>(most) && powers.size() > 1 ? powers : all;
+}
+
+Range widened_logarithmically(const Range& range, double margin) {
+  const Range wide = widened({std::log10(range.low), std::log10(range.high)}, margin);
+  return {std::pow(10.0, wide.low), std::pow(10.0, wide.high)};
+}
+
 Point Axes::at(double x, double y) const {
-  return {box_.x + (x - x_.low) / x_.length() * box_.width,
-          box_.bottom() - (y - y_.low) / y_.length() * box_.height};
+  const auto share = [this](double value, const Range& range) {
+    if (scale_ == Scale::linear) return (value - range.low) / range.length();
+    return std::log(value / range.low) / std::log(range.high / range.low);
+  };
+  return {box_.x + share(x, x_) * box_.width, box_.bottom() - share(y, y_) * box_.height};
+}
+
+std::vector<Axes::Tick> Axes::ticks(const Range& range, int most) const {
+  std::vector<Tick> ticks;
+  if (scale_ == Scale::logarithmic) {
+    for (const double value : logarithmic_ticks(range, most))
+      ticks.push_back({value, fmt::format("{:.6g}", value)});
+    return ticks;
+  }
+  const Ticks round = round_ticks(range, most);
+  for (const double value : round.values) ticks.push_back({value, tick_label(value, round.step)});
+  return ticks;
 }
 
 void Axes::draw_x(Svg& svg) const {
-  const Ticks ticks = round_ticks(x_, most_ticks(box_.width, kPxPerTickX));
-  for (const double value : ticks.values) {
-    const double x = at(value, y_.low).x;
+  for (const Tick& tick : ticks(x_, most_ticks(box_.width, kPxPerTickX))) {
+    const double x = at(tick.value, y_.low).x;
     svg.line({x, box_.y}, {x, box_.bottom()}, {kGridColour});
-    svg.text({x, box_.bottom() + 15}, tick_label(value, ticks.step), {11, Anchor::middle});
+    svg.text({x, box_.bottom() + 15}, tick.label, {11, Anchor::middle});
   }
 }
 
 void Axes::draw_y(Svg& svg) const {
-  const Ticks ticks = round_ticks(y_, most_ticks(box_.height, kPxPerTickY));
-  for (const double value : ticks.values) {
-    const double y = at(x_.low, value).y;
+  for (const Tick& tick : ticks(y_, most_ticks(box_.height, kPxPerTickY))) {
+    const double y = at(x_.low, tick.value).y;
     svg.line({box_.x, y}, {box_.right(), y}, {kGridColour});
-    svg.text({box_.x - 6, y + 4}, tick_label(value, ticks.step), {11, Anchor::end});
+    svg.text({box_.x - 6, y + 4}, tick.label, {11, Anchor::end});
   }
 }
 

@@ -31,12 +31,24 @@ Ticks round_ticks(const Range& range, int most);
 /// The value with the decimals that its step needs.
 std::string tick_label(double value, double step);
 
+/// Values 1, 2 and 5 times a power of ten that lie in the range of positive numbers, or only the
+/// powers if those are more than `most`; round_ticks() where the range is too short for two of
+/// them.
+std::vector<double> logarithmic_ticks(const Range& range, int most);
+
+/// The range with `margin` of its length on a logarithmic scale at both ends. Both ends above 0.
+Range widened_logarithmically(const Range& range, double margin);
+
+enum class Scale { linear, logarithmic };
+
 /// Ranges around the same middles that show both axes at the same scale in a box of that size.
 std::pair<Range, Range> equal_aspect(const Box& box, const Range& x, const Range& y);
 
 class Axes {
  public:
-  Axes(const Box& box, const Range& x, const Range& y) : box_(box), x_(x), y_(y) {}
+  /// Ranges of logarithmic axes are above 0.
+  Axes(const Box& box, const Range& x, const Range& y, Scale scale = Scale::linear)
+      : box_(box), x_(x), y_(y), scale_(scale) {}
 
   Point at(double x, double y) const;
   const Box& box() const { return box_; }
@@ -47,12 +59,18 @@ class Axes {
   void draw(Svg& svg, const std::string& x_label, const std::string& y_label) const;
 
  private:
+  struct Tick {
+    double value;
+    std::string label;
+  };
+  std::vector<Tick> ticks(const Range& range, int most) const;
   void draw_x(Svg& svg) const;
   void draw_y(Svg& svg) const;
 
   Box box_;
   Range x_;
   Range y_;
+  Scale scale_;
 };
 
 }  // namespace leviosim::tools::plot

@@ -128,6 +128,14 @@ void Svg::circle(Point centre, double radius, std::string_view fill, const Strok
                  px(centre.y), px(radius), fill, stroke_attributes(stroke));
 }
 
+void Svg::polygon(const std::vector<Point>& corners, std::string_view fill, const Stroke& stroke) {
+  std::string points;
+  for (const Point& p : corners)
+    points += fmt::format("{}{},{}", points.empty() ? "" : " ", px(p.x), px(p.y));
+  fmt::format_to(std::back_inserter(body_), "<polygon points=\"{}\" fill=\"{}\" {}/>\n", points,
+                 fill, stroke_attributes(stroke));
+}
+
 void Svg::text(Point at, std::string_view text, const TextStyle& style) {
   constexpr std::array<std::string_view, 3> kAnchors{"start", "middle", "end"};
   const std::string turn =

@@ -10,6 +10,7 @@
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
 #include "tools/run/tables.h"
+#include "tools/run/workload_overrides.h"
 #include "traces/atomic_file.h"
 
 namespace leviosim::tools {
@@ -32,6 +33,9 @@ std::filesystem::path trace_file(const std::string& name) {
 }
 
 RunRequest request_for(const traces::WorkTrace& trace, const RunOptions& options) {
+  for (const std::string& text : split_overrides(options.overrides).workload)
+    throw InputError(fmt::format(
+        "replay: the recorded work is that of a workload as it was; leave out --set {}", text));
   RunRequest request;
   request.platform = options.platform.empty()
                          ? recorded_platform(trace, options.overrides)

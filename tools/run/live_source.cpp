@@ -50,7 +50,7 @@ traces::StampedPose body_pose(const vio::FrameReport& report, const traces::Came
 }  // namespace
 
 LiveSource::LiveSource(const RunRequest& request)
-    : profile_(vio::profile_named(request.profile, request.seed)),
+    : profile_(profile_of(request)),
       feed_(request),
       cluster_(cluster_machine(request, profile_)),
       controller_(controller_machine(request)),

@@ -35,6 +35,7 @@ Json manifest_json(const Manifest& manifest, const RunResult& run) {
   document["program"]["revision"] = revision();
   document["command_line"] = manifest.command_line;
   document["profile"] = run.profile;
+  if (!manifest.workload.empty()) document["workload"] = manifest.workload;
   document["seed"] = manifest.seed;
   document["platform"] = platform_json(manifest, run);
   document["image"]["width"] = run.image_width;

@@ -16,6 +16,7 @@ struct Manifest {
   std::uint32_t seed = 1;                 ///< of the workload
   std::string platform;                   ///< as requested; empty for a native run
   std::vector<std::string> overrides;     ///< of platform parameters
+  std::vector<std::string> workload;      ///< its parameters that were set, "workload.window=6"
   std::string data;                       ///< folder that was read
   std::size_t first_frame = 0;            ///< index in the folder
   std::vector<InputDigest> inputs;

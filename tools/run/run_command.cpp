@@ -34,7 +34,7 @@ void complete(traces::WorkTraceInfo& info, const RunOptions& options, const RunR
 void run(const CLI::App& command, const RunOptions& options, const Words& words) {
   RunRequest request = make_request(command, options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  traces::StagedFolder staged(checked_out_folder(options));
+  traces::StagedFolder staged(checked_out_folder(options.out, options.force));
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);
   if (options.record) request.recording = &recording;

@@ -6,6 +6,7 @@
 
 #include "sim/error.h"
 #include "tools/cli/command_line.h"
+#include "tools/run/workload_overrides.h"
 #include "workload/pipeline/profile.h"
 
 namespace leviosim::tools {
@@ -14,10 +15,13 @@ namespace {
 constexpr std::int64_t kLargestSide = 16384;
 
 /// A native run has no chip, so options about one are a misunderstanding.
-void refuse_chip_options(const CLI::App& command) {
-  for (const char* option : {"--platform", "--cores", "--set", "--record"})
-    if (command.count(option) > 0)
-      throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
+void refuse_chip_options(const CLI::App& command, const RunOptions& options) {
+  const auto refuse = [](const std::string& option) {
+    throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
+  };
+  for (const char* option : {"--platform", "--cores", "--record"})
+    if (command.count(option) > 0) refuse(option);
+  for (const std::string& text : split_overrides(options.overrides).chip) refuse("--set " + text);
 }
 
 void add_text(CLI::App& command, const char* name, std::string& value, const char* type,
@@ -32,6 +36,8 @@ void add_workload_options(CLI::App& command, RunOptions& options, const std::str
   add_text(command, "--profile", options.profile, "NAME", "of the workload [levio]");
   add_text(command, "--seed", options.seed, "N", "of the workload's random draws [1]");
   command.add_flag("--quiet", options.quiet, "no progress");
+  command.get_option("--set")->description(
+      "parameter of the chip, or of the workload: workload.… (leviosim workload); repeatable");
 }
 
 /// What does not depend on the chip.
@@ -42,13 +48,15 @@ RunRequest make_workload_request(const RunOptions& options) {
       parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
   request.profile = options.profile;
   vio::profile_named(options.profile, request.seed);  // refuses unknown names
+  request.workload = parse_workload_overrides(split_overrides(options.overrides).workload);
   request.image_size = parse_size(options.size);
   if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
   return request;
 }
 
 void resolve_chip(const RunOptions& options, RunRequest& request) {
-  request.platform = platform::resolve_platform(options.platform, options.overrides);
+  request.platform =
+      platform::resolve_platform(options.platform, split_overrides(options.overrides).chip);
   request.cores = cores_of(options, request.platform.config.cluster);
 }
 
@@ -105,7 +113,7 @@ RunRequest make_request(const CLI::App& command, const RunOptions& options) {
   require(command, "--out", "a folder for the results");
   RunRequest request = make_workload_request(options);
   if (options.native) {
-    refuse_chip_options(command);
+    refuse_chip_options(command, options);
   } else {
     require(command, "--platform", "the name of a chip or a platform file, or --native");
     resolve_chip(options, request);

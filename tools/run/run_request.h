@@ -11,6 +11,7 @@
 #include "tools/run/run_result.h"
 #include "traces/frame_range.h"
 #include "traces/image_source.h"
+#include "workload/pipeline/parameters.h"
 
 namespace leviosim::tools {
 
@@ -23,11 +24,15 @@ struct RunRequest {
   traces::ImageSize image_size{160, 120};
   bool native = false;  ///< no timing, any resolution
   int cores = 8;
-  std::uint32_t seed = 1;               ///< of the workload's random draws
-  platform::ResolvedPlatform platform;  ///< unused if native
-  RunObserver* observer = nullptr;      ///< sees every job; unused if native
-  WorkRecording* recording = nullptr;   ///< gets every job, for a trace; unused if native
+  std::uint32_t seed = 1;                 ///< of the workload's random draws
+  std::vector<vio::Assignment> workload;  ///< parameters that differ from the profile's
+  platform::ResolvedPlatform platform;    ///< unused if native
+  RunObserver* observer = nullptr;        ///< sees every job; unused if native
+  WorkRecording* recording = nullptr;     ///< gets every job, for a trace; unused if native
 };
+
+/// The profile with the parameters that were set.
+vio::Profile profile_of(const RunRequest& request);
 
 /// Called after every frame.
 struct Progress {

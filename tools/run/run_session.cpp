@@ -6,6 +6,7 @@
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
+#include "tools/run/workload_overrides.h"
 #include "tools/synth/flight_cache.h"
 #include "traces/asl_reader.h"
 
@@ -13,20 +14,19 @@ namespace leviosim::tools {
 
 namespace fs = std::filesystem;
 
-fs::path checked_out_folder(const RunOptions& options) {
-  const fs::path out = fs::absolute(options.out).lexically_normal();
+fs::path checked_out_folder(const std::string& folder, bool force) {
+  const fs::path out = fs::absolute(folder).lexically_normal();
   if (!fs::exists(out)) return out;
   if (!fs::is_directory(out))
-    throw InputError(fmt::format("--out {}: is a file; expected a folder", options.out));
+    throw InputError(fmt::format("--out {}: is a file; expected a folder", folder));
   if (fs::is_empty(out)) return out;
   if (!fs::exists(out / "manifest.json"))
-    throw InputError(
-        fmt::format("--out {}: exists and holds something else than results; choose a new folder",
-                    options.out));
-  if (!options.force)
+    throw InputError(fmt::format(
+        "--out {}: exists and holds something else than results; choose a new folder", folder));
+  if (!force)
     throw InputError(fmt::format(
         "--out {}: exists and holds results; choose a new folder, or --force to replace them",
-        options.out));
+        folder));
   return out;
 }
 
@@ -52,7 +52,8 @@ Manifest make_manifest(const RunOptions& options, const RunRequest& request, con
   manifest.command_line = words;
   manifest.seed = request.seed;
   manifest.platform = options.platform;
-  manifest.overrides = options.overrides;
+  manifest.overrides = split_overrides(options.overrides).chip;
+  for (const vio::Assignment& a : request.workload) manifest.workload.push_back(a.text());
   manifest.data = request.data;
   if (request.frames) manifest.first_frame = request.frames->begin;
   manifest.inputs = digest_inputs(traces::open_asl(request.data, {.frames = request.frames}));
@@ -65,6 +66,7 @@ std::string heading(const RunOptions& options, const RunResult& run) {
                   run.timed ? options.platform : "the host",
                   run.frames.size() == 1 ? "1 frame" : fmt::format("{} frames", run.frames.size()),
                   options.data, run.image_width, run.image_height);
+  for (const std::string& set : split_overrides(options.overrides).workload) text += ", " + set;
   const auto mhz = [](Hertz f) { return static_cast<double>(f.count()) * 1e-6; };
   if (run.timed)
     text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,

@@ -14,7 +14,7 @@ namespace leviosim::tools {
 /// not cost anybody's files.
 /// @throws InputError if it is a file, or a folder with something else than results, or with
 ///         results and without --force
-std::filesystem::path checked_out_folder(const RunOptions& options);
+std::filesystem::path checked_out_folder(const std::string& out, bool force);
 
 /// The same for commands whose --out is one file: as cli/command_line.h says. Before the run, so
 /// that nobody waits for a file that cannot be written.

@@ -39,6 +39,23 @@ std::string TextTable::line(const std::vector<std::string>& cells,
   return text + '\n';
 }
 
+std::string TextTable::markdown() const {
+  const auto row = [](const std::vector<std::string>& cells) {
+    std::string text = "|";
+    for (const std::string& cell : cells) text += ' ' + cell + " |";
+    return text + '\n';
+  };
+  std::vector<std::string> titles;
+  std::vector<std::string> rules;
+  for (const Column& column : columns_) {
+    titles.push_back(column.title);
+    rules.emplace_back(column.align == Align::Left ? "---" : "---:");
+  }
+  std::string text = row(titles) + row(rules);
+  for (const auto& cells : rows_) text += row(cells);
+  return text;
+}
+
 std::string TextTable::str() const {
   std::vector<std::string> titles;
   std::vector<int> widths;

@@ -24,6 +24,8 @@ class TextTable {
   void add(std::vector<std::string> cells);
   /// Titles, a rule, and the rows; every line ends in a line break.
   std::string str() const;
+  /// The same for Markdown files. Cells must hold no bars.
+  std::string markdown() const;
 
  private:
   std::string line(const std::vector<std::string>& cells, const std::vector<int>& widths) const;

@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <thread>
 
 #include "sim/error.h"
+#include "tools/cli/cache_folder.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
 #include "traces/synthetic.h"
@@ -18,14 +18,6 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// By the XDG base directory specification, which ignores relative paths.
-fs::path cache_home() {
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/') return xdg;
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
-    return fs::path(home) / ".cache";
-  return fs::temp_directory_path();
-}
 
 /// Excludes other processes from acquire() to the end of its life. The file stays; it is empty.
 class FileLock {
@@ -52,7 +44,7 @@ class FileLock {
 }  // namespace
 
 fs::path flight_folder() {
-  return cache_home() / "leviosim" /
+  return cache_folder() /
          fmt::format("synthetic-{}-{:g}s-{}", kFlightSeed, kFlightSeconds, flight_version());
 }
 

@@ -34,13 +34,12 @@ void run(const RunOptions& options, const Words& words) {
   const std::vector<Reference> references = paper_references();
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   std::optional<traces::StagedFolder> staged;
-  if (!options.out.empty()) staged.emplace(checked_out_folder(options));
+  if (!options.out.empty()) staged.emplace(checked_out_folder(options.out, options.force));
   request.data = data_folder(options, style);
   FrameLog log;
   request.observer = &log;
   const RunResult result = simulate_with_progress(request, style);
-  const Validation validation =
-      validate(result, log, vio::profile_named(request.profile, request.seed), references);
+  const Validation validation = validate(result, log, profile_of(request), references);
   if (staged) {
     write_folder(staged->path(), validation, result, make_manifest(options, request, words),
                  platform::to_yaml(request.platform));

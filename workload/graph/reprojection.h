@@ -15,8 +15,11 @@
 
 namespace leviosim::vio {
 
+/// For EuRoC's images of 160x120 (levio_parameters); the odometry fits them to its images.
 struct ReprojectionOptions {
-  PinholeCamera camera{114.66f, 114.32f, 77.80f, 62.09f};  ///< EuRoC, decimated (levio_parameters)
+  static constexpr float kImageWidth = 160;
+
+  PinholeCamera camera{114.66f, 114.32f, 77.80f, 62.09f};
   float sigma_px = 1.0f;
   float huber_px = 1.0f;
   float lost_px = 40.0f;    ///< a quarter of the image width

@@ -60,6 +60,7 @@ void FrontEnd<P>::detect_stillness(const Preintegration<P>& interval, float seco
   prior.gyro_information = work::max(prior.gyro_information, F(duration / gyro_variance));
   graph_in_l2_.set_bias_prior(prior);
   graph_in_l2_.set_bias({seen.gyro_mean, graph_in_l2_.bias().accel});
+  if (!profile_.gravity_updates) return;
   const Pose<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe()).T_world_camera;
   const Mat3<P> R_world_camera = last.R * interval.corrected(graph_in_l2_.bias()).R;
   graph_in_l2_.set_gravity(gravity_from_force<P>(seen.accel_mean, R_world_camera));

@@ -1,5 +1,7 @@
 #include "workload/pipeline/odometry.h"
 
+#include <cmath>
+
 #include "workload/pipeline/back_end.h"
 #include "workload/pipeline/front_end.h"
 #include "workload/pipeline/stages.h"
@@ -15,12 +17,31 @@ struct Reservation {
   }
 };
 
+/// To hundredths of a pixel, as the release states the camera of its optimiser (levio_parameters,
+/// "Input"); the other stages take the calibration as it is.
+float in_hundredths(float pixels) {
+  return static_cast<float>(std::round(static_cast<double>(pixels) * 100) / 100);
+}
+
+}  // namespace
+
+Profile fitted_to(const Rig& rig, Profile profile) {
+  ReprojectionOptions& visual = profile.optimiser.visual;
+  const auto width = static_cast<float>(rig.width);
+  visual.lost_px *= width / ReprojectionOptions::kImageWidth;
+  visual.camera = {in_hundredths(rig.camera.fx), in_hundredths(rig.camera.fy),
+                   in_hundredths(rig.camera.cx), in_hundredths(rig.camera.cy)};
+  return profile;
+}
+
+namespace {
+
 template <class P>
 class OdometryOf : public Odometry {
  public:
   OdometryOf(const Profile& profile, const Rig& rig, work::Machine& cluster,
              work::Machine& controller)
-      : profile_(profile),
+      : profile_(fitted_to(rig, profile)),
         keyframe_memory_("L2", controller.local().capacity()),
         graph_memory_("L2", controller.local().capacity()),
         graph_(graph_memory_,

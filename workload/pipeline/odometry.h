@@ -100,6 +100,10 @@ class Odometry {
   virtual const work::Arena& pose_graph_memory() const = 0;
 };
 
+/// The profile with what depends on the images, as make_odometry() runs it: the optimiser's camera
+/// is the rig's, and its limit of lost observations the same share of the image width.
+Profile fitted_to(const Rig& rig, Profile profile);
+
 /// @param counting    on counted scalars, so that recording machines get work; else natively
 /// @param cluster     where the front end runs; its memory is L1
 /// @param controller  where the optimiser runs; its memory is L2

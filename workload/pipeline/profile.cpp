@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/check.h"
 #include "sim/error.h"
 
 namespace leviosim::vio {
@@ -39,12 +40,17 @@ constexpr std::array kProfiles = {
                  [](Profile& p) { p.use_imu = p.optimiser.use_imu = p.use_epnp = false; }},
 };
 
+const NamedProfile* find(std::string_view name) {
+  const auto* it = std::find_if(kProfiles.begin(), kProfiles.end(),
+                                [&](const NamedProfile& p) { return p.name == name; });
+  return it == kProfiles.end() ? nullptr : it;
+}
+
 }  // namespace
 
 Profile profile_named(std::string_view name, std::uint32_t seed) {
-  const auto it = std::find_if(kProfiles.begin(), kProfiles.end(),
-                               [&](const NamedProfile& p) { return p.name == name; });
-  if (it == kProfiles.end())
+  const NamedProfile* const it = find(name);
+  if (it == nullptr)
     throw InputError(fmt::format("unknown profile '{}'; known profiles are {}", name,
                                  fmt::join(profile_names(), ", ")));
   Profile profile;
@@ -61,6 +67,12 @@ std::vector<std::string> profile_names() {
   std::vector<std::string> names;
   for (const NamedProfile& p : kProfiles) names.emplace_back(p.name);
   return names;
+}
+
+std::string_view profile_description(std::string_view name) {
+  const NamedProfile* const it = find(name);
+  check(it != nullptr, "a profile of this name");
+  return it->description;
 }
 
 }  // namespace leviosim::vio

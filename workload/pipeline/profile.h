@@ -44,6 +44,7 @@ struct Profile {
   // keyframe and leaves open how tightly; see levio_anchor().
   bool use_imu = true;
   bool use_epnp = true;
+  bool gravity_updates = true;  ///< gravity is measured again whenever the vehicle stands still
   ImuNoise imu_noise;
   BiasOptions biases;
   OptimiserOptions optimiser;
@@ -57,5 +58,7 @@ struct Profile {
 /// @throws InputError for an unknown name, with the nearest known one.
 Profile profile_named(std::string_view name, std::uint32_t seed);
 std::vector<std::string> profile_names();
+/// What distinguishes it, in a few words. The name must be known.
+std::string_view profile_description(std::string_view name);
 
 }  // namespace leviosim::vio

@@ -1,0 +1,71 @@
+#include "tools/batch/run_batch.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+
+#include "tools/batch/run_key.h"
+#include "tools/cli/interrupts.h"
+#include "traces/parallel_for.h"
+
+namespace leviosim::tools {
+namespace {
+
+RunOutcome compute(const BatchRun& run, const Measure& how) {
+  traces::Trajectory estimate;
+  try {
+    estimate = simulate(run.request, [](const Progress&) { throw_if_interrupted(); }).trajectory;
+  } catch (const traces::NotComparable& failure) {
+    RunOutcome outcome;
+    outcome.failure = failure.what();
+    outcome.frames = run.sequence->frames;
+    return outcome;
+  }
+  return measure(estimate, run.sequence->truth, how);
+}
+
+/// Runs of the same key, which are computed once.
+struct Job {
+  std::string key;
+  std::vector<std::size_t> runs;
+};
+
+std::vector<Job> jobs_of(const std::vector<BatchRun>& runs, const Measure& how) {
+  std::vector<Job> jobs;
+  std::map<std::string, std::size_t> job_of_key;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    std::string key = run_key(runs[i].request, runs[i].sequence->inputs, how);
+    const auto [it, is_new] = job_of_key.try_emplace(key, jobs.size());
+    if (is_new) jobs.push_back({std::move(key), {}});
+    jobs[it->second].runs.push_back(i);
+  }
+  return jobs;
+}
+
+}  // namespace
+
+std::vector<RunOutcome> run_batch(const std::vector<BatchRun>& runs, const BatchOptions& options,
+                                  const std::function<void(const BatchProgress&)>& progress) {
+  const std::vector<Job> jobs = jobs_of(runs, options.measure);
+  std::vector<RunOutcome> outcomes(runs.size());
+  BatchProgress done{0, 0, runs.size()};
+  std::mutex mutex;
+  traces::parallel_for(jobs.size(), options.threads, [&](std::size_t j) {
+    throw_if_interrupted();
+    const Job& job = jobs[j];
+    std::optional<RunOutcome> outcome = options.cache.find(job.key);
+    const bool found = outcome.has_value();
+    if (!found) {
+      outcome = compute(runs[job.runs.front()], options.measure);
+      options.cache.store(job.key, *outcome);
+    }
+    for (const std::size_t i : job.runs) outcomes[i] = *outcome;
+    const std::lock_guard<std::mutex> lock(mutex);
+    done.done += job.runs.size();
+    if (found) done.found += job.runs.size();
+    progress(done);
+  });
+  return outcomes;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,37 @@
+#include "tools/batch/run_cache.h"
+
+#include <fmt/core.h>
+
+#include "sim/error.h"
+#include "tools/cli/cache_folder.h"
+#include "traces/atomic_file.h"
+#include "traces/csv.h"
+
+namespace leviosim::tools {
+
+namespace fs = std::filesystem;
+
+fs::path default_run_cache() { return cache_folder() / "runs"; }
+
+/// Folders of a few files each, also after a million runs.
+fs::path RunCache::file_of(const std::string& key) const {
+  return folder_ / key.substr(0, 2) / (key + ".json");
+}
+
+std::optional<RunOutcome> RunCache::find(const std::string& key) const {
+  const fs::path file = file_of(key);
+  if (!fs::is_regular_file(file)) return std::nullopt;
+  return parse_outcome(traces::read_text_file(file));
+}
+
+void RunCache::store(const std::string& key, const RunOutcome& outcome) const {
+  const fs::path file = file_of(key);
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error)
+    throw InputError(
+        fmt::format("{}: cannot be created: {}", file.parent_path().string(), error.message()));
+  traces::write_file_atomically(file, to_text(outcome));
+}
+
+}  // namespace leviosim::tools

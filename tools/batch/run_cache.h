@@ -1,0 +1,32 @@
+// Finished runs on disk: one small file each, written whole or not at all, found by its key.
+// Several programs may use one folder at the same time.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "tools/batch/run_outcome.h"
+
+namespace leviosim::tools {
+
+class RunCache {
+ public:
+  /// The folder is made when something is stored.
+  explicit RunCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Nothing if the run is not there, or cannot be read.
+  std::optional<RunOutcome> find(const std::string& key) const;
+  /// @throws InputError if it cannot be written
+  void store(const std::string& key, const RunOutcome& outcome) const;
+
+ private:
+  std::filesystem::path file_of(const std::string& key) const;
+
+  std::filesystem::path folder_;
+};
+
+/// The one that commands use unless told otherwise.
+std::filesystem::path default_run_cache();
+
+}  // namespace leviosim::tools

@@ -1,0 +1,102 @@
+#include "workload/pipeline/parameters.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/check.h"
+
+namespace leviosim::vio {
+namespace {
+
+using Kind = Parameter::Kind;
+
+/// A field of the profile as get and set functions: of(p) is a reference to it.
+#define LEVIOSIM_FIELD(field)                                    \
+  [](const Profile& p) { return static_cast<double>(p.field); }, \
+      [](Profile& p, double value) { p.field = static_cast<decltype(p.field)>(value); }
+
+constexpr std::array kParameters = {
+    Parameter{"workload.fast_threshold", Kind::whole, "grey levels", 1, 254,
+              "brightness difference that makes a FAST corner", false,
+              LEVIOSIM_FIELD(extractor.fast_threshold)},
+    Parameter{"workload.match_distance", Kind::whole, "bits", 1, 256,
+              "descriptors match if they differ in fewer", false,
+              LEVIOSIM_FIELD(matcher.max_distance)},
+    Parameter{"workload.min_world_matches", Kind::whole, "matches", 4, 1000,
+              "with landmarks, which EPnP needs to be tried", false,
+              LEVIOSIM_FIELD(min_world_matches)},
+    Parameter{"workload.min_epnp_inliers", Kind::whole, "matches", 4, 1000,
+              "without as many, the pose is predicted instead", false,
+              LEVIOSIM_FIELD(min_epnp_inliers)},
+    Parameter{"workload.keyframe_parallax", Kind::number, "", 1e-3, 1,
+              "mean parallax in normalised image coordinates that makes a keyframe", false,
+              LEVIOSIM_FIELD(keyframe_parallax)},
+    Parameter{"workload.max_landmark_age", Kind::whole, "keyframes", 1, 250,
+              "unseen for longer, a landmark is not matched any more", false,
+              LEVIOSIM_FIELD(max_landmark_age)},
+    Parameter{"workload.window", Kind::whole, "keyframes", 2, 32, "that the optimiser works on",
+              false, LEVIOSIM_FIELD(optimiser_keyframes)},
+    Parameter{"workload.optimiser_iterations", Kind::whole, "iterations", 1, 100, "per frame",
+              false, LEVIOSIM_FIELD(optimiser_iterations)},
+    Parameter{"workload.reprojection_noise", Kind::number, "px", 0.01, 100,
+              "standard deviation of an observation in the optimiser", false,
+              LEVIOSIM_FIELD(optimiser.visual.sigma_px)},
+    Parameter{"workload.huber", Kind::number, "px", 0.01, 100,
+              "reprojection error from which on its cost grows linearly", false,
+              LEVIOSIM_FIELD(optimiser.visual.huber_px)},
+    Parameter{"workload.imu_noise.gyro", Kind::number, "rad/s/sqrt(Hz)", 1e-5, 10,
+              "noise density of the gyroscope, as assumed", true, LEVIOSIM_FIELD(imu_noise.gyro)},
+    Parameter{"workload.imu_noise.accel", Kind::number, "m/s^2/sqrt(Hz)", 1e-5, 100,
+              "noise density of the accelerometer, as assumed", true,
+              LEVIOSIM_FIELD(imu_noise.accel)},
+    Parameter{"workload.imu_noise.gravity", Kind::number, "m/s^2", 1e-4, 10,
+              "standard deviation of each component of the gravity vector", true,
+              LEVIOSIM_FIELD(imu_noise.gravity)},
+    Parameter{"workload.gravity_updates", Kind::toggle, "", 0, 1,
+              "measure gravity again whenever the vehicle stands still", true,
+              LEVIOSIM_FIELD(gravity_updates)},
+};
+
+#undef LEVIOSIM_FIELD
+
+}  // namespace
+
+std::span<const Parameter> parameters() { return kParameters; }
+
+const Parameter* find_parameter(std::string_view name) {
+  const auto* it = std::find_if(kParameters.begin(), kParameters.end(),
+                                [&](const Parameter& p) { return p.name == name; });
+  return it == kParameters.end() ? nullptr : it;
+}
+
+bool is_valid(const Parameter& parameter, double value) {
+  if (!(value >= parameter.low && value <= parameter.high)) return false;
+  return parameter.kind == Kind::number || value == std::floor(value);
+}
+
+std::string value_text(const Parameter& parameter, double value) {
+  if (parameter.kind == Kind::toggle) return value != 0 ? "on" : "off";
+  if (parameter.kind == Kind::whole) return fmt::format("{}", static_cast<int>(value));
+  return fmt::format("{}", static_cast<float>(value));
+}
+
+std::string value_with_unit(const Parameter& parameter, double value) {
+  const std::string text = value_text(parameter, value);
+  return parameter.unit.empty() ? text : fmt::format("{} {}", text, parameter.unit);
+}
+
+std::string Assignment::text() const {
+  return fmt::format("{}={}", parameter->name, value_text(*parameter, value));
+}
+
+void set_parameters(std::span<const Assignment> assignments, Profile& profile) {
+  for (const Assignment& a : assignments) {
+    check(is_valid(*a.parameter, a.value), "a workload parameter has a valid value");
+    a.parameter->set(profile, a.value);
+  }
+}
+
+}  // namespace leviosim::vio
