@@ -32,9 +32,9 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .code = &platform::compiled_code()};
 }
 
-std::vector<StageResult> empty_stages() {
+std::vector<StageResult> empty_stages(const vio::Profile& profile) {
   std::vector<StageResult> stages;
-  for (const vio::StageName& name : vio::stage_names()) {
+  for (const vio::StageName& name : vio::stage_names(profile)) {
     StageResult stage;
     stage.name = name.name;
     stage.unit = name.per;
@@ -141,7 +141,7 @@ Simulation::Simulation(const RunRequest& request, Feed& feed, ProgressCallback p
                                    feed.rig(), cluster_, controller_)),
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(feed.size())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
-      book_(empty_stages()) {}
+      book_(empty_stages(vio::profile_named(request.profile, request.seed))) {}
 
 RunResult Simulation::run() {
   chip_.kernel().spawn("camera", camera());
