@@ -75,6 +75,11 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
       // The keyframe's descriptors stay until the pose is known (paper, memory table: 8-point).
       const work::Arena::Frame descriptors(machine_.local());
       match_keyframe(frame);
+      // The 8-point algorithm guesses the length of its translation; the IMU measures it.
+      if (!pose && profile_.guided.enabled && imu_predicts()) {
+        report.source = PoseSource::Predicted;
+        pose = predicted_pose();
+      }
       if (!pose) pose = pose_from_keyframe(frame, report);
     }
     frame.T_world_camera = *pose;
