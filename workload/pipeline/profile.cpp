@@ -40,6 +40,7 @@ void make_next(Profile& p) {
                  .accel_bias = 3e-3f,
                  .gravity = 0.0f};
   p.optimiser.visual.sigma_px = 0.7f;
+  p.optimiser.prior.velocity = 0.3f;  // as levio's anchor, and for the same reason
 }
 
 struct NamedProfile {
