@@ -63,8 +63,7 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
   if (!started_) {
     start(frame);
     report.keyframe = true;
-  } else if (profile_.guided.enabled && rest_ &&
-             graph_in_l2_.keyframe_count() < I32(graph_.capacity.keyframes)) {
+  } else if (profile_.guided.enabled && rest_ && graph_in_l2_.keyframe_count() == I32(1)) {
     start_at_rest(frame);
     report.keyframe = true;
   } else {

@@ -87,9 +87,9 @@ void FrontEnd<P>::start(Frame& frame) {
   begin_world(frame, record, ImuBias<P>::zero(), gravity);
 }
 
-/// A vehicle that stands still before its window is full starts anew with every frame, from where
+/// A vehicle that stands still before a second keyframe starts anew with every frame, from where
 /// the last one was: at rest, gravity and the gyro's bias can be read off and the velocity is zero,
-/// while a map from the little motion before is worth nothing.
+/// while noise alone would sooner or later look like parallax.
 template <class P>
 void FrontEnd<P>::start_at_rest(Frame& frame) {
   work::Arena& local = machine_.local();
