@@ -76,6 +76,7 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
       match_keyframe(frame);
       // The 8-point algorithm guesses the length of its translation; the IMU measures it.
       if (!pose && profile_.guided.enabled && imu_predicts()) {
+        const auto stage = machine_.stage(stages::kGuided);
         report.source = PoseSource::Predicted;
         pose = predicted_pose();
       }
