@@ -73,7 +73,7 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   require(command, "TRACE", "the work.trace of a run with --record, or its folder");
   require(command, "--out", "a folder for the results");
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  traces::StagedFolder staged(checked_out_folder(options));
+  traces::StagedFolder staged(checked_out_folder(options.out, options.force));
   const traces::WorkTrace trace(trace_file(options.trace));
   const RunRequest request = request_for(trace, options);
   const Replay result = with_progress(trace, request, style);

@@ -16,6 +16,9 @@ vio::Rig make_rig(const traces::CameraModel& camera, const traces::PinholeIntrin
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c)
       rig.R_camera_body[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(R(r, c));
+  const Eigen::Vector3d p = -(R * camera.T_body_camera.translation());
+  for (int r = 0; r < 3; ++r)
+    rig.p_camera_body[static_cast<std::size_t>(r)] = static_cast<float>(p[r]);
   return rig;
 }
 

@@ -91,7 +91,7 @@ void LiveSource::publish() {
 
 std::vector<StageResult> LiveSource::empty_stages() const {
   std::vector<StageResult> stages;
-  for (const vio::StageName& name : vio::stage_names()) {
+  for (const vio::StageName& name : vio::stage_names(profile_)) {
     StageResult stage;
     stage.name = name.name;
     stage.unit = name.per;

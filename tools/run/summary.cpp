@@ -8,7 +8,8 @@ namespace {
 /// Which scenario a frame belongs to, by the RANSAC that ran in it; the last one takes what the
 /// others do not.
 std::size_t scenario_of(const FrameResult& frame) {
-  if (frame.source == PoseSource::Epnp || frame.source == PoseSource::Predicted)
+  if (frame.source == PoseSource::Epnp || frame.source == PoseSource::Predicted ||
+      frame.source == PoseSource::Tracked)
     return frame.keyframe ? 1 : 0;
   if (frame.source == PoseSource::EightPoint) return frame.keyframe ? 3 : 2;
   return 4;
@@ -48,8 +49,8 @@ std::string key_of(std::string_view name) {
 }
 
 std::string_view key_of(PoseSource source) {
-  constexpr std::array<std::string_view, 5> keys{"first", "epnp", "eight_point", "kept",
-                                                 "predicted"};
+  constexpr std::array<std::string_view, 6> keys{"first", "epnp",      "eight_point",
+                                                 "kept",  "predicted", "tracked"};
   return keys[static_cast<std::size_t>(source)];
 }
 

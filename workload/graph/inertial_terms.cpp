@@ -1,5 +1,7 @@
 #include "workload/graph/inertial_terms.h"
 
+#include "workload/graph/whiten.h"
+
 namespace leviosim::vio {
 namespace {
 
@@ -37,22 +39,6 @@ void store_jacobians(MatrixView<P> rows, const ImuJacobians<P>& J, typename P::F
   store_block<P>(rows, kPositionRow, kPositionColumn, minus_Rt);
   store_block<P>(rows, kPositionRow, kVelocityColumn, scaled<P>(dt, minus_Rt));
   store_block<P>(rows, kPositionRow, kEnd + kPositionColumn, J.Rt);
-}
-
-/// Multiplies columns [begin, end) by the inverse of the factor: forward substitution.
-template <class P>
-void whiten(const Preintegration<P>& interval, MatrixView<P> rows, int begin, int end) {
-  using F = typename P::F32;
-  const typename P::Function function("whiten");
-  const MatrixView<P> factor = interval.covariance();
-  for (int r : P::range(0, 9)) {
-    const F inverse_diagonal = factor(r, r);
-    for (int c : P::range(begin, end)) {
-      F sum = rows(r, c);
-      for (int k : P::range(0, r)) sum -= factor(r, k) * rows(k, c);
-      rows(r, c) = sum * inverse_diagonal;
-    }
-  }
 }
 
 template <class P>

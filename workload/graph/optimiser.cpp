@@ -5,16 +5,86 @@
 namespace leviosim::vio {
 namespace {
 
-/// The work memory of an iteration.
+// How an iteration takes IMU and past into account: one of the two structs below.
+
+/// Biases apart, anchor.
 template <class P>
+struct AnchoredTerms {
+  using F = typename P::F32;
+
+  AnchoredTerms(work::Arena& arena, const Window<P>& in, const OptimiserOptions& o)
+      : window(in), options(o), interval(arena) {}
+  static ReducedSystem<P> system(work::Arena& arena, const Window<P>& window,
+                                 const OptimiserOptions& options) {
+    return {arena, window.keyframes, options.use_imu};
+  }
+
+  F add(const ReducedSystem<P>& system, F cost) const {
+    if (options.use_imu) cost += add_inertial_terms<P>(window, interval, system);
+    cost += add_anchor<P>(window, options.anchor, system);
+    return cost;
+  }
+  void step(const ReducedSystem<P>&) {}
+  F add_cost(const WindowState<P>& state, F cost) const {
+    if (options.use_imu) cost += inertial_cost<P>(window, state, interval);
+    cost += anchor_cost<P>(window, state, options.anchor, options.use_imu);
+    return cost;
+  }
+  void adopt(Window<P>&) const {}
+
+  const Window<P>& window;
+  const OptimiserOptions& options;
+  IntervalScratch<P> interval;
+};
+
+/// Biases in common, prior.
+template <class P>
+struct JointTerms {
+  using F = typename P::F32;
+
+  JointTerms(work::Arena& arena, const Window<P>& in, const OptimiserOptions&)
+      : window(in), interval(arena), trial_bias(in.bias) {}
+  static ReducedSystem<P> system(work::Arena& arena, const Window<P>& window,
+                                 const OptimiserOptions&) {
+    return {arena, window.keyframes, true, kBiasUnknowns};
+  }
+
+  F add(const ReducedSystem<P>& system, F cost) const {
+    cost += add_joint_inertial_terms<P>(window, 1, window.keyframes - 1, interval, system);
+    cost += add_prior<P>(*prior, window, system);
+    return cost;
+  }
+  void step(const ReducedSystem<P>& solved) {
+    const auto step = solved.vector();
+    trial_bias = {window.bias.gyro + load_vec3<P>(step, solved.shared()),
+                  window.bias.accel + load_vec3<P>(step, solved.shared() + 3)};
+  }
+  F add_cost(const WindowState<P>& state, F cost) const {
+    cost += joint_inertial_cost<P>(window, state, trial_bias, interval);
+    cost += prior_cost<P>(*prior, state, trial_bias);
+    return cost;
+  }
+  void adopt(Window<P>& to) const {
+    to.bias = trial_bias;
+    to.bias_is_new = true;
+  }
+
+  const Window<P>& window;
+  const WindowPrior<P>* prior = nullptr;
+  JointScratch<P> interval;
+  ImuBias<P> trial_bias;
+};
+
+/// The work memory of an iteration.
+template <class P, class Terms>
 struct WorkMemory {
   using Span = typename P::template Span<typename P::F32>;
 
-  WorkMemory(work::Arena& arena, const Window<P>& window, bool use_imu)
+  WorkMemory(work::Arena& arena, const Window<P>& window, const OptimiserOptions& options)
       : records(arena, window.landmarks, window.capacity.keyframes),
-        system(arena, window.keyframes, use_imu),
+        system(Terms::system(arena, window, options)),
         elimination(arena, window.capacity.keyframes),
-        interval(arena),
+        terms(arena, window, options),
         trial{arena.alloc<Span>("trial poses", kPoseFloats * window.keyframes),
               arena.alloc<Span>("trial velocities", 3 * window.keyframes),
               arena.alloc<Span>("trial points", 3 * window.landmarks)} {}
@@ -22,7 +92,7 @@ struct WorkMemory {
   LandmarkRecords<P> records;
   ReducedSystem<P> system;
   EliminationScratch<P> elimination;
-  IntervalScratch<P> interval;
+  Terms terms;
   WindowState<P> trial;
 };
 
@@ -53,28 +123,25 @@ void step_keyframes(const Window<P>& window, const ReducedSystem<P>& solved,
 
 /// Linearises everything at the window's state.
 /// @return the cost there
-template <class P>
+template <class P, class Terms>
 typename P::F32 build(const Window<P>& window, const OptimiserOptions& options,
-                      typename P::F32 lambda, const WorkMemory<P>& memory, VisualUse& use) {
+                      typename P::F32 lambda, const WorkMemory<P, Terms>& memory, VisualUse& use) {
   using F = typename P::F32;
   memory.system.clear();
   F cost = 0.0f;
   use = add_visual_terms<P>(window, PixelModel<P>(options.visual), lambda, memory.records,
                             memory.elimination, memory.system, cost);
-  if (options.use_imu) cost += add_inertial_terms<P>(window, memory.interval, memory.system);
-  cost += add_anchor<P>(window, options.anchor, memory.system);
+  cost = memory.terms.add(memory.system, cost);
   memory.system.damp(lambda);
   return cost;
 }
 
 /// Cost of the trial state, whose points are settled first.
-template <class P>
+template <class P, class Terms>
 typename P::F32 cost_of_trial(const Window<P>& window, const WindowState<P>& state,
-                              const OptimiserOptions& options, const WorkMemory<P>& memory) {
-  typename P::F32 cost = settle_points<P>(window, state, PixelModel<P>(options.visual));
-  if (options.use_imu) cost += inertial_cost<P>(window, state, memory.interval);
-  cost += anchor_cost<P>(window, state, options.anchor, options.use_imu);
-  return cost;
+                              const OptimiserOptions& options, const Terms& terms) {
+  const typename P::F32 cost = settle_points<P>(window, state, PixelModel<P>(options.visual));
+  return terms.add_cost(state, cost);
 }
 
 template <class P>
@@ -86,11 +153,10 @@ void adopt(const WindowState<P>& trial, const Window<P>& window) {
   for (int i : P::range(0, 3 * window.landmarks)) state.points[i] = F(trial.points[i]);
 }
 
-}  // namespace
-
-template <class P>
-IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
-                              const OptimiserOptions& options) {
+/// @param prepare  completes the terms
+template <class P, class Terms, class Prepare>
+IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
+                        const OptimiserOptions& options, const Prepare& prepare) {
   using F = typename P::F32;
   const typename P::Function function("optimise_once");
   IterationReport report;
@@ -98,19 +164,22 @@ IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& 
   if (window.keyframes < 2) return report;
 
   const work::Arena::Frame frame(fc.local());
-  const WorkMemory<P> memory(fc.local(), window, options.use_imu);
+  WorkMemory<P, Terms> memory(fc.local(), window, options);
+  prepare(memory.terms);
   VisualUse use;
   const F cost = build<P>(window, options, lm.lambda, memory, use);
   F trial_cost = cost;
   report.positive_definite = memory.system.solve();
   if (report.positive_definite) {
     step_keyframes<P>(window, memory.system, memory.trial);
+    memory.terms.step(memory.system);
     step_points<P>(window, memory.records, memory.system, memory.trial.points);
-    trial_cost = cost_of_trial<P>(window, memory.trial, options, memory);
+    trial_cost = cost_of_trial<P>(window, memory.trial, options, memory.terms);
   }
   // Not true either if a cost is not a number.
   if (trial_cost < cost) {
     adopt<P>(memory.trial, window);
+    memory.terms.adopt(window);
     lm.lambda = work::max(F(lm.lambda * options.lambda_down), F(options.min_lambda));
     report.accepted = true;
   } else {
@@ -123,6 +192,28 @@ IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& 
   return report;
 }
 
+}  // namespace
+
+template <class P>
+IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
+                              const OptimiserOptions& options) {
+  return iterate<P, AnchoredTerms<P>>(fc, window, lm, options, [](AnchoredTerms<P>&) {});
+}
+
+template <class P>
+IterationReport optimise_jointly_once(work::Machine& fc, Window<P>& window,
+                                      const WindowPrior<P>& prior, LmState<P>& lm,
+                                      const OptimiserOptions& options) {
+  return iterate<P, JointTerms<P>>(fc, window, lm, options,
+                                   [&](JointTerms<P>& terms) { terms.prior = &prior; });
+}
+
+template IterationReport optimise_jointly_once(work::Machine&, Window<work::Native>&,
+                                               const WindowPrior<work::Native>&,
+                                               LmState<work::Native>&, const OptimiserOptions&);
+template IterationReport optimise_jointly_once(work::Machine&, Window<work::Counting>&,
+                                               const WindowPrior<work::Counting>&,
+                                               LmState<work::Counting>&, const OptimiserOptions&);
 template IterationReport optimise_once(work::Machine&, Window<work::Native>&,
                                        LmState<work::Native>&, const OptimiserOptions&);
 template IterationReport optimise_once(work::Machine&, Window<work::Counting>&,

@@ -10,12 +10,17 @@
 // Unknowns per keyframe: rotation (right perturbation), position, and with IMU velocity. Without
 // IMU the window has no scale of its own: only the damping holds it.
 //
-// Left out: marginalisation of the keyframes that leave the window; the anchor (inertial_terms.h)
-// stands in for it. Biases are not unknowns here (window.h, estimate_biases).
+// Two ways of taking the IMU and the past into account:
+//   optimise_once()          biases apart (window.h, estimate_biases); the anchor
+//   (inertial_terms.h)
+//                            stands in for what is known from keyframes that have left
+//   optimise_jointly_once()  biases as unknowns (joint_inertial_terms.h), and the departed
+//                            keyframes marginalised (marginalisation.h)
 #pragma once
 
 #include "sim/work/machine.h"
 #include "workload/graph/inertial_terms.h"
+#include "workload/graph/marginalisation.h"
 #include "workload/graph/reprojection.h"
 #include "workload/graph/window.h"
 
@@ -25,6 +30,8 @@ struct OptimiserOptions {
   ReprojectionOptions visual;
   AnchorOptions anchor;
   bool use_imu = true;
+  bool joint = false;  ///< optimise_jointly_once(), with `prior` instead of `anchor`
+  PriorOptions prior;
   float initial_lambda = 1e-4f;
   float lambda_up = 10.0f;   ///< factor after a rejected step
   float lambda_down = 0.1f;  ///< factor after an accepted one
@@ -56,5 +63,12 @@ struct IterationReport {
 template <class P>
 IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
                               const OptimiserOptions& options);
+
+/// The same with the biases as unknowns, a lever arm, and a prior from marginalisation in place of
+/// the anchor; changes `window.bias` as well.
+template <class P>
+IterationReport optimise_jointly_once(work::Machine& fc, Window<P>& window,
+                                      const WindowPrior<P>& prior, LmState<P>& lm,
+                                      const OptimiserOptions& options);
 
 }  // namespace leviosim::vio

@@ -44,6 +44,14 @@ class PoseGraph : public GraphMemory<P, Where> {
   /// Empties the graph; the prior of the biases knows nothing then.
   void clear(const ImuBias<P>& bias, const Vec3<P>& gravity) const;
 
+  /// Empties the graph too, but serial numbers go on: a snapshot taken before is not published to
+  /// the keyframes that follow.
+  void restart(const ImuBias<P>& bias, const Vec3<P>& gravity) const {
+    const I32 next = this->header[kNextId];
+    clear(bias, gravity);
+    this->header[kNextId] = next;
+  }
+
   /// Adds a keyframe; if all slots are taken the oldest leaves, with its observations.
   /// @param interval  record of the motion since the keyframe before (Preintegration::kFloats);
   ///                  copied. Of no length if there is none.

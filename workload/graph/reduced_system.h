@@ -18,14 +18,16 @@ class ReducedSystem {
   static constexpr int kPoseUnknowns = 6;
   static constexpr int kPoseAndVelocityUnknowns = 9;
 
-  ReducedSystem(work::Arena& arena, int keyframes, bool with_velocities)
-      : per_keyframe_(with_velocities ? kPoseAndVelocityUnknowns : kPoseUnknowns),
-        matrix_(alloc_matrix<P>(arena, "reduced system", keyframes * per_keyframe_,
-                                keyframes * per_keyframe_)),
-        vector_(arena.alloc<Span>("reduced right-hand side", keyframes * per_keyframe_)) {}
+  /// @param shared  unknowns that belong to no keyframe; they come last
+  ReducedSystem(work::Arena& arena, int keyframes, bool with_velocities, int shared = 0)
+      : ReducedSystem(arena, with_velocities ? kPoseAndVelocityUnknowns : kPoseUnknowns,
+                      keyframes * (with_velocities ? kPoseAndVelocityUnknowns : kPoseUnknowns),
+                      shared) {}
 
   int unknowns() const { return matrix_.rows(); }
   int per_keyframe() const { return per_keyframe_; }
+  /// Place of the first shared unknown.
+  int shared() const { return shared_; }
   MatrixView<P> matrix() const { return matrix_; }
   /// Right-hand side, and after solve() the step.
   Span vector() const { return vector_; }
@@ -67,7 +69,15 @@ class ReducedSystem {
   }
 
  private:
+  ReducedSystem(work::Arena& arena, int per_keyframe, int of_keyframes, int shared)
+      : per_keyframe_(per_keyframe),
+        shared_(of_keyframes),
+        matrix_(
+            alloc_matrix<P>(arena, "reduced system", of_keyframes + shared, of_keyframes + shared)),
+        vector_(arena.alloc<Span>("reduced right-hand side", of_keyframes + shared)) {}
+
   int per_keyframe_;
+  int shared_;
   MatrixView<P> matrix_;
   Span vector_;
 };

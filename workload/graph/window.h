@@ -62,8 +62,9 @@ struct Window {
   KeyframeState<P> anchor;  ///< what the oldest keyframe is held to
   ImuBias<P> bias;
   BiasPrior<P> bias_prior;
-  bool bias_is_new = false;  ///< estimated since the snapshot, to be published
-  Vec3<P> gravity;           ///< world frame, m/s²
+  bool bias_is_new = false;             ///< estimated since the snapshot, to be published
+  Vec3<P> gravity;                      ///< world frame, m/s²
+  Vec3<P> lever_arm{0.0f, 0.0f, 0.0f};  ///< the IMU in the camera frame, m; where it is used
 
   Span<F> intervals;
   Span<typename P::I32> keyframe_slots, keyframe_ids;  ///< in the graph

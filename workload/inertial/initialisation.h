@@ -9,6 +9,7 @@
 #pragma once
 
 #include "workload/inertial/imu.h"
+#include "workload/math/trig.h"
 
 namespace leviosim::vio {
 
@@ -19,6 +20,38 @@ Vec3<P> gravity_from_force(const Vec3<P>& mean_accel, const Mat3<P>& R_world_cam
   using F = typename P::F32;
   const typename P::Function function("gravity_from_force");
   return R_world_camera * mean_accel * F(F(-kGravity) / norm(mean_accel));
+}
+
+/// Attitude of a camera in a world whose z axis points up, from its mean specific force (not
+/// necessarily of unit length). The heading is free: the world's x axis is where the camera looks,
+/// or, if that is nearly up or down, the camera's x axis. Without a force the camera is taken to be
+/// upright, its y axis pointing down.
+template <class P>
+Mat3<P> upright_rotation(const Vec3<P>& force) {
+  using F = typename P::F32;
+  const typename P::Function function("upright_rotation");
+  const F size = norm(force);
+  Vec3<P> up{0.0f, -1.0f, 0.0f};
+  if (size > 0.0f) up = force * F(F(1.0f) / size);
+  Vec3<P> ahead{0.0f, 0.0f, 1.0f};
+  if (work::abs(up.z) > F(0.9f)) ahead = {1.0f, 0.0f, 0.0f};
+  const Vec3<P> level = ahead - up * F(dot(ahead, up));
+  const Vec3<P> x = level * F(F(1.0f) / norm(level));
+  const Vec3<P> y = cross(up, x);
+  return {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
+}
+
+/// The attitude nearest to R_world_camera that has the specific force (in the camera frame, not
+/// zero) point up, along the world's z axis.
+template <class P>
+Mat3<P> levelled(const Mat3<P>& R_world_camera, const Vec3<P>& force) {
+  using F = typename P::F32;
+  const typename P::Function function("levelled");
+  const Vec3<P> up = R_world_camera * (force * F(F(1.0f) / norm(force)));
+  const Vec3<P> axis{up.y, -up.x, 0.0f};  // up × z, of length sin(angle)
+  const F sine = norm(axis);
+  if (!(sine > F(1e-6f))) return R_world_camera;
+  return so3_exp<P>(axis * F(atan2_of<P>(sine, up.z) / sine)) * R_world_camera;
 }
 
 /// Mean specific force of the first n samples of a batch in memory (n ≥ 1). The vehicle need not be

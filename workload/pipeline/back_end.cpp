@@ -5,35 +5,63 @@
 namespace leviosim::vio {
 
 template <class P>
-BackEnd<P>::BackEnd(const Profile& profile, work::Machine& controller, const PoseGraph<P>& graph)
+BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& controller,
+                    const PoseGraph<P>& graph)
     : profile_(profile),
+      options_(profile.optimiser),
       machine_(controller),
       graph_(graph),
       window_(controller.local(), graph.capacity),
-      damping_(profile.optimiser) {}
+      damping_(options_) {
+  if (!options_.joint) return;
+  prior_ = WindowPrior<P>(controller.local(), graph.capacity.keyframes);
+  window_.lever_arm = {rig.p_camera_body[0], rig.p_camera_body[1], rig.p_camera_body[2]};
+}
 
 template <class P>
 bool BackEnd<P>::begin() {
   if (work::value(graph_.keyframe_count()) < 2) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
-  if (profile_.use_imu)
+  if (options_.joint) {
+    update_prior();
+  } else if (profile_.use_imu) {
     absorb_departed_intervals<P>(window_, graph_, profile_.imu_noise, profile_.biases);
+  }
   take_snapshot<P>(graph_, profile_.imu_noise, machine_.local(), window_);
-  damping_ = LmState<P>(profile_.optimiser);
+  if (options_.joint && prior_.keyframes == 0) start_prior<P>(window_, options_.prior, prior_);
+  damping_ = LmState<P>(options_);
   return true;
+}
+
+/// Marginalises the keyframes that have left the graph since the last snapshot, from which they
+/// have not gone yet. If none is left, which takes a queue of frames, the past is forgotten.
+template <class P>
+void BackEnd<P>::update_prior() {
+  if (prior_.keyframes == 0) return;
+  const I32 oldest = graph_.keyframe_ids[graph_.keyframe_slot(0)];
+  int departed = 0;
+  while (departed < window_.keyframes && I32(window_.keyframe_ids[departed]) < oldest) ++departed;
+  if (departed == window_.keyframes) {
+    prior_.keyframes = 0;
+  } else if (departed > 0) {
+    marginalise<P>(machine_.local(), window_, departed, options_.visual, options_.prior, prior_);
+  }
 }
 
 template <class P>
 OptimiserReport BackEnd<P>::optimise() {
   const auto stage = machine_.stage(stages::kOptimiser);
-  const IterationReport report = optimise_once<P>(machine_, window_, damping_, profile_.optimiser);
+  const IterationReport report =
+      options_.joint ? optimise_jointly_once<P>(machine_, window_, prior_, damping_, options_)
+                     : optimise_once<P>(machine_, window_, damping_, options_);
   return {true, report.accepted, report.cost_before, report.cost_after};
 }
 
 template <class P>
 void BackEnd<P>::publish() {
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
-  if (profile_.use_imu) estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
+  if (profile_.use_imu && !options_.joint)
+    estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
   const int last = window_.keyframes - 1;
   const I32 slot = window_.keyframe_slots[last];
   const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/work/machine.h"
+#include "workload/graph/marginalisation.h"
 #include "workload/graph/optimiser.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/graph/window.h"
@@ -14,7 +15,8 @@ template <class P>
 class BackEnd {
  public:
   /// @param graph  in L2; shared with the front end
-  BackEnd(const Profile& profile, work::Machine& controller, const PoseGraph<P>& graph);
+  BackEnd(const Profile& profile, const Rig& rig, work::Machine& controller,
+          const PoseGraph<P>& graph);
 
   bool begin();
   OptimiserReport optimise();
@@ -23,12 +25,15 @@ class BackEnd {
  private:
   using I32 = typename P::I32;
 
+  void update_prior();
   void move_newer_keyframes(const Pose<P>& T_new_old);
 
   const Profile& profile_;
+  const OptimiserOptions& options_;
   work::Machine& machine_;
   PoseGraph<P> graph_;
   Window<P> window_;
+  WindowPrior<P> prior_;  ///< only if the optimiser works jointly
   LmState<P> damping_;
 };
 

@@ -13,6 +13,12 @@ Mat3<P> matrix_from(const std::array<float, 9>& a) {
   return {{{a[0], a[1], a[2]}, {a[3], a[4], a[5]}, {a[6], a[7], a[8]}}};
 }
 
+/// The camera in units of 1/steps px.
+PinholeCamera finer(const PinholeCamera& c, int steps) {
+  const float s = static_cast<float>(steps);
+  return {s * c.fx, s * c.fy, s * c.cx, s * c.cy};
+}
+
 /// Host-side: the pose as plain numbers.
 template <class P>
 void report_pose(const Pose<P>& T_world_camera, FrameReport& report) {
@@ -30,14 +36,17 @@ FrontEnd<P>::FrontEnd(const Profile& profile, const Rig& rig, work::Machine& clu
                       work::Arena& keyframe_memory, const PoseGraph<P>& graph)
     : profile_(profile),
       rig_(rig),
-      inverse_camera_matrix_(CameraMatrix<P>::inverse_of(rig.camera)),
+      inverse_camera_matrix_(
+          CameraMatrix<P>::inverse_of(finer(rig.camera, profile.extractor.subpixel_steps))),
       R_camera_body_(matrix_from<P>(rig.R_camera_body)),
       machine_(cluster),
       keyframe_(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
                 rig.height),
       graph_(graph),
       graph_in_l2_(seen_from_cluster<P>(graph)),
-      stillness_(StillnessOptions{}, keyframe_.stillness) {}
+      stillness_(StillnessOptions{}, keyframe_.stillness) {
+  if (profile.guided.enabled) motion_ = MotionRecord<P>(keyframe_memory);
+}
 
 template <class P>
 FrameReport FrontEnd<P>::process(const FrameInput& input) {
@@ -48,24 +57,36 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
   time_since_keyframe_ += input.dt;
   FrameReport report;
   Frame frame;
+  frame.dt = input.dt;
   integrate_imu(input);
   extract(frame);
   if (!started_) {
     start(frame);
     report.keyframe = true;
+  } else if (profile_.guided.enabled && rest_ && graph_in_l2_.keyframe_count() == I32(1)) {
+    start_at_rest(frame);
+    report.keyframe = true;
   } else {
-    std::optional<Pose<P>> pose = pose_from_landmarks(frame, report);
+    std::optional<Pose<P>> pose =
+        profile_.guided.enabled ? track(frame, report) : pose_from_landmarks(frame, report);
     alloc_keyframe_matches(frame);
     {
       // The keyframe's descriptors stay until the pose is known (paper, memory table: 8-point).
       const work::Arena::Frame descriptors(machine_.local());
       match_keyframe(frame);
+      // The 8-point algorithm guesses the length of its translation; the IMU measures it.
+      if (!pose && profile_.guided.enabled && imu_predicts()) {
+        const auto stage = machine_.stage(stages::kGuided);
+        report.source = PoseSource::Predicted;
+        pose = predicted_pose();
+      }
       if (!pose) pose = pose_from_keyframe(frame, report);
     }
     frame.T_world_camera = *pose;
     report.keyframe = is_keyframe(frame);
     if (report.keyframe) insert_keyframe(frame);
   }
+  if (profile_.guided.enabled) remember_motion(frame, report.keyframe);
   report.features = frame.features.list.count;
   report.frame_matches = frame.keyframe_matches.count;
   report.landmarks = work::value(graph_.landmark_count());
@@ -127,8 +148,8 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_landmarks(Frame& frame, FrameRepor
     const I32 at = I32(matches.reference[i]) * I32(3);
     for (int c = 0; c < 3; ++c) matched_points[3 * i + c] = F(points[I32(at + I32(c))]);
     const I32 feature = matches.query[i];
-    pixels[2 * i] = work::to_f32(I32(frame.features.list.x[feature]));
-    pixels[2 * i + 1] = work::to_f32(I32(frame.features.list.y[feature]));
+    pixels[2 * i] = pixel(frame.features.list.x[feature]);
+    pixels[2 * i + 1] = pixel(frame.features.list.y[feature]);
   }
   PnpOptions options = profile_.pnp;
   options.seed += frame_number_;
@@ -171,6 +192,14 @@ template <class P>
 Vec2<P> FrontEnd<P>::normalised(I32 u, I32 v) const {
   const Vec3<P> x = inverse_camera_matrix_ * Vec3<P>{work::to_f32(u), work::to_f32(v), 1.0f};
   return {x.x, x.y};
+}
+
+/// A coordinate of a feature in px.
+template <class P>
+typename P::F32 FrontEnd<P>::pixel(I32 coordinate) const {
+  const int steps = profile_.extractor.subpixel_steps;
+  if (steps == 1) return work::to_f32(coordinate);
+  return work::to_f32(coordinate) * F(1.0f / static_cast<float>(steps));
 }
 
 /// From the essential matrix; its translation has the length that the last velocity suggests.

@@ -9,6 +9,7 @@
 #include "workload/geometry/camera_matrix.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/pipeline/keyframe_record.h"
+#include "workload/pipeline/motion_record.h"
 #include "workload/pipeline/odometry.h"
 
 namespace leviosim::vio {
@@ -38,6 +39,8 @@ class FrontEnd {
     Span<U16> keyframe_pixels;      ///< u of all keyframe features, then v
     Span<U16> keyframe_landmarks;   ///< of the keyframe features
     Pose<P> T_world_camera;
+    Pose<P> T_world_last;  ///< of the frame before; only for guided matching
+    float dt = 0;          ///< since then, s
   };
 
   void integrate_imu(const FrameInput& input);
@@ -46,7 +49,17 @@ class FrontEnd {
   Pose<P> predicted_pose();
   void extract(Frame& frame);
   void start(Frame& frame);
+  void start_at_rest(Frame& frame);
+  void begin_world(const Frame& frame, Span<F> record, const ImuBias<P>& bias,
+                   const Vec3<P>& gravity);
   std::optional<Pose<P>> pose_from_landmarks(Frame& frame, FrameReport& report);
+  std::optional<Pose<P>> track(Frame& frame, FrameReport& report);
+  std::optional<Pose<P>> search_landmarks(Frame& frame, const Pose<P>& T_predicted, bool recovering,
+                                          FrameReport& report);
+  Pose<P> last_pose() const;
+  bool imu_predicts() const;
+  Pose<P> pose_by_motion(const Frame& frame);
+  void remember_motion(const Frame& frame, bool keyframe);
   int match_landmarks(Frame& frame, const MatchList<P>& matches);
   void alloc_keyframe_matches(Frame& frame);
   void match_keyframe(Frame& frame);
@@ -62,6 +75,7 @@ class FrontEnd {
                       Span<F> interval) const;
 
   Vec2<P> normalised(I32 u, I32 v) const;
+  F pixel(I32 coordinate) const;
 
   const Profile& profile_;
   Rig rig_;
@@ -72,6 +86,8 @@ class FrontEnd {
   PoseGraph<P> graph_;                       ///< in L2, as the source and target of transfers
   PoseGraph<P, L2FromCluster> graph_in_l2_;  ///< the same, as a cluster core reaches it
   StillnessDetector<P> stillness_;
+  MotionRecord<P> motion_;            ///< only for guided matching
+  std::optional<Stillness<P>> rest_;  ///< if the vehicle stands still; only for the joint optimiser
   bool started_ = false;
   std::uint32_t frame_number_ = 0;
   float time_since_keyframe_ = 0;

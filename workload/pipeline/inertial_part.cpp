@@ -52,7 +52,12 @@ template <class P>
 void FrontEnd<P>::detect_stillness(const Preintegration<P>& interval, float seconds) {
   const Stillness<P> seen = stillness_.evaluate();
   stillness_.end_frame();
+  rest_.reset();
   if (!started_ || !profile_.use_imu || !seen.still) return;
+  if (profile_.optimiser.joint) {
+    rest_ = seen;
+    return;  // it knows gravity, and learns the biases in motion as well
+  }
   BiasPrior<P> prior = graph_in_l2_.bias_prior();
   const float gyro_variance = profile_.imu_noise.gyro * profile_.imu_noise.gyro;
   const float duration = seconds * static_cast<float>(StillnessOptions{}.batches);
@@ -76,9 +81,38 @@ void FrontEnd<P>::start(Frame& frame) {
   machine_.copy_in(record, keyframe_.interval);
   frame.T_world_camera = Pose<P>::identity();
   const Vec3<P> force = load_vec3<P>(record, 0);
-  graph_in_l2_.clear(ImuBias<P>::zero(), gravity_from_force<P>(force, frame.T_world_camera.R));
+  if (profile_.optimiser.joint) frame.T_world_camera.R = upright_rotation<P>(force);
+  const Vec3<P> gravity = profile_.optimiser.joint
+                              ? Vec3<P>{0.0f, 0.0f, -kGravity}
+                              : gravity_from_force<P>(force, frame.T_world_camera.R);
+  begin_world(frame, record, ImuBias<P>::zero(), gravity);
+}
+
+/// A vehicle that stands still before a second keyframe starts anew with every frame, from where
+/// the last one was: at rest, gravity and the gyro's bias can be read off and the velocity is zero,
+/// while noise alone would sooner or later look like parallax.
+template <class P>
+void FrontEnd<P>::start_at_rest(Frame& frame) {
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
+  const auto stage = machine_.stage(stages::kTriangulation);
+  const auto record = local.alloc<Span<F>>("IMU interval", Preintegration<P>::kFloats);
+  frame.T_world_last = frame.T_world_camera = last_pose();
+  Mat3<P>& R = frame.T_world_camera.R;
+  R = levelled<P>(R, rest_->accel_mean);
+  begin_world(frame, record, {rest_->gyro_mean, {0.0f, 0.0f, 0.0f}}, {0.0f, 0.0f, -kGravity});
+}
+
+/// The frame becomes the first keyframe of an empty graph.
+template <class P>
+void FrontEnd<P>::begin_world(const Frame& frame, Span<F> record, const ImuBias<P>& bias,
+                              const Vec3<P>& gravity) {
+  if (started_)
+    graph_in_l2_.restart(bias, gravity);
+  else
+    graph_in_l2_.clear(bias, gravity);
   graph_in_l2_.set_bias_prior(BiasPrior<P>::unknown(profile_.biases));
-  Preintegration<P>(record).reset(ImuBias<P>::zero());
+  Preintegration<P>(record).reset(bias);
   graph_in_l2_.add_keyframe({frame.T_world_camera, {0.0f, 0.0f, 0.0f}}, record);
   machine_.copy_out(keyframe_.interval, record);
   store_keyframe(frame);
@@ -102,7 +136,11 @@ Pose<P> FrontEnd<P>::predicted_pose() {
   if (!profile_.use_imu) return {from.R, from.t + last.velocity * F(time_since_keyframe_)};
   const ImuDelta<P> delta = motion_since_keyframe();
   const Vec3<P> fall = graph_in_l2_.gravity() * F(delta.dt * F(0.5f));
-  return {from.R * delta.R, from.t + (last.velocity + fall) * delta.dt + from.R * delta.p};
+  const Pose<P> moved{from.R * delta.R,
+                      from.t + (last.velocity + fall) * delta.dt + from.R * delta.p};
+  if (!profile_.optimiser.joint) return moved;
+  const Vec3<P> lever_arm{rig_.p_camera_body[0], rig_.p_camera_body[1], rig_.p_camera_body[2]};
+  return {moved.R, moved.t + from.R * lever_arm - moved.R * lever_arm};
 }
 
 template class FrontEnd<work::Native>;

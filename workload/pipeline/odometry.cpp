@@ -27,10 +27,17 @@ float in_hundredths(float pixels) {
 
 Profile fitted_to(const Rig& rig, Profile profile) {
   ReprojectionOptions& visual = profile.optimiser.visual;
-  const auto width = static_cast<float>(rig.width);
-  visual.lost_px *= width / ReprojectionOptions::kImageWidth;
-  visual.camera = {in_hundredths(rig.camera.fx), in_hundredths(rig.camera.fy),
-                   in_hundredths(rig.camera.cx), in_hundredths(rig.camera.cy)};
+  const PinholeCamera& c = rig.camera;
+  visual.lost_px *= static_cast<float>(rig.width) / ReprojectionOptions::kImageWidth;
+  visual.camera = {in_hundredths(c.fx), in_hundredths(c.fy), in_hundredths(c.cx),
+                   in_hundredths(c.cy)};
+  if (!profile.optimiser.joint) return profile;
+  // Observations come in units of 1 / subpixel_steps px.
+  const auto steps = static_cast<float>(profile.extractor.subpixel_steps);
+  visual.camera = {steps * c.fx, steps * c.fy, steps * c.cx, steps * c.cy};
+  visual.sigma_px *= steps;
+  visual.huber_px *= steps;
+  visual.lost_px *= steps;
   return profile;
 }
 
@@ -48,7 +55,7 @@ class OdometryOf : public Odometry {
                {profile.optimiser_keyframes, profile.max_landmarks, profile.max_observations}),
         front_end_(profile_, rig, cluster, keyframe_memory_, graph_),
         reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),
-        back_end_(profile_, controller, graph_) {
+        back_end_(profile_, rig, controller, graph_) {
     graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
   }
 
@@ -71,17 +78,21 @@ class OdometryOf : public Odometry {
 
 }  // namespace
 
-std::vector<StageName> stage_names() {
-  return {{stages::kImu, "sample", false},
-          {stages::kExtraction, "frame", false},
-          {stages::kWorldMatching, "frame", false},
-          {stages::kEpnp, "frame", false},
-          {stages::kFrameMatching, "frame", false},
-          {stages::kEightPoint, "frame", false},
-          {stages::kKeyframeSelection, "frame", false},
-          {stages::kTriangulation, "keyframe", false},
-          {stages::kOptimiserUpdate, "update", true},
-          {stages::kOptimiser, "iteration", true}};
+std::vector<StageName> stage_names(const Profile& profile) {
+  std::vector<StageName> names = {{stages::kImu, "sample", false},
+                                  {stages::kExtraction, "frame", false},
+                                  {stages::kWorldMatching, "frame", false},
+                                  {stages::kEpnp, "frame", false},
+                                  {stages::kFrameMatching, "frame", false},
+                                  {stages::kEightPoint, "frame", false},
+                                  {stages::kKeyframeSelection, "frame", false},
+                                  {stages::kTriangulation, "keyframe", false},
+                                  {stages::kOptimiserUpdate, "update", true},
+                                  {stages::kOptimiser, "iteration", true}};
+  const auto epnp = names.begin() + 3;
+  if (profile.refinement.enabled) names.insert(epnp + 1, {stages::kRefinement, "frame", false});
+  if (profile.guided.enabled) names.insert(names.begin() + 2, {stages::kGuided, "frame", false});
+  return names;
 }
 
 std::unique_ptr<Odometry> make_odometry(bool counting, const Profile& profile, const Rig& rig,

@@ -40,7 +40,8 @@ struct Rig {
   PinholeCamera camera;  ///< of the undistorted, decimated image [px]
   int width;
   int height;
-  std::array<float, 9> R_camera_body;  ///< row-major
+  std::array<float, 9> R_camera_body;    ///< row-major
+  std::array<float, 3> p_camera_body{};  ///< of the body (IMU) in the camera frame [m]
 };
 
 enum class PoseSource : std::uint8_t {
@@ -48,7 +49,8 @@ enum class PoseSource : std::uint8_t {
   Epnp,        ///< from matches with landmarks
   EightPoint,  ///< from matches with the previous keyframe
   Kept,        ///< too few matches: the last keyframe's pose
-  Predicted    ///< EPnP found too few inliers: the last keyframe's pose, moved on
+  Predicted,   ///< EPnP found too few inliers: the last keyframe's pose, moved on
+  Tracked      ///< refined from landmarks that a predicted pose found, or from EPnP's pose
 };
 
 struct FrameReport {
@@ -77,7 +79,7 @@ struct StageName {
   std::string_view per;  ///< "frame", "sample", "iteration"
   bool on_controller;
 };
-std::vector<StageName> stage_names();
+std::vector<StageName> stage_names(const Profile& profile);
 
 /// Name of the block by which the controller's memory accounts for the two memories below.
 inline constexpr std::string_view kPersistentBlock = "last keyframe and pose graph";
@@ -101,7 +103,8 @@ class Odometry {
 };
 
 /// The profile with what depends on the images, as make_odometry() runs it: the optimiser's camera
-/// is the rig's, and its limit of lost observations the same share of the image width.
+/// is the rig's, and its limit of lost observations the same share of the image width. Where
+/// corners lie between pixels, all its lengths are in those finer units.
 Profile fitted_to(const Rig& rig, Profile profile);
 
 /// @param counting    on counted scalars, so that recording machines get work; else natively

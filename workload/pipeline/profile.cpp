@@ -26,6 +26,24 @@ AnchorOptions levio_anchor() {
   return anchor;
 }
 
+/// What improves on the paper's pipeline and fits GAP9. Noise densities are ten times, random walks
+/// those of EuRoC's sensor.yaml: white noise is not all that is wrong with a sample (scale factors,
+/// vibration, the trapezoidal rule). Whole pixels have an error of 0.3 px, corners between pixels
+/// and their descriptors' choice a little less than one. The rest are the defaults of the options.
+void make_next(Profile& p) {
+  p.guided.enabled = true;
+  p.refinement.enabled = true;
+  p.extractor.subpixel_steps = 16;
+  p.optimiser.joint = true;
+  p.imu_noise = {.gyro = 1.7e-3f,
+                 .accel = 2e-2f,
+                 .gyro_bias = 1.9393e-5f,
+                 .accel_bias = 3e-3f,
+                 .gravity = 0.0f};
+  p.optimiser.visual.sigma_px = 0.7f;
+  p.optimiser.prior.velocity = 0.3f;  // as levio's anchor, and for the same reason
+}
+
 struct NamedProfile {
   std::string_view name;
   std::string_view description;
@@ -38,6 +56,7 @@ constexpr std::array kProfiles = {
                  [](Profile& p) { p.use_imu = p.optimiser.use_imu = false; }},
     NamedProfile{"levio-no-imu-no-epnp", "8-point poses only, without inertial terms",
                  [](Profile& p) { p.use_imu = p.optimiser.use_imu = p.use_epnp = false; }},
+    NamedProfile{"next", "the best accuracy that fits GAP9", make_next},
 };
 
 const NamedProfile* find(std::string_view name) {

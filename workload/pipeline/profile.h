@@ -9,10 +9,12 @@
 
 #include "workload/geometry/essential_ransac.h"
 #include "workload/geometry/pnp_ransac.h"
+#include "workload/geometry/pose_refinement.h"
 #include "workload/graph/optimiser.h"
 #include "workload/inertial/bias_estimation.h"
 #include "workload/inertial/preintegration.h"
 #include "workload/vision/extractor.h"
+#include "workload/vision/guided_matcher.h"
 #include "workload/vision/matcher.h"
 
 namespace leviosim::vio {
@@ -31,6 +33,10 @@ struct Profile {
   int min_epnp_inliers = 15;          ///< as many; with fewer the pose is predicted instead
   float min_translation = 0.01f;      ///< per keyframe interval, of the 8-point pose [m]
   float max_translation_time = 1.0f;  ///< that the last velocity is trusted for [s]
+
+  // What `next` adds to it (guided_tracking.cpp). Both off: `levio`.
+  GuidedOptions guided;
+  RefinementOptions refinement;
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

@@ -1,4 +1,4 @@
-// The names of the workload's stages, as the paper's tables have them.
+// The names of the workload's stages: as the paper's tables have them, and what `next` adds.
 #pragma once
 
 #include <string_view>
@@ -8,6 +8,8 @@ namespace leviosim::vio::stages {
 inline constexpr std::string_view kImu = "IMU pre-integration";
 inline constexpr std::string_view kExtraction = "feature extraction";
 inline constexpr std::string_view kWorldMatching = "world matching";
+inline constexpr std::string_view kGuided = "guided matching";
+inline constexpr std::string_view kRefinement = "pose refinement";
 inline constexpr std::string_view kEpnp = "EPnP RANSAC";
 inline constexpr std::string_view kFrameMatching = "frame matching";
 inline constexpr std::string_view kEightPoint = "8-point RANSAC";

@@ -10,6 +10,7 @@
 #include "workload/vision/cell_detector.h"
 #include "workload/vision/descriptor.h"
 #include "workload/vision/slices.h"
+#include "workload/vision/subpixel.h"
 
 namespace leviosim::vio {
 
@@ -32,6 +33,8 @@ void ExtractorOptions::validate() const {
   require(cell >= 1, "cell", cell, "at least 1 px");
   require(per_cell >= 1 && per_cell <= kMostPerCell, "per_cell", per_cell,
           fmt::format("1 to {}", kMostPerCell));
+  require(subpixel_steps >= 1 && subpixel_steps <= 64, "subpixel_steps", subpixel_steps,
+          "1 to 64, so that a coordinate fits 16 bits");
   require(fast_threshold >= 0 && fast_threshold <= 255, "fast_threshold", fast_threshold,
           "0 to 255 grey levels");
 }
@@ -164,14 +167,17 @@ void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
   });
 
   const auto pattern_in_l2 = in_l2<P>(kPairPattern<P>);
-  if (!options.pattern_in_local_memory) {
+  if (options.pattern_in_local_memory) {
+    const auto pattern =
+        memory.alloc<typename P::template Span<typename P::U32>>("pair pattern", kPairs);
+    machine.copy_in(pattern, pattern_in_l2);
+    describe_all<P>(machine, work, pattern, out);
+  } else {
     describe_all<P>(machine, work, pattern_in_l2, out);
-    return;
   }
-  const auto pattern =
-      memory.alloc<typename P::template Span<typename P::U32>>("pair pattern", kPairs);
-  machine.copy_in(pattern, pattern_in_l2);
-  describe_all<P>(machine, work, pattern, out);
+  // Last, because descriptors are of whole pixels.
+  if (options.subpixel_steps > 1)
+    refine_keypoints<P>(machine, work.image, options.subpixel_steps, out);
 }
 
 template void extract_features<work::Native>(work::Machine&, ImageView<work::Native>,

@@ -25,6 +25,9 @@ struct ExtractorOptions {
   /// only.
   bool pattern_in_local_memory = false;
 
+  /// Keypoints come in units of 1/subpixel_steps px, refined (subpixel.h) if that is more than 1.
+  int subpixel_steps = 1;
+
   static constexpr int kMostPerCell = 16;
 
   /// Cells along an image side of this many px; the last one may be cut.

@@ -1,0 +1,175 @@
+#include "workload/graph/joint_inertial_terms.h"
+
+#include "workload/graph/whiten.h"
+#include "workload/inertial/residual.h"
+
+namespace leviosim::vio {
+namespace {
+
+// Rows are in the order of ImuResidual; columns in the order of a keyframe's unknowns: rotation,
+// position, velocity, of the keyframe at the begin and at the end; then gyro and accelerometer.
+constexpr int kVelocityRow = 3, kPositionRow = 6;
+constexpr int kPositionColumn = 3, kVelocityColumn = 6;
+constexpr int kEnd = 9;    ///< first column of the keyframe at the end
+constexpr int kGyro = 18;  ///< first column of the biases
+constexpr int kAccel = 21;
+constexpr int kResidual = 24;  ///< column of the residual
+
+template <class P>
+void store_block(MatrixView<P> rows, int r, int c, const Mat3<P>& block) {
+  store_mat3<P>(rows.data(), r * rows.cols() + c, block, rows.cols());
+}
+
+template <class P>
+void store_residual(MatrixView<P> rows, const ImuResidual<P>& r) {
+  const Vec3<P> parts[3] = {r.rotation, r.velocity, r.position};
+  for (int i = 0; i < 3; ++i) {
+    rows(3 * i, kResidual) = parts[i].x;
+    rows(3 * i + 1, kResidual) = parts[i].y;
+    rows(3 * i + 2, kResidual) = parts[i].z;
+  }
+}
+
+template <class P>
+void store_state_jacobians(MatrixView<P> rows, const KeyframeState<P>& end,
+                           const ImuJacobians<P>& J, typename P::F32 dt, const Vec3<P>& lever_arm) {
+  using F = typename P::F32;
+  const Mat3<P> minus_Rt = scaled<P>(F(-1.0f), J.Rt);
+  const Mat3<P> R_begin_end = J.Rt * end.T_world_camera.R;
+  store_block<P>(rows, 0, 0, J.rotation_by_rotation0);
+  store_block<P>(rows, 0, kEnd, J.rotation_by_rotation1);
+  store_block<P>(rows, kVelocityRow, 0, J.velocity_by_rotation0);
+  store_block<P>(rows, kVelocityRow, kVelocityColumn, minus_Rt);
+  store_block<P>(rows, kVelocityRow, kEnd + kVelocityColumn, J.Rt);
+  // Where the IMU is turns with the camera, at both ends.
+  store_block<P>(rows, kPositionRow, 0, J.position_by_rotation0 + skew<P>(lever_arm));
+  store_block<P>(rows, kPositionRow, kEnd, times_skew<P>(R_begin_end, -lever_arm));
+  store_block<P>(rows, kPositionRow, kPositionColumn, minus_Rt);
+  store_block<P>(rows, kPositionRow, kVelocityColumn, scaled<P>(dt, minus_Rt));
+  store_block<P>(rows, kPositionRow, kEnd + kPositionColumn, J.Rt);
+}
+
+template <class P>
+void store_bias_jacobians(MatrixView<P> rows, const Preintegration<P>& interval,
+                          const ImuBias<P>& bias, const ImuResidual<P>& residual) {
+  using F = typename P::F32;
+  const F minus = -1.0f;
+  store_block<P>(rows, 0, kGyro, rotation_residual_by_gyro_bias<P>(interval, bias, residual));
+  store_block<P>(rows, kVelocityRow, kGyro, scaled<P>(minus, interval.velocity_by_gyro()));
+  store_block<P>(rows, kVelocityRow, kAccel, scaled<P>(minus, interval.velocity_by_accel()));
+  store_block<P>(rows, kPositionRow, kGyro, scaled<P>(minus, interval.position_by_gyro()));
+  store_block<P>(rows, kPositionRow, kAccel, scaled<P>(minus, interval.position_by_accel()));
+}
+
+template <class P>
+typename P::F32 half_square_of_residual(MatrixView<P> rows) {
+  using F = typename P::F32;
+  F sum = 0.0f;
+  for (int r : P::range(0, 9)) {
+    const F e = rows(r, kResidual);
+    sum += e * e;
+  }
+  return sum * F(0.5f);
+}
+
+/// H += Jᵀ J and b -= Jᵀ r.
+template <class P>
+void add_rows(MatrixView<P> rows, const ReducedSystem<P>& system, int keyframe) {
+  using F = typename P::F32;
+  const typename P::Function function("add_joint_rows");
+  const MatrixView<P> matrix = system.matrix();
+  const int base = keyframe * system.per_keyframe();
+  const auto place = [&](int c) { return c < kGyro ? base + c : system.shared() + c - kGyro; };
+  for (int i : P::range(0, kResidual)) {
+    for (int j : P::range(0, i + 1)) {
+      F sum = matrix(place(i), place(j));
+      for (int r : P::range(0, 9)) sum += rows(r, i) * rows(r, j);
+      matrix(place(i), place(j)) = sum;
+    }
+    F b = system.vector()[place(i)];
+    for (int r : P::range(0, 9)) b -= rows(r, i) * rows(r, kResidual);
+    system.vector()[place(i)] = b;
+  }
+}
+
+}  // namespace
+
+template <class P>
+void linearise_interval(const Preintegration<P>& interval, const KeyframeState<P>& begin,
+                        const KeyframeState<P>& end, const ImuBias<P>& bias, const Vec3<P>& gravity,
+                        const Vec3<P>& lever_arm, MatrixView<P> rows) {
+  const typename P::Function function("linearise_interval");
+  const KeyframeState<P> from = imu_state<P>(begin, lever_arm), to = imu_state<P>(end, lever_arm);
+  const ImuDelta<P> delta = interval.corrected(bias);
+  const ImuResidual<P> residual = imu_residual<P>(from, to, delta, gravity);
+  fill<P>(rows, 0.0f);
+  store_residual<P>(rows, residual);
+  const ImuJacobians<P> J = imu_jacobians<P>(from, to, delta.dt, gravity, residual);
+  store_state_jacobians<P>(rows, to, J, delta.dt, lever_arm);
+  store_bias_jacobians<P>(rows, interval, bias, residual);
+}
+
+template <class P>
+typename P::F32 add_joint_inertial_terms(const Window<P>& window, int first, int last,
+                                         const JointScratch<P>& scratch,
+                                         const ReducedSystem<P>& system) {
+  using F = typename P::F32;
+  const typename P::Function function("add_joint_inertial_terms");
+  F cost = 0.0f;
+  for (int k : P::range(first, last + 1)) {
+    const Preintegration<P> interval = window.interval(k);
+    if (!(interval.duration() > 0.0f)) continue;
+    linearise_interval<P>(interval, window.state.keyframe(k - 1), window.state.keyframe(k),
+                          window.bias, window.gravity, window.lever_arm, scratch.rows);
+    whiten<P>(interval, scratch.rows, 0, JointScratch<P>::kColumns);
+    add_rows<P>(scratch.rows, system, k - 1);
+    cost += half_square_of_residual<P>(scratch.rows);
+  }
+  return cost;
+}
+
+template <class P>
+typename P::F32 joint_inertial_cost(const Window<P>& window, const WindowState<P>& state,
+                                    const ImuBias<P>& bias, const JointScratch<P>& scratch) {
+  using F = typename P::F32;
+  const typename P::Function function("joint_inertial_cost");
+  F cost = 0.0f;
+  for (int k : P::range(1, window.keyframes)) {
+    const Preintegration<P> interval = window.interval(k);
+    if (!(interval.duration() > 0.0f)) continue;
+    store_residual<P>(scratch.rows,
+                      imu_residual<P>(imu_state<P>(state.keyframe(k - 1), window.lever_arm),
+                                      imu_state<P>(state.keyframe(k), window.lever_arm),
+                                      interval.corrected(bias), window.gravity));
+    whiten<P>(interval, scratch.rows, kResidual, kResidual + 1);
+    cost += half_square_of_residual<P>(scratch.rows);
+  }
+  return cost;
+}
+
+template void linearise_interval(const Preintegration<work::Native>&,
+                                 const KeyframeState<work::Native>&,
+                                 const KeyframeState<work::Native>&, const ImuBias<work::Native>&,
+                                 const Vec3<work::Native>&, const Vec3<work::Native>&,
+                                 MatrixView<work::Native>);
+template work::Native::F32 add_joint_inertial_terms(const Window<work::Native>&, int, int,
+                                                    const JointScratch<work::Native>&,
+                                                    const ReducedSystem<work::Native>&);
+template work::Native::F32 joint_inertial_cost(const Window<work::Native>&,
+                                               const WindowState<work::Native>&,
+                                               const ImuBias<work::Native>&,
+                                               const JointScratch<work::Native>&);
+template void linearise_interval(const Preintegration<work::Counting>&,
+                                 const KeyframeState<work::Counting>&,
+                                 const KeyframeState<work::Counting>&,
+                                 const ImuBias<work::Counting>&, const Vec3<work::Counting>&,
+                                 const Vec3<work::Counting>&, MatrixView<work::Counting>);
+template work::Counting::F32 add_joint_inertial_terms(const Window<work::Counting>&, int, int,
+                                                      const JointScratch<work::Counting>&,
+                                                      const ReducedSystem<work::Counting>&);
+template work::Counting::F32 joint_inertial_cost(const Window<work::Counting>&,
+                                                 const WindowState<work::Counting>&,
+                                                 const ImuBias<work::Counting>&,
+                                                 const JointScratch<work::Counting>&);
+
+}  // namespace leviosim::vio

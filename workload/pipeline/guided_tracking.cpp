@@ -1,0 +1,133 @@
+// Tracking by prediction: where the camera must be by now tells where to look for landmarks, and
+// the pose is refined to all that are found. EPnP RANSAC is left for recovery.
+#include "workload/pipeline/front_end.h"
+#include "workload/pipeline/stages.h"
+
+namespace leviosim::vio {
+
+template <class P>
+std::optional<Pose<P>> FrontEnd<P>::track(Frame& frame, FrameReport& report) {
+  Pose<P> T_predicted = Pose<P>::identity();
+  {
+    const auto stage = machine_.stage(stages::kGuided);
+    frame.T_world_last = last_pose();
+    T_predicted = imu_predicts() ? predicted_pose() : pose_by_motion(frame);
+  }
+  if (work::value(graph_.landmark_count()) == 0) return std::nullopt;
+  if (const auto pose = search_landmarks(frame, T_predicted, false, report)) return pose;
+  // Lost: look for all landmarks in all of the image, then again around where EPnP puts them.
+  for (int i : P::range(0, frame.features.list.count))
+    frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
+  const std::optional<Pose<P>> recovered = pose_from_landmarks(frame, report);
+  if (!recovered || report.source != PoseSource::Epnp) return recovered;
+  const auto pose = search_landmarks(frame, *recovered, true, report);
+  return pose ? pose : recovered;
+}
+
+/// The pose refined to the landmarks found around where T_predicted (T_world_camera) puts them, if
+/// enough agree with it; then the features know their landmarks.
+template <class P>
+std::optional<Pose<P>> FrontEnd<P>::search_landmarks(Frame& frame, const Pose<P>& T_predicted,
+                                                     bool recovering, FrameReport& report) {
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
+  const FeatureList<P>& features = frame.features.list;
+  const int landmarks = work::value(graph_.landmark_count());
+  const auto points = local.alloc<Span<F>>("landmark points", 3 * landmarks);
+  MatchList<P> matches = alloc_matches<P>(local, features.capacity, "world matches");
+  const Pose<P> T_camera_world = inverse(T_predicted);
+  {
+    const auto stage = machine_.stage(stages::kGuided);
+    const work::Arena::Frame descriptions(local);
+    const auto descriptors =
+        local.alloc<Span<typename P::U32>>("landmark descriptors", kDescriptorWords * landmarks);
+    const auto ages = local.alloc<Span<Byte>>("landmark ages", landmarks);
+    machine_.copy_in(descriptors, graph_.descriptors);
+    machine_.copy_in(points, graph_.points);
+    machine_.copy_in(ages, graph_.ages);
+    const GuidedInput<P> input{
+        points,         descriptors, ages,       landmarks,   profile_.max_landmark_age,
+        T_camera_world, rig_.camera, rig_.width, rig_.height, profile_.extractor.subpixel_steps};
+    match_guided<P>(machine_, input, features, profile_.guided, matches);
+  }
+  report.world_matches = matches.count;
+  if (matches.count < profile_.min_world_matches) return std::nullopt;
+
+  const auto stage = machine_.stage(stages::kRefinement);
+  const auto matched_points = local.alloc<Span<F>>("matched points", 3 * matches.count);
+  const auto pixels = local.alloc<Span<F>>("matched pixels", 2 * matches.count);
+  const auto inliers = local.alloc<Span<Byte>>("inlier mask", matches.count);
+  machine_.fork("gather", [&](work::Core& core) {
+    const auto [begin, end] = core.share(matches.count);
+    for (int i : P::range(begin, end)) {
+      const I32 at = I32(matches.reference[i]) * I32(3);
+      for (int c = 0; c < 3; ++c) matched_points[3 * i + c] = F(points[I32(at + I32(c))]);
+      const I32 feature = matches.query[i];
+      pixels[2 * i] = pixel(features.x[feature]);
+      pixels[2 * i + 1] = pixel(features.y[feature]);
+    }
+  });
+  RefinementOptions options = profile_.refinement;
+  if (recovering) options.rotation = options.position = 1.0f;  // EPnP's pose is no prediction
+  const RefinedPose<P> refined =
+      refine_pose<P>(machine_, {matched_points, pixels, matches.count, rig_.camera}, T_camera_world,
+                     options, inliers);
+  report.inliers = refined.inliers;
+  const float agreeing = options.min_share * static_cast<float>(matches.count);
+  if (!refined.ok || refined.inliers < profile_.min_epnp_inliers ||
+      static_cast<float>(refined.inliers) < agreeing)
+    return std::nullopt;
+  report.source = PoseSource::Tracked;
+  for (int i : P::range(0, features.count))
+    frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
+  for (int i : P::range(0, matches.count)) {
+    if (I32(inliers[i]) == I32(0)) continue;
+    frame.features.landmarks[I32(matches.query[i])] = work::narrow<U16>(I32(matches.reference[i]));
+  }
+  return inverse(refined.T_camera_world);
+}
+
+/// Where the last frame was, in the map as it is now.
+template <class P>
+Pose<P> FrontEnd<P>::last_pose() const {
+  return graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe()).T_world_camera *
+         motion_.T_keyframe_camera();
+}
+
+/// Whether the newest keyframe's velocity is known, from a window full of keyframes, and recent
+/// enough to carry the prediction: velocities are good to some cm/s. Differences of two frames'
+/// positions, the alternative, have the noise of both and feed it back.
+template <class P>
+bool FrontEnd<P>::imu_predicts() const {
+  return profile_.optimiser.joint && time_since_keyframe_ < profile_.max_translation_time &&
+         graph_in_l2_.keyframe_count() == I32(graph_.capacity.keyframes);
+}
+
+/// The last frame's pose, turned as the gyro says and moved on at its velocity.
+template <class P>
+Pose<P> FrontEnd<P>::pose_by_motion(const Frame& frame) {
+  const Pose<P>& last = frame.T_world_last;
+  const Vec3<P> moved = last.R * (motion_.velocity() * F(frame.dt));
+  if (!profile_.use_imu) return {last.R, last.t + moved};
+  const Mat3<P> turn = transpose(motion_.gyro_rotation()) * motion_since_keyframe().R;
+  return {last.R * turn, last.t + moved};
+}
+
+/// Leaves the motion over this frame for the next one.
+template <class P>
+void FrontEnd<P>::remember_motion(const Frame& frame, bool keyframe) {
+  const auto stage = machine_.stage(stages::kGuided);
+  const Pose<P>& T = frame.T_world_camera;
+  const Pose<P> T_world_keyframe =
+      graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe()).T_world_camera;
+  Vec3<P> velocity{0.0f, 0.0f, 0.0f};
+  if (frame.dt > 0.0f && frame_number_ > 1)
+    velocity = transpose(T.R) * ((T.t - frame.T_world_last.t) * F(1.0f / frame.dt));
+  const Mat3<P> turned = keyframe ? Mat3<P>::identity() : motion_since_keyframe().R;
+  motion_.store(inverse(T_world_keyframe) * T, velocity, turned);
+}
+
+template class FrontEnd<work::Native>;
+template class FrontEnd<work::Counting>;
+
+}  // namespace leviosim::vio

@@ -1,0 +1,185 @@
+#include "workload/vision/guided_matcher.h"
+
+#include "sim/check.h"
+
+namespace leviosim::vio {
+namespace {
+
+constexpr int kCell = 8;  ///< px
+constexpr int kNone = 0xffff;
+
+/// Features by cell: those of cell c are order[begin[c]] … order[begin[c + 1] - 1].
+template <class P>
+struct Cells {
+  using I = typename P::I32;
+  using U16 = typename P::U16;
+  using Table = typename P::template Span<U16>;
+
+  Cells(work::Arena& arena, int width, int height, int steps_per_px, int features)
+      : columns((width + kCell - 1) / kCell),
+        rows((height + kCell - 1) / kCell),
+        side(kCell * steps_per_px),
+        begin(arena.alloc<Table>("cells of features", columns * rows + 1)),
+        order(arena.alloc<Table>("features by cell", features)) {}
+
+  I cell_of(I x, I y) const { return (y / I(side)) * I(columns) + x / I(side); }
+
+  int columns, rows;
+  int side;  ///< in units of the coordinates
+  Table begin, order;
+};
+
+/// Counting sort; leaves begin[c] at the first feature of cell c.
+template <class P>
+void sort_features(const FeatureList<P>& features, const Cells<P>& cells) {
+  using I = typename P::I32;
+  using U16 = typename P::U16;
+  const typename P::Function function("sort_features");
+  const int number = cells.columns * cells.rows;
+  for (int c : P::range(0, number + 1)) cells.begin[c] = work::narrow<U16>(I(0));
+  for (int i : P::range(0, features.count)) {
+    const I cell = cells.cell_of(features.x[i], features.y[i]);
+    cells.begin[cell] = work::narrow<U16>(I(cells.begin[cell]) + I(1));
+  }
+  I end = 0;
+  for (int c : P::range(0, number + 1)) {
+    end += I(cells.begin[c]);
+    cells.begin[c] = work::narrow<U16>(end);
+  }
+  for (int i : P::down_range(features.count - 1, 0)) {
+    const I cell = cells.cell_of(features.x[i], features.y[i]);
+    const I at = I(cells.begin[cell]) - I(1);
+    cells.begin[cell] = work::narrow<U16>(at);
+    cells.order[at] = work::narrow<U16>(I(i));
+  }
+}
+
+template <class P>
+struct Candidate {
+  typename P::I32 feature, distance;
+};
+
+/// The nearest descriptor among the features around (u, v).
+template <class P>
+Candidate<P> search_around(const FeatureList<P>& features, const Cells<P>& cells, typename P::I32 u,
+                           typename P::I32 v, int radius,
+                           typename P::template Span<const typename P::U32> descriptor,
+                           int max_distance) {
+  using I = typename P::I32;
+  const typename P::Function function("search_around");
+  const I side = cells.side, r = radius;
+  const I left = work::max(I(u - r), I(0)) / side, top = work::max(I(v - r), I(0)) / side;
+  const I right = work::min(I((u + r) / side), I(cells.columns - 1));
+  const I bottom = work::min(I((v + r) / side), I(cells.rows - 1));
+  const I limit = r * r;
+  Candidate<P> best{kNone, max_distance};
+  for (int row : P::range(work::value(top), work::value(bottom) + 1)) {
+    const I first_cell = I(row) * I(cells.columns) + left;
+    const I last_cell = first_cell + (right - left) + I(1);
+    const I begin = cells.begin[first_cell], end = cells.begin[last_cell];
+    for (int k : P::range(work::value(begin), work::value(end))) {
+      const I feature = cells.order[k];
+      const I dx = I(features.x[feature]) - u, dy = I(features.y[feature]) - v;
+      const I distance_sq = dx * dx + dy * dy;
+      if (distance_sq > limit) continue;
+      const int at = work::value(I(feature * I(kDescriptorWords)));
+      const I distance =
+          hamming_distance<P>(descriptor, features.descriptors.subspan(at, kDescriptorWords));
+      if (distance < best.distance) best = {feature, distance};
+    }
+  }
+  return best;
+}
+
+/// What each landmark found: a feature, or kNone.
+template <class P>
+struct Claims {
+  typename P::template Span<typename P::U16> feature;
+  typename P::template Span<typename P::Byte> distance;
+};
+
+template <class P>
+void search(const GuidedInput<P>& input, const FeatureList<P>& features, const Cells<P>& cells,
+            const GuidedOptions& options, work::Share share, const Claims<P>& claims) {
+  using F = typename P::F32;
+  using I = typename P::I32;
+  using U16 = typename P::U16;
+  const PinholeCamera& c = input.camera;
+  const F steps = static_cast<float>(input.steps);
+  const F width = static_cast<float>(input.width), height = static_cast<float>(input.height);
+  const int radius = static_cast<int>(options.radius_px * static_cast<float>(input.steps));
+  for (int l : P::range(share.begin, share.end)) {
+    claims.feature[l] = work::narrow<U16>(I(kNone));
+    if (I(input.ages[l]) > I(input.max_age)) continue;
+    const Vec3<P> world{F(input.points[3 * l]), F(input.points[3 * l + 1]),
+                        F(input.points[3 * l + 2])};
+    const Vec3<P> x = input.T_camera_world * world;
+    if (!(x.z > F(0.05f))) continue;
+    const F inverse = F(1.0f) / x.z;
+    const F u = F(c.fx) * (x.x * inverse) + F(c.cx), v = F(c.fy) * (x.y * inverse) + F(c.cy);
+    if (!(u > 0.0f) || !(v > 0.0f) || !(u < width) || !(v < height)) continue;
+    const Candidate<P> best = search_around<P>(
+        features, cells, work::to_i32(F(u * steps)), work::to_i32(F(v * steps)), radius,
+        input.descriptors.subspan(kDescriptorWords * l, kDescriptorWords), options.max_distance);
+    claims.feature[l] = work::narrow<U16>(best.feature);
+    claims.distance[l] = work::narrow<typename P::Byte>(best.distance);
+  }
+}
+
+/// The landmark that gets a feature is its owner.
+template <class P>
+void settle(const Claims<P>& claims, int landmarks, int features,
+            typename P::template Span<typename P::U16> owners, MatchList<P>& out) {
+  using I = typename P::I32;
+  using U16 = typename P::U16;
+  const typename P::Function function("settle_claims");
+  for (int f : P::range(0, features)) owners[f] = work::narrow<U16>(I(kNone));
+  for (int l : P::range(0, landmarks)) {
+    const I feature = claims.feature[l];
+    if (feature == I(kNone)) continue;
+    const I owner = owners[feature];
+    if (owner != I(kNone) && I(claims.distance[owner]) <= I(claims.distance[l])) continue;
+    owners[feature] = work::narrow<U16>(I(l));
+  }
+  int n = 0;
+  for (int f : P::range(0, features)) {
+    const I owner = owners[f];
+    if (owner == I(kNone)) continue;
+    out.query[n] = work::narrow<U16>(I(f));
+    out.reference[n] = work::narrow<U16>(owner);
+    out.distance[n] = work::narrow<U16>(I(claims.distance[owner]));
+    ++n;
+  }
+  out.count = n;
+}
+
+}  // namespace
+
+template <class P>
+void match_guided(work::Machine& machine, const GuidedInput<P>& input,
+                  const FeatureList<P>& features, const GuidedOptions& options, MatchList<P>& out) {
+  check(out.capacity >= features.count, "the match list has room for every feature");
+  check(options.max_distance <= 255, "distances of guided matches are kept in a byte");
+  work::Arena& local = machine.local();
+  const work::Arena::Frame frame(local);
+  const Cells<P> cells(local, input.width, input.height, input.steps, features.count);
+  const Claims<P> claims{
+      local.alloc<typename P::template Span<typename P::U16>>("claimed features", input.landmarks),
+      local.alloc<typename P::template Span<typename P::Byte>>("distances", input.landmarks)};
+  const auto owners =
+      local.alloc<typename P::template Span<typename P::U16>>("owners", features.count);
+  sort_features<P>(features, cells);
+  machine.fork("search", [&](work::Core& core) {
+    search<P>(input, features, cells, options, core.share(input.landmarks), claims);
+  });
+  settle<P>(claims, input.landmarks, features.count, owners, out);
+}
+
+template void match_guided(work::Machine&, const GuidedInput<work::Native>&,
+                           const FeatureList<work::Native>&, const GuidedOptions&,
+                           MatchList<work::Native>&);
+template void match_guided(work::Machine&, const GuidedInput<work::Counting>&,
+                           const FeatureList<work::Counting>&, const GuidedOptions&,
+                           MatchList<work::Counting>&);
+
+}  // namespace leviosim::vio
