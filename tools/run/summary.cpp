@@ -5,22 +5,33 @@
 namespace leviosim::tools {
 namespace {
 
-/// Which scenario a frame belongs to, by the RANSAC that ran in it; the last one takes what the
-/// others do not.
+enum Kind : std::size_t { kEpnp = 0, kEightPoint = 2, kTracked = 4, kOther = 6 };
+
+/// By the means that found the pose; the number after it is that of the kind with keyframe. EPnP
+/// has run for predicted poses, too.
 std::size_t scenario_of(const FrameResult& frame) {
-  if (frame.source == PoseSource::Epnp || frame.source == PoseSource::Predicted ||
-      frame.source == PoseSource::Tracked)
-    return frame.keyframe ? 1 : 0;
-  if (frame.source == PoseSource::EightPoint) return frame.keyframe ? 3 : 2;
-  return 4;
+  const std::size_t keyframe = frame.keyframe ? 1 : 0;
+  switch (frame.source) {
+    case PoseSource::Epnp:
+    case PoseSource::Predicted:
+      return kEpnp + keyframe;
+    case PoseSource::EightPoint:
+      return kEightPoint + keyframe;
+    case PoseSource::Tracked:
+      return kTracked + keyframe;
+    default:
+      return kOther;
+  }
 }
 
 std::vector<Scenario> empty_scenarios() {
-  constexpr std::array<std::array<std::string_view, 2>, 5> names{{
+  constexpr std::array<std::array<std::string_view, 2>, kOther + 1> names{{
       {"EPnP", "epnp"},
       {"EPnP, keyframe", "epnp_keyframe"},
       {"8-point", "eight_point"},
       {"8-point, keyframe", "eight_point_keyframe"},
+      {"tracked", "tracked"},
+      {"tracked, keyframe", "tracked_keyframe"},
       {"other (first, pose kept)", "other"},
   }};
   std::vector<Scenario> all;
@@ -89,6 +100,9 @@ std::vector<Scenario> scenarios(const RunResult& run) {
     scenario.single += frame.single_cycles;
     scenario.parallel += frame.cycles;
   }
+  // Profiles that do not track have no such frames.
+  if (all[kTracked].frames + all[kTracked + 1].frames == 0)
+    all.erase(all.begin() + kTracked, all.begin() + kOther);
   return all;
 }
 

@@ -38,8 +38,9 @@ struct Scenario {
   std::optional<double> mean_latency_ns() const;
 };
 
-/// EPnP and 8-point, without and with keyframe, and last the rest (the first frame, and poses that
-/// were kept): every frame is in one of them.
+/// EPnP and 8-point, without and with keyframe; the same of frames whose pose was tracked, if there
+/// are any; and last the rest (the first frame, and poses that were kept): every frame is in one of
+/// them.
 std::vector<Scenario> scenarios(const RunResult& run);
 
 /// Frames that found the front end busy.

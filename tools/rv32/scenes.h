@@ -67,7 +67,7 @@ class Scenes {
     inertial();
     linear_algebra();
     functions();
-    pipeline();
+    pipelines();
   }
 
  private:
@@ -276,18 +276,28 @@ class Scenes {
       y.data()[i] = vio::atan2_of<P>(x.data()[i], x.data()[i + 1]);
   }
 
+  void pipelines() {
+    vio::Profile levio;
+    levio.optimiser.anchor.rotation = 0.01f;
+    {
+      const Function scene("scene: pipeline");
+      pipeline(levio);
+    }
+    vio::Profile next = vio::profile_named("next", 1);
+    next.optimiser_keyframes = 4;  // so that some leave the window within these frames
+    const Function scene("scene: pipeline, next");
+    pipeline(next);
+  }
+
   /// Everything together, with fewer hypotheses than in earnest: who calls what, and what comes
   /// after what.
-  void pipeline() {
-    vio::Profile profile;
-    profile.optimiser.anchor.rotation = 0.01f;
+  [[gnu::noinline]] void pipeline(vio::Profile profile) {
     profile.pnp.iterations = 16;
     profile.essential.iterations = 40;
     profile.keyframe_parallax = 0.02f;
     vio::Rig rig{camera(), kWidth, kHeight, {}};
     for (int i = 0; i < 9; ++i) rig.R_camera_body[static_cast<std::size_t>(i)] = rig_.real(4 + i);
     work::Machine cluster(machine("L1")), controller(machine("L2"));
-    const Function scene("scene: pipeline");
     const auto odometry = vio::make_odometry(P::kCounting, profile, rig, cluster, controller);
     vio::FrameInput input;
     std::vector<std::uint8_t> pixels(kWidth * kHeight);

@@ -1,7 +1,5 @@
 #include "workload/pipeline/odometry.h"
 
-#include <cmath>
-
 #include "workload/pipeline/back_end.h"
 #include "workload/pipeline/front_end.h"
 #include "workload/pipeline/stages.h"
@@ -18,9 +16,10 @@ struct Reservation {
 };
 
 /// To hundredths of a pixel, as the release states the camera of its optimiser (levio_parameters,
-/// "Input"); the other stages take the calibration as it is.
+/// "Input"); the other stages take the calibration as it is. Not by a function of the C library,
+/// which the target's program (tools/rv32) does not have.
 float in_hundredths(float pixels) {
-  return static_cast<float>(std::round(static_cast<double>(pixels) * 100) / 100);
+  return static_cast<float>(static_cast<int>(static_cast<double>(pixels) * 100 + 0.5) / 100.0);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ constexpr std::array kParameters = {
     Parameter{"workload.imu_noise.accel", Kind::number, "m/s^2/sqrt(Hz)", 1e-5, 100,
               "noise density of the accelerometer, as assumed", true,
               LEVIOSIM_FIELD(imu_noise.accel)},
-    Parameter{"workload.imu_noise.gravity", Kind::number, "m/s^2", 1e-4, 10,
+    Parameter{"workload.imu_noise.gravity", Kind::number, "m/s^2", 0, 10,
               "standard deviation of each component of the gravity vector", true,
               LEVIOSIM_FIELD(imu_noise.gravity)},
     Parameter{"workload.gravity_updates", Kind::toggle, "", 0, 1,
