@@ -10,6 +10,7 @@
 #include "tools/run/run_folder.h"
 #include "tools/run/tables.h"
 #include "traces/synthetic.h"
+#include "workload/pipeline/profile.h"
 
 namespace leviosim::tools {
 namespace {
@@ -92,6 +93,15 @@ TEST_F(Replayed, OnTheChipOfTheRecordingGivesTheSameFiles) {
   EXPECT_EQ(again.frames.size(), on_gap9().run.frames.size());
   EXPECT_TRUE(all_the_same(again));
   EXPECT_NE(replay_report(again, *on_gap9().trace).find("computes the same"), std::string::npos);
+}
+
+TEST_F(Replayed, EveryProfileComesBack) {
+  for (const std::string& profile : vio::profile_names()) {
+    RunRequest request = request_on({});
+    request.profile = profile;
+    const Recorded recorded = record(request);
+    EXPECT_EQ(files_of(replayed(*recorded.trace, {}).run), files_of(recorded.run)) << profile;
+  }
 }
 
 TEST_F(Replayed, RecordingChangesNothing) {

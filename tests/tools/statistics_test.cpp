@@ -53,6 +53,27 @@ TEST(Statistics, ValuesAreThoseOfTheRun) {
   EXPECT_EQ(value(document, "frames.keyframes"), 2);
 }
 
+TEST(Statistics, EveryFrameHasASourceAndAKind) {
+  RunResult run = example_run();
+  run.frames.clear();
+  for (int k = 0; k <= static_cast<int>(PoseSource::Tracked); ++k) {
+    const auto source = static_cast<PoseSource>(k);
+    EXPECT_EQ(source_named(key_of(source)), source);
+    run.frames.push_back(testing::frame(k, source, false, 10'000'000));
+  }
+  EXPECT_EQ(source_named("guessed"), std::nullopt);
+  const Json document = statistics(run);
+  std::int64_t sources = 0, kinds = 0;
+  for (const Json& entry : document.at("statistics")) {
+    const auto name = entry.at("name").get<std::string>();
+    if (name.starts_with("frames.source.")) sources += entry.at("value").get<std::int64_t>();
+    if (name.starts_with("latency.") && name.ends_with(".frames"))
+      kinds += entry.at("value").get<std::int64_t>();
+  }
+  EXPECT_EQ(sources, std::ssize(run.frames));
+  EXPECT_EQ(kinds, std::ssize(run.frames));
+}
+
 TEST(Statistics, WhatDoesNotExistIsNull) {
   const Json document = statistics(example_run());
   EXPECT_TRUE(value(document, "stages.epnp_ransac.speedup").is_null());

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <array>
-
 #include "sim/check.h"
 #include "sim/error.h"
 #include "tools/run/summary.h"
@@ -11,15 +9,11 @@
 namespace leviosim::tools {
 namespace {
 
-PoseSource source_named(std::string_view key, const traces::WorkTrace& trace, int frame) {
-  constexpr std::array kSources{PoseSource::First, PoseSource::Epnp, PoseSource::EightPoint,
-                                PoseSource::Kept, PoseSource::Predicted};
-  for (const PoseSource source : kSources)
-    if (key_of(source) == key) return source;
+PoseSource source_of(const traces::WorkFrame& frame, const traces::WorkTrace& trace, int number) {
+  if (const auto source = source_named(frame.source)) return *source;
   throw InputError(
-      fmt::format("{}: frame {} has its pose from '{}', which this leviosim does not "
-                  "know",
-                  trace.name(), frame, key));
+      fmt::format("{}: frame {} has its pose from '{}', which this leviosim does not know",
+                  trace.name(), number, frame.source));
 }
 
 }  // namespace
@@ -46,7 +40,7 @@ bool TraceSource::take_up(const FrameStart& start) {
 const work::Job& TraceSource::process_frame(FrameResult& result) {
   result.index = frame_.index;
   result.t_ns = frame_.t_ns;
-  result.source = source_named(frame_.source, trace_, number_);
+  result.source = source_of(frame_, trace_, number_);
   result.keyframe = frame_.keyframe;
   result.features = frame_.features;
   result.world_matches = frame_.world_matches;

@@ -91,7 +91,7 @@ void add_frames(StatisticList& list, const RunResult& run) {
     return std::count_if(run.frames.begin(), run.frames.end(), condition);
   };
   for (const PoseSource source : {PoseSource::First, PoseSource::Epnp, PoseSource::EightPoint,
-                                  PoseSource::Kept, PoseSource::Predicted})
+                                  PoseSource::Kept, PoseSource::Predicted, PoseSource::Tracked})
     list.add(fmt::format("frames.source.{}", key_of(source)), "1", "frames by source of the pose",
              count([&](const FrameResult& f) { return f.source == source; }));
   list.add("frames.keyframes", "1", "frames that became keyframes",

@@ -15,6 +15,8 @@ namespace leviosim::tools {
 /// "EPnP RANSAC" → "epnp_ransac", for names in files.
 std::string key_of(std::string_view name);
 std::string_view key_of(PoseSource source);
+/// The inverse of it; absent for other words.
+std::optional<PoseSource> source_named(std::string_view key);
 
 /// Absent if there were no calls.
 std::optional<double> mean(Cycles sum, std::int64_t calls);

@@ -249,11 +249,13 @@ std::string memory_table(const RunResult& run) {
 std::string frame_summary(const RunResult& run) {
   const std::int64_t keyframes = std::count_if(run.frames.begin(), run.frames.end(),
                                                [](const FrameResult& f) { return f.keyframe; });
+  const std::int64_t tracked = count_of(run, PoseSource::Tracked);
   std::string text = fmt::format(
-      "frames: {} (EPnP {}, 8-point {}, pose kept {}, predicted after EPnP {}), keyframes {}\n"
+      "frames: {} ({}EPnP {}, 8-point {}, pose kept {}, predicted {}), keyframes {}\n"
       "        per frame {:.1f} features, {:.1f} world matches, {:.1f} frame matches, "
       "{:.1f} landmarks\n",
-      run.frames.size(), count_of(run, PoseSource::Epnp), count_of(run, PoseSource::EightPoint),
+      run.frames.size(), tracked > 0 ? fmt::format("tracked {}, ", tracked) : "",
+      count_of(run, PoseSource::Epnp), count_of(run, PoseSource::EightPoint),
       count_of(run, PoseSource::Kept), count_of(run, PoseSource::Predicted), keyframes,
       mean_of(run, &FrameResult::features), mean_of(run, &FrameResult::world_matches),
       mean_of(run, &FrameResult::frame_matches), mean_of(run, &FrameResult::landmarks));

@@ -19,7 +19,7 @@ namespace leviosim::tools {
 
 /// Mean times on one chip, in ms; absent if the run had no such job.
 struct Outcome {
-  std::optional<double> frame;        ///< front end, frames with a pose from EPnP or 8-point
+  std::optional<double> frame;        ///< front end, all frames but the first
   std::optional<double> epnp;         ///< … from EPnP
   std::optional<double> eight_point;  ///< … from the 8-point algorithm
   std::optional<double> iteration;    ///< of the optimiser, with its share of updates
