@@ -5,7 +5,6 @@
 namespace leviosim::work {
 
 void CodeEvents::append_all_calls() {
-  constexpr int kEventBits = kCallsOfEvent * kRoutineBits;
   constexpr int kHighest = (kKeptCalls - 1) / kCallsOfEvent * kEventBits;
   Calls calls = std::exchange(calls_, 0);
   for (int left = std::exchange(call_count_, 0); left > 0; left -= kKeptCalls) {

@@ -3,11 +3,12 @@
 // (code_tracker.h) reads the stream in windows.
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "sim/work/code_map.h"
 
@@ -25,15 +26,20 @@ constexpr CodeName name_of(Routine routine) {
   return kRoutineNames[static_cast<std::size_t>(routine)];
 }
 
-/// 0: the latest function was left. Below 2^28: up to seven calls of routines, four bits each.
+/// 0: the latest function was left. Below 2^28: up to nine calls of routines, three bits each.
 /// Else: the function with this hash (CodeName::key) was entered.
 using CodeEvent = std::uint32_t;
+
+/// Some events in a row, known by their hash: computed on the way, it costs less than to look at
+/// them again.
+struct CodeWindow {
+  std::span<const CodeEvent> events;
+  std::uint64_t hash;
+};
 
 class CodeEvents {
  public:
   static constexpr CodeEvent kLeave = 0;
-  /// Up to a multiple of this, events are readable beyond those taken, and zero.
-  static constexpr std::size_t kBlock = 8;
 
   void enter(CodeName function) {
     append_calls();
@@ -56,18 +62,15 @@ class CodeEvents {
   /// f(routine) for each call in an event of calls, in their order.
   template <class F>
   static void for_each_routine(CodeEvent event, F&& f) {
-    for (int shift = 32 - kRoutineBits; shift >= 0; shift -= kRoutineBits)
+    for (int shift = kEventBits - kRoutineBits; shift >= 0; shift -= kRoutineBits)
       if (const CodeEvent number = event >> shift & kRoutineMask; number != 0)
         f(static_cast<Routine>(number - 1));
   }
 
   /// Takes the events so far. They are there until the next is added.
-  std::span<const CodeEvent> take() {
+  CodeWindow take() {
     append_calls();
-    std::fill_n(events_.begin() + size_, kBlock, CodeEvent{0});
-    const std::span<const CodeEvent> taken(events_.data(), size_);
-    size_ = 0;
-    return taken;
+    return {{events_.data(), std::exchange(size_, 0)}, std::exchange(hash_, 0)};
   }
 
  private:
@@ -77,8 +80,10 @@ class CodeEvents {
   using Calls = std::uint64_t;
 #endif
   static constexpr int kKeptCalls = 32;
-  static constexpr int kCallsOfEvent = 7;
-  static constexpr int kRoutineBits = 4;
+  static constexpr int kCallsOfEvent = 9;
+  static constexpr int kRoutineBits = 3;
+  static constexpr int kEventBits = kCallsOfEvent * kRoutineBits;
+  static_assert(1u << kEventBits < CodeName::kSmallest);
   static constexpr CodeEvent kRoutineMask = (1u << kRoutineBits) - 1;
   static_assert(kRoutineNames.size() <= kRoutineMask);
   static constexpr std::size_t kShortestWindow = 8;
@@ -90,15 +95,17 @@ class CodeEvents {
     if (size_ == kLongestWindow) [[unlikely]]
       follow_code();
     events_[size_++] = event;
+    hash_ = std::rotl((hash_ ^ event) * 0x9e3779b97f4a7c15u, 29);
   }
   void append_calls() {
     if (call_count_ != 0) append_all_calls();
   }
   void append_all_calls();
 
-  Calls calls_ = 0;  ///< not appended yet: the latest, four bits each
+  Calls calls_ = 0;  ///< not appended yet: the latest, three bits each
   std::size_t size_ = 0;
-  std::array<CodeEvent, kLongestWindow + kBlock> events_{};
+  std::uint64_t hash_ = 0;  ///< of the events
+  std::array<CodeEvent, kLongestWindow> events_{};
   int call_count_ = 0;
 };
 

@@ -18,18 +18,6 @@ std::uint64_t hash_of(std::span<const std::uint32_t> words) {
   return hash;
 }
 
-/// Whether two windows are the same. In blocks, since most windows have two, and a library call or
-/// a branch for each word would cost as much as all the rest.
-bool equal(const CodeEvent* a, const CodeEvent* b, std::size_t size) {
-  constexpr std::size_t kBlock = CodeEvents::kBlock;
-  for (std::size_t i = 0; i < size; i += kBlock) {
-    CodeEvent difference = 0;
-    for (std::size_t k = i; k < i + kBlock; ++k) difference |= a[k] ^ b[k];
-    if (difference != 0) return false;
-  }
-  return true;
-}
-
 template <class T>
 std::size_t index(T number) {
   return static_cast<std::size_t>(number);
@@ -43,28 +31,32 @@ void CodeTracker::select(int core) {
   state_ = states_of_cores_[core_];
 }
 
-void CodeTracker::follow(std::span<const CodeEvent> events) {
-  if (events.empty()) return;
+void CodeTracker::follow(const CodeWindow& window) {
+  if (window.events.empty()) return;
   std::int32_t number = first_steps_[state_];
-  if (number == kNone || !is_step(number, events)) [[unlikely]]
-    number = find_step(events);
-  const Step& step = steps_[index(number)];
-  for (std::uint32_t i = step.fetches.begin; i != step.fetches.end; ++i)
-    tally.code[fetches_[i].reuse] += fetches_[i].bytes;
+  if (number == kNone || steps_[index(number)].window != window.hash) [[unlikely]]
+    number = find_step(window);
+  Step& step = steps_[index(number)];
+  if (step.uses++ == 0) unsettled_.push_back(number);
   state_ = step.next_state;
 }
 
-bool CodeTracker::is_step(std::int32_t number, std::span<const CodeEvent> events) const {
-  const Step& step = steps_[index(number)];
-  return step.event_count == events.size() &&
-         equal(events.data(), events_.data() + step.first_event, events.size());
+void CodeTracker::settle() {
+  for (const std::int32_t number : unsettled_) {
+    Step& step = steps_[index(number)];
+    for (std::uint32_t i = step.fetches.begin; i != step.fetches.end; ++i)
+      tally.code[fetches_[i].reuse] += std::uint64_t{step.uses} * fetches_[i].bytes;
+    step.uses = 0;
+  }
+  unsettled_.clear();
 }
 
-std::int32_t CodeTracker::find_step(std::span<const CodeEvent> events) {
+std::int32_t CodeTracker::find_step(const CodeWindow& window) {
   std::int32_t& first = first_steps_[state_];
   std::int32_t* link = &first;
-  while (*link != kNone && !is_step(*link, events)) link = &steps_[index(*link)].sibling;
-  if (*link == kNone) return add_step(events);
+  while (*link != kNone && steps_[index(*link)].window != window.hash)
+    link = &steps_[index(*link)].sibling;
+  if (*link == kNone) return add_step(window);
   // To the front: loops will take it again.
   const std::int32_t found = *link;
   *link = steps_[index(found)].sibling;
@@ -72,20 +64,16 @@ std::int32_t CodeTracker::find_step(std::span<const CodeEvent> events) {
   return found;
 }
 
-std::int32_t CodeTracker::add_step(std::span<const CodeEvent> events) {
+std::int32_t CodeTracker::add_step(const CodeWindow& window) {
   if (places_.size() >= kMostStates) forget();
   Place place = places_[state_];
-  const std::size_t first_event = events_.size(), first_fetch = fetches_.size();
-  events_.insert(events_.end(), events.begin(), events.end());
-  events_.resize((events_.size() + CodeEvents::kBlock - 1) / CodeEvents::kBlock *
-                 CodeEvents::kBlock);
-  for (const CodeEvent event : events) walk(place, event);
+  const std::size_t first_fetch = fetches_.size();
+  for (const CodeEvent event : window.events) walk(place, event);
   merge_fetches(first_fetch);
   const auto number = static_cast<std::int32_t>(steps_.size());
   const std::uint32_t next = state_of(place);
   steps_.push_back(
-      {static_cast<std::uint32_t>(first_event),
-       static_cast<std::uint32_t>(events.size()),
+      {window.hash,
        {static_cast<std::uint32_t>(first_fetch), static_cast<std::uint32_t>(fetches_.size())},
        next,
        first_steps_[state_]});
@@ -156,22 +144,27 @@ std::uint32_t CodeTracker::state_of(const Place& place) {
 }
 
 void CodeTracker::forget() {
+  settle();
   states_of_cores_[core_] = state_;
   const std::vector<Place> places = std::exchange(places_, {});
   first_steps_.clear();
   steps_.clear();
-  events_.clear();
   fetches_.clear();
   state_of_hash_.clear();
   for (std::uint32_t& state : states_of_cores_) state = state_of(places[state]);
   state_ = states_of_cores_[core_];
 }
 
-void CodeEvents::follow_code() { fetch_code(); }
+void CodeEvents::follow_code() {
+  const CodeWindow window = code_events.take();
+  if (current_code != nullptr) current_code->follow(window);
+}
 
 void fetch_code() {
-  const std::span<const CodeEvent> events = code_events.take();
-  if (current_code != nullptr) current_code->follow(events);
+  const CodeWindow window = code_events.take();
+  if (current_code == nullptr) return;
+  current_code->follow(window);
+  current_code->settle();
 }
 
 }  // namespace leviosim::work

@@ -6,7 +6,8 @@
 // fetched the same pieces in the same order. That order, with the functions entered, is therefore a
 // *state*, and what a window of events fetches is remembered with its step from state to state, as
 // lazily built automata of regular expressions do. The states are a memory only: without them the
-// same bytes are counted, at many times the cost. Cores execute the same program, so they share it.
+// same bytes are counted, at many times the cost. Windows are told apart by a hash of 64 bits. Cores
+// execute the same program, so they share the states.
 //
 // Left out: code outside of named functions, and the order of fetches within a piece. Small loops
 // are fetched once per visit; what larger ones fetch again is part of the map.
@@ -30,8 +31,9 @@ class CodeTracker {
 
   /// The events that follow are those of this core.
   void select(int core);
-  /// Adds to the tally of this thread what these events fetch.
-  void follow(std::span<const CodeEvent> events);
+  void follow(const CodeWindow& window);
+  /// Adds to the tally of this thread what the events since the last call fetched.
+  void settle();
 
  private:
   static constexpr std::int32_t kNone = -1;
@@ -47,36 +49,35 @@ class CodeTracker {
     std::uint32_t begin, end;
   };
   struct Step {
-    std::uint32_t first_event, event_count;
+    std::uint64_t window;  ///< hash of its events
     Range fetches;
     std::uint32_t next_state;
-    std::int32_t sibling;  ///< another step out of the same state
+    std::int32_t sibling;    ///< another step out of the same state
+    std::uint32_t uses = 0;  ///< not settled yet
   };
   struct Fetch {
     std::uint32_t reuse;  ///< class of the distance
     std::uint32_t bytes;
   };
 
-  bool is_step(std::int32_t number, std::span<const CodeEvent> events) const;
   /// Among those that are not the latest, or a new one.
-  std::int32_t find_step(std::span<const CodeEvent> events);
-  std::int32_t add_step(std::span<const CodeEvent> events);
+  std::int32_t find_step(const CodeWindow& window);
+  std::int32_t add_step(const CodeWindow& window);
   void walk(Place& place, CodeEvent event);
   /// Appends to fetches_ what visiting the piece fetches, and moves it to the front.
   void visit(Place& place, std::uint64_t piece_key);
   /// Makes one of the fetches of the same class from `first` on.
   void merge_fetches(std::size_t first);
   std::uint32_t state_of(const Place& place);
-  /// Forgets all states but those in which the cores are.
+  /// Settles and forgets all states but those in which the cores are.
   void forget();
 
   const CodeMap* map_;
   std::vector<Place> places_;              ///< of all states
   std::vector<std::int32_t> first_steps_;  ///< out of all states, the latest first
   std::vector<Step> steps_;
-  std::vector<CodeEvent>
-      events_;                  ///< of all steps, each from a block's begin on, padded with zeros
-  std::vector<Fetch> fetches_;  ///< of all steps
+  std::vector<Fetch> fetches_;           ///< of all steps
+  std::vector<std::int32_t> unsettled_;  ///< steps in use
   std::unordered_multimap<std::uint64_t, std::uint32_t> state_of_hash_;
   std::size_t core_ = 0;                        ///< the one selected
   std::uint32_t state_ = 0;                     ///< of that core

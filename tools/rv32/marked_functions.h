@@ -10,7 +10,7 @@
 
 #include "sim/work/policy.h"
 
-#define LEVIOSIM_HOST_INLINE inline
+#define LEVIOSIM_HOST_INLINE
 
 namespace leviosim::work {
 

@@ -1,37 +1,20 @@
 #include "workload/graph/inertial_terms.h"
 
-#include "workload/graph/whiten.h"
+#include "workload/graph/interval_rows.h"
 
 namespace leviosim::vio {
 namespace {
 
-// Rows of an interval, as in its covariance, and columns of a keyframe.
-constexpr int kRotation = 0;
-constexpr int kVelocityRow = 3, kPositionRow = 6;
-constexpr int kPositionColumn = 3, kVelocityColumn = 6;
-constexpr int kEnd = 9;        ///< first column of the keyframe at the end
-constexpr int kResidual = 18;  ///< column of the residual
+using namespace interval;
 
-template <class P>
-void store_block(MatrixView<P> rows, int r, int c, const Mat3<P>& block) {
-  store_mat3<P>(rows.data(), r * rows.cols() + c, block, rows.cols());
-}
-template <class P>
-void store_residual(MatrixView<P> rows, const ImuResidual<P>& r) {
-  const Vec3<P> parts[3] = {r.rotation, r.velocity, r.position};
-  for (int i = 0; i < 3; ++i) {
-    rows(3 * i, kResidual) = parts[i].x;
-    rows(3 * i + 1, kResidual) = parts[i].y;
-    rows(3 * i + 2, kResidual) = parts[i].z;
-  }
-}
+constexpr int kResidual = 18;  ///< column of the residual
 
 template <class P>
 void store_jacobians(MatrixView<P> rows, const ImuJacobians<P>& J, typename P::F32 dt) {
   using F = typename P::F32;
   const Mat3<P> minus_Rt = scaled<P>(F(-1.0f), J.Rt);
-  store_block<P>(rows, kRotation, 0, J.rotation_by_rotation0);
-  store_block<P>(rows, kRotation, kEnd, J.rotation_by_rotation1);
+  store_block<P>(rows, kRotationRow, 0, J.rotation_by_rotation0);
+  store_block<P>(rows, kRotationRow, kEnd, J.rotation_by_rotation1);
   store_block<P>(rows, kVelocityRow, 0, J.velocity_by_rotation0);
   store_block<P>(rows, kVelocityRow, kVelocityColumn, minus_Rt);
   store_block<P>(rows, kVelocityRow, kEnd + kVelocityColumn, J.Rt);
@@ -39,17 +22,6 @@ void store_jacobians(MatrixView<P> rows, const ImuJacobians<P>& J, typename P::F
   store_block<P>(rows, kPositionRow, kPositionColumn, minus_Rt);
   store_block<P>(rows, kPositionRow, kVelocityColumn, scaled<P>(dt, minus_Rt));
   store_block<P>(rows, kPositionRow, kEnd + kPositionColumn, J.Rt);
-}
-
-template <class P>
-typename P::F32 half_square_of_residual(MatrixView<P> rows) {
-  using F = typename P::F32;
-  F sum = 0.0f;
-  for (int r : P::range(0, 9)) {
-    const F e = rows(r, kResidual);
-    sum += e * e;
-  }
-  return sum * F(0.5f);
 }
 
 /// The columns of two consecutive keyframes are neighbours in the system.
@@ -165,7 +137,7 @@ typename P::F32 add_anchor(const Window<P>& window, const AnchorOptions& options
   const typename P::Function function("add_anchor");
   const bool with_velocity = system.per_keyframe() > kVelocityColumn;
   const AnchorResidual<P> r = anchor_residual<P>(window, window.state);
-  add_held<P>(system, kRotation, r.rotation, information(options.rotation));
+  add_held<P>(system, 0, r.rotation, information(options.rotation));
   add_held<P>(system, kPositionColumn, r.position, information(options.position));
   const float of_velocity = with_velocity ? velocity_information<P>(window, options) : 0.0f;
   if (with_velocity) add_held<P>(system, kVelocityColumn, r.velocity, of_velocity);

@@ -1,34 +1,16 @@
 #include "workload/graph/joint_inertial_terms.h"
 
-#include "workload/graph/whiten.h"
-#include "workload/inertial/residual.h"
+#include "workload/graph/interval_rows.h"
 
 namespace leviosim::vio {
 namespace {
 
-// Rows are in the order of ImuResidual; columns in the order of a keyframe's unknowns: rotation,
-// position, velocity, of the keyframe at the begin and at the end; then gyro and accelerometer.
-constexpr int kVelocityRow = 3, kPositionRow = 6;
-constexpr int kPositionColumn = 3, kVelocityColumn = 6;
-constexpr int kEnd = 9;    ///< first column of the keyframe at the end
+using namespace interval;
+
+// Columns: both keyframes, then gyro and accelerometer.
 constexpr int kGyro = 18;  ///< first column of the biases
 constexpr int kAccel = 21;
 constexpr int kResidual = 24;  ///< column of the residual
-
-template <class P>
-void store_block(MatrixView<P> rows, int r, int c, const Mat3<P>& block) {
-  store_mat3<P>(rows.data(), r * rows.cols() + c, block, rows.cols());
-}
-
-template <class P>
-void store_residual(MatrixView<P> rows, const ImuResidual<P>& r) {
-  const Vec3<P> parts[3] = {r.rotation, r.velocity, r.position};
-  for (int i = 0; i < 3; ++i) {
-    rows(3 * i, kResidual) = parts[i].x;
-    rows(3 * i + 1, kResidual) = parts[i].y;
-    rows(3 * i + 2, kResidual) = parts[i].z;
-  }
-}
 
 template <class P>
 void store_state_jacobians(MatrixView<P> rows, const KeyframeState<P>& end,
@@ -59,17 +41,6 @@ void store_bias_jacobians(MatrixView<P> rows, const Preintegration<P>& interval,
   store_block<P>(rows, kVelocityRow, kAccel, scaled<P>(minus, interval.velocity_by_accel()));
   store_block<P>(rows, kPositionRow, kGyro, scaled<P>(minus, interval.position_by_gyro()));
   store_block<P>(rows, kPositionRow, kAccel, scaled<P>(minus, interval.position_by_accel()));
-}
-
-template <class P>
-typename P::F32 half_square_of_residual(MatrixView<P> rows) {
-  using F = typename P::F32;
-  F sum = 0.0f;
-  for (int r : P::range(0, 9)) {
-    const F e = rows(r, kResidual);
-    sum += e * e;
-  }
-  return sum * F(0.5f);
 }
 
 /// H += Jᵀ J and b -= Jᵀ r.

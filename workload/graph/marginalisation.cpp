@@ -1,5 +1,6 @@
 #include "workload/graph/marginalisation.h"
 
+#include "workload/graph/departing_visual_terms.h"
 #include "workload/math/trig.h"
 
 namespace leviosim::vio {

@@ -20,7 +20,8 @@
 
 #include "sim/work/machine.h"
 #include "workload/graph/joint_inertial_terms.h"
-#include "workload/graph/visual_terms.h"
+#include "workload/graph/reprojection.h"
+#include "workload/graph/window.h"
 
 namespace leviosim::vio {
 

@@ -1,70 +1,18 @@
 #include "workload/graph/visual_terms.h"
 
+#include "workload/graph/linearise_landmark.h"
+
 namespace leviosim::vio {
 namespace {
 
 template <class P>
-using Records = LandmarkRecords<P>;
-template <class P>
 using Floats = typename P::template Span<typename P::F32>;
-
-template <class P>
-void store_term(const Floats<P>& slot, const VisualTerm<P>& term) {
-  for (int row = 0; row < 2; ++row) {
-    store_vec3<P>(slot, Records<P>::kByPose + 6 * row, term.by_rotation[row]);
-    store_vec3<P>(slot, Records<P>::kByPose + 6 * row + 3, -term.by_point[row]);
-    store_vec3<P>(slot, Records<P>::kByPoint + 3 * row, term.by_point[row]);
-    slot[Records<P>::kResidual + row] = term.residual[row];
-  }
-}
-
-/// Pose of keyframe k, known only from data.
-template <class P>
-Pose<P> pose_of(const WindowState<P>& state, typename P::I32 k) {
-  using I32 = typename P::I32;
-  const I32 at = k * I32(kPoseFloats);
-  return load_pose<P>(state.poses.subspan(work::value(at), kPoseFloats), 0);
-}
-
-template <class P>
-Vec2<P> observed_pixel(const Window<P>& window, int o) {
-  using I32 = typename P::I32;
-  return {work::to_f32(I32(window.observation_u[o])), work::to_f32(I32(window.observation_v[o]))};
-}
-
-/// Fills the slots of landmark i. Lost observations get zeros.
-/// @return the number of the others
-template <class P>
-typename P::I32 linearise_landmark(const Window<P>& window, const PixelModel<P>& model, int i,
-                                   const Records<P>& records, typename P::F32& cost) {
-  using I32 = typename P::I32;
-  const int first = work::value(I32(window.first_observations[i]));
-  const int number = work::value(I32(window.observation_numbers[i]));
-  const Vec3<P> point = load_vec3<P>(window.state.points, 3 * i);
-  I32 valid = 0;
-  for (int j : P::range(0, number)) {
-    const typename P::Code code("linearise_observation");
-    const auto slot = records.slot(i, j);
-    const Pose<P> T = pose_of<P>(window.state, window.observation_keyframes[first + j]);
-    const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
-    Projection<P> at;
-    if (!project<P>(model, in_camera, observed_pixel<P>(window, first + j), at)) {
-      for (int e : P::range(0, Records<P>::kSlotFloats)) slot[e] = 0.0f;
-      cost += model.lost_cost;
-      continue;
-    }
-    cost += huber_cost<P>(model, at.error_sq);
-    store_term<P>(slot, linearise<P>(model, T.R, at));
-    ++valid;
-  }
-  return valid;
-}
 
 /// The landmark's own block of the normal equations: its damped inverse and right-hand side go to
 /// the record.
 /// @return false if the block cannot be inverted
 template <class P>
-bool invert_landmark(const Records<P>& records, int i, int number, typename P::F32 lambda) {
+bool invert_landmark(const LandmarkRecords<P>& records, int i, int number, typename P::F32 lambda) {
   using F = typename P::F32;
   const typename P::Code code("invert_landmark");
   Mat3<P> H = Mat3<P>::zero();
@@ -72,8 +20,8 @@ bool invert_landmark(const Records<P>& records, int i, int number, typename P::F
   for (int j : P::range(0, number)) {
     const auto slot = records.slot(i, j);
     for (int row = 0; row < 2; ++row) {
-      const Vec3<P> J = load_vec3<P>(slot, Records<P>::kByPoint + 3 * row);
-      const F residual = slot[Records<P>::kResidual + row];
+      const Vec3<P> J = load_vec3<P>(slot, LandmarkRecords<P>::kByPoint + 3 * row);
+      const F residual = slot[LandmarkRecords<P>::kResidual + row];
       H.m[0][0] += J.x * J.x;
       H.m[0][1] += J.x * J.y;
       H.m[0][2] += J.x * J.z;
@@ -89,15 +37,15 @@ bool invert_landmark(const Records<P>& records, int i, int number, typename P::F
   Mat3<P> inverse;
   if (!invert_spd3<P>(H, inverse)) return false;
   records.store_inverse(i, inverse);
-  store_vec3<P>(records.own(i), Records<P>::kRightHandSide, b);
+  store_vec3<P>(records.own(i), LandmarkRecords<P>::kRightHandSide, b);
   return true;
 }
 
 /// A landmark that stays where it is.
 template <class P>
-void freeze_landmark(const Records<P>& records, int i) {
+void freeze_landmark(const LandmarkRecords<P>& records, int i) {
   const auto own = records.own(i);
-  for (int e : P::range(0, Records<P>::kOwnFloats)) own[e] = 0.0f;
+  for (int e : P::range(0, LandmarkRecords<P>::kOwnFloats)) own[e] = 0.0f;
 }
 
 /// Leaves W = J_pᵀ J_l and Y = W H_ll⁻¹ of one observation, and adds -J_pᵀ r - Y b_l to the
@@ -107,11 +55,12 @@ void form_coupling(const Floats<P>& slot, const Mat3<P>& inverse, const Vec3<P>&
                    const Floats<P>& rhs, const Floats<P>& W, const Floats<P>& Y) {
   using F = typename P::F32;
   const typename P::Code code("form_coupling");
-  const Vec3<P> l0 = load_vec3<P>(slot, Records<P>::kByPoint);
-  const Vec3<P> l1 = load_vec3<P>(slot, Records<P>::kByPoint + 3);
-  const F r0 = slot[Records<P>::kResidual], r1 = slot[Records<P>::kResidual + 1];
+  const Vec3<P> l0 = load_vec3<P>(slot, LandmarkRecords<P>::kByPoint);
+  const Vec3<P> l1 = load_vec3<P>(slot, LandmarkRecords<P>::kByPoint + 3);
+  const F r0 = slot[LandmarkRecords<P>::kResidual], r1 = slot[LandmarkRecords<P>::kResidual + 1];
   for (int r : P::range(0, 6)) {
-    const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
+    const F p0 = slot[LandmarkRecords<P>::kByPose + r],
+            p1 = slot[LandmarkRecords<P>::kByPose + 6 + r];
     const Vec3<P> w = l0 * p0 + l1 * p1;
     const Vec3<P> y = inverse * w;  // the inverse is symmetric
     store_vec3<P>(W, 3 * r, w);
@@ -132,10 +81,11 @@ void form_coupling(const Floats<P>& slot, const Mat3<P>& inverse, const Vec3<P>&
 template <class P, int halves>
 void add_pose_row(const Floats<P>& slot, int r, const Floats<P>& matrix, int row_begin) {
   using F = typename P::F32;
-  const F p0 = slot[Records<P>::kByPose + r], p1 = slot[Records<P>::kByPose + 6 + r];
+  const F p0 = slot[LandmarkRecords<P>::kByPose + r],
+          p1 = slot[LandmarkRecords<P>::kByPose + 6 + r];
   for (int half : P::range(0, halves)) {
-    const Vec3<P> q0 = load_vec3<P>(slot, Records<P>::kByPose + 3 * half);
-    const Vec3<P> q1 = load_vec3<P>(slot, Records<P>::kByPose + 6 + 3 * half);
+    const Vec3<P> q0 = load_vec3<P>(slot, LandmarkRecords<P>::kByPose + 3 * half);
+    const Vec3<P> q1 = load_vec3<P>(slot, LandmarkRecords<P>::kByPose + 6 + 3 * half);
     const int at = row_begin + 3 * half;
     Vec3<P> sum = load_vec3<P>(matrix, at);
     sum.x += p0 * q0.x;
@@ -197,13 +147,13 @@ void subtract_elimination(const Floats<P>& Y, const Floats<P>& W, bool diagonal,
 /// Adds landmark i to the keyframes' equations. Its observations are in ascending order of
 /// keyframes, so all blocks lie on or below the diagonal.
 template <class P>
-void eliminate_landmark(const Window<P>& window, const Records<P>& records, int i,
+void eliminate_landmark(const Window<P>& window, const LandmarkRecords<P>& records, int i,
                         const EliminationScratch<P>& scratch, const ReducedSystem<P>& system) {
   using I32 = typename P::I32;
   const int first = work::value(I32(window.first_observations[i]));
   const int number = work::value(I32(window.observation_numbers[i]));
   const Mat3<P> inverse = records.inverse(i);
-  const Vec3<P> rhs = load_vec3<P>(records.own(i), Records<P>::kRightHandSide);
+  const Vec3<P> rhs = load_vec3<P>(records.own(i), LandmarkRecords<P>::kRightHandSide);
   const int stride = system.unknowns();
   for (int a : P::range(0, number)) {
     const I32 keyframe = window.observation_keyframes[first + a];
@@ -219,107 +169,24 @@ void eliminate_landmark(const Window<P>& window, const Records<P>& records, int 
   }
 }
 
-// A landmark of a departing keyframe is eliminated by a QR decomposition of its own derivatives:
-// what is orthogonal to them does not depend on the landmark. Where a Schur complement subtracts,
-// this adds squares, so that in single precision the result stays positive semidefinite, however
-// badly the landmark is determined.
-
-/// Rows of landmark i: its own derivatives (3 columns), those by its keyframes (6 each), residual.
-template <class P>
-MatrixView<P> gather_landmark(const Records<P>& records, int i, int number,
-                              const ProjectionScratch<P>& scratch) {
-  using F = typename P::F32;
-  const int columns = 3 + 6 * number + 1;
-  const MatrixView<P> rows(scratch.rows.subspan(0, 2 * number * columns), 2 * number, columns);
-  fill<P>(rows, 0.0f);
-  for (int j : P::range(0, number)) {
-    const auto slot = records.slot(i, j);
-    for (int row = 0; row < 2; ++row) {
-      const int r = 2 * j + row;
-      for (int c = 0; c < 3; ++c) rows(r, c) = F(slot[Records<P>::kByPoint + 3 * row + c]);
-      for (int c : P::range(0, 6))
-        rows(r, 3 + 6 * j + c) = F(slot[Records<P>::kByPose + 6 * row + c]);
-      rows(r, columns - 1) = F(slot[Records<P>::kResidual + row]);
-    }
-  }
-  return rows;
-}
-
-/// Householder reflections for the first three columns: from row 3 on, they are zero then.
-template <class P>
-void project_out_landmark(MatrixView<P> a) {
-  using F = typename P::F32;
-  const typename P::Function function("project_out_landmark");
-  for (int k : P::range(0, 3)) {
-    F length2 = 0.0f;
-    for (int r : P::range(k, a.rows())) {
-      const F v = a(r, k);
-      length2 += v * v;
-    }
-    if (!(length2 > 0.0f)) continue;
-    const F akk = a(k, k);
-    F diagonal = work::sqrt(length2);
-    if (akk > 0.0f) diagonal = -diagonal;
-    const F head = akk - diagonal;
-    const F tau = F(-1.0f) / (diagonal * head);
-    a(k, k) = head;
-    for (int c : P::range(k + 1, a.cols())) {
-      F projection = 0.0f;
-      for (int r : P::range(k, a.rows())) projection += a(r, k) * a(r, c);
-      projection *= tau;
-      for (int r : P::range(k, a.rows())) a(r, c) -= projection * a(r, k);
-    }
-  }
-}
-
-/// Adds the rows from the fourth on.
-template <class P>
-void add_projected(const Window<P>& window, MatrixView<P> rows, int first, int number,
-                   const ReducedSystem<P>& system) {
-  using F = typename P::F32;
-  using I32 = typename P::I32;
-  const typename P::Function function("add_projected");
-  const int residual = rows.cols() - 1;
-  const int stride = system.unknowns();
-  for (int a : P::range(0, number)) {
-    const I32 keyframe = window.observation_keyframes[first + a];
-    const auto rhs = system.vector(keyframe);
-    for (int b : P::range(0, a + 1)) {
-      const auto block = system.block(keyframe, I32(window.observation_keyframes[first + b]));
-      for (int r : P::range(0, 6))
-        for (int c : P::range(0, a == b ? r + 1 : 6)) {
-          F sum = block[r * stride + c];
-          for (int e : P::range(3, rows.rows()))
-            sum += rows(e, 3 + 6 * a + r) * rows(e, 3 + 6 * b + c);
-          block[r * stride + c] = sum;
-        }
-    }
-    for (int r : P::range(0, 6)) {
-      F sum = rhs[r];
-      for (int e : P::range(3, rows.rows())) sum -= rows(e, 3 + 6 * a + r) * rows(e, residual);
-      rhs[r] = sum;
-    }
-  }
-}
-
 /// Step of landmark i: H_ll⁻¹ (b_l - Σ J_lᵀ J_p δ_p).
 template <class P>
-Vec3<P> landmark_step(const Window<P>& window, const Records<P>& records, int i,
+Vec3<P> landmark_step(const Window<P>& window, const LandmarkRecords<P>& records, int i,
                       const ReducedSystem<P>& solved) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const int first = work::value(I32(window.first_observations[i]));
   const int number = work::value(I32(window.observation_numbers[i]));
-  Vec3<P> b = load_vec3<P>(records.own(i), Records<P>::kRightHandSide);
+  Vec3<P> b = load_vec3<P>(records.own(i), LandmarkRecords<P>::kRightHandSide);
   for (int j : P::range(0, number)) {
     const auto slot = records.slot(i, j);
     const auto step = solved.vector(I32(window.observation_keyframes[first + j]));
     const Vec3<P> turn = load_vec3<P>(step, 0), move = load_vec3<P>(step, 3);
     for (int row = 0; row < 2; ++row) {
-      const int by_pose = Records<P>::kByPose + 6 * row;
+      const int by_pose = LandmarkRecords<P>::kByPose + 6 * row;
       const F moved =
           F(dot(load_vec3<P>(slot, by_pose), turn)) + F(dot(load_vec3<P>(slot, by_pose + 3), move));
-      b = b - load_vec3<P>(slot, Records<P>::kByPoint + 3 * row) * moved;
+      b = b - load_vec3<P>(slot, LandmarkRecords<P>::kByPoint + 3 * row) * moved;
     }
   }
   return records.inverse(i) * b;
@@ -381,28 +248,6 @@ VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
 }
 
 template <class P>
-void add_departing_visual_terms(const Window<P>& window, const PixelModel<P>& model, int departed,
-                                bool tracked, const LandmarkRecords<P>& records,
-                                const ProjectionScratch<P>& scratch,
-                                const ReducedSystem<P>& system) {
-  using I32 = typename P::I32;
-  const typename P::Function function("add_departing_visual_terms");
-  typename P::F32 cost = 0.0f;
-  for (int i : P::range(0, window.landmarks)) {
-    const int first = work::value(I32(window.first_observations[i]));
-    const int number = work::value(I32(window.observation_numbers[i]));
-    if (I32(window.observation_keyframes[first]) >= I32(departed)) continue;
-    const I32 last = window.observation_keyframes[first + number - 1];
-    if (!tracked && last == I32(window.keyframes - 1)) continue;
-    const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
-    if (valid < I32(2)) continue;
-    const MatrixView<P> rows = gather_landmark<P>(records, i, number, scratch);
-    project_out_landmark<P>(rows);
-    add_projected<P>(window, rows, first, number, system);
-  }
-}
-
-template <class P>
 void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
                  const ReducedSystem<P>& solved, typename P::template Span<typename P::F32> to) {
   const typename P::Function function("step_points");
@@ -443,16 +288,6 @@ template VisualUse add_visual_terms(const Window<work::Counting>&,
                                     const LandmarkRecords<work::Counting>&,
                                     const EliminationScratch<work::Counting>&,
                                     const ReducedSystem<work::Counting>&, work::Counting::F32&);
-template void add_departing_visual_terms(const Window<work::Native>&,
-                                         const PixelModel<work::Native>&, int, bool,
-                                         const LandmarkRecords<work::Native>&,
-                                         const ProjectionScratch<work::Native>&,
-                                         const ReducedSystem<work::Native>&);
-template void add_departing_visual_terms(const Window<work::Counting>&,
-                                         const PixelModel<work::Counting>&, int, bool,
-                                         const LandmarkRecords<work::Counting>&,
-                                         const ProjectionScratch<work::Counting>&,
-                                         const ReducedSystem<work::Counting>&);
 template void step_points(const Window<work::Native>&, const LandmarkRecords<work::Native>&,
                           const ReducedSystem<work::Native>&,
                           work::Native::Span<work::Native::F32>);

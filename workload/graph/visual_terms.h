@@ -32,17 +32,6 @@ struct EliminationScratch {
   Span Y;  ///< 6×3
 };
 
-/// Scratch for one landmark that is projected out: all rows of its derivatives.
-template <class P>
-struct ProjectionScratch {
-  using Span = typename P::template Span<typename P::F32>;
-
-  ProjectionScratch(work::Arena& arena, int keyframes)
-      : rows(arena.alloc<Span>("projection rows", 2 * keyframes * (6 * keyframes + 4))) {}
-
-  Span rows;
-};
-
 /// What became of a window's landmarks and observations in one linearisation.
 struct VisualUse {
   int landmarks = 0;     ///< that took part
@@ -56,14 +45,6 @@ VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
                            typename P::F32 lambda, const LandmarkRecords<P>& records,
                            const EliminationScratch<P>& scratch, const ReducedSystem<P>& system,
                            typename P::F32& cost);
-
-/// Adds, without damping and at `window.state`, the landmarks that the `departed` oldest keyframes
-/// saw; of those that the newest keyframe sees as well only if `tracked`.
-template <class P>
-void add_departing_visual_terms(const Window<P>& window, const PixelModel<P>& model, int departed,
-                                bool tracked, const LandmarkRecords<P>& records,
-                                const ProjectionScratch<P>& scratch,
-                                const ReducedSystem<P>& system);
 
 /// Steps of the landmarks for the keyframes' step, added to the points: to = from + step.
 template <class P>

@@ -3,18 +3,11 @@
 // takes one arc tangent, one cosine and one sine (levio_parameters, "Pose estimation").
 //
 // Left out: cheaper rotations without trigonometry, and cyclic order, which needs no search.
-//
-// Inlined on the host, so that its compiler knows the sizes of a caller's matrices for counted
-// scalars too, whose code it takes for too large. A target's compiler decides for itself
-// (tools/rv32), so that the host's speed does not change the modelled code.
 #pragma once
 
+#include "workload/math/host_inline.h"
 #include "workload/math/matrix.h"
 #include "workload/math/trig.h"
-
-#ifndef LEVIOSIM_HOST_INLINE
-#define LEVIOSIM_HOST_INLINE [[gnu::always_inline]] inline
-#endif
 
 namespace leviosim::vio {
 
@@ -47,9 +40,10 @@ LEVIOSIM_HOST_INLINE Element<P> largest_off_diagonal(MatrixView<P> a) {
 
 /// c² app − 2 s c apq + s² aqq
 template <class P>
-typename P::F32 rotated_diagonal(typename P::F32 c, typename P::F32 s, typename P::F32 app,
-                                 typename P::F32 apq, typename P::F32 aqq,
-                                 DiagonalPrecision precision) {
+LEVIOSIM_HOST_INLINE typename P::F32 rotated_diagonal(typename P::F32 c, typename P::F32 s,
+                                                      typename P::F32 app, typename P::F32 apq,
+                                                      typename P::F32 aqq,
+                                                      DiagonalPrecision precision) {
   using F = typename P::F32;
   using F64 = typename P::F64;
   const F first = c * c * app;

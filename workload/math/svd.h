@@ -15,7 +15,7 @@ namespace leviosim::vio {
 /// g = AᵀA divided by its largest element, which is returned (it lies on the diagonal). A zero
 /// matrix gives zeros.
 template <class P>
-typename P::F32 normalised_square(MatrixView<P> g, ConstMatrixView<P> a) {
+LEVIOSIM_HOST_INLINE typename P::F32 normalised_square(MatrixView<P> g, ConstMatrixView<P> a) {
   using F = typename P::F32;
   const typename P::Function function("normalised_square");
   multiply_transposed<P>(g, a, a);
@@ -85,9 +85,10 @@ void complete_column(MatrixView<P> u, int i) {
 /// @param v  n×n
 /// @param tolerance  of the off-diagonal elements of AᵀA relative to its largest element
 template <class P>
-void svd_square(ConstMatrixView<P> a, MatrixView<P> u, typename P::template Span<typename P::F32> s,
-                MatrixView<P> v, int max_rotations, typename P::F32 tolerance,
-                DiagonalPrecision precision) {
+LEVIOSIM_HOST_INLINE void svd_square(ConstMatrixView<P> a, MatrixView<P> u,
+                                     typename P::template Span<typename P::F32> s, MatrixView<P> v,
+                                     int max_rotations, typename P::F32 tolerance,
+                                     DiagonalPrecision precision) {
   using F = typename P::F32;
   const typename P::Function function("svd_square");
   const int n = a.rows();
