@@ -297,6 +297,11 @@ void add_controller(Table& table) {
       quantity("controller.clock", kFrequency, kMinClock, kMaxClock,
                "clock of the fabric controller"),
       [](auto& chip) -> auto& { return chip.controller.clock; });
+  table.add(
+      optional(choice("controller.runs_on", {"own_core", "cluster_core"},
+                      "where the controller's work runs: on a core of its own, or in turns with "
+                      "the cluster's work on the only core of the chip")),
+      [](auto& chip) -> auto& { return chip.controller.shares_core; });
   add_core(table, {"controller.core", false, true});
 }
 

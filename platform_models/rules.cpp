@@ -81,6 +81,10 @@ void check_rules(const Schema& schema, const Settings& settings, const sim::Chip
     throw InputError(fmt::format("{}, but {}: expected no more workers than the event unit serves",
                                  rules.state("cluster.workers"),
                                  rules.state("cluster.max_workers")));
+  if (chip.controller.shares_core && cluster.max_workers > 1)
+    throw InputError(fmt::format("{}, but {}: expected a chip with one core",
+                                 rules.state("controller.runs_on"),
+                                 rules.state("cluster.max_workers")));
   rules.require(std::has_single_bit(static_cast<unsigned>(cluster.l1.banks)), "cluster.l1.banks",
                 "a power of two");
   rules.require_units("fpu", "cluster.fpu.units", cluster.fpu.units);

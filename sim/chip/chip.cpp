@@ -25,19 +25,37 @@ Chip::Chip(const ChipConfig& config, int workers)
     : config_(in_cluster_cycles(config)),
       timebase_({{"cluster", config.cluster.clock}, {"controller", config.controller.clock}}),
       cluster_(kernel_, timebase_.clock("cluster"), config_.cluster, workers),
-      controller_(kernel_, timebase_.clock("controller"), config.controller) {}
+      controller_(kernel_, timebase_.clock("controller"), config.controller),
+      core_(kernel_, "core", 1) {}
+
+Task<> Chip::take_core() {
+  if (config_.controller.shares_core) co_await core_.acquire();
+}
+
+void Chip::leave_core() {
+  if (config_.controller.shares_core) core_.release();
+}
+
+Task<JobTiming> Chip::control(const work::Job& job) {
+  co_await take_core();
+  JobTiming timing = co_await controller_.run(job);
+  leave_core();
+  co_return timing;
+}
 
 Task<JobTiming> Chip::offload(const work::Job& job) {
   const Duration one_way =
       timebase_.clock("controller")
           .duration(
               Cycles(static_cast<std::int64_t>(std::llround(config_.cluster.events.offload))));
+  co_await take_core();
   const Time begin = kernel_.now();
   co_await kernel_.delay(one_way);
   JobTiming timing = co_await cluster_.run(job);
   co_await kernel_.delay(one_way);
   timing.begin = begin;
   timing.end = kernel_.now();
+  leave_core();
   co_return timing;
 }
 

@@ -5,6 +5,7 @@
 
 #include "sim/chip/cluster.h"
 #include "sim/chip/controller.h"
+#include "sim/kernel/sync.h"
 
 namespace leviosim::sim {
 
@@ -22,13 +23,21 @@ class Chip {
 
   /// co_await: the controller sends the job to the cluster and is told when it is done.
   Task<JobTiming> offload(const work::Job& job);
+  /// co_await: the controller runs the job itself.
+  Task<JobTiming> control(const work::Job& job);
 
  private:
+  /// co_await: whoever works next has a core; where there is one only, first come first served. A
+  /// job is not interrupted.
+  Task<> take_core();
+  void leave_core();
+
   ChipConfig config_;
   Timebase timebase_;
   Kernel kernel_;
   Cluster cluster_;
   Controller controller_;
+  Semaphore core_;  ///< the one of a chip with one core
 };
 
 }  // namespace leviosim::sim

@@ -117,6 +117,7 @@ struct ControllerConfig {
   CoreConfig core;
   InstructionCacheConfig icache;
   ExternalMemoryConfig external{};
+  bool shares_core = false;  ///< a chip with one core: its work and the cluster's take turns
 };
 
 struct L2Config {

@@ -269,7 +269,7 @@ TEST(Loader, LoadsFilesByPath) {
 }
 
 TEST(Loader, BuiltInPlatformsAreListedAndLoad) {
-  EXPECT_EQ(platform_names(), (std::vector<std::string>{"gap8", "gap9"}));
+  EXPECT_EQ(platform_names(), (std::vector<std::string>{"cortex-m4f", "gap8", "gap9"}));
   for (const std::string& name : platform_names()) EXPECT_NO_THROW(load_platform(name));
 }
 

@@ -38,6 +38,27 @@ TEST(Cluster, SerialWorkTakesItsCycles) {
   EXPECT_EQ(t.stages[0].account.serial, 8 * 1234);
 }
 
+/// When the last of two jobs of 1000 cycles ends, one on the cluster and one on the controller.
+std::int64_t cycles_of_both(bool one_core) {
+  ChipConfig config = test_chip();
+  config.cluster.events.offload = 0;
+  config.controller.shares_core = one_core;
+  Chip chip(config, 1);
+  const work::Job job = one_stage({work::Serial{alu(1000)}});
+  Time end;
+  const auto offload = [&]() -> Process { end = (co_await chip.offload(job)).end; };
+  const auto control = [&]() -> Process { end = (co_await chip.control(job)).end; };
+  chip.kernel().spawn("offload", offload());
+  chip.kernel().spawn("control", control());
+  EXPECT_EQ(chip.kernel().run(), 0U);
+  return chip.controller().clock().whole_cycles(end - Time{}).count();
+}
+
+TEST(Chip, ClusterAndControllerTakeTurnsOnAnOnlyCore) {
+  EXPECT_EQ(cycles_of_both(false), 1000);
+  EXPECT_EQ(cycles_of_both(true), 2000);
+}
+
 TEST(Cluster, TransferOfNBytes) {
   for (const std::int64_t bytes : {1, 8, 9, 19'200, 65'536}) {
     const JobTiming t = run(one_stage({work::Transfer{work::Direction::L2ToL1, Bytes(bytes)}}));

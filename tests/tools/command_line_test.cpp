@@ -66,6 +66,29 @@ TEST_F(CommandLine, ListsPlatforms) {
   EXPECT_NE(result.out.find("gap9"), std::string::npos);
 }
 
+TEST_F(CommandLine, ShowsAndComparesPlatforms) {
+  const ProgramResult shown =
+      run_program(folder_.path(), {"platforms", "show", "gap9", "-p", "cluster.workers=4"});
+  EXPECT_EQ(shown.status, 0);
+  EXPECT_NE(shown.out.find("workers: { value: 4"), std::string::npos) << shown.out.substr(0, 2000);
+  const ProgramResult compared =
+      run_program(folder_.path(), {"platforms", "diff", "gap9", "gap9", "-p", "cluster.workers=4"});
+  EXPECT_EQ(compared.status, 0);
+  EXPECT_NE(compared.out.find("cluster.workers  8 cores  4 cores"), std::string::npos)
+      << compared.out;
+  EXPECT_NE(compared.out.find("\n1 of "), std::string::npos) << compared.out;
+  EXPECT_NE(run_program(folder_.path(), {"platforms", "diff", "gap9", "gap9"}).out.find("0 of "),
+            std::string::npos);
+}
+
+TEST_F(CommandLine, RefusesPlatformsThatAreNotThere) {
+  expect_refusal({"platforms", "shw", "gap9"}, {"unknown action 'shw'", "did you mean 'show'?"});
+  expect_refusal({"platforms", "diff", "gap9"}, {"expected two platforms, found 1"});
+  expect_refusal({"platforms", "show", "gap99"}, {"gap99", "gap9"});
+  expect_refusal({"platforms", "show", "gap9", "-p", "controller.runs_on=cluster_core"},
+                 {"controller.runs_on", "cluster.max_workers is 8 cores", "one core"});
+}
+
 TEST_F(CommandLine, SuggestsCommandsAndOptions) {
   expect_refusal({}, {"expected a command: run, synth, platforms"});
   expect_refusal({"rum"}, {"unknown command 'rum'; did you mean 'run'?"});

@@ -67,7 +67,7 @@ double Bench::controller_seconds(const std::function<void(work::Machine&)>& body
   const work::Job job = record(body);
   sim::Chip chip(config_, workers_);
   sim::JobTiming timing;
-  const auto process = [&]() -> sim::Process { timing = co_await chip.controller().run(job); };
+  const auto process = [&]() -> sim::Process { timing = co_await chip.control(job); };
   chip.kernel().spawn(std::string(kStage), process());
   chip.kernel().run();
   return static_cast<double>(timing.stages.at(0).cycles.count()) /

@@ -11,7 +11,7 @@ sim::Process offload(sim::Chip& chip, const work::Job& job, sim::JobTiming& timi
 }
 
 sim::Process run_on_controller(sim::Chip& chip, const work::Job& job, sim::JobTiming& timing) {
-  timing = co_await chip.controller().run(job);
+  timing = co_await chip.control(job);
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ sim::Process Simulation::optimiser() {
     for (int k = 0; k < iterations; ++k) {
       const work::Job& job = source_.optimise();
       book_.add_work(job);
-      const sim::JobTiming timing = co_await chip_.controller().run(job);
+      const sim::JobTiming timing = co_await chip_.control(job);
       book_.add_parallel(timing);
       book_.add_single(timing);  // the controller is one core
       if (request_.observer != nullptr)
