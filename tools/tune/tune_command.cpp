@@ -17,21 +17,24 @@
 namespace leviosim::tools {
 namespace {
 
-/// Runs a point by itself, whatever the cache holds.
+/// Runs a point by itself with all seeds, whatever the cache holds. @returns what the first gave
 RunResult run_again(const TunePlan& plan, const TunePoint& point) {
-  RunResult result = simulate(request_of(plan, point.fps, point.setting),
-                              [](const Progress&) { throw_if_interrupted(); });
-  const RunOutcome outcome = outcome_of(result, plan.sequence.truth, plan.measure);
-  if (to_text(outcome) != to_text(point.outcome))
-    throw InputError(
-        "tune: run again, the chosen point gave other figures than were found in the cache of "
-        "finished runs; remove it, or choose another with --cache");
-  return result;
+  std::vector<RunResult> results;
+  for (std::size_t i = 0; i < plan.seeds.size(); ++i) {
+    results.push_back(simulate(request_of(plan, point.fps, point.setting, plan.seeds[i]),
+                               [](const Progress&) { throw_if_interrupted(); }));
+    const RunOutcome outcome = outcome_of(results.back(), plan.sequence.truth, plan.measure);
+    if (to_text(outcome) != to_text(point.outcomes[i]))
+      throw InputError(
+          "tune: run again, the chosen point gave other figures than were found in the cache of "
+          "finished runs; remove it, or choose another with --cache");
+  }
+  return std::move(results.front());
 }
 
 void write_chosen(const std::filesystem::path& folder, const TunePlan& plan, const TunePoint& point,
                   const RunResult& result, const Words& command_line) {
-  const RunRequest request = request_of(plan, point.fps, point.setting);
+  const RunRequest request = request_of(plan, point.fps, point.setting, plan.seeds.front());
   std::filesystem::create_directory(folder);
   write_run_folder(folder, result,
                    make_manifest(run_options_of(plan, point), request, command_line),
@@ -46,7 +49,7 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
   const auto write = [&](const char* name, const std::string& text) {
     traces::write_file_atomically(staged.path() / name, text);
   };
-  write("points.csv", tune_csv(plan, points));
+  write("runs.csv", tune_csv(plan, points));
   write("tune.svg", tune_plot(plan, points, all));
   if (again) write_chosen(staged.path() / "chosen", plan, *chosen(all), *again, command_line);
   write("manifest.json", tune_manifest(plan, all, command_line).dump(2) + '\n');
@@ -67,7 +70,7 @@ void run(const CLI::App& command, const TuneWords& words, const Words& command_l
   write_folder(plan, points, again, command_line);
   fmt::print("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}",
              version(), plan.request.profile, plan.options.platform, plan.request.cores,
-             plan.sequence.frames, plan.options.data, points.size(), tune_table(plan, points),
+             plan.sequence.frames, plan.options.data, runs.size(), tune_table(plan, points),
              choice_text(plan, all));
   if (again) fmt::print("run again by itself, it gave the same figures: confirmed\n");
   if (!plan.out.empty()) fmt::print("results: {}\n", words.run.out);

@@ -1,9 +1,10 @@
 // `leviosim tune`: closed loops over clock and frame rate. Its folder:
 //
 //   manifest.json   what the batch was made from, and what was chosen
-//   points.csv      a row per point
+//   runs.csv        a row per point and seed
 //   tune.svg        error, missed frames and power over the clock
-//   chosen/         the run folder of the lowest clock that is enough, run again; if there is one
+//   chosen/         the run folder of the lowest clock that is enough, with the first seed, run
+//   again
 #pragma once
 
 #include "tools/cli/command_line.h"

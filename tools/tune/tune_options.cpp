@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/energy/model.h"
 #include "sim/energy/operating_point.h"
@@ -112,6 +113,16 @@ std::vector<Hertz> parse_clocks(const std::string& text) {
   return clocks;
 }
 
+std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
+  std::vector<std::uint32_t> seeds;
+  for (const std::string& item : split(text, ','))
+    seeds.push_back(static_cast<std::uint32_t>(
+        parse_whole("--seed", item, 0, std::numeric_limits<std::uint32_t>::max())));
+  std::vector<std::uint32_t> sorted = seeds;
+  sort_and_refuse_repetitions("--seed", text, sorted);
+  return seeds;
+}
+
 std::vector<double> parse_rates(const std::string& text) {
   std::vector<double> rates;
   for (const std::string& item : split(text, ',')) rates.push_back(parse_positive("--fps", item));
@@ -146,6 +157,8 @@ void add_tune_options(CLI::App& command, TuneWords& words) {
     command.add_option(name, value, help)->type_name(type);
   };
   add_chip_run_options(command, words.run);
+  command.get_option("--seed")->type_name("N,...")->description(
+      "of the workload's random draws; figures are medians over them [1]");
   add("--size", words.run.size, "WxH", "image size [160x120]");
   add("--clock", words.clocks, "LOW:HIGH:STEP", "clocks in MHz; also a list 120,240,370");
   add("--fps", words.fps, "F,...", "frames per second of the camera [the recorded rate]");
@@ -161,9 +174,11 @@ void add_tune_options(CLI::App& command, TuneWords& words) {
 TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
   require(command, "--clock", "clocks in MHz, such as 100:370:10");
   TunePlan plan;
-  plan.options = words.run;
   refuse_operating_points(words.run);
-  plan.request = make_chip_request(words.run);
+  plan.seeds = parse_seed_list(words.run.seed);
+  plan.options = words.run;
+  plan.options.seed = fmt::format("{}", plan.seeds.front());
+  plan.request = make_chip_request(plan.options);
   const std::vector<Hertz> clocks = parse_clocks(words.clocks);
   const sim::ChipConfig& chip = plan.request.platform.config;
   // The fastest first: it is what cannot be had.

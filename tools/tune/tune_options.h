@@ -38,6 +38,7 @@ struct TunePlan {
   double recorded_hz = 0;
   std::vector<ClockSetting> clocks;  ///< rising
   std::vector<double> fps;           ///< rising
+  std::vector<std::uint32_t> seeds;  ///< of every point
   Deadline deadline = Deadline::Drop;
   double miss_rate = 0;  ///< share of missed frames that is allowed
   double ate_m = 0;      ///< error that is allowed
@@ -54,6 +55,9 @@ TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words);
 
 /// "100:370:10" or "120,240,370": clocks in MHz, both ends included, rising. @throws InputError
 std::vector<Hertz> parse_clocks(const std::string& text);
+
+/// "1,2,3", in this order. @throws InputError
+std::vector<std::uint32_t> parse_seed_list(const std::string& text);
 
 /// "10,15,20": rising. @throws InputError
 std::vector<double> parse_rates(const std::string& text);

@@ -40,24 +40,22 @@ struct Panel {
   Scale scale;
   std::function<std::optional<double>(const TunePoint&)> of;
   std::optional<double> limit;
+  bool marks_missing = false;  ///< what has no value is marked at the top
 };
 
 std::vector<Panel> panels_of(const TunePlan& plan) {
-  return {
-      {"absolute trajectory error [m]", Scale::logarithmic,
-       [](const TunePoint& p) {
-         const std::optional<double>& ate = p.outcome.ate_m;
-         return ate && *ate > 0 ? ate : std::nullopt;
-       },
-       plan.ate_m},
-      {"missed frames [%]", Scale::linear,
-       [](const TunePoint& p) { return std::optional(100 * p.miss_rate()); }, 100 * plan.miss_rate},
-      {"mean power [mW]", Scale::linear,
-       [](const TunePoint& p) {
-         const std::optional<Banded>& power = p.loop().power_w;
-         return power ? std::optional(power->value * 1e3) : std::nullopt;
-       },
-       std::nullopt}};
+  const auto error = [](const TunePoint& p) {
+    const std::optional<double> ate = p.ate().median;
+    return ate && *ate > 0 ? ate : std::nullopt;
+  };
+  const auto missed = [](const TunePoint& p) { return std::optional(100 * p.miss_rate()); };
+  const auto power = [](const TunePoint& p) {
+    const std::optional<Banded> watts = p.median(&LoopOutcome::power_w);
+    return watts ? std::optional(watts->value * 1e3) : std::nullopt;
+  };
+  return {{"absolute trajectory error [m]", Scale::logarithmic, error, plan.ate_m, true},
+          {"missed frames [%]", Scale::linear, missed, 100 * plan.miss_rate, false},
+          {"mean power [mW]", Scale::linear, power, std::nullopt, false}};
 }
 
 double megahertz(const TunePoint& point) {
@@ -82,9 +80,18 @@ Range range_of(const Panel& panel, const std::vector<TunePoint>& points) {
   return plot::widened(*range, 0.05);
 }
 
+/// Where an estimate diverged: a cross at the top.
+void draw_cross(Svg& svg, Point at, const Stroke& stroke) {
+  constexpr double kHalf = 3.5;
+  svg.line({at.x - kHalf, at.y - kHalf}, {at.x + kHalf, at.y + kHalf}, stroke);
+  svg.line({at.x - kHalf, at.y + kHalf}, {at.x + kHalf, at.y - kHalf}, stroke);
+}
+
 /// The line of a frame rate, interrupted where there is no value.
+/// @param cross_y  where such points are marked, below the top of the box
 void draw_line(Svg& svg, const Axes& axes, const Panel& panel,
-               const std::vector<const TunePoint*>& points, const std::string& colour) {
+               const std::vector<const TunePoint*>& points, const std::string& colour,
+               double cross_y) {
   std::vector<Point> line;
   const auto finish = [&] {
     if (line.size() > 1) svg.polyline(line, {colour, 1.6});
@@ -93,10 +100,14 @@ void draw_line(Svg& svg, const Axes& axes, const Panel& panel,
   };
   for (const TunePoint* point : points) {
     const std::optional<double> value = panel.of(*point);
-    if (value)
+    if (value) {
       line.push_back(axes.at(megahertz(*point), *value));
-    else
-      finish();
+      continue;
+    }
+    finish();
+    if (panel.marks_missing)
+      draw_cross(svg, {axes.at(megahertz(*point), axes.y().high).x, axes.box().y + cross_y},
+                 {colour, 1.6});
   }
   finish();
 }
@@ -111,7 +122,7 @@ void draw_panel(Svg& svg, const TunePlan& plan, const Panel& panel, const Axes& 
     std::vector<const TunePoint*> of_rate;
     for (const TunePoint& point : points)
       if (point.fps == plan.fps[rate]) of_rate.push_back(&point);
-    draw_line(svg, axes, panel, of_rate, colour_of(rate));
+    draw_line(svg, axes, panel, of_rate, colour_of(rate), 8 + 9 * static_cast<double>(rate));
     const TunePoint* lowest = choices[rate].lowest;
     const std::optional<double> value = lowest != nullptr ? panel.of(*lowest) : std::nullopt;
     if (value) svg.circle(axes.at(megahertz(*lowest), *value), 6.5, "none", {colour_of(rate), 2});
@@ -132,6 +143,9 @@ void draw_legend(Svg& svg, const TunePlan& plan) {
   y += kLineHeight;
   svg.circle({kLegendX + 9, y - 4}, 6.5, "none", {kInk, 2});
   svg.text({kLegendX + 26, y}, "lowest enough", {});
+  y += kLineHeight;
+  draw_cross(svg, {kLegendX + 9, y - 4}, {kInk, 1.6});
+  svg.text({kLegendX + 26, y}, "diverged", {});
 }
 
 /// Names of folders may be long; the last part tells most.
@@ -155,7 +169,9 @@ std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points
                        plan.request.platform.name, plan.request.cores, flight_name(plan),
                        plan.sequence.frames, plan.recorded_hz),
            {12});
-  svg.text({kLeftEdge, 74}, std::string(info_of(plan.deadline).description), {12});
+  const std::string medians =
+      plan.seeds.size() > 1 ? fmt::format("; medians over {} seeds", plan.seeds.size()) : "";
+  svg.text({kLeftEdge, 74}, std::string(info_of(plan.deadline).description) + medians, {12});
   Range x{megahertz(points.front()), megahertz(points.front())};
   for (const TunePoint& point : points) x.include(megahertz(point));
   double top = kFirstPanel;

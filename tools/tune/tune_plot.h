@@ -8,9 +8,9 @@
 
 namespace leviosim::tools {
 
-/// A file of SVG. What a point is without (an error where the estimate diverged, power where the
-/// chip has no energies) interrupts its line. Errors are on a logarithmic axis. Dashed lines are
-/// the limits; rings are the lowest clocks that are enough.
+/// A file of SVG, of medians. What a point is without (an error where the estimate diverged, which
+/// a cross says; power where the chip has no energies) interrupts its line. Errors are on a
+/// logarithmic axis. Dashed lines are the limits; rings are the lowest clocks that are enough.
 std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points,
                       const std::vector<Choice>& choices);
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "tools/batch/batch_options.h"
 #include "tools/batch/run_key.h"
@@ -21,7 +22,8 @@ double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6
 
 std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
 
-std::string ms(std::int64_t ns) { return fmt::format("{:.1f}", static_cast<double>(ns) * 1e-6); }
+/// Of nanoseconds.
+std::string ms(double ns) { return fmt::format("{:.1f}", ns * 1e-6); }
 
 std::string milli(const std::optional<Banded>& figure, int decimals) {
   return figure ? fmt::format("{:.{}f}", figure->value * 1e3, decimals) : kNothing;
@@ -35,8 +37,8 @@ std::string volts(const ClockSetting& setting) {
   return setting.voltage ? fmt::format("{:.2f}", setting.voltage->count()) : kNothing;
 }
 
-std::string ate(const RunOutcome& outcome) {
-  return outcome.ate_m ? fmt::format("{:.3f}", *outcome.ate_m) : "diverged";
+std::string ate(const std::optional<double>& error) {
+  return error ? fmt::format("{:.3f}", *error) : "diverged";
 }
 
 /// "240 MHz and 0.65 V".
@@ -50,14 +52,14 @@ std::string choice_line(const TunePlan& plan, const Choice& choice) {
   if (choice.lowest == nullptr) return text + "none of these clocks\n";
   const TunePoint& point = *choice.lowest;
   text += fmt::format("{}: {} % missed, ATE {} m", clock_text(point.setting),
-                      percent(point.miss_rate()), ate(point.outcome));
-  if (point.loop().power_w)
-    text += fmt::format(", {} mW ({}), {} mJ per frame", milli(point.loop().power_w, 1),
-                        milli_band(point.loop().power_w), milli(point.loop().frame_j, 3));
+                      percent(point.miss_rate()), ate(point.ate().median));
+  if (const auto power = point.median(&LoopOutcome::power_w))
+    text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
+                        milli(point.median(&LoopOutcome::frame_j), 3));
   std::vector<std::string> failing;
   for (const TunePoint* higher : choice.higher_failing)
     failing.push_back(fmt::format("{:g} ({} %, {})", megahertz(higher->setting.clock),
-                                  percent(higher->miss_rate()), ate(higher->outcome)));
+                                  percent(higher->miss_rate()), ate(higher->ate().median)));
   if (!failing.empty())
     text += fmt::format(
         "\n    but not at {} of {} higher clocks: {}", failing.size(),
@@ -77,61 +79,81 @@ std::string optional_cells(const std::optional<Banded>& figure) {
                      figure->high * 1e3);
 }
 
+struct LatencyColumn {
+  double (*of)(const LoopOutcome&);
+};
+constexpr std::array kLatencies{
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p50_ns); }},
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p95_ns); }},
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p99_ns); }},
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.max_ns); }}};
+
+std::string notes(const TunePlan& plan) {
+  std::string text = fmt::format(
+      "missed: dropped, or the pose came later than a period after the frame; {}\n"
+      "latency from a frame to its pose; mean power over all of the time, with its band; mJ per "
+      "processed frame\n"
+      "ATE: {}-aligned RMSE of the processed frames, diverged if above the length of the path; "
+      "poses: frames with a pose\n",
+      info_of(plan.deadline).description, name_of(plan.measure.alignment));
+  if (plan.seeds.size() > 1)
+    text += fmt::format("medians over {} seeds; poses: the least\n", plan.seeds.size());
+  return text;
+}
+
+/// All cells of a run but the last.
+std::string csv_line(const TunePlan& plan, const TunePoint& point, std::size_t seed) {
+  const RunOutcome& outcome = point.outcomes[seed];
+  const LoopOutcome& loop = *outcome.loop;
+  const CameraFigures& c = loop.camera;
+  return fmt::format(
+      "{:g},{:g},{},{},{},{},{},{},{},{},{:.6f},{},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{}",
+      point.fps, megahertz(point.setting.clock),
+      point.setting.voltage ? fmt::format("{:g}", point.setting.voltage->count()) : "",
+      info_of(plan.deadline).name, plan.seeds[seed], c.arrived, c.processed, c.dropped, c.late,
+      c.missed(), c.share_of(c.missed()), c.waited, c.most_found, c.latency.p50_ns,
+      c.latency.p95_ns, c.latency.p99_ns, c.latency.max_ns, optional_cells(loop.power_w),
+      optional_cells(loop.frame_j), outcome.ate_m ? fmt::format("{:.9f}", *outcome.ate_m) : "",
+      outcome.matched, outcome.completion, outcome.path_m, csv_cell(outcome.failure));
+}
+
 }  // namespace
 
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  TextTable table({{"frames/s"},
-                   {"MHz"},
-                   {"V"},
-                   {"missed %"},
-                   {"dropped %"},
-                   {"p50 ms"},
-                   {"p95 ms"},
-                   {"p99 ms"},
-                   {"worst ms"},
-                   {"mW"},
-                   {"band"},
-                   {"mJ/frame"},
-                   {"ATE m"},
-                   {"poses %"},
-                   {"enough", kLeft}});
+  const bool several = plan.seeds.size() > 1;
+  std::vector<TextTable::Column> columns{
+      {"frames/s"}, {"MHz"},      {"V"},  {"missed %"}, {"dropped %"}, {"p50 ms"}, {"p95 ms"},
+      {"p99 ms"},   {"worst ms"}, {"mW"}, {"band"},     {"mJ/frame"},  {"ATE m"}};
+  if (several) columns.push_back({"least … greatest"});
+  columns.push_back({"poses %"});
+  columns.push_back({"enough", kLeft});
+  TextTable table(std::move(columns));
   for (const TunePoint& point : points) {
-    const CameraFigures& camera = point.loop().camera;
-    table.add({fmt::format("{:g}", point.fps), fmt::format("{:g}", megahertz(point.setting.clock)),
-               volts(point.setting), percent(point.miss_rate()),
-               percent(camera.share_of(camera.dropped)), ms(camera.latency.p50_ns),
-               ms(camera.latency.p95_ns), ms(camera.latency.p99_ns), ms(camera.latency.max_ns),
-               milli(point.loop().power_w, 2), milli_band(point.loop().power_w),
-               milli(point.loop().frame_j, 3), ate(point.outcome),
-               percent(point.outcome.completion), is_enough(point, plan) ? "yes" : ""});
+    const auto power = point.median(&LoopOutcome::power_w);
+    const Spread errors = point.ate();
+    std::vector<std::string> cells{
+        fmt::format("{:g}", point.fps), fmt::format("{:g}", megahertz(point.setting.clock)),
+        volts(point.setting), percent(point.miss_rate()), percent(point.drop_rate())};
+    for (const LatencyColumn& latency : kLatencies) cells.push_back(ms(point.median(latency.of)));
+    cells.insert(cells.end(), {milli(power, 2), milli_band(power),
+                               milli(point.median(&LoopOutcome::frame_j), 3), ate(errors.median)});
+    if (several) cells.push_back(fmt::format("{} … {}", ate(errors.low), ate(errors.high)));
+    cells.push_back(percent(point.completion()));
+    cells.push_back(is_enough(point, plan) ? "yes" : "");
+    table.add(std::move(cells));
   }
-  return table.str() +
-         fmt::format(
-             "missed: dropped, or the pose came later than a period after the frame; {}\n"
-             "latency from a frame to its pose; mean power over all of the time, with its band; mJ "
-             "per processed frame\n"
-             "ATE: {}-aligned RMSE of the processed frames; poses: frames with a pose\n",
-             info_of(plan.deadline).description, name_of(plan.measure.alignment));
+  return table.str() + notes(plan);
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
   std::string text =
-      "fps,clock_mhz,voltage,deadline,arrived,processed,dropped,late,missed,missed_share,waited,"
-      "most_found,latency_p50_ns,latency_p95_ns,latency_p99_ns,latency_worst_ns,power_mw,"
+      "fps,clock_mhz,voltage,deadline,seed,arrived,processed,dropped,late,missed,missed_share,"
+      "waited,most_found,latency_p50_ns,latency_p95_ns,latency_p99_ns,latency_worst_ns,power_mw,"
       "power_low_mw,power_high_mw,frame_mj,frame_low_mj,frame_high_mj,ate_rmse_m,matched,"
-      "completion,enough,failure\n";
-  for (const TunePoint& p : points) {
-    const CameraFigures& c = p.loop().camera;
-    text += fmt::format(
-        "{:g},{:g},{},{},{},{},{},{},{},{:.6f},{},{},{},{},{},{},{},{},{},{},{:.9f},{},{}\n", p.fps,
-        megahertz(p.setting.clock),
-        p.setting.voltage ? fmt::format("{:g}", p.setting.voltage->count()) : "",
-        info_of(plan.deadline).name, c.arrived, c.processed, c.dropped, c.late, c.missed(),
-        p.miss_rate(), c.waited, c.most_found, c.latency.p50_ns, c.latency.p95_ns, c.latency.p99_ns,
-        c.latency.max_ns, optional_cells(p.loop().power_w), optional_cells(p.loop().frame_j),
-        p.outcome.ate_m ? fmt::format("{:.9f}", *p.outcome.ate_m) : "", p.outcome.matched,
-        p.outcome.completion, int{is_enough(p, plan)}, csv_cell(p.outcome.failure));
-  }
+      "completion,path_m,failure,point_is_enough\n";
+  for (const TunePoint& point : points)
+    for (std::size_t i = 0; i < plan.seeds.size(); ++i)
+      text += csv_line(plan, point, i) + fmt::format(",{}\n", int{is_enough(point, plan)});
   return text;
 }
 
@@ -156,7 +178,7 @@ Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
   document["program"]["estimator"] = estimator_version();
   document["command_line"] = command_line;
   document["profile"] = plan.request.profile;
-  document["seed"] = plan.request.seed;
+  document["seeds"] = plan.seeds;
   document["platform"]["name"] = plan.options.platform;
   document["platform"]["cores"] = plan.request.cores;
   document["deadline"] = info_of(plan.deadline).name;
@@ -171,7 +193,8 @@ Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
     Json& entry = document["lowest"].emplace_back(Json::object());
     entry["fps"] = choice.fps;
     entry["clock_mhz"] = choice.lowest ? Json(megahertz(choice.lowest->setting.clock)) : Json();
-    if (choice.lowest != nullptr) entry["power_w"] = banded_json(choice.lowest->loop().power_w);
+    if (choice.lowest != nullptr)
+      entry["power_w"] = banded_json(choice.lowest->median(&LoopOutcome::power_w));
   }
   const TunePoint* best = chosen(choices);
   document["chosen"] = best != nullptr ? Json(run_command_text(plan, *best)) : Json();

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "sim/check.h"
 #include "tools/run/workload_overrides.h"
 
@@ -27,8 +29,53 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting) {
+double TunePoint::median(double (*of)(const LoopOutcome&)) const {
+  std::vector<std::optional<double>> values;
+  for (const RunOutcome& outcome : outcomes) values.push_back(of(*outcome.loop));
+  return *spread_of(values).median;
+}
+
+std::optional<Banded> TunePoint::median(std::optional<Banded> LoopOutcome::*of) const {
+  const auto part = [&](double Banded::*end) {
+    std::vector<std::optional<double>> values;
+    for (const RunOutcome& outcome : outcomes) {
+      const std::optional<Banded>& figure = *outcome.loop.*of;
+      values.push_back(figure ? std::optional(*figure.*end) : std::nullopt);
+    }
+    return spread_of(values).median;
+  };
+  const auto value = part(&Banded::value);
+  if (!value) return std::nullopt;
+  return Banded{*value, part(&Banded::low).value_or(0), part(&Banded::high).value_or(0)};
+}
+
+double TunePoint::miss_rate() const {
+  return median([](const LoopOutcome& l) { return l.camera.share_of(l.camera.missed()); });
+}
+
+double TunePoint::drop_rate() const {
+  return median([](const LoopOutcome& l) { return l.camera.share_of(l.camera.dropped); });
+}
+
+Spread TunePoint::ate() const {
+  std::vector<std::optional<double>> values;
+  for (const RunOutcome& outcome : outcomes) {
+    const bool diverged = !outcome.ate_m || *outcome.ate_m > outcome.path_m;
+    values.push_back(diverged ? std::nullopt : outcome.ate_m);
+  }
+  return spread_of(values);
+}
+
+double TunePoint::completion() const {
+  double least = 1;
+  for (const RunOutcome& outcome : outcomes) least = std::min(least, outcome.completion);
+  return least;
+}
+
+RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
+                      std::uint32_t seed) {
   RunRequest request = plan.request;
+  request.seed = seed;
   request.camera = CameraRequest{fps, plan.deadline};
   request.platform = platform::resolve_platform(plan.options.platform,
                                                 split_overrides(overrides_at(plan, setting)).chip);
@@ -39,22 +86,28 @@ std::vector<BatchRun> tune_runs(const TunePlan& plan) {
   std::vector<BatchRun> runs;
   for (const double fps : plan.fps)
     for (const ClockSetting& setting : plan.clocks)
-      runs.push_back({&plan.sequence, request_of(plan, fps, setting)});
+      for (const std::uint32_t seed : plan.seeds)
+        runs.push_back({&plan.sequence, request_of(plan, fps, setting, seed)});
   return runs;
 }
 
 std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<RunOutcome>& outcomes) {
-  check_equal(outcomes.size(), plan.fps.size() * plan.clocks.size(), "an outcome per point");
+  const std::size_t seeds = plan.seeds.size();
+  check_equal(outcomes.size(), plan.fps.size() * plan.clocks.size() * seeds, "an outcome per run");
+  auto first = outcomes.begin();
   std::vector<TunePoint> points;
   for (const double fps : plan.fps)
-    for (const ClockSetting& setting : plan.clocks)
-      points.push_back({fps, setting, outcomes[points.size()]});
+    for (const ClockSetting& setting : plan.clocks) {
+      const auto last = first + static_cast<std::ptrdiff_t>(seeds);
+      points.push_back({fps, setting, {first, last}});
+      first = last;
+    }
   return points;
 }
 
 bool is_enough(const TunePoint& point, const TunePlan& plan) {
-  return point.miss_rate() <= plan.miss_rate && point.outcome.ate_m &&
-         *point.outcome.ate_m <= plan.ate_m;
+  const std::optional<double> ate = point.ate().median;
+  return point.miss_rate() <= plan.miss_rate && ate && *ate <= plan.ate_m;
 }
 
 std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& points) {

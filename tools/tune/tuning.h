@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tools/batch/spread.h"
 #include "tools/tune/tune_options.h"
 
 namespace leviosim::tools {
@@ -12,17 +13,26 @@ namespace leviosim::tools {
 struct TunePoint {
   double fps = 0;
   ClockSetting setting;
-  RunOutcome outcome;
+  std::vector<RunOutcome> outcomes;  ///< by seed
 
-  const LoopOutcome& loop() const { return *outcome.loop; }
-  /// Dropped or late frames over all.
-  double miss_rate() const { return loop().camera.share_of(loop().camera.missed()); }
+  /// Median over the seeds of a figure of their loops.
+  double median(double (*of)(const LoopOutcome&)) const;
+  /// The same of a figure that chips without energies lack.
+  std::optional<Banded> median(std::optional<Banded> LoopOutcome::*of) const;
+  /// Dropped or late frames over all, and dropped ones.
+  double miss_rate() const;
+  double drop_rate() const;
+  /// Of the absolute errors; one above the length of the path counts as diverged.
+  Spread ate() const;
+  /// Least share of frames with a pose that was compared.
+  double completion() const;
 };
 
 /// The closed loop of a point.
-RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting);
+RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
+                      std::uint32_t seed);
 
-/// By frame rate, then clock; the sequence of the plan must outlive them.
+/// By frame rate, clock, then seed; the sequence of the plan must outlive them.
 std::vector<BatchRun> tune_runs(const TunePlan& plan);
 
 /// @param outcomes  of tune_runs()
@@ -44,7 +54,7 @@ std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& 
 /// enough.
 const TunePoint* chosen(const std::vector<Choice>& choices);
 
-/// What is typed to run a point by itself: all words but those of --out.
+/// What is typed to run a point by itself, with the first seed: all words but those of --out.
 std::string run_command_text(const TunePlan& plan, const TunePoint& point);
 /// The same as the options of that command.
 RunOptions run_options_of(const TunePlan& plan, const TunePoint& point);
