@@ -30,6 +30,9 @@ run() { # run NAME PRESET
   "build/$2/leviosim" synth --duration 0.2 --quiet --out "$results/$1/flight" >/dev/null
   "build/$2/leviosim" run --platform gap9 --data "$data" "${frames[@]}" --record --quiet \
     --out "$results/$1/run" >/dev/null
+  "build/$2/leviosim" run --platform gap9 -p cluster.clock=100MHz -p controller.clock=100MHz \
+    --camera-fps 15 --deadline drop --data "$data" "${frames[@]}" --quiet \
+    --out "$results/$1/loop" >/dev/null
 }
 run gcc-release release
 run gcc-release-again release

@@ -119,8 +119,7 @@ BatchPlan make_plan(const CLI::App& command, const BatchWords& words) {
   plan.measure = {traces::parse_alignment(words.align),
                   parse_positive("--relative", words.relative)};
   plan.cache = words.cache.empty() ? default_run_cache().string() : words.cache;
-  if (!words.jobs.empty())
-    plan.threads = static_cast<unsigned>(parse_whole("--jobs", words.jobs, 1, kMostJobs));
+  plan.threads = parse_jobs(words.jobs);
   plan.out = checked_out_folder(words.out, words.force);
   plan.sequences = open_all(words, plan, ProgressLine::style_of_stderr(words.quiet));
   return plan;
@@ -139,15 +138,33 @@ BatchRun make_run(const BatchPlan& plan, const Sequence& sequence, const std::st
   return run;
 }
 
+std::string batch_progress(const BatchProgress& progress, double host_seconds) {
+  std::string text = fmt::format("run {}/{}, {} of them done before", progress.done, progress.total,
+                                 progress.found);
+  const std::size_t computed = progress.done - progress.found;
+  const std::size_t left = progress.total - progress.done;
+  if (computed == 0 || left == 0) return text;
+  const auto seconds = static_cast<std::int64_t>(host_seconds * static_cast<double>(left) /
+                                                 static_cast<double>(computed));
+  return text + fmt::format(", {}:{:02} min left", seconds / 60, seconds % 60);
+}
+
+std::vector<RunOutcome> run_with_progress(const std::vector<BatchRun>& runs,
+                                          const BatchOptions& options, ProgressLine::Style style) {
+  ProgressLine line(style);
+  return run_batch(runs, options, [&](const BatchProgress& p) {
+    line.show(static_cast<std::int64_t>(p.done), static_cast<std::int64_t>(p.total),
+              [&] { return batch_progress(p, line.host_seconds()); });
+  });
+}
+
 std::vector<RunOutcome> run_with_progress(const BatchPlan& plan, const std::vector<BatchRun>& runs,
                                           ProgressLine::Style style) {
-  ProgressLine line(style);
-  return run_batch(
-      runs, {plan.measure, RunCache(plan.cache), plan.threads}, [&](const BatchProgress& p) {
-        line.show(static_cast<std::int64_t>(p.done), static_cast<std::int64_t>(p.total), [&] {
-          return fmt::format("run {}/{}, {} of them done before", p.done, p.total, p.found);
-        });
-      });
+  return run_with_progress(runs, {plan.measure, RunCache(plan.cache), plan.threads}, style);
+}
+
+unsigned parse_jobs(const std::string& text) {
+  return text.empty() ? 0 : static_cast<unsigned>(parse_whole("--jobs", text, 1, kMostJobs));
 }
 
 std::vector<std::string> sequence_names(const BatchPlan& plan) {

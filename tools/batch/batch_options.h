@@ -53,8 +53,18 @@ BatchRun make_run(const BatchPlan& plan, const Sequence& sequence, const std::st
                   const traces::ImageSize& size, std::uint32_t seed);
 
 /// run_batch() with progress on stderr. @throws InputError, Interrupted
+std::vector<RunOutcome> run_with_progress(const std::vector<BatchRun>& runs,
+                                          const BatchOptions& options, ProgressLine::Style style);
+/// The same with the options of the plan.
 std::vector<RunOutcome> run_with_progress(const BatchPlan& plan, const std::vector<BatchRun>& runs,
                                           ProgressLine::Style style);
+
+/// "run 12/124, 3 of them done before, 2:10 min left": as long as those that were computed took on
+/// average.
+std::string batch_progress(const BatchProgress& progress, double host_seconds);
+
+/// The number that --jobs names, 0 for what is not given. @throws InputError
+unsigned parse_jobs(const std::string& text);
 
 /// Names of the sequences, each once, in the order in which they were given.
 std::vector<std::string> sequence_names(const BatchPlan& plan);

@@ -12,16 +12,10 @@ namespace leviosim::tools {
 namespace {
 
 RunOutcome compute(const BatchRun& run, const Measure& how) {
-  traces::Trajectory estimate;
-  try {
-    estimate = simulate(run.request, [](const Progress&) { throw_if_interrupted(); }).trajectory;
-  } catch (const traces::NotComparable& failure) {
-    RunOutcome outcome;
-    outcome.failure = failure.what();
-    outcome.frames = run.sequence->frames;
-    return outcome;
-  }
-  return measure(estimate, run.sequence->truth, how);
+  RunRequest request = run.request;
+  request.evaluate = false;  // outcome_of() does, and takes note of what diverged
+  const RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
+  return outcome_of(result, run.sequence->truth, how);
 }
 
 /// Runs of the same key, which are computed once.

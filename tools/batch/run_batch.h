@@ -1,4 +1,5 @@
-// Many native runs: on all cores of the host, each found again if it has been done before.
+// Many runs, native or on a chip: on all cores of the host, each found again if it has been done
+// before.
 #pragma once
 
 #include <functional>
@@ -12,7 +13,7 @@ namespace leviosim::tools {
 /// One run of a batch.
 struct BatchRun {
   const Sequence* sequence;
-  RunRequest request;  ///< native
+  RunRequest request;  ///< its trajectory is compared with the truth of the sequence
 };
 
 struct BatchProgress {

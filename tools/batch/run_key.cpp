@@ -4,13 +4,26 @@
 
 #include <algorithm>
 
-#include "sim/check.h"
+#include "platform_models/loader.h"
 #include "tools/run/digest.h"
 
 namespace leviosim::tools {
 
+namespace {
+
+/// What a run on a chip depends on beyond what a native one does.
+std::string chip_key(const RunRequest& request) {
+  std::string text =
+      fmt::format("cores {}\n{}", request.cores, platform::to_yaml(request.platform));
+  if (!request.camera) return text + "open loop\n";
+  const auto& [fps, deadline] = *request.camera;
+  return text + fmt::format("camera {} {}\n", fps ? fmt::format("{}", *fps) : "as recorded",
+                            info_of(deadline).name);
+}
+
+}  // namespace
+
 std::string run_key(const RunRequest& request, const std::string& inputs, const Measure& how) {
-  check(request.native, "a run on a chip depends on the chip too");
   std::string text = fmt::format("estimator {}\ninputs {}\nprofile {}\nseed {}\nsize {}x{}\n",
                                  estimator_version(), inputs, request.profile, request.seed,
                                  request.image_size.width, request.image_size.height);
@@ -21,6 +34,7 @@ std::string run_key(const RunRequest& request, const std::string& inputs, const 
   std::sort(settings.begin(), settings.end());
   for (const std::string& setting : settings) text += fmt::format("set {}\n", setting);
   text += fmt::format("alignment {}\nlength {}\n", name_of(how.alignment), how.length_m);
+  text += request.native ? std::string("native\n") : chip_key(request);
   Sha256 digest;
   digest.add(text);
   return digest.hex();

@@ -13,7 +13,7 @@ namespace leviosim::tools {
 /// the compiler: all give the same bits.
 std::string_view estimator_version();
 
-/// @param request  a native run; its folder does not matter
+/// @param request  a run, native or on a chip; its folder does not matter
 /// @param inputs   digest of what is read from the folder (sequence.h)
 /// @returns 64 hexadecimal digits
 std::string run_key(const RunRequest& request, const std::string& inputs, const Measure& how);

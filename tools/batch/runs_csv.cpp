@@ -14,18 +14,10 @@ std::string number(std::optional<double> value) {
   return value ? fmt::format("{:.9f}", *value) : std::string();
 }
 
-/// Text of others in one cell.
-std::string cell(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return c == ',' || c == '"' || c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
-
 std::string row(const BatchRun& run, const RunOutcome& outcome, const Measure& how) {
   const RunRequest& r = run.request;
-  const std::vector<std::string> cells{cell(run.sequence->name),
-                                       cell(run.sequence->folder),
+  const std::vector<std::string> cells{csv_cell(run.sequence->name),
+                                       csv_cell(run.sequence->folder),
                                        fmt::format("{}", r.image_size.width),
                                        fmt::format("{}", r.image_size.height),
                                        r.profile,
@@ -39,11 +31,18 @@ std::string row(const BatchRun& run, const RunOutcome& outcome, const Measure& h
                                        fmt::format("{}", outcome.matched),
                                        number(outcome.completion),
                                        number(outcome.path_m),
-                                       cell(outcome.failure)};
+                                       csv_cell(outcome.failure)};
   return fmt::format("{}\n", fmt::join(cells, ","));
 }
 
 }  // namespace
+
+std::string csv_cell(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return c == ',' || c == '"' || c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
 
 std::string runs_csv(const std::vector<BatchRun>& runs, const std::vector<RunOutcome>& outcomes,
                      const Measure& how, const LeadingColumns& leading) {

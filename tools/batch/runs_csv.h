@@ -14,6 +14,9 @@ struct LeadingColumns {
   std::vector<std::vector<std::string>> cells{};  ///< by run; none if there are no names
 };
 
+/// Text of others as one cell: what would end it becomes a blank.
+std::string csv_cell(std::string text);
+
 std::string runs_csv(const std::vector<BatchRun>& runs, const std::vector<RunOutcome>& outcomes,
                      const Measure& how, const LeadingColumns& leading = {});
 

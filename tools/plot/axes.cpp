@@ -95,16 +95,17 @@ Range widened_logarithmically(const Range& range, double margin) {
 }
 
 Point Axes::at(double x, double y) const {
-  const auto share = [this](double value, const Range& range) {
-    if (scale_ == Scale::linear) return (value - range.low) / range.length();
+  const auto share = [](double value, const Range& range, Scale scale) {
+    if (scale == Scale::linear) return (value - range.low) / range.length();
     return std::log(value / range.low) / std::log(range.high / range.low);
   };
-  return {box_.x + share(x, x_) * box_.width, box_.bottom() - share(y, y_) * box_.height};
+  return {box_.x + share(x, x_, x_scale_) * box_.width,
+          box_.bottom() - share(y, y_, y_scale_) * box_.height};
 }
 
-std::vector<Axes::Tick> Axes::ticks(const Range& range, int most) const {
+std::vector<Axes::Tick> Axes::ticks(const Range& range, Scale scale, int most) {
   std::vector<Tick> ticks;
-  if (scale_ == Scale::logarithmic) {
+  if (scale == Scale::logarithmic) {
     for (const double value : logarithmic_ticks(range, most))
       ticks.push_back({value, fmt::format("{:.6g}", value)});
     return ticks;
@@ -115,7 +116,7 @@ std::vector<Axes::Tick> Axes::ticks(const Range& range, int most) const {
 }
 
 void Axes::draw_x(Svg& svg) const {
-  for (const Tick& tick : ticks(x_, most_ticks(box_.width, kPxPerTickX))) {
+  for (const Tick& tick : ticks(x_, x_scale_, most_ticks(box_.width, kPxPerTickX))) {
     const double x = at(tick.value, y_.low).x;
     svg.line({x, box_.y}, {x, box_.bottom()}, {kGridColour});
     svg.text({x, box_.bottom() + 15}, tick.label, {11, Anchor::middle});
@@ -123,7 +124,7 @@ void Axes::draw_x(Svg& svg) const {
 }
 
 void Axes::draw_y(Svg& svg) const {
-  for (const Tick& tick : ticks(y_, most_ticks(box_.height, kPxPerTickY))) {
+  for (const Tick& tick : ticks(y_, y_scale_, most_ticks(box_.height, kPxPerTickY))) {
     const double y = at(x_.low, tick.value).y;
     svg.line({box_.x, y}, {box_.right(), y}, {kGridColour});
     svg.text({box_.x - 6, y + 4}, tick.label, {11, Anchor::end});

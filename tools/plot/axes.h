@@ -48,7 +48,9 @@ class Axes {
  public:
   /// Ranges of logarithmic axes are above 0.
   Axes(const Box& box, const Range& x, const Range& y, Scale scale = Scale::linear)
-      : box_(box), x_(x), y_(y), scale_(scale) {}
+      : Axes(box, x, y, scale, scale) {}
+  Axes(const Box& box, const Range& x, const Range& y, Scale x_scale, Scale y_scale)
+      : box_(box), x_(x), y_(y), x_scale_(x_scale), y_scale_(y_scale) {}
 
   Point at(double x, double y) const;
   const Box& box() const { return box_; }
@@ -63,14 +65,15 @@ class Axes {
     double value;
     std::string label;
   };
-  std::vector<Tick> ticks(const Range& range, int most) const;
+  static std::vector<Tick> ticks(const Range& range, Scale scale, int most);
   void draw_x(Svg& svg) const;
   void draw_y(Svg& svg) const;
 
   Box box_;
   Range x_;
   Range y_;
-  Scale scale_;
+  Scale x_scale_;
+  Scale y_scale_;
 };
 
 }  // namespace leviosim::tools::plot

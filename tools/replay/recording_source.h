@@ -25,6 +25,7 @@ class RecordingSource : public JobSource {
 
   int frames() const override { return source_.frames(); }
   std::int64_t time_ns(int frame) const override { return source_.time_ns(frame); }
+  std::int64_t arrival_ns(int frame) const override { return source_.arrival_ns(frame); }
   bool take_up(const FrameStart& start) override;
   const work::Job& process_frame(FrameResult& result) override;
   int iterations() const override { return source_.iterations(); }

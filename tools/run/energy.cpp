@@ -34,7 +34,16 @@ Seconds cluster_time(const std::vector<EnergyRow>& rows) {
   return sum;
 }
 
+/// Until a period after the camera's last frame, dropped or not, or until the last pose.
+Seconds duration(const CameraRecord& camera, const RunResult& run) {
+  std::int64_t end_ns = run.frames.empty() ? 0 : run.frames.back().end_ns;
+  if (!camera.deliveries.empty())
+    end_ns = std::max(end_ns, camera.deliveries.back().arrival_ns + run.frame_period_ns);
+  return Seconds(static_cast<double>(end_ns) * 1e-9);
+}
+
 Seconds duration(const RunResult& run, const sim::ChipConfig& chip) {
+  if (run.camera) return duration(*run.camera, run);
   if (run.frames.empty()) return Seconds(0);
   const auto camera_ns = static_cast<double>(run.frames.back().arrival_ns + run.frame_period_ns);
   Cycles front_end;
@@ -103,7 +112,7 @@ std::optional<RunEnergy> energy_of(const RunResult& run) {
 }
 
 std::optional<RunEnergy> energy_at(const RunResult& run, const sim::OperatingPoint& point) {
-  if (!run.timed || !sim::knows_energy(run.chip)) return std::nullopt;
+  if (!run.timed || run.camera || !sim::knows_energy(run.chip)) return std::nullopt;
   sim::ChipConfig chip = run.chip;
   const Hertz faster = std::max(chip.cluster.clock, chip.controller.clock);
   const double ratio =

@@ -34,7 +34,8 @@ inline constexpr const char* kIdle = "cluster idle";
 struct RunEnergy {
   std::vector<EnergyRow> rows;  ///< the stages in the run's order, and last the idle time
   std::int64_t frames = 0;
-  /// From the first frame to a period after the last, or what the front end took if that is longer.
+  /// From the first frame to a period after the last, or what the front end took if that is longer;
+  /// in a closed loop, until the last pose if that is later.
   Seconds time;
 
   sim::DomainEnergies total() const;
@@ -50,7 +51,8 @@ std::optional<RunEnergy> energy_of(const RunResult& run);
 
 /// The same cycles at another operating point: the faster of the two clocks runs at the clock of
 /// the point, the other one in proportion. What another speed changes in the computation (a
-/// result that is published a frame later) is left out.
+/// result that is published a frame later) is left out; of a closed loop, where it also changes
+/// which frames are processed, there is no such estimate.
 std::optional<RunEnergy> energy_at(const RunResult& run, const sim::OperatingPoint& point);
 
 }  // namespace leviosim::tools

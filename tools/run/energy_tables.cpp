@@ -111,7 +111,7 @@ std::string power_table(const RunResult& run) {
 }
 
 std::string operating_point_table(const RunResult& run) {
-  if (!energy_of(run) || run.frames.empty()) return {};
+  if (!energy_of(run) || run.camera || run.frames.empty()) return {};
   TextTable table({{"supply", kLeft},
                    {"clock"},
                    {"front end ms"},

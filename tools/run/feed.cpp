@@ -34,27 +34,50 @@ vio::ImuInput to_input(const traces::ImuSample& sample, std::int64_t before_ns) 
   return input;
 }
 
+std::vector<CameraFrame> camera_frames(const RunRequest& request, const traces::Dataset& data) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
+  if (!request.camera || !request.camera->fps) return all_frames(stamps_ns);
+  return frames_at(*request.camera->fps, stamps_ns, data.camera.rate_hz);
+}
+
 }  // namespace
 
 Feed::Feed(const RunRequest& request)
     : data_(traces::open_asl(request.data, {.frames = request.frames})),
+      frames_(camera_frames(request, data_)),
+      rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),
       images_(data_, request.image_size),
       rig_(make_rig(data_.camera, images_.intrinsics())) {}
 
+/// Read while the frame before was worked on, if no frame was dropped since that was not dropped
+/// before: what comes next is taken to be as far away as the last one was.
+traces::GrayImage Feed::take_image(int i) {
+  const bool foreseen = next_.valid() && next_frame_ == i;
+  traces::GrayImage image = foreseen ? next_.get() : read(i);
+  next_frame_ = i + (last_ < 0 ? 1 : i - last_);
+  if (next_frame_ < size())
+    next_ = std::async(std::launch::async, [this, k = next_frame_] { return read(k); });
+  return image;
+}
+
+std::span<const traces::ImuSample> Feed::imu_of(int i) const {
+  if (last_ < 0) return traces::imu_batch(data_, camera_frame(i).recorded);
+  return traces::imu_between(data_.imu, time_ns(last_), time_ns(i));
+}
+
 const vio::FrameInput& Feed::frame(int i) {
-  const auto read = [this](int k) { return images_.read(static_cast<std::size_t>(k)); };
-  image_ = next_.valid() ? next_.get() : read(i);
-  if (i + 1 < size()) next_ = std::async(std::launch::async, read, i + 1);
+  image_ = take_image(i);
   input_.pixels = image_.pixels.data();
   input_.width = image_.width;
   input_.height = image_.height;
-  input_.dt = i > 0 ? seconds(time_ns(i) - time_ns(i - 1)) : 0.0f;
+  input_.dt = last_ >= 0 ? seconds(time_ns(i) - time_ns(last_)) : 0.0f;
   input_.imu.clear();
-  const auto batch = traces::imu_batch(data_, static_cast<std::size_t>(i));
-  for (const traces::ImuSample& sample : batch) {
+  for (const traces::ImuSample& sample : imu_of(i)) {
     const bool first_of_all = &sample == data_.imu.data();
     input_.imu.push_back(to_input(sample, first_of_all ? sample.t_ns : (&sample - 1)->t_ns));
   }
+  last_ = i;
   return input_;
 }
 

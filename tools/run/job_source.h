@@ -32,7 +32,10 @@ class JobSource {
   virtual int frames() const = 0;
   /// Time stamp of the camera.
   virtual std::int64_t time_ns(int frame) const = 0;
+  /// When the camera delivers it: simulated time since the first.
+  virtual std::int64_t arrival_ns(int frame) const { return time_ns(frame) - time_ns(0); }
 
+  /// Numbers rise; frames that the camera dropped are left out.
   /// @returns whether an optimisation begins; never while the optimiser is busy
   virtual bool take_up(const FrameStart& start) = 0;
   /// Of the frame taken up. Its work is valid until the next frame is; `result` lacks times.

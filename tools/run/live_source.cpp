@@ -22,9 +22,11 @@ work::MachineConfig cluster_machine(const RunRequest& request, const vio::Profil
 }
 
 work::MachineConfig controller_machine(const RunRequest& request) {
+  Bytes l2 = request.platform.config.l2.size;
+  if (request.camera) l2 -= second_buffer(request.image_size.width, request.image_size.height);
   return {.cores = 1,
           .memory = "L2",
-          .capacity = request.native ? kUnlimited : request.platform.config.l2.size,
+          .capacity = request.native ? kUnlimited : l2,
           .alignment = 4,
           .record = !request.native,
           .code = &platform::compiled_code()};
@@ -51,6 +53,7 @@ traces::StampedPose body_pose(const vio::FrameReport& report, const traces::Came
 
 LiveSource::LiveSource(const RunRequest& request)
     : profile_(profile_of(request)),
+      evaluate_(request.evaluate),
       feed_(request),
       cluster_(cluster_machine(request, profile_)),
       controller_(controller_machine(request)),
@@ -103,17 +106,19 @@ std::vector<StageResult> LiveSource::empty_stages() const {
 
 void LiveSource::describe(RunResult& result) const {
   result.profile = profile_.name;
-  result.frame_period_ns = std::llround(1e9 / feed_.data().camera.rate_hz);
+  result.frame_period_ns = std::llround(1e9 / feed_.rate_hz());
+  if (result.camera) result.camera->fps = feed_.rate_hz();
   result.image_width = feed_.rig().width;
   result.image_height = feed_.rig().height;
   for (const auto& [name, arena] : {std::pair<const char*, const work::Arena&>{
                                         "last keyframe", odometry_->last_keyframe_memory()},
                                     {"pose graph", odometry_->pose_graph_memory()}})
     result.l2.push_back({name, arena.used(), arena.live()});
-  if (!feed_.data().ground_truth.empty() && result.trajectory.size() >= 3)
+  if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= 3)
     result.ate =
         traces::evaluate(result.trajectory, traces::to_trajectory(feed_.data().ground_truth),
-                         {.expected_poses = result.frames.size()});
+                         {.expected_poses = result.camera ? result.camera->deliveries.size()
+                                                          : result.frames.size()});
 }
 
 }  // namespace leviosim::tools

@@ -15,6 +15,7 @@ class LiveSource : public JobSource {
 
   int frames() const override { return feed_.size(); }
   std::int64_t time_ns(int frame) const override { return feed_.time_ns(frame); }
+  std::int64_t arrival_ns(int frame) const override { return feed_.arrival_ns(frame); }
   bool take_up(const FrameStart& start) override;
   const work::Job& process_frame(FrameResult& result) override;
   int iterations() const override { return profile_.optimiser_iterations; }
@@ -25,6 +26,7 @@ class LiveSource : public JobSource {
 
  private:
   vio::Profile profile_;
+  bool evaluate_;
   Feed feed_;
   work::Machine cluster_;
   work::Machine controller_;

@@ -38,11 +38,14 @@ Json manifest_json(const Manifest& manifest, const RunResult& run) {
   if (!manifest.workload.empty()) document["workload"] = manifest.workload;
   document["seed"] = manifest.seed;
   document["platform"] = platform_json(manifest, run);
+  if (run.camera)
+    document["camera"] = {{"frames_per_second", run.camera->fps},
+                          {"deadline", info_of(run.camera->deadline).name}};
   document["image"]["width"] = run.image_width;
   document["image"]["height"] = run.image_height;
   document["data"]["folder"] = manifest.data;
   document["data"]["first_frame"] = manifest.first_frame;
-  document["data"]["frames"] = run.frames.size();
+  document["data"]["frames"] = run.camera ? run.camera->deliveries.size() : run.frames.size();
   document["inputs"] = inputs_json(manifest.inputs);
   if (!manifest.recording.is_null()) document["recording"] = manifest.recording;
   document["host"]["seconds"] = run.host_seconds;

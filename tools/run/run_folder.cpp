@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/run/camera_figures.h"
 #include "tools/run/energy.h"
 #include "tools/run/summary.h"
 #include "traces/atomic_file.h"
@@ -110,6 +111,49 @@ std::string energy_lines(const EnergyRow& row) {
   return text;
 }
 
+CsvLine frame_line(const RunResult& run, const FrameResult& frame) {
+  CsvLine line;
+  line.add(std::int64_t{frame.index}).add(frame.t_ns).add(key_of(frame.source));
+  for (const int value : {int{frame.keyframe}, frame.features, frame.world_matches,
+                          frame.frame_matches, frame.inliers, frame.landmarks})
+    line.add(std::int64_t{value});
+  if (run.timed)
+    line.add(frame.arrival_ns)
+        .add(frame.start_ns)
+        .add(frame.end_ns)
+        .add(frame.end_ns - frame.arrival_ns)
+        .add(frame.cycles)
+        .add(frame.single_cycles);
+  return line;
+}
+
+/// A frame that was never processed: all cells but frame, stamp and arrival are empty.
+CsvLine dropped_line(const Delivery& delivery) {
+  constexpr int kOfTheImage = 7;
+  constexpr int kOfTheTiming = 5;
+  CsvLine line;
+  line.add(std::int64_t{delivery.frame}).add(delivery.t_ns);
+  for (int i = 0; i < kOfTheImage; ++i) line.add(std::string_view());
+  line.add(delivery.arrival_ns);
+  for (int i = 0; i < kOfTheTiming; ++i) line.add(std::string_view());
+  return line;
+}
+
+/// Of a closed loop: all frames of the camera, dropped or not.
+std::string delivery_lines(const RunResult& run) {
+  std::string text;
+  auto frame = run.frames.begin();
+  for (const Delivery& delivery : run.camera->deliveries) {
+    const bool missed = delivery.dropped || is_late(*frame, run);
+    CsvLine line = delivery.dropped ? dropped_line(delivery) : frame_line(run, *frame++);
+    line.add(std::int64_t{delivery.found})
+        .add(std::int64_t{delivery.dropped})
+        .add(std::int64_t{missed});
+    text += line.str();
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string stages_csv(const RunResult& run) {
@@ -121,23 +165,10 @@ std::string stages_csv(const RunResult& run) {
 std::string frames_csv(const RunResult& run) {
   std::string text =
       "frame,t_ns,source,keyframe,features,world_matches,frame_matches,inliers,landmarks";
-  text +=
-      run.timed ? ",arrival_ns,start_ns,end_ns,latency_ns,parallel_cycles,single_cycles\n" : "\n";
-  for (const FrameResult& frame : run.frames) {
-    CsvLine line;
-    line.add(std::int64_t{frame.index}).add(frame.t_ns).add(key_of(frame.source));
-    for (const int value : {int{frame.keyframe}, frame.features, frame.world_matches,
-                            frame.frame_matches, frame.inliers, frame.landmarks})
-      line.add(std::int64_t{value});
-    if (run.timed)
-      line.add(frame.arrival_ns)
-          .add(frame.start_ns)
-          .add(frame.end_ns)
-          .add(frame.end_ns - frame.arrival_ns)
-          .add(frame.cycles)
-          .add(frame.single_cycles);
-    text += line.str();
-  }
+  if (run.timed) text += ",arrival_ns,start_ns,end_ns,latency_ns,parallel_cycles,single_cycles";
+  if (run.camera) return text + ",found_in_buffers,dropped,missed\n" + delivery_lines(run);
+  text += '\n';
+  for (const FrameResult& frame : run.frames) text += frame_line(run, frame).str();
   return text;
 }
 

@@ -19,7 +19,7 @@ void refuse_chip_options(const CLI::App& command, const RunOptions& options) {
   const auto refuse = [](const std::string& option) {
     throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
   };
-  for (const char* option : {"--platform", "--cores", "--record"})
+  for (const char* option : {"--platform", "--cores", "--record", "--camera-fps", "--deadline"})
     if (command.count(option) > 0) refuse(option);
   for (const std::string& text : split_overrides(options.overrides).chip) refuse("--set " + text);
 }
@@ -87,6 +87,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--native", options.native, "no chip, no timing: the golden model");
   add_workload_options(command, options, "");
   add_text(command, "--size", options.size, "WxH", "image size [160x120]");
+  add_text(command, "--camera-fps", options.camera_fps, "F",
+           "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
+  add_text(command, "--deadline", options.deadline, "drop|queue",
+           "closed loop: what becomes of a frame that finds the front end busy [drop]");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
   add_out_options(command, options);
 }
@@ -96,6 +100,14 @@ void add_chip_run_options(CLI::App& command, RunOptions& options) {
   options.data = "synthetic";
   add_chip_options(command, options, " [gap9]");
   add_workload_options(command, options, " [synthetic]");
+}
+
+std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline) {
+  if (fps.empty() && deadline.empty()) return std::nullopt;
+  CameraRequest camera;
+  if (!fps.empty()) camera.fps = parse_positive("--camera-fps", fps);
+  if (!deadline.empty()) camera.deadline = parse_deadline(deadline);
+  return camera;
 }
 
 traces::ImageSize parse_size(const std::string& text) {
@@ -117,6 +129,11 @@ RunRequest make_request(const CLI::App& command, const RunOptions& options) {
   } else {
     require(command, "--platform", "the name of a chip or a platform file, or --native");
     resolve_chip(options, request);
+    request.camera = parse_camera(options.camera_fps, options.deadline);
+    if (request.camera && options.record)
+      throw InputError(
+          "run: --record is for open loops, whose trace holds the work of every frame; with "
+          "--camera-fps or --deadline, frames are dropped as the chip's speed has it");
   }
   return request;
 }

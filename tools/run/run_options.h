@@ -17,6 +17,8 @@ struct RunOptions {
   std::string cores;
   std::string seed = "1";
   std::string size = "160x120";
+  std::string camera_fps;
+  std::string deadline;
   std::string out;
   std::vector<std::string> overrides;
   bool native = false;
@@ -46,6 +48,10 @@ RunRequest make_chip_request(const RunOptions& options);
 /// The number that --cores names, or by default that of the chip.
 /// @throws InputError for more cores than the chip serves
 int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster);
+
+/// The closed loop that --camera-fps and --deadline ask for, if one of them is given; the other
+/// is then the recorded rate or `drop`. @throws InputError
+std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline);
 
 /// "160x120". @throws InputError
 traces::ImageSize parse_size(const std::string& text);

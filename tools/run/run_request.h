@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "platform_models/loader.h"
+#include "tools/run/camera.h"
 #include "tools/run/run_observer.h"
 #include "tools/run/run_result.h"
 #include "traces/frame_range.h"
@@ -27,8 +28,12 @@ struct RunRequest {
   std::uint32_t seed = 1;                 ///< of the workload's random draws
   std::vector<vio::Assignment> workload;  ///< parameters that differ from the profile's
   platform::ResolvedPlatform platform;    ///< unused if native
-  RunObserver* observer = nullptr;        ///< sees every job; unused if native
-  WorkRecording* recording = nullptr;     ///< gets every job, for a trace; unused if native
+  /// The closed loop. Without, every recorded frame is delivered and waits until it is processed.
+  std::optional<CameraRequest> camera;
+  /// Whether the trajectory is compared with the truth. What diverged cannot be, and is refused.
+  bool evaluate = true;
+  RunObserver* observer = nullptr;     ///< sees every job; unused if native
+  WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
 };
 
 /// The profile with the parameters that were set.

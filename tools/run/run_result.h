@@ -13,6 +13,7 @@
 #include "sim/units.h"
 #include "sim/work/program.h"
 #include "sim/work/transfers.h"
+#include "tools/run/camera.h"
 #include "traces/evaluation.h"
 #include "traces/trajectory.h"
 #include "workload/pipeline/odometry.h"
@@ -70,11 +71,12 @@ struct RunResult {
   Hertz controller_clock;
   Bytes l1_size;
   Bytes l2_size;
-  std::int64_t frame_period_ns = 0;
+  std::int64_t frame_period_ns = 0;  ///< of the camera
   int image_width = 0;
   int image_height = 0;
-  std::vector<StageResult> stages;  ///< in the order of the workload
-  std::vector<FrameResult> frames;
+  std::vector<StageResult> stages;     ///< in the order of the workload
+  std::vector<FrameResult> frames;     ///< that the front end processed
+  std::optional<CameraRecord> camera;  ///< of a closed loop
   std::vector<L2Row> l2;
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy

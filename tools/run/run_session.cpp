@@ -61,11 +61,11 @@ Manifest make_manifest(const RunOptions& options, const RunRequest& request, con
 }
 
 std::string heading(const RunOptions& options, const RunResult& run) {
-  std::string text =
-      fmt::format("leviosim {}: {} on {}, {} of {}, {}x{}", version(), run.profile,
-                  run.timed ? options.platform : "the host",
-                  run.frames.size() == 1 ? "1 frame" : fmt::format("{} frames", run.frames.size()),
-                  options.data, run.image_width, run.image_height);
+  const std::size_t frames = run.camera ? run.camera->deliveries.size() : run.frames.size();
+  std::string text = fmt::format("leviosim {}: {} on {}, {} of {}, {}x{}", version(), run.profile,
+                                 run.timed ? options.platform : "the host",
+                                 frames == 1 ? "1 frame" : fmt::format("{} frames", frames),
+                                 options.data, run.image_width, run.image_height);
   for (const std::string& set : split_overrides(options.overrides).workload) text += ", " + set;
   const auto mhz = [](Hertz f) { return static_cast<double>(f.count()) * 1e-6; };
   if (run.timed)
@@ -73,6 +73,9 @@ std::string heading(const RunOptions& options, const RunResult& run) {
                         mhz(run.cluster_clock), mhz(run.controller_clock));
   if (run.timed && sim::knows_energy(run.chip))
     text += fmt::format(", {:g} V", run.chip.supply.voltage.count());
+  if (run.camera)
+    text += fmt::format(", camera at {:g} frames/s ({})", run.camera->fps,
+                        info_of(run.camera->deadline).name);
   return text + "\n\n";
 }
 

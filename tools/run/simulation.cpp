@@ -64,14 +64,20 @@ Simulation::Simulation(const RunRequest& request, JobSource& source, ProgressCal
       single_core_(request.platform.config, 1),
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(source.frames())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
-      book_(source.empty_stages()) {}
+      book_(source.empty_stages()) {
+  if (request.camera) {
+    result_.camera.emplace();
+    result_.camera->deadline = request.camera->deadline;
+  }
+}
 
 RunResult Simulation::run() {
   chip_.kernel().spawn("camera", camera());
-  chip_.kernel().spawn("front end", front_end());
+  chip_.kernel().spawn_server("front end", front_end());
   chip_.kernel().spawn_server("optimiser", optimiser());
   const std::size_t blocked = chip_.kernel().run();
   check_equal(blocked, std::size_t{0}, "processes that wait for ever");
+  check_equal(in_hand_, 0, "frames without a pose");
   return take_result();
 }
 
@@ -79,18 +85,33 @@ std::int64_t Simulation::now_ns() const {
   return chip_.timebase().whole_nanoseconds(chip_.kernel().now() - sim::Time{});
 }
 
+bool Simulation::takes(int frame) {
+  if (result_.camera) {
+    const bool dropped = in_hand_ >= info_of(result_.camera->deadline).capacity;
+    result_.camera->deliveries.push_back(
+        {frame, source_.time_ns(frame), source_.arrival_ns(frame), in_hand_, dropped});
+    if (dropped) return false;
+  }
+  ++in_hand_;
+  return true;
+}
+
 sim::Process Simulation::camera() {
+  // Whether a frame is lost shows when the instant has settled: if the front end ends in it, it is
+  // free.
+  const sim::Phase phase = result_.camera ? sim::Phase::Observe : sim::Phase::Run;
   for (int i = 0; i < source_.frames(); ++i) {
-    co_await chip_.kernel().at(sim::Time{} + chip_.timebase().from_nanoseconds(arrival_ns(i)));
-    co_await camera_frames_.push(i);
+    const sim::Duration arrival = chip_.timebase().from_nanoseconds(source_.arrival_ns(i));
+    co_await chip_.kernel().at(sim::Time{} + arrival, phase);
+    if (takes(i)) co_await camera_frames_.push(i);
   }
 }
 
 sim::Process Simulation::front_end() {
-  for (int done = 0; done < source_.frames(); ++done) {
+  for (;;) {
     const int i = co_await camera_frames_.pop();
     FrameResult frame;
-    frame.arrival_ns = arrival_ns(i);
+    frame.arrival_ns = source_.arrival_ns(i);
     frame.start_ns = now_ns();
     if (optimiser_busy_) ++result_.optimiser_late;
     const bool begun = source_.take_up({i, frame.start_ns, optimiser_busy_, published_frame_});
@@ -102,6 +123,7 @@ sim::Process Simulation::front_end() {
     const work::Job& job = source_.process_frame(frame);
     book_.add_work(job);
     const sim::JobTiming timing = co_await chip_.offload(job);
+    --in_hand_;
     book_.add_parallel(timing);
     const sim::JobTiming single = single_core_.front_end(job);
     book_.add_single(single);
@@ -112,7 +134,7 @@ sim::Process Simulation::front_end() {
     result_.frames.push_back(frame);
     if (request_.observer != nullptr)
       request_.observer->on_front_end({i, begun, frame, job, timing, single});
-    progress_({done + 1, source_.frames(), frame.end_ns});
+    progress_({i + 1, source_.frames(), frame.end_ns});
   }
 }
 
@@ -150,6 +172,10 @@ RunResult Simulation::take_result() {
                   [](const work::Block& block) { return block.name == vio::kPersistentBlock; });
   }
   if (optimiser.bytes > Bytes(0)) result_.l2.push_back(optimiser);
+  if (result_.camera) {
+    const Bytes size = second_buffer(result_.image_width, result_.image_height);
+    result_.l2.push_back({"camera", size, {{"second image buffer", Bytes(0), size}}});
+  }
   return std::move(result_);
 }
 

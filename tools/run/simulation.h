@@ -1,9 +1,13 @@
-// The closed loop: camera, front end and optimiser as processes in simulated time, around a source
-// of work that, if live, really computes.
+// The loop of a run: camera, front end and optimiser as processes in simulated time, around a
+// source of work that, if live, really computes.
 //
 //   camera ──frames──▶ front end (cluster) ──snapshot──▶ optimiser (fabric controller)
 //                          ▲                                   │
 //                          └────────── published result ───────┘
+//
+// By default the loop is open: every recorded frame is delivered and waits until the front end has
+// time for it. Closed (RunRequest::camera), the camera has its own rate and two buffers (camera.h),
+// and frames are lost.
 //
 // A stage's values are computed when it starts in simulated time and used by others when it ends:
 // the front end of a frame sees what the optimiser had published when the frame was taken up.
@@ -30,7 +34,8 @@ class Simulation {
   sim::Process camera();
   sim::Process front_end();
   sim::Process optimiser();
-  std::int64_t arrival_ns(int frame) const { return source_.time_ns(frame) - source_.time_ns(0); }
+  /// Whether a frame that has arrived is taken. In a closed loop it may be dropped.
+  bool takes(int frame);
   std::int64_t now_ns() const;
   RunResult take_result();
 
@@ -40,6 +45,7 @@ class Simulation {
   sim::Chip chip_;
   JobTimer single_core_;  ///< the same jobs on one worker
   sim::Channel<int> camera_frames_;
+  int in_hand_ = 0;  ///< frames taken whose pose is not out yet
   sim::Event snapshot_taken_;
   bool optimiser_busy_ = false;
   int snapshot_frame_ = 0;    ///< at whose start the optimiser's snapshot was taken

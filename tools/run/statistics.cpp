@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tools/eval/accuracy.h"
+#include "tools/run/camera_figures.h"
 #include "tools/run/energy.h"
 #include "tools/run/statistic_list.h"
 #include "tools/run/summary.h"
@@ -132,6 +133,35 @@ void add_latencies(StatisticList& list, const RunResult& run) {
   }
 }
 
+/// Of closed loops only.
+void add_camera(StatisticList& list, const RunResult& run) {
+  const std::optional<CameraFigures> figures = camera_figures(run);
+  if (!figures) return;
+  list.add("camera.rate", "1/s", "frames that the camera delivers", run.camera->fps);
+  list.add("camera.deadline", "text", "what becomes of frames that find the front end busy",
+           info_of(run.camera->deadline).name);
+  list.add("camera.arrived", "1", "frames that the camera delivered", figures->arrived);
+  list.add("camera.processed", "1", "of these, frames that the front end took", figures->processed);
+  list.add("camera.dropped", "1", "of these, frames that were lost", figures->dropped);
+  list.add("camera.late", "1", "processed frames whose latency exceeds the frame period",
+           figures->late);
+  list.add("camera.missed", "1", "frames that were dropped or late", figures->missed());
+  list.add("camera.dropped_share", "1", "dropped frames over arrived ones",
+           figures->share_of(figures->dropped));
+  list.add("camera.missed_share", "1", "dropped or late frames over arrived ones",
+           figures->share_of(figures->missed()));
+  list.add("camera.most_found", "1", "most frames that one found in the camera's two buffers",
+           figures->most_found);
+  const CameraFigures::Latencies& latency = figures->latency;
+  list.add("latency.all.p50", "ns", "median from the camera's frame to its pose", latency.p50_ns);
+  list.add("latency.all.p95", "ns", "that 95 % of the processed frames do not exceed",
+           latency.p95_ns);
+  list.add("latency.all.p99", "ns", "that 99 % of the processed frames do not exceed",
+           latency.p99_ns);
+  list.add("latency.all.worst", "ns", "longest from the camera's frame to its pose",
+           latency.max_ns);
+}
+
 void add_l2(StatisticList& list, const RunResult& run) {
   for (const L2Row& row : run.l2) {
     const std::string path = fmt::format("memory.l2.{}.", key_of(row.name));
@@ -195,6 +225,7 @@ Json statistics(const RunResult& run) {
   add_frames(list, run);
   if (run.timed) {
     add_latencies(list, run);
+    add_camera(list, run);
     add_l2(list, run);
     add_energy(list, run);
     list.add("optimiser.published", "1", "results that reached the front end",

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "tools/eval/accuracy.h"
+#include "tools/run/camera_figures.h"
 #include "tools/run/energy_tables.h"
 #include "tools/run/summary.h"
 #include "tools/run/text_table.h"
@@ -225,6 +226,26 @@ std::string latency_table(const RunResult& run) {
          table.str() + waiting_line(run);
 }
 
+std::string camera_summary(const RunResult& run) {
+  const std::optional<CameraFigures> figures = camera_figures(run);
+  if (!figures) return {};
+  const auto counted = [&](std::int64_t frames) {
+    return fmt::format("{} ({:.1f} %)", frames, 100 * figures->share_of(frames));
+  };
+  const auto ms = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-6; };
+  const CameraFigures::Latencies& latency = figures->latency;
+  return fmt::format(
+      "closed loop: camera at {:g} frames/s; {}\n"
+      "frames: {} arrived, {} processed, {} dropped; {} late, so {} missed the deadline of a "
+      "period\n"
+      "        {} waited; most frames found in the camera's two buffers: {}\n"
+      "latency [ms]: p50 {:.2f}, p95 {:.2f}, p99 {:.2f}, worst {:.2f}; the period is {:.2f}\n",
+      run.camera->fps, info_of(run.camera->deadline).description, figures->arrived,
+      figures->processed, counted(figures->dropped), counted(figures->late),
+      counted(figures->missed()), counted(figures->waited), figures->most_found, ms(latency.p50_ns),
+      ms(latency.p95_ns), ms(latency.p99_ns), ms(latency.max_ns), ms(run.frame_period_ns));
+}
+
 std::string memory_table(const RunResult& run) {
   TextTable table({{"peak", kLeft},
                    {"memory", kLeft},
@@ -284,8 +305,8 @@ std::string host_line(const RunResult& run) {
 std::string report(const RunResult& run) {
   std::string text;
   if (run.timed)
-    for (const auto table : {stage_table, account_table, latency_table, memory_table, energy_table,
-                             power_table, operating_point_table})
+    for (const auto table : {stage_table, account_table, latency_table, camera_summary,
+                             memory_table, energy_table, power_table, operating_point_table})
       if (const std::string lines = table(run); !lines.empty()) text += lines + '\n';
   return text + frame_summary(run) + trajectory_summary(run) + host_line(run);
 }

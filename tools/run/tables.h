@@ -18,6 +18,9 @@ std::string account_table(const RunResult& run);
 /// Mean and worst latency of the kinds of frame, against the frame period.
 std::string latency_table(const RunResult& run);
 
+/// Of a closed loop: lost and late frames, percentiles of the latency. Else empty.
+std::string camera_summary(const RunResult& run);
+
 /// Peaks in L1 and L2, and the blocks that were alive at them.
 std::string memory_table(const RunResult& run);
 
