@@ -35,6 +35,7 @@ class BackEnd {
   Window<P> window_;
   WindowPrior<P> prior_;  ///< only if the optimiser works jointly
   LmState<P> damping_;
+  bool solved_ = false;  ///< the system of this snapshot could be solved
 };
 
 }  // namespace leviosim::vio

@@ -63,8 +63,11 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
   if (!started_) {
     start(frame);
     report.keyframe = true;
-  } else if (profile_.guided.enabled && rest_ && graph_in_l2_.keyframe_count() == I32(1)) {
+  } else if (profile_.guided.enabled && rest_ && !window_is_full()) {
     start_at_rest(frame);
+    report.keyframe = true;
+  } else if (profile_.guided.enabled && !map_is_plausible()) {
+    start_anew(frame);
     report.keyframe = true;
   } else {
     std::optional<Pose<P>> pose =
@@ -82,11 +85,16 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
       }
       if (!pose) pose = pose_from_keyframe(frame, report);
     }
+    if (profile_.guided.enabled && !is_plausible(*pose, input.dt)) {
+      report.source = PoseSource::Kept;
+      pose = motion_.T_world_camera();
+    }
     frame.T_world_camera = *pose;
-    report.keyframe = is_keyframe(frame);
+    report.keyframe = is_keyframe(frame, report);
     if (report.keyframe) insert_keyframe(frame);
   }
-  if (profile_.guided.enabled) remember_motion(frame, report.keyframe);
+  if (profile_.guided.enabled)
+    remember_motion(frame, report.keyframe, report.source == PoseSource::Predicted);
   report.features = frame.features.list.count;
   report.frame_matches = frame.keyframe_matches.count;
   report.landmarks = work::value(graph_.landmark_count());
@@ -250,11 +258,13 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
 /// rotation that the gyro measured, for a wrong pose would look like parallax, and every frame
 /// after it would become a keyframe. Only without an IMU it is that of the poses.
 template <class P>
-bool FrontEnd<P>::is_keyframe(const Frame& frame) {
+bool FrontEnd<P>::is_keyframe(const Frame& frame, const FrameReport& report) {
   work::Arena& local = machine_.local();
   const work::Arena::Frame memory(local);
   const auto stage = machine_.stage(stages::kKeyframeSelection);
   const MatchList<P>& matches = frame.keyframe_matches;
+  const bool guided = profile_.guided.enabled;
+  if (guided && frame.features.list.count < profile_.recovery.min_features) return false;
   if (matches.count < profile_.min_frame_matches) return true;
   Mat3<P> R_camera_keyframe = Mat3<P>::identity();
   if (profile_.parallax_without_rotation && profile_.use_imu) {
@@ -277,7 +287,11 @@ bool FrontEnd<P>::is_keyframe(const Frame& frame) {
     const F y = seen.y - turned.y * scale;
     sum += work::sqrt(F(x * x + y * y));
   }
-  return bool(sum > F(profile_.keyframe_parallax * static_cast<float>(matches.count)));
+  float parallax = profile_.keyframe_parallax;
+  const bool lost = report.source == PoseSource::Predicted;
+  if (guided && (lost || report.inliers < profile_.recovery.min_tracked))
+    parallax *= profile_.recovery.min_parallax;
+  return bool(sum > F(parallax * static_cast<float>(matches.count)));
 }
 
 template class FrontEnd<work::Native>;
