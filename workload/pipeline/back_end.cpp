@@ -21,6 +21,7 @@ BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& contr
 template <class P>
 bool BackEnd<P>::begin() {
   if (work::value(graph_.keyframe_count()) < 2) return false;
+  if (options_.joint && is_settled()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
   if (options_.joint) {
     update_prior();
@@ -32,6 +33,16 @@ bool BackEnd<P>::begin() {
   damping_ = LmState<P>(options_);
   solved_ = false;
   return true;
+}
+
+/// Whether the newest keyframe has had its share of iterations. More of them only wander along what
+/// the window hardly determines, and move a vehicle that stands still.
+template <class P>
+bool BackEnd<P>::is_settled() {
+  const int newest = work::value(I32(graph_.keyframe_ids[graph_.newest_keyframe()]));
+  if (newest != newest_) snapshots_ = 0;
+  newest_ = newest;
+  return ++snapshots_ > kSnapshotsPerKeyframe;
 }
 
 /// Marginalises the keyframes that have left the graph since the last snapshot, from which they

@@ -83,6 +83,12 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
         report.source = PoseSource::Predicted;
         pose = predicted_pose();
       }
+      // With a single keyframe any length is a guess: it waits for a parallax that is worth one.
+      if (!pose && profile_.guided.enabled && graph_in_l2_.keyframe_count() == I32(1) &&
+          !is_keyframe(frame, report)) {
+        report.source = PoseSource::Kept;
+        pose = Pose<P>{pose_by_motion(frame).R, frame.T_world_last.t};
+      }
       if (!pose) pose = pose_from_keyframe(frame, report);
     }
     if (profile_.guided.enabled && !is_plausible(*pose, input.dt)) {
@@ -264,7 +270,7 @@ bool FrontEnd<P>::is_keyframe(const Frame& frame, const FrameReport& report) {
   const auto stage = machine_.stage(stages::kKeyframeSelection);
   const MatchList<P>& matches = frame.keyframe_matches;
   const bool guided = profile_.guided.enabled;
-  if (guided && frame.features.list.count < profile_.recovery.min_features) return false;
+  if (guided && (rest_ || frame.features.list.count < profile_.recovery.min_features)) return false;
   if (matches.count < profile_.min_frame_matches) return true;
   Mat3<P> R_camera_keyframe = Mat3<P>::identity();
   if (profile_.parallax_without_rotation && profile_.use_imu) {
@@ -289,7 +295,9 @@ bool FrontEnd<P>::is_keyframe(const Frame& frame, const FrameReport& report) {
   }
   float parallax = profile_.keyframe_parallax;
   const bool lost = report.source == PoseSource::Predicted;
-  if (guided && (lost || report.inliers < profile_.recovery.min_tracked))
+  const bool has_map =
+      bool(graph_in_l2_.keyframe_count() > I32(1));  // else noise looks like motion
+  if (guided && has_map && (lost || report.inliers < profile_.recovery.min_tracked))
     parallax *= profile_.recovery.min_parallax;
   return bool(sum > F(parallax * static_cast<float>(matches.count)));
 }
