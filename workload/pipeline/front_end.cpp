@@ -250,6 +250,7 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
   if (!essential.ok) return last.T_world_camera;
   const TwoViewPose<P> motion = recover_pose<P>(machine_, views, inliers, essential.E);
   if (!motion.ok) return last.T_world_camera;
+  if (profile_.guided.enabled && !agrees_with_gyro(motion.T_b_a.R)) return last.T_world_camera;
 
   report.source = PoseSource::EightPoint;
   report.inliers = essential.inliers;
@@ -257,6 +258,16 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
   const F length = work::max(F(norm(last.velocity) * dt), F(profile_.min_translation));
   const Pose<P> T_camera_keyframe{motion.T_b_a.R, motion.T_b_a.t * length};
   return last.T_world_camera * inverse(T_camera_keyframe);
+}
+
+/// Whether the gyro saw this rotation since the keyframe, to 0.1 rad: a second of the largest bias.
+/// The 8-point algorithm's choice among its four solutions is wrong at times, and a map that begins
+/// with one is of no use.
+template <class P>
+bool FrontEnd<P>::agrees_with_gyro(const Mat3<P>& R_camera_keyframe) {
+  constexpr float kCosine = 0.995f;
+  const auto& R = (R_camera_keyframe * motion_since_keyframe().R).m;
+  return bool(R[0][0] + R[1][1] + R[2][2] > F(1.0f + 2.0f * kCosine));
 }
 
 /// A keyframe has moved far enough, or can hardly be matched with the last one any more. Parallax
@@ -272,6 +283,7 @@ bool FrontEnd<P>::is_keyframe(const Frame& frame, const FrameReport& report) {
   const bool guided = profile_.guided.enabled;
   if (guided && (rest_ || frame.features.list.count < profile_.recovery.min_features)) return false;
   if (matches.count < profile_.min_frame_matches) return true;
+  if (guided && report.source == PoseSource::Kept) return false;  // its place is not known
   Mat3<P> R_camera_keyframe = Mat3<P>::identity();
   if (profile_.parallax_without_rotation && profile_.use_imu) {
     R_camera_keyframe = transpose(motion_since_keyframe().R);
@@ -295,9 +307,9 @@ bool FrontEnd<P>::is_keyframe(const Frame& frame, const FrameReport& report) {
   }
   float parallax = profile_.keyframe_parallax;
   const bool lost = report.source == PoseSource::Predicted;
-  const bool has_map =
-      bool(graph_in_l2_.keyframe_count() > I32(1));  // else noise looks like motion
-  if (guided && has_map && (lost || report.inliers < profile_.recovery.min_tracked))
+  // Without a map, noise would look like motion.
+  if (guided && (lost || report.inliers < profile_.recovery.min_tracked) &&
+      graph_in_l2_.keyframe_count() > I32(1))
     parallax *= profile_.recovery.min_parallax;
   return bool(sum > F(parallax * static_cast<float>(matches.count)));
 }
