@@ -86,6 +86,7 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
       // With a single keyframe any length is a guess: it waits for a parallax that is worth one.
       if (!pose && profile_.guided.enabled && graph_in_l2_.keyframe_count() == I32(1) &&
           !is_keyframe(frame, report)) {
+        const auto stage = machine_.stage(stages::kGuided);
         report.source = PoseSource::Kept;
         pose = Pose<P>{pose_by_motion(frame).R, frame.T_world_last.t};
       }

@@ -67,7 +67,7 @@ class FrontEnd {
   bool window_is_full() const;
   bool imu_predicts() const;
   bool agrees_with_gyro(const Mat3<P>& R_camera_keyframe);
-  bool map_is_plausible() const;
+  bool map_is_plausible();
   bool is_plausible(const Pose<P>& T_world_camera, float seconds) const;
   Pose<P> pose_by_motion(const Frame& frame);
   void remember_motion(const Frame& frame, bool keyframe, bool lost);

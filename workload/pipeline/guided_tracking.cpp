@@ -151,7 +151,8 @@ void FrontEnd<P>::remember_motion(const Frame& frame, bool keyframe, bool lost) 
 
 /// Whether the map has a meaning. The comparisons are not true either of what is not a number.
 template <class P>
-bool FrontEnd<P>::map_is_plausible() const {
+bool FrontEnd<P>::map_is_plausible() {
+  const auto stage = machine_.stage(stages::kGuided);
   const RecoveryOptions& limits = profile_.recovery;
   const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
   const ImuBias<P> bias = graph_in_l2_.bias();
