@@ -261,14 +261,15 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
   return last.T_world_camera * inverse(T_camera_keyframe);
 }
 
-/// Whether the gyro saw this rotation since the keyframe, to 0.1 rad: a second of the largest bias.
+/// Whether the gyro saw this rotation since the keyframe, but for the largest bias and 0.05 rad.
 /// The 8-point algorithm's choice among its four solutions is wrong at times, and a map that begins
 /// with one is of no use.
 template <class P>
 bool FrontEnd<P>::agrees_with_gyro(const Mat3<P>& R_camera_keyframe) {
-  constexpr float kCosine = 0.995f;
+  const float limit = 0.05f + profile_.optimiser.prior.gyro_bias * time_since_keyframe_;
   const auto& R = (R_camera_keyframe * motion_since_keyframe().R).m;
-  return bool(R[0][0] + R[1][1] + R[2][2] > F(1.0f + 2.0f * kCosine));
+  // The trace is 1 + 2 cos(angle).
+  return bool(F(3.0f) - (R[0][0] + R[1][1] + R[2][2]) < F(limit * limit));
 }
 
 /// A keyframe has moved far enough, or can hardly be matched with the last one any more. Parallax
