@@ -13,7 +13,6 @@
 namespace leviosim::vio {
 
 struct RefinementOptions {
-  bool enabled = false;
   int steps = 4;
   float sigma_px = 1.0f;
   float huber_px = 1.0f;   ///< errors count linearly from here on

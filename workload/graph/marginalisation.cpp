@@ -117,14 +117,19 @@ template <class P>
 void start_prior(const Window<P>& window, const PriorOptions& options, WindowPrior<P>& prior) {
   using F = typename P::F32;
   const typename P::Function function("start_prior");
+  const F known = window.bias_prior.gyro_information;
+  const bool rest = bool(known > F(4 * information(options.gyro_bias)));
+  const F tilt = information(rest ? options.rest_tilt : options.tilt);
+  const F velocity = information(rest ? options.rest_velocity : options.velocity);
+  const F gyro_bias = information(rest ? options.rest_gyro_bias : options.gyro_bias);
   prior.keyframes = 1;
   const int n = prior.unknowns();
   for (int i : P::range(0, n * n)) prior.information[i] = 0.0f;
   for (int i : P::range(0, n)) prior.vector[i] = 0.0f;
   for (int i = 0; i < 3; ++i) {
-    prior.information[i * n + i] = F(information(options.tilt));
-    prior.information[(kVelocityColumn + i) * (n + 1)] = F(information(options.velocity));
-    prior.information[(kPerKeyframe + i) * (n + 1)] = F(information(options.gyro_bias));
+    prior.information[i * n + i] = tilt;
+    prior.information[(kVelocityColumn + i) * (n + 1)] = velocity;
+    prior.information[(kPerKeyframe + i) * (n + 1)] = gyro_bias;
     prior.information[(kPerKeyframe + 3 + i) * (n + 1)] = F(information(options.accel_bias));
   }
   hold_gauge<P>(prior.information, n, 0, window.state.pose(0).R, options);

@@ -27,12 +27,18 @@ namespace leviosim::vio {
 
 /// What is known before the first keyframe, and how the gauge is held: standard deviations.
 struct PriorOptions {
-  float position = 1e-3f;        ///< of the oldest keyframe, m
-  float heading = 1e-3f;         ///< likewise, rad
-  float tilt = 0.1f;             ///< of the first keyframe: gravity averaged in motion, rad
-  float velocity = 1.0f;         ///< of the first keyframe, m/s
-  float gyro_bias = 0.1f;        ///< rad/s
-  float accel_bias = 0.1f;       ///< m/s²
+  float position = 1e-3f;   ///< of the oldest keyframe, m
+  float heading = 1e-3f;    ///< likewise, rad
+  float tilt = 0.1f;        ///< of the first keyframe: gravity averaged in motion, rad
+  float velocity = 1.0f;    ///< of the first keyframe, m/s
+  float gyro_bias = 0.1f;   ///< rad/s
+  float accel_bias = 0.1f;  ///< m/s²
+  // The first three, of a vehicle that stood still when it was seen first: its velocity is that of
+  // the moment in which it starts to move, its tilt and bias are means over a second, the tilt with
+  // the error that the accelerometer's bias makes.
+  float rest_tilt = 0.02f;
+  float rest_velocity = 0.1f;
+  float rest_gyro_bias = 0.005f;
   float gyro_walk = 1.9393e-5f;  ///< density, rad/s²/√Hz (EuRoC's sensor.yaml)
   float accel_walk = 3e-3f;      ///< density, m/s³/√Hz (likewise)
   /// Of each unknown's information, added to it before keyframes are eliminated, so that rounding
@@ -66,7 +72,8 @@ struct WindowPrior {
   ImuBias<P> bias = ImuBias<P>::zero();
 };
 
-/// The prior of a window that begins with the very first keyframe.
+/// The prior of a window that begins with the very first keyframe. That it began at rest is told by
+/// the window's prior of the gyro's bias, which knows more then.
 template <class P>
 void start_prior(const Window<P>& window, const PriorOptions& options, WindowPrior<P>& prior);
 

@@ -96,14 +96,6 @@ struct WorkMemory {
   WindowState<P> trial;
 };
 
-/// One Newton step towards the nearest rotation, against the drift of many small updates.
-template <class P>
-Mat3<P> orthonormalised(const Mat3<P>& R) {
-  using F = typename P::F32;
-  const Mat3<P> RtR = transpose(R) * R;
-  return R * add_diagonal<P>(scaled<P>(F(-0.5f), RtR), F(1.5f));
-}
-
 template <class P>
 void step_keyframes(const Window<P>& window, const ReducedSystem<P>& solved,
                     const WindowState<P>& to) {

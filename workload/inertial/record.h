@@ -92,4 +92,12 @@ Mat3<P> add_diagonal(Mat3<P> a, typename P::F32 s) {
   return a;
 }
 
+/// One Newton step towards the nearest rotation, against the drift of many small updates.
+template <class P>
+Mat3<P> orthonormalised(const Mat3<P>& R) {
+  using F = typename P::F32;
+  const Mat3<P> RtR = transpose(R) * R;
+  return R * add_diagonal<P>(scaled<P>(F(-0.5f), RtR), F(1.5f));
+}
+
 }  // namespace leviosim::vio

@@ -21,6 +21,7 @@ BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& contr
 template <class P>
 bool BackEnd<P>::begin() {
   if (work::value(graph_.keyframe_count()) < 2) return false;
+  if (options_.joint && is_settled()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
   if (options_.joint) {
     update_prior();
@@ -30,7 +31,18 @@ bool BackEnd<P>::begin() {
   take_snapshot<P>(graph_, profile_.imu_noise, machine_.local(), window_);
   if (options_.joint && prior_.keyframes == 0) start_prior<P>(window_, options_.prior, prior_);
   damping_ = LmState<P>(options_);
+  solved_ = false;
   return true;
+}
+
+/// Whether the newest keyframe has had its share of iterations. More of them only wander along what
+/// the window hardly determines, and move a vehicle that stands still.
+template <class P>
+bool BackEnd<P>::is_settled() {
+  const int newest = work::value(I32(graph_.keyframe_ids[graph_.newest_keyframe()]));
+  if (newest != newest_) snapshots_ = 0;
+  newest_ = newest;
+  return ++snapshots_ > kSnapshotsPerKeyframe;
 }
 
 /// Marginalises the keyframes that have left the graph since the last snapshot, from which they
@@ -54,6 +66,7 @@ OptimiserReport BackEnd<P>::optimise() {
   const IterationReport report =
       options_.joint ? optimise_jointly_once<P>(machine_, window_, prior_, damping_, options_)
                      : optimise_once<P>(machine_, window_, damping_, options_);
+  solved_ = solved_ || report.positive_definite;
   return {true, report.accepted, report.cost_before, report.cost_after};
 }
 
@@ -62,6 +75,7 @@ void BackEnd<P>::publish() {
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
   if (profile_.use_imu && !options_.joint)
     estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
+  if (!solved_) prior_.keyframes = 0;  // rounding has spoilt it: the next window starts a new one
   const int last = window_.keyframes - 1;
   const I32 slot = window_.keyframe_slots[last];
   const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));

@@ -25,6 +25,10 @@ class BackEnd {
  private:
   using I32 = typename P::I32;
 
+  /// As many as two keyframes in slow flight lie frames apart.
+  static constexpr int kSnapshotsPerKeyframe = 10;
+
+  bool is_settled();
   void update_prior();
   void move_newer_keyframes(const Pose<P>& T_new_old);
 
@@ -35,6 +39,9 @@ class BackEnd {
   Window<P> window_;
   WindowPrior<P> prior_;  ///< only if the optimiser works jointly
   LmState<P> damping_;
+  int newest_ = -1;      ///< serial number of the newest keyframe
+  int snapshots_ = 0;    ///< that were taken of it
+  bool solved_ = false;  ///< the system of this snapshot could be solved
 };
 
 }  // namespace leviosim::vio

@@ -63,8 +63,11 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
   if (!started_) {
     start(frame);
     report.keyframe = true;
-  } else if (profile_.guided.enabled && rest_ && graph_in_l2_.keyframe_count() == I32(1)) {
+  } else if (profile_.guided.enabled && rest_ && !window_is_full()) {
     start_at_rest(frame);
+    report.keyframe = true;
+  } else if (profile_.guided.enabled && !map_is_plausible()) {
+    start_anew(frame);
     report.keyframe = true;
   } else {
     std::optional<Pose<P>> pose =
@@ -80,13 +83,25 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
         report.source = PoseSource::Predicted;
         pose = predicted_pose();
       }
+      // With a single keyframe any length is a guess: it waits for a parallax that is worth one.
+      if (!pose && profile_.guided.enabled && graph_in_l2_.keyframe_count() == I32(1) &&
+          !is_keyframe(frame, report)) {
+        const auto stage = machine_.stage(stages::kGuided);
+        report.source = PoseSource::Kept;
+        pose = Pose<P>{pose_by_motion(frame).R, frame.T_world_last.t};
+      }
       if (!pose) pose = pose_from_keyframe(frame, report);
     }
+    if (profile_.guided.enabled && !is_plausible(*pose, input.dt)) {
+      report.source = PoseSource::Kept;
+      pose = motion_.T_world_camera();
+    }
     frame.T_world_camera = *pose;
-    report.keyframe = is_keyframe(frame);
+    report.keyframe = is_keyframe(frame, report);
     if (report.keyframe) insert_keyframe(frame);
   }
-  if (profile_.guided.enabled) remember_motion(frame, report.keyframe);
+  if (profile_.guided.enabled)
+    remember_motion(frame, report.keyframe, report.source == PoseSource::Predicted);
   report.features = frame.features.list.count;
   report.frame_matches = frame.keyframe_matches.count;
   report.landmarks = work::value(graph_.landmark_count());
@@ -236,6 +251,7 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
   if (!essential.ok) return last.T_world_camera;
   const TwoViewPose<P> motion = recover_pose<P>(machine_, views, inliers, essential.E);
   if (!motion.ok) return last.T_world_camera;
+  if (profile_.guided.enabled && !agrees_with_gyro(motion.T_b_a.R)) return last.T_world_camera;
 
   report.source = PoseSource::EightPoint;
   report.inliers = essential.inliers;
@@ -245,17 +261,31 @@ std::optional<Pose<P>> FrontEnd<P>::pose_from_keyframe(const Frame& frame, Frame
   return last.T_world_camera * inverse(T_camera_keyframe);
 }
 
+/// Whether the gyro saw this rotation since the keyframe, but for the largest bias and 0.05 rad.
+/// The 8-point algorithm's choice among its four solutions is wrong at times, and a map that begins
+/// with one is of no use.
+template <class P>
+bool FrontEnd<P>::agrees_with_gyro(const Mat3<P>& R_camera_keyframe) {
+  const float limit = 0.05f + profile_.optimiser.prior.gyro_bias * time_since_keyframe_;
+  const auto& R = (R_camera_keyframe * motion_since_keyframe().R).m;
+  // The trace is 1 + 2 cos(angle).
+  return bool(F(3.0f) - (R[0][0] + R[1][1] + R[2][2]) < F(limit * limit));
+}
+
 /// A keyframe has moved far enough, or can hardly be matched with the last one any more. Parallax
 /// is what remains of the motion of the matches when the rotation since the keyframe is undone: the
 /// rotation that the gyro measured, for a wrong pose would look like parallax, and every frame
 /// after it would become a keyframe. Only without an IMU it is that of the poses.
 template <class P>
-bool FrontEnd<P>::is_keyframe(const Frame& frame) {
+bool FrontEnd<P>::is_keyframe(const Frame& frame, const FrameReport& report) {
   work::Arena& local = machine_.local();
   const work::Arena::Frame memory(local);
   const auto stage = machine_.stage(stages::kKeyframeSelection);
   const MatchList<P>& matches = frame.keyframe_matches;
+  const bool guided = profile_.guided.enabled;
+  if (guided && (rest_ || frame.features.list.count < profile_.recovery.min_features)) return false;
   if (matches.count < profile_.min_frame_matches) return true;
+  if (guided && report.source == PoseSource::Kept) return false;  // its place is not known
   Mat3<P> R_camera_keyframe = Mat3<P>::identity();
   if (profile_.parallax_without_rotation && profile_.use_imu) {
     R_camera_keyframe = transpose(motion_since_keyframe().R);
@@ -277,7 +307,13 @@ bool FrontEnd<P>::is_keyframe(const Frame& frame) {
     const F y = seen.y - turned.y * scale;
     sum += work::sqrt(F(x * x + y * y));
   }
-  return bool(sum > F(profile_.keyframe_parallax * static_cast<float>(matches.count)));
+  float parallax = profile_.keyframe_parallax;
+  const bool lost = report.source == PoseSource::Predicted;
+  // Without a map, noise would look like motion.
+  if (guided && (lost || report.inliers < profile_.recovery.min_tracked) &&
+      graph_in_l2_.keyframe_count() > I32(1))
+    parallax *= profile_.recovery.min_parallax;
+  return bool(sum > F(parallax * static_cast<float>(matches.count)));
 }
 
 template class FrontEnd<work::Native>;

@@ -43,6 +43,12 @@ class FrontEnd {
     float dt = 0;          ///< since then, s
   };
 
+  /// How far a predicted pose is trusted.
+  struct LandmarkSearch {
+    float radius_px;
+    float rotation, position;  ///< standard deviation of each axis, rad and m
+  };
+
   void integrate_imu(const FrameInput& input);
   void detect_stillness(const Preintegration<P>& interval, float seconds);
   ImuDelta<P> motion_since_keyframe();
@@ -50,21 +56,26 @@ class FrontEnd {
   void extract(Frame& frame);
   void start(Frame& frame);
   void start_at_rest(Frame& frame);
+  void start_anew(Frame& frame);
   void begin_world(const Frame& frame, Span<F> record, const ImuBias<P>& bias,
                    const Vec3<P>& gravity);
   std::optional<Pose<P>> pose_from_landmarks(Frame& frame, FrameReport& report);
   std::optional<Pose<P>> track(Frame& frame, FrameReport& report);
-  std::optional<Pose<P>> search_landmarks(Frame& frame, const Pose<P>& T_predicted, bool recovering,
-                                          FrameReport& report);
+  std::optional<Pose<P>> search_landmarks(Frame& frame, const Pose<P>& T_predicted,
+                                          const LandmarkSearch& search, FrameReport& report);
   Pose<P> last_pose() const;
+  bool window_is_full() const;
   bool imu_predicts() const;
+  bool agrees_with_gyro(const Mat3<P>& R_camera_keyframe);
+  bool map_is_plausible();
+  bool is_plausible(const Pose<P>& T_world_camera, float seconds) const;
   Pose<P> pose_by_motion(const Frame& frame);
-  void remember_motion(const Frame& frame, bool keyframe);
+  void remember_motion(const Frame& frame, bool keyframe, bool lost);
   int match_landmarks(Frame& frame, const MatchList<P>& matches);
   void alloc_keyframe_matches(Frame& frame);
   void match_keyframe(Frame& frame);
   std::optional<Pose<P>> pose_from_keyframe(const Frame& frame, FrameReport& report);
-  bool is_keyframe(const Frame& frame);
+  bool is_keyframe(const Frame& frame, const FrameReport& report);
   void insert_keyframe(Frame& frame);
   void register_observations(const Frame& frame, const PoseGraph<P>& graph, I32 slot);
   bool is_in_use(const PoseGraph<P>& graph, I32 landmark) const;
@@ -88,9 +99,12 @@ class FrontEnd {
   StillnessDetector<P> stillness_;
   MotionRecord<P> motion_;            ///< only for guided matching
   std::optional<Stillness<P>> rest_;  ///< if the vehicle stands still; only for the joint optimiser
+  Vec3<P> recent_force_{0.0f, 0.0f, 0.0f};  ///< mean over a second, likewise
   bool started_ = false;
+  bool velocity_known_ = false;  ///< the map began at rest
   std::uint32_t frame_number_ = 0;
   float time_since_keyframe_ = 0;
+  bool lost_ = false;  ///< the last pose was predicted; only for guided matching
 };
 
 }  // namespace leviosim::vio

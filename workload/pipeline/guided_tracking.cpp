@@ -14,13 +14,20 @@ std::optional<Pose<P>> FrontEnd<P>::track(Frame& frame, FrameReport& report) {
     T_predicted = imu_predicts() ? predicted_pose() : pose_by_motion(frame);
   }
   if (work::value(graph_.landmark_count()) == 0) return std::nullopt;
-  if (const auto pose = search_landmarks(frame, T_predicted, false, report)) return pose;
-  // Lost: look for all landmarks in all of the image, then again around where EPnP puts them.
+  const RefinementOptions& refinement = profile_.refinement;
+  const RecoveryOptions& recovery = profile_.recovery;
+  const LandmarkSearch near{profile_.guided.radius_px, refinement.rotation, refinement.position};
+  const LandmarkSearch wide{recovery.wide_radius_px, recovery.rotation, recovery.position};
+  if (const auto pose = search_landmarks(frame, T_predicted, near, report)) return pose;
+  if (recovery.wide_radius_px > 0)
+    if (const auto pose = search_landmarks(frame, T_predicted, wide, report)) return pose;
+  // Lost: look for all landmarks in all of the image, then again around where EPnP puts them, which
+  // is no prediction.
   for (int i : P::range(0, frame.features.list.count))
     frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
   const std::optional<Pose<P>> recovered = pose_from_landmarks(frame, report);
   if (!recovered || report.source != PoseSource::Epnp) return recovered;
-  const auto pose = search_landmarks(frame, *recovered, true, report);
+  const auto pose = search_landmarks(frame, *recovered, {near.radius_px, 1.0f, 1.0f}, report);
   return pose ? pose : recovered;
 }
 
@@ -28,7 +35,8 @@ std::optional<Pose<P>> FrontEnd<P>::track(Frame& frame, FrameReport& report) {
 /// enough agree with it; then the features know their landmarks.
 template <class P>
 std::optional<Pose<P>> FrontEnd<P>::search_landmarks(Frame& frame, const Pose<P>& T_predicted,
-                                                     bool recovering, FrameReport& report) {
+                                                     const LandmarkSearch& search,
+                                                     FrameReport& report) {
   work::Arena& local = machine_.local();
   const work::Arena::Frame memory(local);
   const FeatureList<P>& features = frame.features.list;
@@ -48,7 +56,9 @@ std::optional<Pose<P>> FrontEnd<P>::search_landmarks(Frame& frame, const Pose<P>
     const GuidedInput<P> input{
         points,         descriptors, ages,       landmarks,   profile_.max_landmark_age,
         T_camera_world, rig_.camera, rig_.width, rig_.height, profile_.extractor.subpixel_steps};
-    match_guided<P>(machine_, input, features, profile_.guided, matches);
+    GuidedOptions options = profile_.guided;
+    options.radius_px = search.radius_px;
+    match_guided<P>(machine_, input, features, options, matches);
   }
   report.world_matches = matches.count;
   if (matches.count < profile_.min_world_matches) return std::nullopt;
@@ -68,7 +78,8 @@ std::optional<Pose<P>> FrontEnd<P>::search_landmarks(Frame& frame, const Pose<P>
     }
   });
   RefinementOptions options = profile_.refinement;
-  if (recovering) options.rotation = options.position = 1.0f;  // EPnP's pose is no prediction
+  options.rotation = search.rotation;
+  options.position = search.position;
   const RefinedPose<P> refined =
       refine_pose<P>(machine_, {matched_points, pixels, matches.count, rig_.camera}, T_camera_world,
                      options, inliers);
@@ -87,20 +98,30 @@ std::optional<Pose<P>> FrontEnd<P>::search_landmarks(Frame& frame, const Pose<P>
   return inverse(refined.T_camera_world);
 }
 
-/// Where the last frame was, in the map as it is now.
+/// Where the last frame was, in the map as it is now. A product with an inverse, which for a
+/// rotation is its transpose, triples what keeps it from being a rotation: without the correction a
+/// second at rest, where one such pose follows from the other, is enough to lose it.
 template <class P>
 Pose<P> FrontEnd<P>::last_pose() const {
-  return graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe()).T_world_camera *
-         motion_.T_keyframe_camera();
+  const Pose<P> T = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe()).T_world_camera *
+                    motion_.T_keyframe_camera();
+  return {orthonormalised<P>(T.R), T.t};
 }
 
-/// Whether the newest keyframe's velocity is known, from a window full of keyframes, and recent
-/// enough to carry the prediction: velocities are good to some cm/s. Differences of two frames'
-/// positions, the alternative, have the noise of both and feed it back.
+template <class P>
+bool FrontEnd<P>::window_is_full() const {
+  return bool(graph_in_l2_.keyframe_count() == I32(graph_.capacity.keyframes));
+}
+
+/// Whether the newest keyframe's velocity is known, at rest or from a window full of keyframes, and
+/// recent enough to carry the prediction: velocities are good to some cm/s. Differences of two
+/// frames' positions, the alternative, have the noise of both and feed it back; where there are
+/// none it is the IMU or nothing.
 template <class P>
 bool FrontEnd<P>::imu_predicts() const {
-  return profile_.optimiser.joint && time_since_keyframe_ < profile_.max_translation_time &&
-         graph_in_l2_.keyframe_count() == I32(graph_.capacity.keyframes);
+  const float longest = lost_ ? profile_.recovery.max_blind_time : profile_.max_translation_time;
+  return profile_.optimiser.joint && time_since_keyframe_ < longest &&
+         (velocity_known_ || window_is_full());
 }
 
 /// The last frame's pose, turned as the gyro says and moved on at its velocity.
@@ -115,8 +136,9 @@ Pose<P> FrontEnd<P>::pose_by_motion(const Frame& frame) {
 
 /// Leaves the motion over this frame for the next one.
 template <class P>
-void FrontEnd<P>::remember_motion(const Frame& frame, bool keyframe) {
+void FrontEnd<P>::remember_motion(const Frame& frame, bool keyframe, bool lost) {
   const auto stage = machine_.stage(stages::kGuided);
+  lost_ = lost;
   const Pose<P>& T = frame.T_world_camera;
   const Pose<P> T_world_keyframe =
       graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe()).T_world_camera;
@@ -124,7 +146,31 @@ void FrontEnd<P>::remember_motion(const Frame& frame, bool keyframe) {
   if (frame.dt > 0.0f && frame_number_ > 1)
     velocity = transpose(T.R) * ((T.t - frame.T_world_last.t) * F(1.0f / frame.dt));
   const Mat3<P> turned = keyframe ? Mat3<P>::identity() : motion_since_keyframe().R;
-  motion_.store(inverse(T_world_keyframe) * T, velocity, turned);
+  motion_.store(inverse(T_world_keyframe) * T, velocity, turned, T);
+}
+
+/// Whether the map has a meaning. The comparisons are not true either of what is not a number.
+template <class P>
+bool FrontEnd<P>::map_is_plausible() {
+  const auto stage = machine_.stage(stages::kGuided);
+  const RecoveryOptions& limits = profile_.recovery;
+  const KeyframeState<P> last = graph_in_l2_.keyframe(graph_in_l2_.newest_keyframe());
+  const ImuBias<P> bias = graph_in_l2_.bias();
+  const auto below = [](const Vec3<P>& v, float limit) { return dot(v, v) < F(limit * limit); };
+  return below(last.velocity, limits.max_speed) && below(bias.gyro, limits.max_gyro_bias) &&
+         below(bias.accel, limits.max_accel_bias) &&
+         is_plausible(last.T_world_camera, time_since_keyframe_);
+}
+
+/// Whether the camera can have got from where it was reported last to T_world_camera.
+/// @param seconds  that this took at most
+template <class P>
+bool FrontEnd<P>::is_plausible(const Pose<P>& T_world_camera, float seconds) const {
+  constexpr float kCorrection = 1;  // that the optimiser may have made meanwhile, m
+  const Vec3<P> moved = T_world_camera.t - motion_.T_world_camera().t;
+  const float limit = profile_.recovery.max_speed * seconds + kCorrection;
+  const auto& R = T_world_camera.R.m;
+  return dot(moved, moved) < F(limit * limit) && R[0][0] + R[1][1] + R[2][2] < F(3.1f);
 }
 
 template class FrontEnd<work::Native>;

@@ -53,6 +53,7 @@ void FrontEnd<P>::detect_stillness(const Preintegration<P>& interval, float seco
   const Stillness<P> seen = stillness_.evaluate();
   stillness_.end_frame();
   rest_.reset();
+  recent_force_ = seen.accel_mean;
   if (!started_ || !profile_.use_imu || !seen.still) return;
   if (profile_.optimiser.joint) {
     rest_ = seen;
@@ -88,9 +89,10 @@ void FrontEnd<P>::start(Frame& frame) {
   begin_world(frame, record, ImuBias<P>::zero(), gravity);
 }
 
-/// A vehicle that stands still before a second keyframe starts anew with every frame, from where
-/// the last one was: at rest, gravity and the gyro's bias can be read off and the velocity is zero,
-/// while noise alone would sooner or later look like parallax.
+/// A vehicle that stands still before the first window is full starts anew with every frame, from
+/// where the last one was: at rest, gravity and the gyro's bias can be read off and the velocity is
+/// zero, while noise alone would sooner or later look like parallax, and the scale of a map with
+/// few keyframes is a guess.
 template <class P>
 void FrontEnd<P>::start_at_rest(Frame& frame) {
   work::Arena& local = machine_.local();
@@ -101,6 +103,24 @@ void FrontEnd<P>::start_at_rest(Frame& frame) {
   Mat3<P>& R = frame.T_world_camera.R;
   R = levelled<P>(R, rest_->accel_mean);
   begin_world(frame, record, {rest_->gyro_mean, {0.0f, 0.0f, 0.0f}}, {0.0f, 0.0f, -kGravity});
+  BiasPrior<P> prior = graph_in_l2_.bias_prior();
+  const float stddev = profile_.optimiser.prior.rest_gyro_bias;
+  prior.gyro_information = 1.0f / (stddev * stddev);
+  graph_in_l2_.set_bias_prior(prior);
+  velocity_known_ = true;
+}
+
+/// What became of the map cannot be true: another one begins where the camera was seen last.
+template <class P>
+void FrontEnd<P>::start_anew(Frame& frame) {
+  work::Arena& local = machine_.local();
+  const work::Arena::Frame memory(local);
+  const auto stage = machine_.stage(stages::kTriangulation);
+  const auto record = local.alloc<Span<F>>("IMU interval", Preintegration<P>::kFloats);
+  frame.T_world_last = frame.T_world_camera = motion_.T_world_camera();
+  Mat3<P>& R = frame.T_world_camera.R;
+  if (dot(recent_force_, recent_force_) > F(0.0f)) R = levelled<P>(R, recent_force_);
+  begin_world(frame, record, ImuBias<P>::zero(), {0.0f, 0.0f, -kGravity});
 }
 
 /// The frame becomes the first keyframe of an empty graph.
@@ -117,6 +137,7 @@ void FrontEnd<P>::begin_world(const Frame& frame, Span<F> record, const ImuBias<
   machine_.copy_out(keyframe_.interval, record);
   store_keyframe(frame);
   started_ = true;
+  velocity_known_ = false;
 }
 
 template <class P>

@@ -12,7 +12,7 @@ class MotionRecord {
   using F = typename P::F32;
   using Span = typename P::template L2Span<F>;
 
-  static constexpr int kFloats = kPoseFloats + 3 + 9;
+  static constexpr int kFloats = kPoseFloats + 3 + 9 + kPoseFloats;
 
   MotionRecord() = default;
   explicit MotionRecord(work::Arena& arena)
@@ -27,15 +27,19 @@ class MotionRecord {
   /// Rotation of the last frame as the gyro has it.
   Mat3<P> gyro_rotation() const { return load_mat3<P>(floats_, kGyro); }
 
+  /// Pose of the last frame as it was reported, which the optimiser does not move.
+  Pose<P> T_world_camera() const { return load_pose<P>(floats_, kReported); }
+
   void store(const Pose<P>& T_keyframe_camera, const Vec3<P>& velocity,
-             const Mat3<P>& gyro_rotation) const {
+             const Mat3<P>& gyro_rotation, const Pose<P>& T_world_camera) const {
     store_pose<P>(floats_, 0, T_keyframe_camera);
     store_vec3<P>(floats_, kVelocity, velocity);
     store_mat3<P>(floats_, kGyro, gyro_rotation);
+    store_pose<P>(floats_, kReported, T_world_camera);
   }
 
  private:
-  enum Place : int { kVelocity = kPoseFloats, kGyro = kPoseFloats + 3 };
+  enum Place : int { kVelocity = kPoseFloats, kGyro = kPoseFloats + 3, kReported = kGyro + 9 };
 
   Span floats_;
 };

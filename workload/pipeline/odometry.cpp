@@ -88,9 +88,10 @@ std::vector<StageName> stage_names(const Profile& profile) {
                                   {stages::kTriangulation, "keyframe", false},
                                   {stages::kOptimiserUpdate, "update", true},
                                   {stages::kOptimiser, "iteration", true}};
+  if (!profile.guided.enabled) return names;
   const auto epnp = names.begin() + 3;
-  if (profile.refinement.enabled) names.insert(epnp + 1, {stages::kRefinement, "frame", false});
-  if (profile.guided.enabled) names.insert(names.begin() + 2, {stages::kGuided, "frame", false});
+  names.insert(epnp + 1, {stages::kRefinement, "frame", false});
+  names.insert(names.begin() + 2, {stages::kGuided, "frame", false});
   return names;
 }
 

@@ -19,6 +19,21 @@
 
 namespace leviosim::vio {
 
+/// What `next` does when landmarks get few or are lost (guided_tracking.cpp).
+struct RecoveryOptions {
+  float wide_radius_px = 24;  ///< of a second search, where the first one finds too few; 0: none
+  float rotation = 0.1f;      ///< of its prior, standard deviation of each axis, rad
+  float position = 0.3f;      ///< likewise, m
+  float max_blind_time = 3;   ///< that the IMU alone carries the pose for [s]
+  int min_tracked = 60;       ///< a frame that sees fewer landmarks becomes a keyframe, 0: never
+  float min_parallax = 0.3f;  ///< that it needs for that, as a share of keyframe_parallax
+  int min_features = 40;      ///< an image with fewer is dark or blurred, and no keyframe
+  // Beyond these a map has no meaning any more, and another one is begun.
+  float max_speed = 20;       ///< m/s
+  float max_gyro_bias = 0.5;  ///< rad/s
+  float max_accel_bias = 3;   ///< m/s²
+};
+
 struct Profile {
   std::string name;
 
@@ -34,9 +49,10 @@ struct Profile {
   float min_translation = 0.01f;      ///< per keyframe interval, of the 8-point pose [m]
   float max_translation_time = 1.0f;  ///< that the last velocity is trusted for [s]
 
-  // What `next` adds to it (guided_tracking.cpp). Both off: `levio`.
+  // What `next` adds to it (guided_tracking.cpp). Not enabled: `levio`.
   GuidedOptions guided;
   RefinementOptions refinement;
+  RecoveryOptions recovery;
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

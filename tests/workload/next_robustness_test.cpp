@@ -1,0 +1,94 @@
+// What `next` makes of flights on which something goes wrong: it says when it is lost, finds back,
+// and never reports what is no number. The table in workload/README.md is made of these flights.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "tests/workload/short_flight.h"
+
+namespace leviosim::vio::test {
+namespace {
+
+struct Case {
+  const char* name;
+  void (*spoil)(ShortFlight&);
+  double ate;  ///< at most [m]
+  bool lost;   ///< some frames must be reported as lost
+};
+
+/// The errors are bounds of some 1.5 times what was measured, not what would be wished for.
+constexpr std::array kCases{
+    Case{"untouched", [](ShortFlight&) {}, 0.2, false},
+    Case{"one frame in ten dropped",
+         [](ShortFlight& f) { drop_frames(f, [](int i) { return i % 10 == 7; }); }, 0.2, false},
+    Case{"ten frames in a row dropped",
+         [](ShortFlight& f) { drop_frames(f, [](int i) { return i >= 100 && i < 110; }); }, 0.2,
+         false},
+    Case{"dark for a second", [](ShortFlight& f) { darken(f, 100, 120); }, 0.2, true},
+    Case{"blurred for a second", [](ShortFlight& f) { blur(f, 100, 120); }, 0.2, true},
+    Case{"gyro and accelerometer saturate", [](ShortFlight& f) { saturate(f, 0.35f, 9.9f); }, 0.8,
+         false},
+    Case{"no IMU for half a second", [](ShortFlight& f) { cut_imu(f, 100, 110); }, 0.35, false},
+};
+
+/// Rests for a second, then flies for seven.
+const ShortFlight& from_rest() {
+  static const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1)), 8);
+  return flight;
+}
+
+class NextRobustness : public ::testing::TestWithParam<Case> {};
+
+TEST_P(NextRobustness, SaysWhenItIsLostAndFindsBack) {
+  ShortFlight flight = from_rest();
+  GetParam().spoil(flight);
+  const Flown flown = fly(flight, profile_named("next", 1));
+  EXPECT_TRUE(flown.finite);
+  EXPECT_LT(flown.ate, GetParam().ate);
+  const int lost = flown.count(PoseSource::Predicted);
+  if (GetParam().lost) {
+    for (std::size_t i = 102; i < 118; ++i) EXPECT_EQ(flown.sources[i], PoseSource::Predicted) << i;
+  }
+  EXPECT_LT(lost, 60);
+  EXPECT_EQ(flown.sources.back(), PoseSource::Tracked);
+  RecordProperty("ate_mm", static_cast<int>(flown.ate * 1000));
+  RecordProperty("lost", lost);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, NextRobustness, ::testing::ValuesIn(kCases), [](const auto& param) {
+  std::string name = param.param.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+TEST(NextRobustnessOf, StartsInMotion) {
+  const Flown flown = fly(draw_flight(PacedFlight(3, at_pace(1, 4)), 8), profile_named("next", 1));
+  EXPECT_TRUE(flown.finite);
+  EXPECT_LT(flown.ate, 0.3);
+}
+
+TEST(NextRobustnessOf, FastMotion) {
+  const Flown flown = fly(draw_flight(PacedFlight(3, at_pace(2.5)), 6), profile_named("next", 1));
+  EXPECT_TRUE(flown.finite);
+  EXPECT_LT(flown.ate, 0.3);
+  RecordProperty("ate_mm", static_cast<int>(flown.ate * 1000));
+}
+
+TEST(NextRobustnessOf, StandsStillAfterMotion) {
+  const Flown flown =
+      fly(draw_flight(PacedFlight(3, with_standstill(5, 21)), 23), profile_named("next", 1));
+  ASSERT_TRUE(flown.finite);
+  EXPECT_LT(flown.ate, 0.2);
+  const auto at = [&](int i) {
+    return flown.trajectory[static_cast<std::size_t>(i)].T_world_body.translation();
+  };
+  double moved = 0;
+  for (int i = 6 * 20; i <= 21 * 20; ++i) moved = std::max(moved, (at(i) - at(6 * 20)).norm());
+  EXPECT_LT(moved, 0.03);
+  RecordProperty("ate_mm", static_cast<int>(flown.ate * 1000));
+  RecordProperty("moved_mm", static_cast<int>(moved * 1000));
+}
+
+}  // namespace
+}  // namespace leviosim::vio::test

@@ -1,0 +1,229 @@
+// A short flight for tests, drawn and measured in memory: what the odometry is fed, the truth, and
+// what can go wrong on the way. A plain camera of 160x120 in the synthetic flight's room, EuRoC's
+// IMU.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "traces/camera_model.h"
+#include "traces/euroc_models.h"
+#include "traces/evaluation.h"
+#include "traces/image_preparation.h"
+#include "traces/imu_synthesis.h"
+#include "traces/motion.h"
+#include "traces/renderer.h"
+#include "traces/world.h"
+#include "workload/pipeline/odometry.h"
+
+namespace leviosim::vio::test {
+
+/// Time along a path, with its first two derivatives by real time.
+using Pace = std::function<traces::Derivatives(double t_s)>;
+
+/// HandHeldFlight at another pace.
+class PacedFlight : public traces::Motion {
+ public:
+  PacedFlight(std::uint64_t seed, Pace pace) : path_(seed), pace_(std::move(pace)) {}
+
+  traces::MotionState at(double t_s) const override {
+    const traces::Derivatives p = pace_(t_s);
+    traces::MotionState state = path_.at(p.value);
+    state.acceleration = state.acceleration * p.first * p.first + state.velocity * p.second;
+    state.velocity *= p.first;
+    state.angular_velocity *= p.first;
+    return state;
+  }
+
+ private:
+  traces::HandHeldFlight path_;
+  Pace pace_;
+};
+
+/// Constant pace from `begin_s` of the path on.
+inline Pace at_pace(double pace, double begin_s = 0) {
+  return [=](double t) { return traces::Derivatives{begin_s + pace * t, pace, 0}; };
+}
+
+/// Comes to rest at stop_s within a second, and goes on at resume_s likewise.
+inline Pace with_standstill(double stop_s, double resume_s) {
+  // The pace falls from 1 to 0 as 1 - 3 u² + 2 u³; its integral is u - u³ + u⁴ / 2.
+  return [=](double t) -> traces::Derivatives {
+    const double u = std::clamp(t - stop_s, 0.0, 1.0), w = std::clamp(t - resume_s, 0.0, 1.0);
+    const auto way = [](double x) { return x - x * x * x + x * x * x * x / 2; };
+    const auto pace = [](double x) { return 1 - 3 * x * x + 2 * x * x * x; };
+    const auto change = [](double x) { return -6 * x + 6 * x * x; };
+    if (t < resume_s) return {std::min(t, stop_s) + way(u), pace(u), change(u)};
+    return {stop_s + 0.5 + 0.5 - way(1 - w) + std::max(0.0, t - resume_s - 1), pace(1 - w),
+            -change(1 - w)};
+  };
+}
+
+struct ShortFlight {
+  struct Frame {
+    std::int64_t t_ns;
+    std::vector<std::uint8_t> pixels;
+    std::vector<ImuInput> imu;
+  };
+
+  Rig rig;
+  Eigen::Isometry3d T_body_camera;
+  std::vector<Frame> frames;
+  traces::Trajectory truth;
+};
+
+inline Rig rig_of(const traces::CameraModel& camera) {
+  Rig rig{};
+  rig.camera = {static_cast<float>(camera.fx), static_cast<float>(camera.fy),
+                static_cast<float>(camera.cx), static_cast<float>(camera.cy)};
+  rig.width = camera.width;
+  rig.height = camera.height;
+  const Eigen::Isometry3d T = camera.T_body_camera.inverse();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c)
+      rig.R_camera_body[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(T.linear()(r, c));
+    rig.p_camera_body[static_cast<std::size_t>(r)] = static_cast<float>(T.translation()[r]);
+  }
+  return rig;
+}
+
+/// 20 frames/s, with the ten IMU samples before each.
+inline ShortFlight draw_flight(const traces::Motion& motion, double seconds) {
+  using traces::CameraModel;
+  const CameraModel camera =
+      traces::ImagePreparation(traces::euroc_cam0(), {160, 120}).prepared_camera();
+  const traces::World room = traces::make_room(5, 0.016, 0);
+  const traces::Renderer renderer(room, camera, {.noise = 1.2, .seed = 7});
+  traces::ImuSynthesizer imu(traces::euroc_imu0(), 11);
+  ShortFlight flight{rig_of(camera), camera.T_body_camera, {}, {}};
+  constexpr std::int64_t kImuStep = 5'000'000;
+  constexpr int kSamples = 10;
+  for (int i = 0; i < static_cast<int>(seconds * 20); ++i) {
+    ShortFlight::Frame frame{i * kImuStep * kSamples, {}, {}};
+    for (int k = kSamples - 1; k >= 0; --k) {
+      const std::int64_t t_ns = frame.t_ns - k * kImuStep;
+      const traces::ImuSample s = imu.measure(motion.at(static_cast<double>(t_ns) * 1e-9), t_ns);
+      ImuInput input{};
+      input.dt = 0.005f;
+      for (int a = 0; a < 3; ++a) {
+        input.gyro[a] = static_cast<float>(s.gyro[a]);
+        input.accel[a] = static_cast<float>(s.accel[a]);
+      }
+      frame.imu.push_back(input);
+    }
+    const Eigen::Isometry3d T = motion.at(static_cast<double>(frame.t_ns) * 1e-9).T_world_body;
+    frame.pixels = renderer.render(T * camera.T_body_camera, static_cast<std::uint64_t>(i));
+    flight.truth.push_back({frame.t_ns, T});
+    flight.frames.push_back(std::move(frame));
+  }
+  return flight;
+}
+
+// What can go wrong, from frame `first` to `last` (excluded).
+
+/// The frames never arrive; their IMU samples do, with the next one.
+inline void drop_frames(ShortFlight& flight, const std::function<bool(int)>& is_dropped) {
+  std::vector<ShortFlight::Frame> kept;
+  std::vector<ImuInput> pending;
+  for (int i = 0; i < static_cast<int>(flight.frames.size()); ++i) {
+    ShortFlight::Frame& frame = flight.frames[static_cast<std::size_t>(i)];
+    pending.insert(pending.end(), frame.imu.begin(), frame.imu.end());
+    if (is_dropped(i)) continue;
+    frame.imu.swap(pending);
+    pending.clear();
+    kept.push_back(std::move(frame));
+  }
+  flight.frames = std::move(kept);
+}
+
+inline void darken(ShortFlight& flight, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i)
+    for (std::uint8_t& pixel : flight.frames[i].pixels)
+      pixel = static_cast<std::uint8_t>(pixel / 40);
+}
+
+/// Mean over 15 pixels of a row, as a fast turn blurs.
+inline void blur(ShortFlight& flight, std::size_t first, std::size_t last) {
+  constexpr int kHalf = 7;
+  for (std::size_t i = first; i < last; ++i) {
+    const std::vector<std::uint8_t> sharp = flight.frames[i].pixels;
+    for (int y = 0; y < flight.rig.height; ++y)
+      for (int x = 0; x < flight.rig.width; ++x) {
+        int sum = 0;
+        for (int k = -kHalf; k <= kHalf; ++k)
+          sum += sharp[static_cast<std::size_t>(y * flight.rig.width +
+                                                std::clamp(x + k, 0, flight.rig.width - 1))];
+        flight.frames[i].pixels[static_cast<std::size_t>(y * flight.rig.width + x)] =
+            static_cast<std::uint8_t>(sum / (2 * kHalf + 1));
+      }
+  }
+}
+
+/// The sensors' range ends here.
+inline void saturate(ShortFlight& flight, float gyro, float accel) {
+  for (ShortFlight::Frame& frame : flight.frames)
+    for (ImuInput& s : frame.imu)
+      for (int a = 0; a < 3; ++a) {
+        s.gyro[a] = std::clamp(s.gyro[a], -gyro, gyro);
+        s.accel[a] = std::clamp(s.accel[a], -accel, accel);
+      }
+}
+
+/// No samples; the first one after says how long that was.
+inline void cut_imu(ShortFlight& flight, std::size_t first, std::size_t last) {
+  float missing = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    for (const ImuInput& s : flight.frames[i].imu) missing += s.dt;
+    flight.frames[i].imu.clear();
+  }
+  flight.frames[last].imu.front().dt += missing;
+}
+
+/// What the odometry made of a flight.
+struct Flown {
+  traces::Trajectory trajectory;  ///< of the body
+  std::vector<PoseSource> sources;
+  double ate = 0;      ///< SE3-aligned [m]
+  bool finite = true;  ///< all poses
+
+  int count(PoseSource source) const {
+    return static_cast<int>(std::count(sources.begin(), sources.end(), source));
+  }
+};
+
+inline Flown fly(const ShortFlight& flight, const Profile& profile) {
+  work::Machine cluster({8, "L1", Bytes(1 << 24), 1, false});
+  work::Machine controller({1, "L2", Bytes(1 << 24), 4, false});
+  const auto odometry = make_odometry(false, profile, flight.rig, cluster, controller);
+  Flown flown;
+  std::int64_t before_ns = flight.frames.front().t_ns;
+  for (const ShortFlight::Frame& frame : flight.frames) {
+    const auto dt = static_cast<float>(static_cast<double>(frame.t_ns - before_ns) * 1e-9);
+    before_ns = frame.t_ns;
+    const bool optimises = odometry->begin_optimisation();
+    const FrameReport report = odometry->process_frame(
+        {frame.pixels.data(), flight.rig.width, flight.rig.height, dt, frame.imu});
+    for (int k = 0; optimises && k < profile.optimiser_iterations; ++k) odometry->optimise();
+    if (optimises) odometry->publish();
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c)
+        T.linear()(r, c) =
+            static_cast<double>(report.R_world_camera[static_cast<std::size_t>(3 * r + c)]);
+      T.translation()[r] = static_cast<double>(report.p_world_camera[static_cast<std::size_t>(r)]);
+    }
+    flown.finite = flown.finite && T.matrix().allFinite();
+    T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+    flown.trajectory.push_back({frame.t_ns, T * flight.T_body_camera.inverse()});
+    flown.sources.push_back(report.source);
+  }
+  if (flown.finite) flown.ate = traces::evaluate(flown.trajectory, flight.truth).translation.rmse;
+  return flown;
+}
+
+}  // namespace leviosim::vio::test
