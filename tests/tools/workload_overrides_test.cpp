@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/run_program.h"
+#include "tools/run/run_request.h"
 #include "tools/run/statistic_list.h"
 
 namespace leviosim::tools {
@@ -54,6 +55,23 @@ TEST(WorkloadOverrides, RefuseFaults) {
         parse_workload_overrides({"workload.window=6", "workload.window=7"});
       },
       {"already given"});
+}
+
+TEST(WorkloadOverrides, RefuseContradictions) {
+  const auto refuse = [](const std::string& profile, const std::vector<std::string>& overrides,
+                         std::initializer_list<std::string> parts) {
+    RunRequest request;
+    request.profile = profile;
+    request.workload = parse_workload_overrides(overrides);
+    expect_input_error([&] { profile_of(request); }, parts);
+  };
+  refuse("next", {"workload.joint=off"}, {"workload.subpixel_steps", "workload.joint=on"});
+  refuse("levio", {"workload.subpixel_steps=4"}, {"workload.subpixel_steps=1"});
+  refuse("levio-no-imu", {"workload.joint=on"}, {"without IMU"});
+  RunRequest both;
+  both.profile = "next";
+  both.workload = parse_workload_overrides({"workload.joint=off", "workload.subpixel_steps=1"});
+  EXPECT_NO_THROW(profile_of(both));
 }
 
 TEST(WorkloadOverrides, ReachTheRunAndItsManifest) {

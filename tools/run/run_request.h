@@ -36,7 +36,7 @@ struct RunRequest {
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
 };
 
-/// The profile with the parameters that were set.
+/// The profile with the parameters that were set. @throws InputError if they contradict each other
 vio::Profile profile_of(const RunRequest& request);
 
 /// Called after every frame.
