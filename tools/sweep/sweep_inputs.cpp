@@ -9,6 +9,7 @@
 #include "tools/run/run_folder.h"
 #include "tools/synth/flight_cache.h"
 #include "traces/asl_reader.h"
+#include "traces/csv.h"
 
 namespace leviosim::tools {
 namespace {
@@ -47,10 +48,13 @@ SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::
   return opened_at(place, [&]() -> std::reference_wrapper<Trace> {
     std::filesystem::path file = beside(name);
     if (std::filesystem::is_directory(file)) file /= kWorkTraceFile;
-    auto work = std::make_unique<traces::WorkTrace>(file);
+    std::string bytes = traces::read_text_file(file);
+    Sha256 digest;
+    digest.add(bytes);
+    // Called as in the plan: what a point says must not depend on where the plan lies.
+    auto work = std::make_unique<traces::WorkTrace>(name, std::move(bytes));
     platform::PlatformFile chip(name + ", platform of the recording", work->info().platform_yaml);
-    std::string sha256 = digest_of_file(file).sha256;
-    return traces_.emplace(name, Trace{std::move(work), std::move(sha256), std::move(chip)})
+    return traces_.emplace(name, Trace{std::move(work), digest.hex(), std::move(chip)})
         .first->second;
   });
 }
