@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <set>
 #include <thread>
 
 #include "tests/tools/run_program.h"
@@ -20,13 +21,13 @@ using testing::Program;
 using testing::ProgramResult;
 using testing::run_program;
 
-/// A folder with one second of flight, its trace on gap9, and a plan of 12 points over it.
+/// A folder with one second of flight, its trace on gap9, and a plan of nine points over it.
 class SweepCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = fs::temp_directory_path() / fmt::format("leviosim-{}-sweep", ::getpid());
     fs::create_directories(folder_);
-    traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
+    traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 1, .texel_m = 0.05});
     const ProgramResult recorded =
         run_program(folder_, {"run", "--platform", "gap9", "--data", path("flight"), "--record",
                               "--out", path("recorded"), "--quiet"});
@@ -35,7 +36,7 @@ class SweepCommand : public ::testing::Test {
                                   "base: { trace: recorded }\n"
                                   "points:\n"
                                   "  - grid:\n"
-                                  "      platform.cluster.clock: [200, 300, 370]\n"
+                                  "      platform.cluster.clock: [200, 370]\n"
                                   "      platform.cluster.fpu.units: [1, 4]\n"
                                   "      platform.cluster.dma.bytes_per_cycle: [4, 8]\n"
                                   "  - list:\n"
@@ -76,16 +77,14 @@ class SweepCommand : public ::testing::Test {
 fs::path SweepCommand::folder_;
 std::string SweepCommand::whole_out_;
 
-TEST_F(SweepCommand, HasARowPerPointAndSaysWhichCannotRun) {
+TEST_F(SweepCommand, GivesTheFiguresOfReplaysAndRunsNothingTwice) {
   const std::string text = csv("whole");
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 13);
-  EXPECT_NE(text.find("\n13,failed,"), std::string::npos);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 9);
+  EXPECT_NE(text.find("\n9,failed,"), std::string::npos);
   EXPECT_NE(text.find("L1"), std::string::npos);
-  EXPECT_NE(whole_out_.find("13 computed"), std::string::npos) << whole_out_;
+  EXPECT_NE(whole_out_.find("9 computed"), std::string::npos) << whole_out_;
   EXPECT_NE(whole_out_.find("Pareto front"), std::string::npos);
-}
 
-TEST_F(SweepCommand, GivesTheFiguresOfAReplay) {
   const traces::WorkTrace trace(folder_ / "recorded" / "work.trace");
   RunRequest request;
   request.platform = recorded_platform(
@@ -94,29 +93,30 @@ TEST_F(SweepCommand, GivesTheFiguresOfAReplay) {
   double sum_ns = 0;
   for (const FrameResult& f : there.run.frames)
     sum_ns += static_cast<double>(f.end_ns - f.arrival_ns);
-  SweepStore store(folder_ / "whole");
-  ASSERT_EQ(store.settings_of(2).find("platform.cluster.clock=200MHz platform.cluster.fpu.units=1"),
-            0u);
-  EXPECT_DOUBLE_EQ(store.outcomes().at(1).objectives[0].value(),
-                   sum_ns * 1e-6 / static_cast<double>(there.run.frames.size()));
-}
-
-TEST_F(SweepCommand, RunsNothingTwice) {
+  {
+    SweepStore store(folder_ / "whole");
+    EXPECT_GT(store.front().size(), 0u);
+    ASSERT_EQ(
+        store.settings_of(2).find("platform.cluster.clock=200MHz platform.cluster.fpu.units=1"),
+        0u);
+    EXPECT_DOUBLE_EQ(store.outcomes().at(1).objectives[0].value(),
+                     sum_ns * 1e-6 / static_cast<double>(there.run.frames.size()));
+  }
   const ProgramResult again = sweep({"--out", path("whole")}, "empty");
   EXPECT_NE(again.out.find("0 computed"), std::string::npos) << again.out;
-  EXPECT_NE(again.out.find("13 done before"), std::string::npos);
+  EXPECT_NE(again.out.find("9 done before"), std::string::npos);
   const ProgramResult elsewhere = sweep({"--out", path("elsewhere")}, "whole");
-  EXPECT_NE(elsewhere.out.find("12 found in the cache"), std::string::npos) << elsewhere.out;
+  EXPECT_NE(elsewhere.out.find("8 found in the cache"), std::string::npos) << elsewhere.out;
   EXPECT_EQ(csv("elsewhere"), csv("whole"));  // what failed is tried again
 }
 
 TEST_F(SweepCommand, GoesOnAfterBeingKilledAtAnyMoment) {
   traces::Rng rng(11);
-  for (int trial = 0; trial < 4; ++trial) {
+  for (int trial = 0; trial < 3; ++trial) {
     const std::string name = fmt::format("killed-{}", trial);
-    for (int kill = 0; kill < 3; ++kill) {
+    for (int kill = 0; kill < 2; ++kill) {
       Program program(folder_, words({"--out", path(name), "--jobs", "2"}, name));
-      std::this_thread::sleep_for(std::chrono::milliseconds(20 + rng.below(250)));
+      std::this_thread::sleep_for(std::chrono::milliseconds(60 + rng.below(200)));
       program.send(SIGKILL);
       program.wait();
     }
@@ -126,7 +126,7 @@ TEST_F(SweepCommand, GoesOnAfterBeingKilledAtAnyMoment) {
   }
 }
 
-TEST_F(SweepCommand, SharesAndSinglePointsMergedAreOneRun) {
+TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
   for (const char* share : {"1/3", "2/3", "3/3"})
     ASSERT_EQ(
         sweep({"--out", path(fmt::format("share-{:.1}", share)), "--shard", share}, "s").status, 0);
@@ -136,12 +136,10 @@ TEST_F(SweepCommand, SharesAndSinglePointsMergedAreOneRun) {
                             path("share-2"), path("share-1")});
   ASSERT_EQ(merged.status, 0) << merged.err;
   EXPECT_EQ(csv("merged"), csv("whole"));
-  for (int k = 13; k >= 1; --k)
-    ASSERT_EQ(sweep({"--out", path("singly"), "--point", fmt::format("{}", k)}, "s").status, 0);
-  EXPECT_EQ(csv("singly"), csv("whole"));
-}
+  for (const char* point : {"9", "2"})
+    ASSERT_EQ(sweep({"--out", path("singly"), "--point", point}, "s").status, 0);
+  EXPECT_EQ(SweepStore(folder_ / "singly").finished(), (std::set<int>{2, 9}));
 
-TEST_F(SweepCommand, MergesNothingThatDoesNotBelongTogether) {
   traces::write_file_atomically(folder_ / "other.yaml",
                                 "base: { trace: recorded }\n"
                                 "points: { grid: { platform.cluster.clock: [200] } }\n");
@@ -158,15 +156,13 @@ TEST_F(SweepCommand, MergesNothingThatDoesNotBelongTogether) {
       {"nowhere", "sweep.sqlite"});
 }
 
-TEST_F(SweepCommand, ListsItsPoints) {
+TEST_F(SweepCommand, ListsItsPointsAndRefusesWhatItCannotDo) {
   const ProgramResult list = sweep({"--list"}, "list");
-  EXPECT_EQ(std::count(list.out.begin(), list.out.end(), '\n'), 13);
+  EXPECT_EQ(std::count(list.out.begin(), list.out.end(), '\n'), 9);
   EXPECT_EQ(list.out.find("1\tplatform.cluster.clock=200MHz"), 0u) << list.out;
-}
 
-TEST_F(SweepCommand, RefusesWhatItCannotDo) {
   testing::expect_refused(sweep({"--out", path("x"), "--shard", "4/3"}, "x"), {"--shard '4'"});
-  testing::expect_refused(sweep({"--out", path("x"), "--point", "14"}, "x"), {"--point '14'"});
+  testing::expect_refused(sweep({"--out", path("x"), "--point", "10"}, "x"), {"--point '10'"});
   testing::expect_refused(sweep({"--out", path("flight")}, "x"), {"something else"});
   testing::expect_refused(sweep({}, "x"), {"--out"});
   traces::write_file_atomically(folder_ / "bad.yaml",

@@ -41,8 +41,7 @@ std::string front_table(SweepStore& store, const std::vector<SweepOutcome>& fron
   }
   std::string text = table.str();
   if (front.size() > kMostRows)
-    text += fmt::format("  and {} more: the query in README.md, or sweep.csv\n",
-                        front.size() - kMostRows);
+    text += fmt::format("  and {} more: table front of sweep.sqlite\n", front.size() - kMostRows);
   return text;
 }
 

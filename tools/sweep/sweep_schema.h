@@ -19,6 +19,7 @@ CREATE TABLE IF NOT EXISTS figures(
 CREATE TABLE IF NOT EXISTS figure_values(
   point INTEGER NOT NULL REFERENCES outcomes, figure INTEGER NOT NULL REFERENCES figures,
   place INTEGER NOT NULL, value REAL NOT NULL, PRIMARY KEY(point, figure)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS front(point INTEGER PRIMARY KEY REFERENCES outcomes);
 CREATE VIEW IF NOT EXISTS points AS
   SELECT planned.point AS point,
          CASE WHEN failure IS NULL THEN 'open' WHEN failure = '' THEN 'done' ELSE 'failed' END

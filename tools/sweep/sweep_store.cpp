@@ -7,6 +7,7 @@
 #include "platform_models/dimension.h"
 #include "sim/error.h"
 #include "tools/cli/version.h"
+#include "tools/sweep/pareto.h"
 #include "tools/sweep/point_key.h"
 #include "tools/sweep/sweep_schema.h"
 #include "traces/atomic_file.h"
@@ -279,6 +280,20 @@ std::string SweepStore::csv(const std::vector<std::string>& parameters,
   return text;
 }
 
+void SweepStore::write_front() {
+  database_.run("DELETE FROM front");
+  Statement insert(database_, "INSERT INTO front VALUES(?)");
+  for (const SweepOutcome& o : pareto_front(outcomes()))
+    insert.bind(1, std::int64_t{o.point}).run();
+}
+
+std::set<int> SweepStore::front() {
+  std::set<int> points;
+  Statement select(database_, "SELECT point FROM front");
+  while (select.step()) points.insert(static_cast<int>(select.whole(0)));
+  return points;
+}
+
 void SweepStore::publish() {
   Transaction transaction(database_);  // of several processes, the last sees what all have done
   std::vector<std::string> parameters;
@@ -288,6 +303,7 @@ void SweepStore::publish() {
   while (select.step()) parameters.push_back(select.text(0));
   const std::vector<std::string> figures = figure_names();
   make_views(parameters, figures);
+  write_front();
   traces::write_file_atomically(folder_ / kSweepCsv, csv(parameters, figures));
   select.reset();
   transaction.commit();

@@ -49,8 +49,11 @@ class SweepStore {
   std::string settings_of(int point);
   std::int64_t planned();
 
-  /// Brings views and sweep.csv up to date: a row per finished point, a column per parameter and
-  /// figure, in an order that does not depend on which was finished first.
+  /// Numbers of the points on the Pareto front at the last publish().
+  std::set<int> front();
+
+  /// Brings views, front and sweep.csv up to date: a row per finished point, a column per parameter
+  /// and figure, in an order that does not depend on which was finished first.
   void publish();
 
  private:
@@ -60,6 +63,7 @@ class SweepStore {
   std::optional<PointResult> result_of(int point);
   void write(int point, const PointResult& result);
   std::vector<std::string> figure_names();
+  void write_front();
   void make_views(const std::vector<std::string>& parameters,
                   const std::vector<std::string>& figures);
   std::string csv(const std::vector<std::string>& parameters,
