@@ -18,6 +18,7 @@
 #include "tools/run/run_command.h"
 #include "tools/run/workload_command.h"
 #include "tools/sensitivity/sensitivity_command.h"
+#include "tools/sweep/sweep_command.h"
 #include "tools/synth/synth_command.h"
 #include "tools/tune/tune_command.h"
 #include "tools/validate/validate_command.h"
@@ -44,7 +45,8 @@ int run_program(const Words& words) {
          add_workload_command(app), add_eval_command(app), add_ablate_command(app, words),
          add_explore_command(app, words), add_validate_command(app, words),
          add_calibrate_command(app), add_sensitivity_command(app), add_microbench_command(app),
-         add_replay_command(app, words), add_trace_command(app), add_tune_command(app, words)},
+         add_replay_command(app, words), add_trace_command(app), add_tune_command(app, words),
+         add_sweep_command(app)},
         words);
   } catch (const InputError& error) {
     return fail(error);

@@ -8,6 +8,8 @@ packages=(
   libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
   libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
+  libsqlite3-dev                                              # results of sweeps
+  parallel                                                    # an example of sweeps, tested
   libgtest-dev libexpat1-dev                                  # tests
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
 )

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
 
+#include "tools/batch/run_jobs.h"
 #include "tools/batch/run_key.h"
 #include "tools/cli/interrupts.h"
-#include "traces/parallel_for.h"
 
 namespace leviosim::tools {
 namespace {
@@ -43,22 +42,21 @@ std::vector<RunOutcome> run_batch(const std::vector<BatchRun>& runs, const Batch
   const std::vector<Job> jobs = jobs_of(runs, options.measure);
   std::vector<RunOutcome> outcomes(runs.size());
   BatchProgress done{0, 0, runs.size()};
-  std::mutex mutex;
-  traces::parallel_for(jobs.size(), options.threads, [&](std::size_t j) {
-    throw_if_interrupted();
+  JobBatch batch;
+  for (const Job& job : jobs) batch.keys.push_back(job.key);
+  batch.readable = [](const std::string& text) { return parse_outcome(text).has_value(); };
+  batch.compute = [&](std::size_t j) {
+    return JobText{to_text(compute(runs[jobs[j].runs.front()], options.measure))};
+  };
+  batch.take = [&](std::size_t j, const std::string& text, bool found) {
     const Job& job = jobs[j];
-    std::optional<RunOutcome> outcome = options.cache.find(job.key);
-    const bool found = outcome.has_value();
-    if (!found) {
-      outcome = compute(runs[job.runs.front()], options.measure);
-      options.cache.store(job.key, *outcome);
-    }
-    for (const std::size_t i : job.runs) outcomes[i] = *outcome;
-    const std::lock_guard<std::mutex> lock(mutex);
+    const RunOutcome outcome = parse_outcome(text).value();
+    for (const std::size_t i : job.runs) outcomes[i] = outcome;
     done.done += job.runs.size();
     if (found) done.found += job.runs.size();
     progress(done);
-  });
+  };
+  run_jobs(batch, options.cache, options.threads);
   return outcomes;
 }
 

@@ -18,20 +18,29 @@ fs::path RunCache::file_of(const std::string& key) const {
   return folder_ / key.substr(0, 2) / (key + ".json");
 }
 
-std::optional<RunOutcome> RunCache::find(const std::string& key) const {
+std::optional<std::string> RunCache::find_text(const std::string& key) const {
   const fs::path file = file_of(key);
   if (!fs::is_regular_file(file)) return std::nullopt;
-  return parse_outcome(traces::read_text_file(file));
+  return traces::read_text_file(file);
 }
 
-void RunCache::store(const std::string& key, const RunOutcome& outcome) const {
+void RunCache::store_text(const std::string& key, const std::string& text) const {
   const fs::path file = file_of(key);
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error)
     throw InputError(
         fmt::format("{}: cannot be created: {}", file.parent_path().string(), error.message()));
-  traces::write_file_atomically(file, to_text(outcome));
+  traces::write_file_atomically(file, text);
+}
+
+std::optional<RunOutcome> RunCache::find(const std::string& key) const {
+  const std::optional<std::string> text = find_text(key);
+  return text ? parse_outcome(*text) : std::nullopt;
+}
+
+void RunCache::store(const std::string& key, const RunOutcome& outcome) const {
+  store_text(key, to_text(outcome));
 }
 
 }  // namespace leviosim::tools

@@ -15,6 +15,11 @@ class RunCache {
   /// The folder is made when something is stored.
   explicit RunCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+  /// Nothing if nothing is kept under the key.
+  std::optional<std::string> find_text(const std::string& key) const;
+  /// @throws InputError if it cannot be written
+  void store_text(const std::string& key, const std::string& text) const;
+
   /// Nothing if the run is not there, or cannot be read.
   std::optional<RunOutcome> find(const std::string& key) const;
   /// @throws InputError if it cannot be written

@@ -13,14 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As one digest; each file counts with its name.
-std::string digest_of(const traces::Dataset& data) {
-  Sha256 all;
-  for (const InputDigest& file : digest_inputs(data))
-    all.add(fmt::format("{} {}\n", file.name, file.sha256));
-  return all.hex();
-}
-
 double path_over_frames(const traces::Dataset& data) {
   double length = 0;
   for (std::size_t i = 1; i < data.ground_truth.size(); ++i) {
@@ -52,6 +44,14 @@ NamedFolder parse_named_folder(const std::string& text) {
         "NAME=DIR with another",
         text, named.name));
   return named;
+}
+
+/// Each file counts with its name.
+std::string digest_of(const traces::Dataset& data) {
+  Sha256 all;
+  for (const InputDigest& file : digest_inputs(data))
+    all.add(fmt::format("{} {}\n", file.name, file.sha256));
+  return all.hex();
 }
 
 Sequence open_sequence(const NamedFolder& named, const std::optional<traces::FrameRange>& frames,

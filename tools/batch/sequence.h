@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/run/run_request.h"
+#include "traces/dataset.h"
 
 namespace leviosim::tools {
 
@@ -25,6 +26,9 @@ struct NamedFolder {
 };
 /// @throws InputError for names that tables cannot hold
 NamedFolder parse_named_folder(const std::string& text);
+
+/// All that is read from a folder as one SHA-256. @throws InputError for files that cannot be read
+std::string digest_of(const traces::Dataset& data);
 
 /// @throws InputError for folders that cannot be read, have no ground truth, or cannot be prepared
 ///         for one of the sizes

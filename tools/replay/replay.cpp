@@ -8,8 +8,6 @@
 #include "tools/run/simulation.h"
 
 namespace leviosim::tools {
-namespace {
-
 void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
   const int recorded = trace.info().cores;
   const int most = request.platform.config.cluster.max_workers;
@@ -22,8 +20,6 @@ void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
         "not in it; replay with --cores {}, or record again with run --record --cores {}",
         trace.name(), recorded, request.cores, recorded, request.cores));
 }
-
-}  // namespace
 
 platform::ResolvedPlatform recorded_platform(const traces::WorkTrace& trace,
                                              const std::vector<std::string>& overrides) {

@@ -17,6 +17,9 @@ struct Replay {
 platform::ResolvedPlatform recorded_platform(const traces::WorkTrace& trace,
                                              const std::vector<std::string>& overrides = {});
 
+/// @throws InputError for another number of cores than the work was divided among
+void check_cores(const traces::WorkTrace& trace, const RunRequest& request);
+
 /// @param request  gives platform, cores and observer; the rest is the trace's
 /// @throws InputError if the work does not fit the chip: another number of cores than it was
 /// divided

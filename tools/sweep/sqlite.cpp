@@ -1,0 +1,116 @@
+#include "tools/sweep/sqlite.h"
+
+#include <fmt/core.h>
+#include <sqlite3.h>
+
+#include "sim/error.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// For how long one process waits for another that writes.
+constexpr int kPatienceMs = 60'000;
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& file, Mode mode) : file_(file.string()) {
+  const int flags =
+      mode == Mode::create ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READWRITE;
+  if (sqlite3_open_v2(file_.c_str(), &handle_, flags, nullptr) != SQLITE_OK) {
+    const std::string message = handle_ != nullptr ? sqlite3_errmsg(handle_) : "out of memory";
+    sqlite3_close(handle_);
+    throw InputError(fmt::format("{}: cannot be opened: {}", file_, message));
+  }
+  sqlite3_busy_timeout(handle_, kPatienceMs);
+}
+
+Database::~Database() { sqlite3_close(handle_); }
+
+void Database::fail(std::string_view message) const {
+  throw InputError(fmt::format("{}: {}", file_, message));
+}
+
+void Database::run(const std::string& sql) {
+  if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+    fail(sqlite3_errmsg(handle_));
+}
+
+Statement::Statement(Database& database, const std::string& sql) : database_(database) {
+  if (sqlite3_prepare_v2(database.handle_, sql.c_str(), -1, &handle_, nullptr) != SQLITE_OK)
+    database.fail(sqlite3_errmsg(database.handle_));
+}
+
+Statement::~Statement() { sqlite3_finalize(handle_); }
+
+Statement& Statement::bind(int place, std::int64_t value) {
+  sqlite3_bind_int64(handle_, place, value);
+  return *this;
+}
+
+Statement& Statement::bind(int place, std::optional<double> value) {
+  if (value)
+    sqlite3_bind_double(handle_, place, *value);
+  else
+    sqlite3_bind_null(handle_, place);
+  return *this;
+}
+
+Statement& Statement::bind(int place, std::string_view value) {
+  sqlite3_bind_text64(handle_, place, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+  return *this;
+}
+
+bool Statement::step() {
+  const int result = sqlite3_step(handle_);
+  if (result == SQLITE_ROW) return true;
+  if (result != SQLITE_DONE) database_.fail(sqlite3_errmsg(database_.handle_));
+  return false;
+}
+
+void Statement::run() {
+  step();
+  reset();
+}
+
+void Statement::reset() {
+  sqlite3_reset(handle_);
+  sqlite3_clear_bindings(handle_);
+}
+
+std::int64_t Statement::whole(int column) const { return sqlite3_column_int64(handle_, column); }
+
+std::optional<double> Statement::number(int column) const {
+  if (sqlite3_column_type(handle_, column) == SQLITE_NULL) return std::nullopt;
+  return sqlite3_column_double(handle_, column);
+}
+
+std::string Statement::text(int column) const {
+  const unsigned char* const text = sqlite3_column_text(handle_, column);
+  if (text == nullptr) return {};
+  return {reinterpret_cast<const char*>(text),
+          static_cast<std::size_t>(sqlite3_column_bytes(handle_, column))};
+}
+
+void Statement::bind_column(int column, Statement& other) const {
+  sqlite3_bind_value(other.handle_, column + 1, sqlite3_column_value(handle_, column));
+}
+
+Transaction::Transaction(Database& database) : database_(database) {
+  database_.run("BEGIN IMMEDIATE");
+}
+
+Transaction::~Transaction() {
+  if (!open_) return;
+  try {
+    database_.run("ROLLBACK");
+  } catch (const InputError&) {
+    // SQLite has undone it already, as it does after faults of the disk.
+  }
+}
+
+void Transaction::commit() {
+  database_.run("COMMIT");
+  open_ = false;
+}
+
+}  // namespace leviosim::tools
