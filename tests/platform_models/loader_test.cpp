@@ -249,7 +249,7 @@ TEST(Loader, RefusesFilesThatAreNoPlatforms) {
 TEST(Loader, UnknownPlatformListsTheKnownOnes) {
   expect_parts(
       fault_of([] { load_platform("gap8x"); }),
-      {"unknown platform 'gap8x'", "did you mean 'gap8'", "built in: gap8, gap9", ".yaml"});
+      {"unknown platform 'gap8x'", "did you mean 'gap8'", "built in: cortex-m4f, gap8, gap9", ".yaml"});
 }
 
 TEST(Loader, UnreadableFileIsNamed) {

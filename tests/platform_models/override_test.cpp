@@ -54,13 +54,18 @@ TEST(Override, DifferencesOfACoreWinOverIsa) {
 
 /// What has to be changed too, so that another value is possible: lower voltages need lower clocks.
 std::vector<std::string> beside(const Field& field) {
+  if (field.path == "controller.runs_on") return {"cluster.workers=1", "cluster.max_workers=1"};
   if (!is_about_energy(field)) return {};
   return {"cluster.clock=200MHz", "controller.clock=200MHz"};
 }
 
 /// The chip with a value of this field that differs from the present one and is allowed.
 sim::ChipConfig changed(const Field& field, double present) {
-  if (field.is_choice()) return with({field.path + "=" + field.choices[present == 0 ? 1 : 0]});
+  if (field.is_choice()) {
+    std::vector<std::string> overrides = beside(field);
+    overrides.push_back(field.path + "=" + field.choices[present == 0 ? 1 : 0]);
+    return with(overrides);
+  }
   constexpr double kSupplyStep = 0.05;
   for (const double candidate : {present + 1, present - 1, present * 2, present / 2,
                                  present - kSupplyStep, present + kSupplyStep}) {
