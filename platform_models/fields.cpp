@@ -307,10 +307,6 @@ void add_controller(Table& table) {
 
 /// A chip need not have external memory.
 void add_external_memory(Table& table) {
-  const auto optional = [](Field field) {
-    field.required = false;
-    return field;
-  };
   table.add(
       optional(quantity("controller.external.latency", kTime, 0, 1,
                         "time of a transfer from or to external memory besides its data")),
