@@ -64,6 +64,7 @@ class Machine {
   int cores() const { return config_.cores; }
   bool recording() const { return config_.record; }
   Arena& local() { return local_; }
+  const Arena& local() const { return local_; }
 
   /// While alive, work belongs to the stage of this name (a string literal). Stages do not nest.
   class Stage {

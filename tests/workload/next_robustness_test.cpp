@@ -13,8 +13,9 @@ namespace {
 struct Case {
   const char* name;
   void (*spoil)(ShortFlight&);
-  double ate;  ///< at most [m]
-  bool lost;   ///< some frames must be reported as lost
+  double ate;        ///< at most [m]
+  bool lost;         ///< some frames must be reported as lost
+  float range[2]{};  ///< of gyro and accelerometer, where it matters [rad/s, m/s²]
 };
 
 /// The errors are bounds of some 1.5 times what was measured, not what would be wished for.
@@ -27,9 +28,12 @@ constexpr std::array kCases{
          false},
     Case{"dark for a second", [](ShortFlight& f) { darken(f, 100, 120); }, 0.2, true},
     Case{"blurred for a second", [](ShortFlight& f) { blur(f, 100, 120); }, 0.2, true},
-    Case{"gyro and accelerometer saturate", [](ShortFlight& f) { saturate(f, 0.35f, 9.9f); }, 0.8,
-         false},
-    Case{"no IMU for half a second", [](ShortFlight& f) { cut_imu(f, 100, 110); }, 0.35, false},
+    Case{"gyro and accelerometer saturate",
+         [](ShortFlight& f) { saturate(f, 0.35f, 9.9f); },
+         0.8,
+         false,
+         {0.35f, 9.9f}},
+    Case{"no IMU for half a second", [](ShortFlight& f) { cut_imu(f, 100, 110); }, 0.25, false},
 };
 
 /// Rests for a second, then flies for seven.
@@ -43,7 +47,12 @@ class NextRobustness : public ::testing::TestWithParam<Case> {};
 TEST_P(NextRobustness, SaysWhenItIsLostAndFindsBack) {
   ShortFlight flight = from_rest();
   GetParam().spoil(flight);
-  const Flown flown = fly(flight, profile_named("next", 1));
+  Profile profile = profile_named("next", 1);
+  if (GetParam().range[0] > 0) {
+    profile.imu_doubt.gyro_range = GetParam().range[0];
+    profile.imu_doubt.accel_range = GetParam().range[1];
+  }
+  const Flown flown = fly(flight, profile);
   EXPECT_TRUE(flown.finite);
   EXPECT_LT(flown.ate, GetParam().ate);
   const int lost = flown.count(PoseSource::Predicted);

@@ -18,8 +18,8 @@ cv::Mat blurred(const cv::Mat& image, int shares) {
   PolicyImage<P> to(image.cols, image.rows);
   auto kernel = local_copy<P>(kBlurKernel<P>);
   for (int i = 0; i < shares; ++i)
-    blur_rows<P>(from.view(), to.view().pixels, image.rows * i / shares,
-                 image.rows * (i + 1) / shares, span_of<P>(kernel));
+    blur_rows<P>(from.view(), to.view(), image.rows * i / shares, image.rows * (i + 1) / shares,
+                 span_of<P>(kernel));
   cv::Mat result(image.size(), CV_8U);
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x)

@@ -23,14 +23,7 @@ work::Machine make_machine(int cores) {
 }
 
 template <class P>
-Features extract(work::Machine& machine, const cv::Mat& image,
-                 const ExtractorOptions& options = {}) {
-  PolicyImage<P> copy(image);
-  const auto stage = machine.stage("feature extraction");
-  const work::Arena::Frame frame(machine.local());
-  FeatureList<P> list =
-      alloc_features<P>(machine.local(), options.max_features(image.cols, image.rows));
-  extract_features<P>(machine, copy.view(), options, list);
+Features plain(const FeatureList<P>& list) {
   Features features;
   for (int i = 0; i < list.count; ++i) {
     Feature f{list.x.data()[i], list.y.data()[i], {}};
@@ -39,6 +32,18 @@ Features extract(work::Machine& machine, const cv::Mat& image,
     features.push_back(f);
   }
   return features;
+}
+
+template <class P>
+Features extract(work::Machine& machine, const cv::Mat& image,
+                 const ExtractorOptions& options = {}) {
+  PolicyImage<P> copy(image);
+  const auto stage = machine.stage("feature extraction");
+  const work::Arena::Frame frame(machine.local());
+  FeatureList<P> list =
+      alloc_features<P>(machine.local(), options.max_features(image.cols, image.rows));
+  extract_features<P>(machine, copy.view(), options, list);
+  return plain<P>(list);
 }
 template <class P>
 Features extract(const cv::Mat& image, int cores = 8, const ExtractorOptions& options = {}) {

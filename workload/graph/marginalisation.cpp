@@ -163,7 +163,7 @@ void marginalise(work::Arena& arena, const Window<P>& window, int departed,
   using F = typename P::F32;
   const typename P::Function function("marginalise");
   const work::Arena::Frame frame(arena);
-  const LandmarkRecords<P> records(arena, window.landmarks, window.capacity.keyframes);
+  const LandmarkRecords<P> records(arena, window.capacity.landmarks, window.capacity.keyframes);
   const ReducedSystem<P> system(arena, window.keyframes, true, kBiasUnknowns);
   const ProjectionScratch<P> projection(arena, window.capacity.keyframes);
   const JointScratch<P> interval(arena);

@@ -75,19 +75,19 @@ struct JointTerms {
   ImuBias<P> trial_bias;
 };
 
-/// The work memory of an iteration.
+/// The work memory of an iteration, sized for the largest window as the release's is.
 template <class P, class Terms>
 struct WorkMemory {
   using Span = typename P::template Span<typename P::F32>;
 
   WorkMemory(work::Arena& arena, const Window<P>& window, const OptimiserOptions& options)
-      : records(arena, window.landmarks, window.capacity.keyframes),
+      : records(arena, window.capacity.landmarks, window.capacity.keyframes),
         system(Terms::system(arena, window, options)),
         elimination(arena, window.capacity.keyframes),
         terms(arena, window, options),
         trial{arena.alloc<Span>("trial poses", kPoseFloats * window.keyframes),
               arena.alloc<Span>("trial velocities", 3 * window.keyframes),
-              arena.alloc<Span>("trial points", 3 * window.landmarks)} {}
+              arena.alloc<Span>("trial points", 3 * window.capacity.landmarks)} {}
 
   LandmarkRecords<P> records;
   ReducedSystem<P> system;

@@ -39,6 +39,8 @@ class PoseGraph : public GraphMemory<P, Where> {
   PoseGraph() = default;
   /// Views of the graph in `arena`, with uninitialised contents.
   PoseGraph(work::Arena& arena, const GraphCapacity& size) : Memory(arena, size) {}
+  PoseGraph(work::Arena& arena, work::Arena& inertial, const GraphCapacity& size)
+      : Memory(arena, inertial, size) {}
   explicit PoseGraph(const Memory& memory) : Memory(memory) {}
 
   /// Empties the graph; the prior of the biases knows nothing then.

@@ -38,6 +38,19 @@ struct ImuNoise {
   float gravity = 1.0f;      ///< standard deviation of each component of the gravity vector, m/s²
 };
 
+/// When a sample cannot be relied on, and the noise densities that are assumed of it then: an axis
+/// at the end of its range has seen less than there was, and of what happened between samples far
+/// apart the two ends tell little. Such errors keep their sign, so the densities are those that
+/// give what a small vehicle does unseen (1 rad/s, 3 m/s²) after some tenths of a second.
+struct ImuDoubt {
+  bool enabled = false;
+  float gyro_range = 17.4f;    ///< of the sensor, ± rad/s: ADIS16448, 1000 °/s
+  float accel_range = 176.0f;  ///< likewise, ± m/s²: 18 g
+  float longest_step = 0.02f;  ///< s
+  float gyro = 0.5f;           ///< rad/s/√Hz
+  float accel = 1.5f;          ///< m/s²/√Hz
+};
+
 /// Magnitude of gravity, m/s² (levio_parameters).
 inline constexpr float kGravity = 9.81f;
 

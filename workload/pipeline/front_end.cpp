@@ -4,6 +4,7 @@
 
 #include "workload/geometry/recover_pose.h"
 #include "workload/pipeline/stages.h"
+#include "workload/vision/strip_extractor.h"
 
 namespace leviosim::vio {
 namespace {
@@ -17,6 +18,14 @@ Mat3<P> matrix_from(const std::array<float, 9>& a) {
 PinholeCamera finer(const PinholeCamera& c, int steps) {
   const float s = static_cast<float>(steps);
   return {s * c.fx, s * c.fy, s * c.cx, s * c.cy};
+}
+
+/// Whether the image, its blurred copy and the features exceed the local memory.
+template <class P>
+bool needs_strips(const ExtractorOptions& options, const Rig& rig, const work::Machine& machine) {
+  const Bytes features = observed_features_size<P>(options.max_features(rig.width, rig.height));
+  return features + options.memory_of_whole_image(rig.width, rig.height, machine.cores()) >
+         machine.local().capacity();
 }
 
 /// Host-side: the pose as plain numbers.
@@ -40,8 +49,9 @@ FrontEnd<P>::FrontEnd(const Profile& profile, const Rig& rig, work::Machine& clu
           CameraMatrix<P>::inverse_of(finer(rig.camera, profile.extractor.subpixel_steps))),
       R_camera_body_(matrix_from<P>(rig.R_camera_body)),
       machine_(cluster),
+      strips_(needs_strips<P>(profile.extractor, rig, cluster)),
       keyframe_(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
-                rig.height),
+                rig.height, strips_),
       graph_(graph),
       graph_in_l2_(seen_from_cluster<P>(graph)),
       stillness_(StillnessOptions{}, keyframe_.stillness) {
@@ -114,7 +124,11 @@ void FrontEnd<P>::extract(Frame& frame) {
   const auto stage = machine_.stage(stages::kExtraction);
   const int capacity = keyframe_.features.list.capacity;
   frame.features = alloc_observed_features<P>(machine_.local(), capacity);
-  extract_features<P>(machine_, keyframe_.image, profile_.extractor, frame.features.list);
+  if (strips_)
+    extract_features_in_strips<P>(machine_, keyframe_.image, keyframe_.blurred, profile_.extractor,
+                                  frame.features.list);
+  else
+    extract_features<P>(machine_, keyframe_.image, profile_.extractor, frame.features.list);
   for (int i : P::range(0, frame.features.list.count))
     frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
 }

@@ -50,6 +50,7 @@ class FrontEnd {
   };
 
   void integrate_imu(const FrameInput& input);
+  ImuNoise noise_of(const ImuInput& sample) const;
   void detect_stillness(const Preintegration<P>& interval, float seconds);
   ImuDelta<P> motion_since_keyframe();
   Pose<P> predicted_pose();
@@ -93,6 +94,7 @@ class FrontEnd {
   CameraMatrix<P> inverse_camera_matrix_;
   Mat3<P> R_camera_body_;
   work::Machine& machine_;
+  bool strips_;  ///< the image does not fit in local memory as a whole
   KeyframeRecord<P> keyframe_;
   PoseGraph<P> graph_;                       ///< in L2, as the source and target of transfers
   PoseGraph<P, L2FromCluster> graph_in_l2_;  ///< the same, as a cluster core reaches it

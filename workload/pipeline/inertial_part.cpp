@@ -28,7 +28,7 @@ void FrontEnd<P>::integrate_imu(const FrameInput& input) {
     const ImuSample<P> sample{in.dt, R_camera_body_ * Vec3<P>{in.gyro[0], in.gyro[1], in.gyro[2]},
                               R_camera_body_ * Vec3<P>{in.accel[0], in.accel[1], in.accel[2]}};
     if (started_) {
-      interval.integrate(load_imu_sample<P>(last, 0), sample, profile_.imu_noise);
+      interval.integrate(load_imu_sample<P>(last, 0), sample, noise_of(in));
     } else {
       const Vec3<P> sum = first ? Vec3<P>{0.0f, 0.0f, 0.0f} : load_vec3<P>(record, 0);
       store_vec3<P>(record, 0, sum + sample.accel);
@@ -43,6 +43,23 @@ void FrontEnd<P>::integrate_imu(const FrameInput& input) {
     machine_.copy_out(keyframe_.last_sample, last);
     machine_.copy_out(keyframe_.stillness, sums);
   }
+}
+
+/// What is assumed of the step that ends with this sample.
+template <class P>
+ImuNoise FrontEnd<P>::noise_of(const ImuInput& sample) const {
+  ImuNoise noise = profile_.imu_noise;
+  const ImuDoubt& doubt = profile_.imu_doubt;
+  if (!doubt.enabled) return noise;
+  const auto at_end = [](const float(&axes)[3], float range) {
+    F largest = work::abs(F(axes[0]));
+    for (int a = 1; a < 3; ++a) largest = work::max(largest, F(work::abs(F(axes[a]))));
+    return bool(largest >= F(range));
+  };
+  const bool gap = bool(F(sample.dt) > F(doubt.longest_step));
+  if (gap || at_end(sample.gyro, doubt.gyro_range)) noise.gyro = doubt.gyro;
+  if (gap || at_end(sample.accel, doubt.accel_range)) noise.accel = doubt.accel;
+  return noise;
 }
 
 /// Re-estimates gravity and the gyro bias if the vehicle has stood still (levio_parameters,

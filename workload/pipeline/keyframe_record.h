@@ -28,11 +28,21 @@ ObservedFeatures<P> alloc_observed_features(work::Arena& arena, int capacity) {
   return features;
 }
 
+/// What alloc_observed_features() takes.
+template <class P>
+Bytes observed_features_size(int capacity) {
+  using Half = typename P::U16;
+  constexpr std::size_t kEach = 3 * sizeof(Half) + kDescriptorWords * sizeof(typename P::U32);
+  return Bytes(static_cast<std::int64_t>(kEach) * capacity);
+}
+
 template <class P>
 struct KeyframeRecord {
   using F = typename P::F32;
 
-  KeyframeRecord(work::Arena& arena, int capacity, int width, int height)
+  /// @param strips  whether features are extracted from strips of the image, which takes a blurred
+  ///                copy in L2
+  KeyframeRecord(work::Arena& arena, int capacity, int width, int height, bool strips)
       : features(alloc_observed_features<P>(arena, capacity)),
         interval(
             arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
@@ -41,13 +51,19 @@ struct KeyframeRecord {
             "IMU sums of the last second", StillnessDetector<P>::floats(StillnessOptions{}))),
         image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
                                                                        width * height),
-              width, height} {}
+              width, height} {
+    if (strips) {
+      using Pixels = typename P::template Span<typename P::Byte>;
+      blurred = {arena.alloc<Pixels>("blurred image", width * height), width, height};
+    }
+  }
 
   ObservedFeatures<P> features;
   typename P::template Span<F> interval;     ///< pre-integrated motion since the keyframe
   typename P::template Span<F> last_sample;  ///< where the next step of it begins
   typename P::template Span<F> stillness;    ///< of the StillnessDetector
   ImageView<P> image;
+  ImageView<P> blurred;  ///< only where features are extracted from strips
 };
 
 }  // namespace leviosim::vio

@@ -50,7 +50,7 @@ class OdometryOf : public Odometry {
       : profile_(fitted_to(rig, profile)),
         keyframe_memory_("L2", controller.local().capacity()),
         graph_memory_("L2", controller.local().capacity()),
-        graph_(graph_memory_,
+        graph_(graph_memory_, keyframe_memory_,
                {profile.optimiser_keyframes, profile.max_landmarks, profile.max_observations}),
         front_end_(profile_, rig, cluster, keyframe_memory_, graph_),
         reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),

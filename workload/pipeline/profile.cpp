@@ -39,6 +39,7 @@ void make_next(Profile& p) {
                  .gyro_bias = 1.9393e-5f,
                  .accel_bias = 3e-3f,
                  .gravity = 0.0f};
+  p.imu_doubt.enabled = true;
   p.optimiser.visual.sigma_px = 0.7f;
   p.optimiser.prior.velocity = 0.3f;  // as levio's anchor, and for the same reason
 }

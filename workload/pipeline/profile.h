@@ -68,6 +68,7 @@ struct Profile {
   bool use_epnp = true;
   bool gravity_updates = true;  ///< gravity is measured again whenever the vehicle stands still
   ImuNoise imu_noise;
+  ImuDoubt imu_doubt;
   BiasOptions biases;
   OptimiserOptions optimiser;
   int optimiser_keyframes = 8;  ///< window

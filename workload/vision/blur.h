@@ -51,40 +51,42 @@ typename P::I32 blur_at_edge(ConstImageView<P> image, int x, int y,
   const typename P::Function function("blur_at_edge");
   const I last_column = image.width - 1;
   const I last_row = image.height - 1;
+  const int rows_above = image.top * image.width;
   I sum = 0;
   for (int i : P::range(0, kBlurSize)) {
     const I v = work::max(I(0), work::min(last_row, I(y + i - kBlurRadius)));
     const I row = v * I(image.width);
     for (int j : P::range(0, kBlurSize)) {
       const I u = work::max(I(0), work::min(last_column, I(x + j - kBlurRadius)));
-      sum += kernel[i * kBlurSize + j] * I(image.pixels[I(row + u)]);
+      sum += kernel[i * kBlurSize + j] * I(image.pixels[I(work::value(I(row + u)) - rows_above)]);
     }
   }
   return sum >> kBlurShift;
 }
 
-/// Blurs the rows [begin, end) of `image` into `blurred`, which has the same size and must not
-/// overlap it. `kernel`: kBlurKernel, in the memory of the core.
+/// Blurs the rows [begin, end) of `image` into `blurred`, which is of the same size and must not
+/// overlap it. Of `image` the rows within kBlurRadius of them must be there, of `blurred` they
+/// themselves. `kernel`: kBlurKernel, in the memory of the core.
 template <class P>
-void blur_rows(ConstImageView<P> image, typename P::template Span<typename P::Byte> blurred,
-               int begin, int end, typename P::template Span<const typename P::I32> kernel) {
+void blur_rows(ConstImageView<P> image, ImageView<P> blurred, int begin, int end,
+               typename P::template Span<const typename P::I32> kernel) {
   using Byte = typename P::Byte;
   using I = typename P::I32;
   const int width = image.width;
   for (int y : P::range(begin, end)) {
-    const int row = y * width;
+    const int to_row = (y - blurred.top) * width;
     const auto blur_edge = [&](int from, int to) {
       for (int x : P::range(from, to))
-        blurred[row + x] = work::narrow<Byte>(blur_at_edge<P>(image, x, y, kernel));
+        blurred.pixels[to_row + x] = work::narrow<Byte>(blur_at_edge<P>(image, x, y, kernel));
     };
     if (I(y) < I(kBlurRadius) || I(y) >= I(image.height - kBlurRadius) || I(width) < I(kBlurSize)) {
       blur_edge(0, width);
       continue;
     }
     blur_edge(0, kBlurRadius);
-    const int first_corner = row - kBlurRadius * width - kBlurRadius;
+    const int first_corner = (y - image.top - kBlurRadius) * width - kBlurRadius;
     for (int x : P::range(kBlurRadius, width - kBlurRadius))
-      blurred[row + x] =
+      blurred.pixels[to_row + x] =
           work::narrow<Byte>(blur_inside<P>(image.pixels, width, first_corner + x, kernel));
     blur_edge(width - kBlurRadius, width);
   }

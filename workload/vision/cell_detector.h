@@ -69,9 +69,10 @@ void detect_in_box(ConstImageView<P> image, const PixelBox<P>& box,
   const I harris_threshold = options.harris_threshold;
   for (int y : P::range(box.y0, box.y1))
     for (int x : P::range(box.x0, box.x1)) {
-      const int centre = y * image.width + x;
+      const int row = y - image.top;
+      const int centre = row * image.width + x;
       if (work::unlikely(is_fast_corner<P>(image.pixels, centre, ring_offsets, fast_threshold))) {
-        const I score = harris_response<P>(image.pixels, image.width, x, y);
+        const I score = harris_response<P>(image.pixels, image.width, x, row);
         if (score > harris_threshold) best.offer(x, y, score);
       }
     }

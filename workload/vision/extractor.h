@@ -34,13 +34,15 @@ struct ExtractorOptions {
   int cells_along(int side) const;
   /// How many features an image of this size can give: 704 for 160 × 120.
   int max_features(int width, int height) const;
+  /// Local memory that extract_features() takes besides the features.
+  Bytes memory_of_whole_image(int width, int height, int cores) const;
   /// @throws InputError naming the option, its value and what is allowed.
   void validate() const;
 };
 
-/// Extracts the features of an 8-bit image that lies in L2 into `out`, whose capacity must be at
-/// least options.max_features(). The caller opens the stage. Local memory while it runs: the image,
-/// its blurred copy and small tables.
+/// Extracts the features of an 8-bit image that lies in L2 and fits in local memory into `out`,
+/// whose capacity must be at least options.max_features(). The caller opens the stage. Local memory
+/// while it runs: the image, its blurred copy and small tables.
 template <class P>
 void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
                       const ExtractorOptions& options, FeatureList<P>& out);

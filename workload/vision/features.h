@@ -15,7 +15,9 @@ namespace leviosim::vio {
 /// 32-bit words of one 256-bit descriptor.
 inline constexpr int kDescriptorWords = 8;
 
-/// width × height grey levels, row by row without padding: pixel (x, y) at pixels[y * width + x].
+/// width × height grey levels, row by row without padding: pixel (x, y) at
+/// pixels[(y - top) * width + x]. Of an image that is in local memory in part, `top` is the first
+/// row that is there, and width and height are those of the whole image.
 template <class P, class Pixel = typename P::Byte>
 struct ImageView {
   using Span = typename P::template Span<Pixel>;
@@ -23,10 +25,11 @@ struct ImageView {
   Span pixels;
   int width = 0;
   int height = 0;
+  int top = 0;
 
   /// A read-only view of the same image.
   operator ImageView<P, const Pixel>() const requires(!std::is_const_v<Pixel>) {
-    return {pixels, width, height};
+    return {pixels, width, height, top};
   }
 };
 

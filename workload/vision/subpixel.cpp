@@ -57,18 +57,18 @@ Vec2<P> corner_offset(typename P::template Span<const typename P::Byte> image, i
 }
 
 template <class P>
-void refine_keypoints(work::Machine& machine, ConstImageView<P> image, int steps,
+void refine_keypoints(work::Machine& machine, ConstImageView<P> image, int steps, work::Share which,
                       const FeatureList<P>& features) {
   using F = typename P::F32;
   using I = typename P::I32;
   using U16 = typename P::U16;
   machine.fork("refine", [&](work::Core& core) {
-    const auto [begin, end] = core.share(features.count);
+    const auto [begin, end] = core.share(which.end - which.begin);
     const F unit = static_cast<float>(steps);
-    for (int i : P::range(begin, end)) {
+    for (int i : P::range(which.begin + begin, which.begin + end)) {
       const I x = features.x[i], y = features.y[i];
       const Vec2<P> offset =
-          corner_offset<P>(image.pixels, image.width, work::value(x), work::value(y));
+          corner_offset<P>(image.pixels, image.width, work::value(x), work::value(y) - image.top);
       // To the nearest step; coordinates are positive.
       const F u = (work::to_f32(x) + offset.x) * unit + F(0.5f);
       const F v = (work::to_f32(y) + offset.y) * unit + F(0.5f);
@@ -82,9 +82,9 @@ template Vec2<work::Native> corner_offset(work::Native::Span<const work::Native:
                                           int);
 template Vec2<work::Counting> corner_offset(work::Counting::Span<const work::Counting::Byte>, int,
                                             int, int);
-template void refine_keypoints(work::Machine&, ConstImageView<work::Native>, int,
+template void refine_keypoints(work::Machine&, ConstImageView<work::Native>, int, work::Share,
                                const FeatureList<work::Native>&);
-template void refine_keypoints(work::Machine&, ConstImageView<work::Counting>, int,
+template void refine_keypoints(work::Machine&, ConstImageView<work::Counting>, int, work::Share,
                                const FeatureList<work::Counting>&);
 
 }  // namespace leviosim::vio

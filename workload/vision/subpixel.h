@@ -22,10 +22,10 @@ template <class P>
 Vec2<P> corner_offset(typename P::template Span<const typename P::Byte> image, int width, int x,
                       int y);
 
-/// Replaces the coordinates of all keypoints by those of their corners in units of 1/steps px. One
-/// team fork, "refine".
+/// Replaces the coordinates of the keypoints [which.begin, which.end) by those of their corners in
+/// units of 1/steps px. One team fork, "refine".
 template <class P>
-void refine_keypoints(work::Machine& machine, ConstImageView<P> image, int steps,
+void refine_keypoints(work::Machine& machine, ConstImageView<P> image, int steps, work::Share which,
                       const FeatureList<P>& features);
 
 }  // namespace leviosim::vio
