@@ -56,6 +56,17 @@ TEST(Flow, IsNoneBetweenImagesOfDifferentThings) {
   EXPECT_EQ(figures(flow_between(false, before, now)), (std::array{0, 0, 0, 25, 0}));
 }
 
+// Brighter by 10 levels everywhere, a block differs by 640.
+TEST(Flow, MatchesDifferByLessThanTheLimit) {
+  const cv::Mat before = vio::vision_test::noise_image(kSide, kSide, 9) * 0.5;
+  const cv::Mat now = before + cv::Scalar(10);
+  Options options;
+  options.max_difference = 641;
+  EXPECT_EQ(flow_between(false, before, now, options).matched, 25);
+  options.max_difference = 640;
+  EXPECT_EQ(flow_between(false, before, now, options).matched, 0);
+}
+
 /// A picture that turns about its centre moves all blocks in other directions: the middle ones by
 /// little, the outer ones by more than a pixel. None of it is flow.
 TEST(Flow, OfAPictureThatTurnsIsNextToNone) {
