@@ -11,6 +11,7 @@
 #include "tools/cli/version.h"
 #include "tools/eval/eval_command.h"
 #include "tools/explore/explore_command.h"
+#include "tools/flow/flow_command.h"
 #include "tools/microbench/microbench_command.h"
 #include "tools/platforms/platforms_command.h"
 #include "tools/replay/replay_command.h"
@@ -46,7 +47,7 @@ int run_program(const Words& words) {
          add_explore_command(app, words), add_validate_command(app, words),
          add_calibrate_command(app), add_sensitivity_command(app), add_microbench_command(app),
          add_replay_command(app, words), add_trace_command(app), add_tune_command(app, words),
-         add_sweep_command(app)},
+         add_sweep_command(app), add_flow_command(app, words)},
         words);
   } catch (const InputError& error) {
     return fail(error);

@@ -68,6 +68,21 @@ struct Packed {
         static_cast<std::int32_t>(products(a, b) + static_cast<std::uint32_t>(value(sum))));
   }
 
+  /// sum + |a - b|, added over the lanes.
+  friend Scalar add_differences(const Packed& a, const Packed& b,
+                                Scalar sum) requires std::is_same_v<Lane, std::uint8_t> {
+    note(Op::SimdSad);
+    std::int32_t differences = 0;
+    for (int i = 0; i < N; ++i)
+      differences += a.lanes[i] < b.lanes[i] ? b.lanes[i] - a.lanes[i] : a.lanes[i] - b.lanes[i];
+    return Scalar(value(sum) + differences);
+  }
+  /// (a + b) / 2 in each lane, rounded down; the sum does not wrap.
+  friend Packed average(const Packed& a,
+                        const Packed& b) requires std::is_same_v<Lane, std::uint8_t> {
+    return each(Op::SimdAverage, a, b, [](int x, int y) { return (x + y) >> 1; });
+  }
+
   static void note(Op op) {
     if constexpr (Counted) count(op);
   }

@@ -39,6 +39,22 @@ TEST(Gap8, EveryUncertainNumberHasARangeThatCanBeRun) {
   }
 }
 
+// One task was measured on both chips (hw_facts 8.3): 79 mW at 175 MHz, 20.5 mW at 240 MHz.
+TEST(Gap8, EnergiesAreThoseOfGap9TimesTheRatioOfAMeasuredTask) {
+  const sim::EnergyConfig gap8 = load_platform("gap8").energy.value;
+  const sim::EnergyConfig gap9 = load_platform("gap9").energy.value;
+  const double per_cycle = (79.0 / 175) / (20.5 / 240);
+  const double power = 79.0 / 20.5;
+  const auto ratio = [](auto a, auto b) { return a.count() / b.count(); };
+  EXPECT_NEAR(ratio(gap8.core.instruction, gap9.core.instruction), per_cycle, 0.1);
+  EXPECT_NEAR(ratio(gap8.l1.access, gap9.l1.access), per_cycle, 0.1);
+  EXPECT_NEAR(ratio(gap8.cluster.cycle, gap9.cluster.cycle), per_cycle, 0.1);
+  EXPECT_NEAR(ratio(gap8.soc.cycle, gap9.soc.cycle), per_cycle, 0.1);
+  EXPECT_NEAR(ratio(gap8.l2.access, gap9.l2.access), per_cycle, 0.1);
+  EXPECT_NEAR(ratio(gap8.cluster.leakage, gap9.cluster.leakage), power, 0.1);
+  EXPECT_NEAR(ratio(gap8.soc.static_power, gap9.soc.static_power), power, 0.1);
+}
+
 TEST(Gap8, ReadsBackFromItsResolvedForm) {
   const ResolvedPlatform platform = resolve_platform("gap8");
   const ResolvedPlatform again = resolve_platform_text("again.yaml", to_yaml(platform));

@@ -49,6 +49,25 @@ TEST(Packed, EachOperationCountsOnce) {
   EXPECT_EQ(counts[Op::IntAlu], 1U);
 }
 
+template <class P>
+std::vector<int> unsigned_byte_results() {
+  const U8x4<P> a{{0, 255, 17, 200}};
+  const U8x4<P> b{{255, 0, 18, 201}};
+  std::vector<int> out{value(add_differences(a, b, typename P::I32(1000)))};
+  for (const std::uint8_t lane : average(a, b).lanes) out.push_back(lane);
+  return out;
+}
+
+TEST(Packed, DifferencesOfBytesAreAbsoluteAndMeansKeepTheNinthBit) {
+  const std::vector<int> expected = {1000 + 255 + 255 + 1 + 1, 127, 127, 17, 200};
+  EXPECT_EQ(unsigned_byte_results<Native>(), expected);
+  take_tally();
+  EXPECT_EQ(unsigned_byte_results<Counting>(), expected);
+  const Counts counts = take_tally();
+  EXPECT_EQ(counts[Op::SimdSad], 1U);
+  EXPECT_EQ(counts[Op::SimdAverage], 1U);
+}
+
 TEST(Half, EveryValueConvertsBackAndForth) {
   for (std::uint32_t bits = 0; bits < 0x10000U; ++bits) {
     const auto half = static_cast<std::uint16_t>(bits);

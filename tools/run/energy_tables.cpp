@@ -49,12 +49,16 @@ bool any_on_controller(const RunEnergy& energy) {
 
 std::string totals(const RunEnergy& energy) {
   const double rate = static_cast<double>(energy.frames) / energy.time.count();
-  return fmt::format(
-      "per frame {}; mean power at {:.1f} frames/s {}\n"
-      "while the front end runs {}; while the optimiser runs, it adds {}\n",
-      in_words(energy.per_frame(), 1e-3, "mJ"), energy.frames > 0 ? rate : 0.0,
-      in_words(energy.mean_power(), 1e-3, "mW"), in_words(energy.power_of_front_end(), 1e-3, "mW"),
-      in_words(energy.power_of_controller(), 1e-3, "mW"));
+  const auto per_frame = energy.per_frame();
+  const bool small = per_frame && per_frame->value < Joules(1e-4);
+  std::string text = fmt::format(
+      "per frame {}; mean power at {:.1f} frames/s {}\nwhile the front end runs {}",
+      in_words(per_frame, small ? 1e-6 : 1e-3, small ? "uJ" : "mJ"), energy.frames > 0 ? rate : 0.0,
+      in_words(energy.mean_power(), 1e-3, "mW"), in_words(energy.power_of_front_end(), 1e-3, "mW"));
+  if (any_on_controller(energy))
+    text += fmt::format("; while the optimiser runs, it adds {}",
+                        in_words(energy.power_of_controller(), 1e-3, "mW"));
+  return text + '\n';
 }
 
 /// Milliseconds that the front end takes for a frame, on average.

@@ -6,6 +6,7 @@
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
+#include "tools/run/simulation.h"
 #include "tools/run/workload_overrides.h"
 #include "tools/synth/flight_cache.h"
 #include "traces/asl_reader.h"
@@ -38,13 +39,29 @@ std::string data_folder(const RunOptions& options, ProgressLine::Style progress)
   return options.data == "synthetic" ? cached_flight(progress).string() : options.data;
 }
 
-RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style) {
-  ProgressLine line(style);
-  return simulate(request, [&](const Progress& p) {
+namespace {
+
+ProgressCallback shown_on(ProgressLine& line) {
+  return [&line](const Progress& p) {
     throw_if_interrupted();
     line.show(p.done, p.total,
               [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
-  });
+  };
+}
+
+}  // namespace
+
+RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style) {
+  ProgressLine line(style);
+  return simulate(request, shown_on(line));
+}
+
+RunResult simulate_with_progress(const RunRequest& request, JobSource& source,
+                                 ProgressLine::Style style) {
+  ProgressLine line(style);
+  RunResult result = Simulation(request, source, shown_on(line)).run();
+  result.host_seconds = line.host_seconds();
+  return result;
 }
 
 Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words) {

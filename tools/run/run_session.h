@@ -5,6 +5,7 @@
 
 #include "tools/cli/command_line.h"
 #include "tools/cli/progress_line.h"
+#include "tools/run/job_source.h"
 #include "tools/run/manifest.h"
 #include "tools/run/run_options.h"
 
@@ -25,6 +26,10 @@ std::string data_folder(const RunOptions& options, ProgressLine::Style progress)
 
 /// @throws Interrupted between two frames if the user asked to stop
 RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style);
+
+/// The same with the work of another workload than LEVIO, on the chip of the request.
+RunResult simulate_with_progress(const RunRequest& request, JobSource& source,
+                                 ProgressLine::Style style);
 
 Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words);
 
