@@ -28,12 +28,19 @@ class Reader {
     document_.settings.resize(schema.fields().size());
   }
 
-  Document read_platform(const std::string& text, const std::optional<BaseOverride>& base);
+  /// @param users  the platforms that extend this one, outermost first
+  Document read_platform(const std::string& text, const std::optional<BaseOverride>& base,
+                         std::vector<std::string> users = {});
 
  private:
   /// @param users  the files that build on this one, outermost first
   Document read_instruction_set(const std::string& text, std::vector<std::string> users);
   void read_base(const std::vector<YamlEntry>& root, const std::optional<BaseOverride>& base);
+  void read_parent(const YamlEntry& extends, const std::vector<YamlEntry>& root,
+                   const std::optional<BaseOverride>& base);
+  std::vector<std::string> users_of_base(const TextFile& file, const std::string& name,
+                                         const Place& named) const;
+  void expect_same_sources(const Document& base, const TextFile& file, const Place& named) const;
   Document finish();
   void read_header(const std::vector<YamlEntry>& root);
   void read_sources(const YamlEntry& entry);
@@ -64,7 +71,7 @@ constexpr const char* kBase = "base";
 
 /// Keys of the root that are about the file as a whole.
 bool is_header(std::string_view path) {
-  return path == "name" || path == "description" || path == "sources";
+  return path == "name" || path == "description" || path == "sources" || path == kParentPath;
 }
 
 const YamlEntry* find(const std::vector<YamlEntry>& entries, const std::string& key) {
@@ -73,10 +80,15 @@ const YamlEntry* find(const std::vector<YamlEntry>& entries, const std::string& 
   return nullptr;
 }
 
-Document Reader::read_platform(const std::string& text, const std::optional<BaseOverride>& base) {
+Document Reader::read_platform(const std::string& text, const std::optional<BaseOverride>& base,
+                               std::vector<std::string> users) {
+  users_ = std::move(users);
   const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "", 1);
   read_header(root);
-  read_base(root, base);
+  if (const YamlEntry* extends = find(root, kParentPath))
+    read_parent(*extends, root, base);
+  else
+    read_base(root, base);
   read_section(root, "");
   check_complete();
   return finish();
@@ -87,7 +99,7 @@ Document Reader::read_instruction_set(const std::string& text, std::vector<std::
   const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "", 1);
   read_header(root);
   for (const YamlEntry& entry : root)
-    if (!is_header(entry.key) && entry.key != kIsa)
+    if ((!is_header(entry.key) || entry.key == kParentPath) && entry.key != kIsa)
       place(entry, entry.key)
           .fail(
               "unknown key; an instruction set has name, description, sources "
@@ -113,18 +125,47 @@ void Reader::read_base(const std::vector<YamlEntry>& root,
   const std::string name = other ? other->base : scalar(key->value, named);
   const TextFile file = find_instruction_set(name, file_, named);
 
+  Document base =
+      Reader(schema_, file.name).read_instruction_set(file.text, users_of_base(file, name, named));
+  expect_same_sources(base, file, named);
+  document_.settings = std::move(base.settings);
+  sources_of_base_ = std::move(base.sources);
+}
+
+/// Begins with all of another platform. Its sources can be cited.
+void Reader::read_parent(const YamlEntry& extends, const std::vector<YamlEntry>& root,
+                         const std::optional<BaseOverride>& base) {
+  const Place named = place(extends, kParentPath);
+  if (const YamlEntry* isa = find(root, kIsa))
+    for (const YamlEntry& entry : entries_of(isa->value, file_, isa->key, isa->line))
+      if (entry.key == kBase)
+        place(entry, kBasePath)
+            .fail("the platform that this one extends has named its instruction set");
+  const std::string name = scalar(extends.value, named);
+  const TextFile file = find_platform(name, file_, named);
+  Document parent =
+      Reader(schema_, file.name).read_platform(file.text, base, users_of_base(file, name, named));
+  expect_same_sources(parent, file, named);
+  document_.settings = std::move(parent.settings);
+  document_.sources.merge(parent.sources);
+}
+
+std::vector<std::string> Reader::users_of_base(const TextFile& file, const std::string& name,
+                                               const Place& named) const {
   std::vector<std::string> users = users_;
   users.push_back(file_);
   if (std::find(users.begin(), users.end(), file.name) != users.end())
     named.fail(fmt::format("'{}' builds on itself", name));
-  Document base = Reader(schema_, file.name).read_instruction_set(file.text, std::move(users));
-  document_.settings = std::move(base.settings);
+  return users;
+}
+
+void Reader::expect_same_sources(const Document& base, const TextFile& file,
+                                 const Place& named) const {
   for (const auto& [source, meaning] : base.sources) {
     const auto own = document_.sources.find(source);
     if (own != document_.sources.end() && own->second != meaning)
       named.fail(fmt::format("source '{}' stands for something else in {}", source, file.name));
   }
-  sources_of_base_ = std::move(base.sources);
 }
 
 /// What was read, with the sources of the base. (Rows of a file cite its own.)
@@ -145,9 +186,10 @@ void Reader::read_header(const std::vector<YamlEntry>& root) {
   document_.name = text("name", "the name of the chip");
   document_.description = text("description", "one line about the chip");
   const YamlEntry* sources = find(root, "sources");
-  if (sources == nullptr)
+  if (sources != nullptr)
+    read_sources(*sources);
+  else if (find(root, kParentPath) == nullptr)
     place_of(file_, 1, "sources").fail("missing key; expected a map of sources");
-  read_sources(*sources);
 }
 
 void Reader::read_sources(const YamlEntry& entry) {

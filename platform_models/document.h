@@ -11,6 +11,10 @@
 // `isa: { base: NAME }` takes the parameters of an instruction set (instruction_set.h), which is a
 // file of the same format with the section `isa` only, and may have a base itself. A row that the
 // file gives again replaces the row of the base as a whole.
+//
+// `extends: NAME` takes everything of another platform, sources included, and adds to it in the
+// same way: a chip at another operating point, with an accelerator. Such a file names no
+// instruction set.
 #pragma once
 
 #include <map>

@@ -19,6 +19,35 @@ bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
+/// What others build on.
+struct Shelf {
+  std::string_view what;
+  std::string_view folder;  ///< of the built-in ones, for messages
+  std::span<const BuiltinFile> builtin;
+};
+
+TextFile find_file(const Shelf& shelf, const std::string& name, const std::string& from,
+                   const Place& place) {
+  if (is_path(name)) {
+    const std::string path =
+        (std::filesystem::path(from).parent_path() / name).lexically_normal().string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+      place.fail(fmt::format("there is no file '{}'", path));
+    return {path, read_file(path, fmt::format("a file of the kind {}", shelf.what))};
+  }
+  std::vector<std::string> names;
+  for (const BuiltinFile& file : shelf.builtin) {
+    if (file.name == name)
+      return {fmt::format("{}{}.yaml", shelf.folder, file.name), std::string(file.text)};
+    names.emplace_back(file.name);
+  }
+  place.fail(fmt::format(
+      "unknown {} '{}'{} (built in: {}; a file is given by a path that contains '/' or ends in "
+      ".yaml)",
+      shelf.what, name, did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
 }  // namespace
 
 bool is_path(std::string_view name) {
@@ -36,23 +65,11 @@ std::string read_file(const std::string& path, std::string_view what) {
 
 TextFile find_instruction_set(const std::string& base, const std::string& from,
                               const Place& place) {
-  if (is_path(base)) {
-    const std::string path =
-        (std::filesystem::path(from).parent_path() / base).lexically_normal().string();
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored))
-      place.fail(fmt::format("there is no file '{}'", path));
-    return {path, read_file(path, "an instruction set")};
-  }
-  std::vector<std::string> names;
-  for (const BuiltinFile& file : builtin_instruction_sets()) {
-    if (file.name == base) return {fmt::format("isa/{}.yaml", file.name), std::string(file.text)};
-    names.emplace_back(file.name);
-  }
-  place.fail(
-      fmt::format("unknown instruction set '{}'{} (built in: {}; a file is given by a path "
-                  "that contains '/' or ends in .yaml)",
-                  base, did_you_mean(base, names), fmt::join(names, ", ")));
+  return find_file({"instruction set", "isa/", builtin_instruction_sets()}, base, from, place);
+}
+
+TextFile find_platform(const std::string& name, const std::string& from, const Place& place) {
+  return find_file({"platform", "", builtin_platforms()}, name, from, place);
 }
 
 }  // namespace leviosim::platform

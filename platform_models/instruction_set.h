@@ -1,4 +1,5 @@
-// The file that a section `isa` builds on: `isa: { base: rv32imfc_xpulp }`.
+// The files that others build on: the instruction set of `isa: { base: rv32imfc_xpulp }`, the
+// platform of `extends: gap9`.
 #pragma once
 
 #include <string>
@@ -7,8 +8,9 @@
 
 namespace leviosim::platform {
 
-/// The key that names it.
+/// The keys that name them.
 inline constexpr const char* kBasePath = "isa.base";
+inline constexpr const char* kParentPath = "extends";
 
 struct TextFile {
   std::string name;  ///< for messages: "isa/rv32imfc.yaml"
@@ -20,6 +22,8 @@ struct TextFile {
 /// @param from   the file that names it
 /// @param place  where it does; begins the message if there is no such file
 TextFile find_instruction_set(const std::string& base, const std::string& from, const Place& place);
+/// The same for a platform.
+TextFile find_platform(const std::string& name, const std::string& from, const Place& place);
 
 /// Whether a platform or an instruction set is given by path and not by name.
 bool is_path(std::string_view name);

@@ -1,5 +1,7 @@
 #include "platform_models/loader.h"
 
+#include <algorithm>
+
 #include "platform_models/builtin.h"
 #include "platform_models/platform_file.h"
 
@@ -8,6 +10,7 @@ namespace leviosim::platform {
 std::vector<std::string> platform_names() {
   std::vector<std::string> names;
   for (const BuiltinFile& platform : builtin_platforms()) names.emplace_back(platform.name);
+  std::sort(names.begin(), names.end());  // files are sorted with their extension
   return names;
 }
 

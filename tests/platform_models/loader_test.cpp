@@ -247,9 +247,10 @@ TEST(Loader, RefusesFilesThatAreNoPlatforms) {
 }
 
 TEST(Loader, UnknownPlatformListsTheKnownOnes) {
-  expect_parts(
-      fault_of([] { load_platform("gap8x"); }),
-      {"unknown platform 'gap8x'", "did you mean 'gap8'", "built in: cortex-m4f, gap8, gap9", ".yaml"});
+  expect_parts(fault_of([] { load_platform("gap8x"); }),
+               {"unknown platform 'gap8x'", "did you mean 'gap8'",
+                "built in: arm1176, cortex-m4f, cortex-m7, cortex-m7-h7a3, gap8, gap9, gap9-240mhz",
+                ".yaml"});
 }
 
 TEST(Loader, UnreadableFileIsNamed) {
@@ -269,7 +270,9 @@ TEST(Loader, LoadsFilesByPath) {
 }
 
 TEST(Loader, BuiltInPlatformsAreListedAndLoad) {
-  EXPECT_EQ(platform_names(), (std::vector<std::string>{"cortex-m4f", "gap8", "gap9"}));
+  EXPECT_EQ(platform_names(),
+            (std::vector<std::string>{"arm1176", "cortex-m4f", "cortex-m7", "cortex-m7-h7a3",
+                                      "gap8", "gap9", "gap9-240mhz", "gap9-370mhz"}));
   for (const std::string& name : platform_names()) EXPECT_NO_THROW(load_platform(name));
 }
 

@@ -11,7 +11,11 @@
 #include "platform_models/loader.h"
 #include "platform_models/nearest.h"
 #include "sim/error.h"
+#include "tools/cli/interrupts.h"
+#include "tools/platforms/feasibility_report.h"
+#include "tools/run/run_session.h"
 #include "tools/run/text_table.h"
+#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -19,8 +23,12 @@ namespace {
 struct PlatformsOptions {
   std::string action = "list";
   std::vector<std::string> names;
-  std::vector<std::string> overrides;
+  RunOptions run;  ///< of feasibility; the overrides are those of all actions
 };
+
+constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
+constexpr std::array kOfFeasibility{"--data", "--frames", "--profile", "--seed",
+                                    "--out",  "--force",  "--quiet"};
 
 void list() {
   for (const std::string& name : platform::platform_names())
@@ -58,58 +66,124 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
              std::max(a.parameters.size(), b.parameters.size()));
 }
 
+/// On all its workers, and on one of them.
+std::vector<int> teams_of(const platform::ResolvedPlatform& chip) {
+  const int workers = chip.config.cluster.workers;
+  if (workers == 1) return {1};
+  return {workers, 1};
+}
+
+std::vector<Feasibility> with_progress(const RunRequest& request,
+                                       const std::vector<std::string>& names,
+                                       const std::vector<platform::ResolvedPlatform>& chips,
+                                       ProgressLine::Style style) {
+  ProgressLine line(style);
+  FeasibilityStudy study(request, [&](const Progress& p) {
+    throw_if_interrupted();
+    line.show(p.done, p.total,
+              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
+  });
+  std::vector<Feasibility> rows;
+  for (std::size_t i = 0; i < chips.size(); ++i)
+    for (const int cores : teams_of(chips[i])) rows.push_back(study.on(names[i], chips[i], cores));
+  return rows;
+}
+
+void feasibility(const PlatformsOptions& options) {
+  const RunOptions& run = options.run;
+  const std::vector<std::string> names =
+      options.names.empty() ? platform::platform_names() : options.names;
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
+  RunOptions recording = run;
+  recording.platform = "gap9";
+  recording.overrides = {};
+  RunRequest request = make_chip_request(recording);
+  check_out_file(run);
+  std::vector<platform::ResolvedPlatform> chips;
+  for (const std::string& name : names)
+    chips.push_back(platform::resolve_platform(name, run.overrides));
+  request.data = data_folder(run, style);
+  const std::vector<Feasibility> rows = with_progress(request, names, chips, style);
+  if (!run.out.empty()) traces::write_file_atomically(run.out, feasibility_csv(rows));
+  fmt::print("{} on {}\n\n{}", run.profile, run.data, feasibility_table(rows));
+  if (!run.out.empty()) fmt::print("table: {}\n", run.out);
+}
+
+void show(const PlatformsOptions& options) {
+  fmt::print(
+      "{}", platform::to_yaml(platform::resolve_platform(options.names[0], options.run.overrides)));
+}
+
+/// Changes are of the second: what a chip would differ in from itself can be asked too.
+void show_differences(const PlatformsOptions& options) {
+  diff(platform::resolve_platform(options.names[0]),
+       platform::resolve_platform(options.names[1], options.run.overrides));
+}
+
 struct Action {
   std::string name;
   std::size_t names;  ///< of platforms that it takes
   std::string expected;
+  void (*run)(const PlatformsOptions&);
 };
 
-const std::array<Action, 3> kActions = {{
-    {"list", 0, "no platform"},
-    {"show", 1, "one platform"},
-    {"diff", 2, "two platforms"},
+const std::array<Action, 4> kActions = {{
+    {"list", 0, "no platform", [](const PlatformsOptions&) { list(); }},
+    {"show", 1, "one platform", show},
+    {"diff", 2, "two platforms", show_differences},
+    {"feasibility", kAnyNumber, "platforms", feasibility},
 }};
 
-void run(const PlatformsOptions& options) {
+void run(const CLI::App& command, const PlatformsOptions& options) {
   std::vector<std::string> known;
   for (const Action& action : kActions) known.push_back(action.name);
   const auto action = std::find_if(kActions.begin(), kActions.end(),
                                    [&](const Action& a) { return a.name == options.action; });
   if (action == kActions.end())
-    throw InputError(fmt::format("platforms: unknown action '{}'; expected list, show or diff{}",
-                                 options.action, platform::did_you_mean(options.action, known)));
-  if (options.names.size() != action->names)
+    throw InputError(
+        fmt::format("platforms: unknown action '{}'; expected list, show, diff or feasibility{}",
+                    options.action, platform::did_you_mean(options.action, known)));
+  if (action->names != kAnyNumber && options.names.size() != action->names)
     throw InputError(fmt::format("platforms {}: expected {}, found {}", action->name,
                                  action->expected, options.names.size()));
-  if (action->names == 0) return list();
-  std::vector<platform::ResolvedPlatform> chips;
-  // Changes are of the last: what a chip would differ in from itself can be asked too.
-  for (std::size_t i = 0; i < options.names.size(); ++i)
-    chips.push_back(platform::resolve_platform(options.names[i], i + 1 == options.names.size()
-                                                                     ? options.overrides
-                                                                     : std::vector<std::string>{}));
-  if (action->names == 1)
-    fmt::print("{}", platform::to_yaml(chips.front()));
-  else
-    diff(chips.front(), chips.back());
+  if (action->run != feasibility)
+    for (const char* option : kOfFeasibility)
+      if (command.count(option) > 0)
+        throw InputError(
+            fmt::format("platforms {}: runs nothing; leave out {}", action->name, option));
+  action->run(options);
 }
 
 }  // namespace
 
 Command add_platforms_command(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("platforms", "List the chips, show one with its sources, or compare two");
+  CLI::App* command = app.add_subcommand("platforms",
+                                         "List the chips, show one with its sources, compare two, "
+                                         "or ask what a workload takes on them");
   const auto options = std::make_shared<PlatformsOptions>();
+  RunOptions& run_options = options->run;
+  run_options.data = "synthetic";
   command->add_option("ACTION", options->action,
-                      "list (the default), show NAME, or diff NAME NAME");
+                      "list (the default), show NAME, diff NAME NAME, or feasibility [NAME ...]");
   command->add_option("NAME", options->names, "chips: names or files");
   command
-      ->add_option("-p,--set", options->overrides,
-                   "parameter of the one shown, or of the second compared; repeatable")
+      ->add_option("-p,--set", run_options.overrides,
+                   "parameter of the one shown, of the second compared, or of all; repeatable")
       ->type_name("PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
-  return {command, [=] { run(*options); }};
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, std::string("feasibility: ") + help)->type_name(type);
+  };
+  add("--data", run_options.data, "DIR|synthetic",
+      "ASL/EuRoC folder, or the synthetic flight [synthetic]");
+  add("--frames", run_options.frames, "A:B", "frames, B exclusive [all]");
+  add("--profile", run_options.profile, "NAME", "of the workload [levio]");
+  add("--seed", run_options.seed, "N", "of the workload's random draws [1]");
+  add("--out", run_options.out, "FILE", "CSV file to write");
+  command->add_flag("--force", run_options.force, "feasibility: replace the file");
+  command->add_flag("--quiet", run_options.quiet, "feasibility: no progress");
+  return {command, [=] { run(*command, *options); }};
 }
 
 }  // namespace leviosim::tools

@@ -1,0 +1,110 @@
+#include "tools/platforms/feasibility_report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+#include "tools/run/text_table.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// Time of a frame of LEVIO in its paper.
+struct Published {
+  std::string_view platform;
+  int cores;
+  std::string_view ms;
+};
+constexpr std::array<Published, 4> kPublished = {{
+    {"gap9", 8, "45.9"},   // sum of the compute table with EPnP, at 370 MHz
+    {"gap9", 1, "≈ 300"},  // conclusion: "roughly 300 ms per iteration at 370 MHz"
+    {"gap9-370mhz", 8, "45.9"},
+    {"gap9-370mhz", 1, "≈ 300"},
+}};
+
+std::string published(const Feasibility& row) {
+  for (const Published& p : kPublished)
+    if (p.platform == row.platform && p.cores == row.cores) return std::string(p.ms);
+  return {};
+}
+
+std::string missing(const char* memory, const MemoryVerdict& verdict) {
+  return fmt::format("{} kB short of {} at '{}'",
+                     ((verdict.occupied - verdict.size).count() + 999) / 1000, memory,
+                     verdict.block);
+}
+
+std::string memory(const Feasibility& row) {
+  if (row.fits()) return "fits";
+  if (row.l1.fits()) return missing("L2", row.l2);
+  if (row.l2.fits()) return missing("L1", row.l1);
+  return missing("L1", row.l1) + "; " + missing("L2", row.l2);
+}
+
+template <class Unit>
+std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, int decimals) {
+  if (!e) return "–";
+  return fmt::format("{:.{}f} ({:.{}f}–{:.{}f})", e->value.count() * scale, decimals,
+                     e->low().count() * scale, decimals, e->high().count() * scale, decimals);
+}
+
+}  // namespace
+
+std::string feasibility_table(const std::vector<Feasibility>& rows) {
+  constexpr auto kLeft = TextTable::Align::Left;
+  TextTable table({{"chip", kLeft},
+                   {"cores"},
+                   {"MHz"},
+                   {"frame ms"},
+                   {"worst"},
+                   {"published"},
+                   {"optimiser ms"},
+                   {"frames/s"},
+                   {"mJ/frame"},
+                   {"mW"},
+                   {"memory", kLeft}});
+  bool any_without = false;
+  for (const Feasibility& row : rows) {
+    any_without = any_without || !row.fits();
+    const char* mark = row.fits() ? "" : "*";
+    table.add({row.platform, fmt::format("{}", row.cores),
+               fmt::format("{:g}", static_cast<double>(row.clock.count()) * 1e-6),
+               fmt::format("{:.1f}{}", row.front_end_ms, mark),
+               fmt::format("{:.1f}{}", row.worst_ms, mark), published(row),
+               fmt::format("{:.1f}{}", row.optimiser_ms, mark),
+               fmt::format("{:.1f}{}", row.frames_per_second(), mark),
+               banded(row.energy_per_frame, 1e3, 2), banded(row.power, 1e3, 1), memory(row)});
+  }
+  std::string text = table.str();
+  text +=
+      "frame: front end, mean and worst; optimiser: per frame. A chip with one core does one after "
+      "the other, others both at once\n"
+      "energy and mean power, with bands, at the rate that the chip keeps up with, at most the "
+      "camera's\n";
+  if (any_without)
+    text += "* if it had the memory: times and energy of the same work, as though all had fitted\n";
+  return text;
+}
+
+std::string feasibility_csv(const std::vector<Feasibility>& rows) {
+  std::string text =
+      "platform,cores,clock_hz,front_end_ms,worst_ms,published_ms,optimiser_ms,frames_per_s,"
+      "energy_per_frame_j,energy_low_j,energy_high_j,power_w,power_low_w,power_high_w,fits,l1_"
+      "bytes,"
+      "l1_size,l1_block,l2_bytes,l2_size,l2_block\n";
+  const auto numbers = [](const auto& e) {
+    return e ? fmt::format("{},{},{}", e->value.count(), e->low().count(), e->high().count())
+             : std::string(",,");
+  };
+  for (const Feasibility& row : rows)
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.platform,
+                        row.cores, row.clock.count(), row.front_end_ms, row.worst_ms,
+                        published(row), row.optimiser_ms, row.frames_per_second(),
+                        numbers(row.energy_per_frame), numbers(row.power), row.fits() ? 1 : 0,
+                        row.l1.occupied.count(), row.l1.size.count(), row.l1.block,
+                        row.l2.occupied.count(), row.l2.size.count(), row.l2.block);
+  return text;
+}
+
+}  // namespace leviosim::tools
