@@ -32,7 +32,6 @@ AnchorOptions levio_anchor() {
 /// and their descriptors' choice a little less than one. The rest are the defaults of the options.
 void make_next(Profile& p) {
   p.guided.enabled = true;
-  p.extractor.subpixel_steps = 16;
   p.optimiser.joint = true;
   p.imu_noise = {.gyro = 1.7e-3f,
                  .accel = 2e-2f,
