@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "platform_models/accelerator_fields.h"
 #include "platform_models/energy_fields.h"
 
 namespace leviosim::platform {
@@ -343,6 +344,7 @@ std::vector<Field> all_fields() {
   add_l2(table);
   std::vector<Field> fields = table.take();
   for (Field& field : energy_fields()) fields.push_back(std::move(field));
+  for (Field& field : accelerator_fields()) fields.push_back(std::move(field));
   return fields;
 }
 

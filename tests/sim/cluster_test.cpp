@@ -186,7 +186,7 @@ TEST(Chip, AnOffloadCostsBothWays) {
 TEST(Chip, TheControllerRunsForksAsOneCore) {
   Chip chip(test_chip(), 8);
   JobTiming timing;
-  const work::Job job = one_stage({work::Fork{"f", std::vector<Counts>(8, alu(10))}});
+  const work::Job job = one_stage({work::Fork{"f", std::vector<work::Piece>(8, alu(10))}});
   const auto body = [&]() -> Process { timing = co_await chip.controller().run(job); };
   chip.kernel().spawn("test", body());
   chip.kernel().run();
