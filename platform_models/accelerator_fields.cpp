@@ -24,7 +24,7 @@ constexpr double kMaxEnergy = 1e-3;  // joules
 
 /// Of the cluster or of the controller.
 struct Side {
-  const char* section;
+  std::string_view section;
   sim::Accelerators& (*of)(ChipConfig&);
   EnergyConfig::Items& (*energies)(EnergyConfig&);
   bool has_l1;
@@ -119,9 +119,10 @@ bool is_energy(const Field& field) { return field.dimension == &kEnergy; }
 
 }  // namespace
 
-std::vector<Field> accelerator_fields() {
+std::vector<Field> accelerator_fields(std::string_view section) {
   std::vector<Field> fields;
-  for (const Side& side : kSides)
+  for (const Side& side : kSides) {
+    if (side.section != section) continue;
     for (const work::KernelInfo& kernel : work::kKernels) {
       fields.push_back(units_of(side, kernel));
       for (const Number& number : kNumbers)
@@ -129,6 +130,7 @@ std::vector<Field> accelerator_fields() {
           fields.push_back(field_of(side, kernel, number));
       fields.push_back(energy_of(side, kernel));
     }
+  }
   return fields;
 }
 

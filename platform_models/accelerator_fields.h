@@ -3,6 +3,7 @@
 // file, or none.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "platform_models/document.h"
@@ -10,7 +11,8 @@
 
 namespace leviosim::platform {
 
-std::vector<Field> accelerator_fields();
+/// @param section  "cluster" or "controller"
+std::vector<Field> accelerator_fields(std::string_view section);
 
 /// Throws an InputError for an accelerator of which not everything is said (its energy only where
 /// the platform has energy figures), or that moves more words of L1 per cycle than there are banks.

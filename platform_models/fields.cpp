@@ -105,6 +105,10 @@ class Table {
     fields_.push_back(std::move(field));
   }
 
+  void append(std::vector<Field> fields) {
+    for (Field& field : fields) fields_.push_back(std::move(field));
+  }
+
   std::vector<Field> take() { return std::move(fields_); }
 
  private:
@@ -338,13 +342,14 @@ std::vector<Field> all_fields() {
   add_code_of_cluster(table);
   add_l1_and_dma(table);
   add_events(table);
+  table.append(accelerator_fields("cluster"));
   add_controller(table);
   add_code_of_controller(table);
   add_external_memory(table);
+  table.append(accelerator_fields("controller"));
   add_l2(table);
   std::vector<Field> fields = table.take();
   for (Field& field : energy_fields()) fields.push_back(std::move(field));
-  for (Field& field : accelerator_fields()) fields.push_back(std::move(field));
   return fields;
 }
 

@@ -47,6 +47,8 @@ Process run_job(Cluster& cluster, const work::Job& job, JobTiming& timing) {
   timing = co_await cluster.run(job);
 }
 
+double cycles_of(const StageTiming& timing) { return static_cast<double>(timing.cycles.count()); }
+
 StageTiming time_of(const ClusterConfig& config, std::vector<work::Step> steps, int workers = 8) {
   const Timebase timebase({{"cluster", config.clock}});
   Kernel kernel;
@@ -96,7 +98,7 @@ TEST(Accelerator, WithoutOneTheDemandIsThatOfTheCounts) {
 TEST(Accelerator, CoresQueueForOneUnit) {
   for (const int cores : {1, 2, 4, 8})
     EXPECT_NEAR(
-        together(cluster_with(unit(1, 0, 0, 0.1)), piece(0, 5000, 50, 50), cores).cycles.count(),
+        cycles_of(together(cluster_with(unit(1, 0, 0, 0.1)), piece(0, 5000, 50, 50), cores)),
         cores * 50 * 10, 1)
         << cores;
 }
@@ -108,7 +110,7 @@ TEST(Accelerator, QueueingBeginsWhenTheUnitIsSaturated) {
   const ClusterConfig config = cluster_with(unit(1, s, l, 1 / b));
   for (const int cores : {1, 2, 3, 4, 8}) {
     const StageTiming timing = together(config, piece(0, 5000, 100, 100), cores);
-    EXPECT_NEAR(timing.cycles.count(), 100 * std::max(s + l + b, cores * b), 2) << cores;
+    EXPECT_NEAR(cycles_of(timing), 100 * std::max(s + l + b, cores * b), 2) << cores;
     EXPECT_NEAR(timing.account.useful.accelerator, cores * 100 * (l + b), 1);
     EXPECT_NEAR(timing.account.accelerator, cores * 100 * std::max(0.0, cores * b - s - l - b), 20);
     EXPECT_NEAR(timing.account.total(), cores * static_cast<double>(timing.cycles.count()), 1e-6);
@@ -167,8 +169,7 @@ TEST(Accelerator, SharesOfSeveralWorkersAreOnePieceOfWork) {
   // Eight shares on two workers: each has the calls of four.
   const ClusterConfig config = cluster_with(unit(8, 10, 0, 1));
   const std::vector<Piece> shares(8, piece(5, 100, 2, 20));
-  EXPECT_NEAR(time_of(config, {work::Fork{"f", shares}}, 2).cycles.count(), 4 * (5 + 2 * 10 + 20),
-              1);
+  EXPECT_NEAR(cycles_of(time_of(config, {work::Fork{"f", shares}}, 2)), 4 * (5 + 2 * 10 + 20), 1);
 }
 
 TEST(Accelerator, TakesItsWorkFromTheCoresEnergyAndAddsItsOwn) {

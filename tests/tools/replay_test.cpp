@@ -137,7 +137,7 @@ TEST_F(Replayed, OnAChipWithAcceleratorsIsTheLiveRunThere) {
               traces::format_tum(on_gap9().run.trajectory));
     EXPECT_NE(statistics_text(there.run).find(".served."), std::string::npos);
   }
-  EXPECT_EQ(statistics_text(on_gap9().run).find("served"), std::string::npos);
+  EXPECT_EQ(statistics_text(on_gap9().run).find(".served."), std::string::npos);
 }
 
 TEST_F(Replayed, OtherNumbersOfCoresHaveTracesOfTheirOwn) {

@@ -22,6 +22,12 @@ constexpr std::optional<work::KernelKind> eigen_of_size(int n) {
   }
 }
 
+/// Linear equations in n unknowns; none if so few that a core is done before it had started a unit.
+constexpr std::optional<work::KernelKind> solve_of_size(int n) {
+  if (n < 12) return std::nullopt;
+  return work::KernelKind::Solve;
+}
+
 /// Size of a factorisation of m equations in n unknowns, and of a substitution.
 constexpr int factor_items(int m, int n) { return m * n * n; }
 constexpr int substitution_items(int m, int n) { return m * n; }
