@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "platform_models/accelerator_fields.h"
 #include "platform_models/energy_fields.h"
 
 namespace leviosim::platform {
@@ -102,6 +103,10 @@ class Table {
       return as_number(member(section.cluster ? chip.cluster.core : chip.controller.core));
     };
     fields_.push_back(std::move(field));
+  }
+
+  void append(std::vector<Field> fields) {
+    for (Field& field : fields) fields_.push_back(std::move(field));
   }
 
   std::vector<Field> take() { return std::move(fields_); }
@@ -337,9 +342,11 @@ std::vector<Field> all_fields() {
   add_code_of_cluster(table);
   add_l1_and_dma(table);
   add_events(table);
+  table.append(accelerator_fields("cluster"));
   add_controller(table);
   add_code_of_controller(table);
   add_external_memory(table);
+  table.append(accelerator_fields("controller"));
   add_l2(table);
   std::vector<Field> fields = table.take();
   for (Field& field : energy_fields()) fields.push_back(std::move(field));

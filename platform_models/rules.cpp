@@ -5,6 +5,7 @@
 #include <bit>
 #include <string_view>
 
+#include "platform_models/accelerator_fields.h"
 #include "platform_models/supply_rules.h"
 #include "sim/error.h"
 
@@ -92,6 +93,7 @@ void check_rules(const Schema& schema, const Settings& settings, const sim::Chip
   rules.require_units("int64", "cluster.fpu.int64_units", cluster.fpu.int64_units);
   for (const work::OpInfo& info : work::kOps) rules.require_latency(info, cluster.core[info.op]);
   check_supply(schema, settings, chip);
+  check_accelerators(schema, settings, chip);
 }
 
 }  // namespace leviosim::platform

@@ -60,6 +60,12 @@ std::string file_head(const FileKind& kind) {
   return head.take();
 }
 
+std::uint32_t version_of(std::string_view bytes) {
+  const std::string place;
+  ByteReader head(bytes.substr(kMagicSize, 4), place);
+  return head.u32("version");
+}
+
 std::string packed_section(std::string_view content, int level) {
   check(content.size() <= kLargestContent, "a section is too large");
   std::string stored(ZSTD_compressBound(content.size()), '\0');

@@ -41,6 +41,9 @@ struct Section {
 std::vector<Section> sections_of(const FileKind& kind, const std::string& file,
                                  std::string_view bytes);
 
+/// Version that the head of a file names, of which sections_of() has read the sections.
+std::uint32_t version_of(std::string_view bytes);
+
 /// @throws InputError if the section does not decompress to the size that it states
 std::string unpacked(const Section& section, const std::string& file);
 

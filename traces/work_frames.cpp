@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/check.h"
+#include "sim/error.h"
 
 namespace leviosim::traces {
 namespace {
@@ -65,17 +66,21 @@ void ChunkWriter::write_stage(const work::StageRun& stage, bool on_controller) {
   for (const work::Step& step : stage.steps) {
     if (const auto* serial = std::get_if<work::Serial>(&step)) {
       text_.whole(kSerial);
-      write_counts({on_controller ? Kind::Controller : Kind::Serial, stage.stage, before},
+      write_counts({on_controller ? Kind::Controller : Kind::Serial, stage.stage, before, {}},
                    serial->counts);
     } else if (const auto* fork = std::get_if<work::Fork>(&step)) {
       text_.whole(fork->master_takes_part ? kForkWithMaster : kFork);
       text_.whole(names_->number_of(fork->name));
       const std::size_t workers = fork->shares.size() - (fork->master_takes_part ? 1 : 0);
-      text_.whole(series_of({Kind::Share, stage.stage, fork->name}));
-      for (std::size_t k = 0; k < workers; ++k)
-        series_[series_of({Kind::Share, stage.stage, fork->name})].push_back(fork->shares[k]);
+      const Place place{Kind::Share, stage.stage, fork->name, {}};
+      const std::uint64_t series = work_.number_of(place);
+      text_.whole(series);
+      for (std::size_t k = 0; k < workers; ++k) {
+        work_.series[series].push_back(fork->shares[k]);
+        write_kernels(place, fork->shares[k]);
+      }
       if (fork->master_takes_part)
-        write_counts({Kind::MasterShare, stage.stage, fork->name}, fork->shares.back());
+        write_counts({Kind::MasterShare, stage.stage, fork->name, {}}, fork->shares.back());
     } else if (const auto* transfer = std::get_if<work::Transfer>(&step)) {
       text_.whole(transfer->background ? kBackgroundTransfer : kTransfer);
       text_.whole(static_cast<std::uint64_t>(transfer->direction));
@@ -103,30 +108,62 @@ void ChunkWriter::write_peak(const work::MemoryPeak& peak) {
   if (is_new) text_.append(entry->first);
 }
 
-std::uint64_t ChunkWriter::series_of(const Place& place) {
-  const auto [entry, is_new] = series_numbers_.emplace(place, series_.size());
-  if (is_new) series_.emplace_back();
+std::uint64_t ChunkWriter::SeriesTable::number_of(const Place& place) {
+  const auto [entry, is_new] = numbers.emplace(place, series.size());
+  if (is_new) series.emplace_back();
   return entry->second;
 }
 
-void ChunkWriter::write_counts(const Place& place, const work::Counts& counts) {
-  const std::uint64_t series = series_of(place);
-  text_.whole(series);
-  series_[series].push_back(counts);
-}
-
-std::string ChunkWriter::finish() {
+void ChunkWriter::SeriesTable::write(ByteWriter& content) const {
   ByteWriter heads;
   ByteWriter columns;
-  heads.whole(series_.size());
-  for (const std::vector<work::Counts>& series : series_) write_series(series, heads, columns);
-  ByteWriter content;
-  content.whole(static_cast<std::uint64_t>(frames_));
+  heads.whole(series.size());
+  for (const std::vector<work::Counts>& one : series) write_series(one, heads, columns);
   content.text(heads.bytes());
   content.text(columns.bytes());
+}
+
+void ChunkWriter::write_counts(const Place& place, const work::Piece& piece) {
+  const std::uint64_t series = work_.number_of(place);
+  text_.whole(series);
+  work_.series[series].push_back(piece);
+  write_kernels(place, piece);
+}
+
+void ChunkWriter::write_kernels(const Place& place, const work::Piece& piece) {
+  kernel_text_.whole(piece.kernels.size());
+  for (const work::KernelWork& calls : piece.kernels) {
+    const std::string_view kernel = work::kKernels[work::index(calls.kernel)].name;
+    Place of_kernel = place;
+    std::get<3>(of_kernel) = kernel;
+    const std::uint64_t series = kernel_work_.number_of(of_kernel);
+    kernel_text_.whole(names_->number_of(kernel));
+    kernel_text_.whole(calls.calls);
+    kernel_text_.whole(calls.items);
+    kernel_text_.whole(series);
+    kernel_work_.series[series].push_back(calls.counts);
+  }
+}
+
+ChunkWriter::Contents ChunkWriter::finish() {
+  ByteWriter content;
+  content.whole(static_cast<std::uint64_t>(frames_));
+  work_.write(content);
   content.append(text_.bytes());
+  ByteWriter kernels;
+  kernel_work_.write(kernels);
+  kernels.append(kernel_text_.bytes());
   *this = ChunkWriter(*names_);
-  return content.take();
+  return {content.take(), kernels.take()};
+}
+
+WorkFrames::WorkFrames(const WorkTrace& trace, bool kernels)
+    : trace_(&trace), with_kernels_(kernels) {
+  if (kernels && !trace.has_kernels())
+    throw InputError(
+        fmt::format("{}: is of version 1, which does not say what of the work was done in calls of "
+                    "kernels that an accelerator could serve: record it again",
+                    trace.name()));
 }
 
 bool WorkFrames::next(WorkFrame& frame) {
@@ -153,20 +190,34 @@ void WorkFrames::open_chunk() {
   const std::uint64_t frames = text_.whole("the number of frames");
   if (frames != static_cast<std::uint64_t>(chunk.frames))
     text_.fail(fmt::format("holds {} frames; expected {}", frames, chunk.frames));
-  ByteReader heads(text_.text("series"), place_);
-  ByteReader columns(text_.text("columns"), place_);
-  series_.clear();
-  const std::size_t series = heads.count("the number of series");
-  series_.reserve(series);
-  for (std::size_t i = 0; i < series; ++i) series_.emplace_back(heads, columns, trace_->fields());
+  open_series(text_, series_);
+  peaks_.clear();
+  if (!with_kernels_) return;
+  kernel_place_ = fmt::format("{}, kernels of frames {} to {} (section at byte {})", trace_->name(),
+                              chunk.first, chunk.first + chunk.frames - 1, chunk.kernels->offset);
+  kernel_content_ = unpacked(*chunk.kernels, trace_->name());
+  kernel_text_ = ByteReader(kernel_content_, kernel_place_);
+  open_series(kernel_text_, kernel_series_);
+}
+
+void WorkFrames::open_series(ByteReader& in, std::vector<SeriesReader>& series) {
+  const std::string& place = in.place();
+  ByteReader heads(in.text("series"), place);
+  ByteReader columns(in.text("columns"), place);
+  series.clear();
+  const std::size_t number = heads.count("the number of series");
+  series.reserve(number);
+  for (std::size_t i = 0; i < number; ++i) series.emplace_back(heads, columns, trace_->fields());
   heads.expect_end();
   columns.expect_end();
-  peaks_.clear();
 }
 
 void WorkFrames::close_chunk() {
   text_.expect_end();
   for (SeriesReader& series : series_) series.expect_end();
+  if (!with_kernels_) return;
+  kernel_text_.expect_end();
+  for (SeriesReader& series : kernel_series_) series.expect_end();
 }
 
 std::string_view WorkFrames::read_name() {
@@ -287,11 +338,34 @@ void WorkFrames::read_peak(work::MemoryPeak& peak) {
   peaks_.push_back(peak);
 }
 
-void WorkFrames::read_counts(std::uint64_t series, work::Counts& counts) {
+void WorkFrames::read_counts(std::uint64_t series, work::Piece& piece) {
   if (series >= series_.size()) [[unlikely]]
     text_.fail(
         fmt::format("a piece of work is of series {}; there are {}", series, series_.size()));
-  series_[series].next(counts);
+  series_[series].next(piece);
+  if (with_kernels_) read_kernels(piece);
+}
+
+void WorkFrames::read_kernels(work::Piece& piece) {
+  piece.kernels.resize(kernel_text_.whole_below(work::kKernelCount + 1, "the number of kernels"));
+  std::size_t least = 0;  // each kind at most once, in their order
+  for (work::KernelWork& calls : piece.kernels) {
+    const std::string& name =
+        trace_->names()[kernel_text_.whole_below(trace_->names().size(), "the number of a name")];
+    while (least < work::kKernelCount && work::kKernels[least].name != name) ++least;
+    if (least == work::kKernelCount)
+      kernel_text_.fail(
+          fmt::format("'{}' is no kernel that is known, or comes twice in a piece of work", name));
+    calls.kernel = work::kKernels[least++].kernel;
+    calls.calls = kernel_text_.whole_below(std::uint64_t{1} << kCounterBits, "calls of a kernel");
+    calls.items = kernel_text_.whole_below(std::uint64_t{1} << kCounterBits, "items of a kernel");
+    const std::uint64_t series =
+        kernel_text_.whole_below(kernel_series_.size(), "a series of kernels");
+    kernel_series_[series].next(calls.counts);
+    for (std::size_t i = 0; i < work::kOpCount; ++i)
+      if (calls.counts.n[i] > piece.n[i])
+        kernel_text_.fail("a call of a kernel counts more than its piece of work");
+  }
 }
 
 }  // namespace leviosim::traces

@@ -31,24 +31,39 @@ class ChunkWriter {
 
   void add(const WorkFrame& frame);
   int frames() const { return frames_; }
-  /// The content of the section; starts the next chunk.
-  std::string finish();
+  /// The contents of its two sections; starts the next chunk.
+  struct Contents {
+    std::string frames;
+    std::string kernels;
+  };
+  Contents finish();
 
  private:
   enum class Kind { Serial, Share, MasterShare, Controller };
-  using Place = std::tuple<Kind, std::string_view, std::string_view>;  ///< with stage and step
+  /// With stage and step, and the kind of kernel if it is about calls.
+  using Place = std::tuple<Kind, std::string_view, std::string_view, std::string_view>;
+  /// Pieces of work by their place: some series.
+  struct SeriesTable {
+    std::map<Place, std::uint64_t> numbers;
+    std::vector<std::vector<work::Counts>> series;
+
+    std::uint64_t number_of(const Place& place);
+    /// Their descriptions and columns.
+    void write(ByteWriter& content) const;
+  };
 
   void write_job(const work::Job& job, bool on_controller);
   void write_stage(const work::StageRun& stage, bool on_controller);
   void write_peak(const work::MemoryPeak& peak);
-  void write_counts(const Place& place, const work::Counts& counts);
-  std::uint64_t series_of(const Place& place);
+  void write_counts(const Place& place, const work::Piece& piece);
+  void write_kernels(const Place& place, const work::Piece& piece);
 
   NameTable* names_;
   int frames_ = 0;
   ByteWriter text_;  ///< the frames and their jobs
-  std::map<Place, std::uint64_t> series_numbers_;
-  std::vector<std::vector<work::Counts>> series_;
+  SeriesTable work_;
+  ByteWriter kernel_text_;  ///< calls of kernels of every piece of work
+  SeriesTable kernel_work_;
   std::map<std::string, std::uint64_t> peaks_;  ///< written → number
 };
 
@@ -56,7 +71,9 @@ class ChunkWriter {
 class WorkFrames {
  public:
   /// @param trace  outlives the reader and the names in what it gives
-  explicit WorkFrames(const WorkTrace& trace) : trace_(&trace) {}
+  /// @param kernels  whether the calls of kernels are read, too
+  /// @throws InputError if they are asked for, and the trace has none
+  explicit WorkFrames(const WorkTrace& trace, bool kernels = false);
 
   /// The next frame; storage of `frame` is used again. False at the end.
   /// @throws InputError for what cannot have been recorded
@@ -72,9 +89,12 @@ class WorkFrames {
   void read_step(work::Step& step, bool on_controller);
   void read_fork(work::Fork& fork, bool on_controller);
   void read_peak(work::MemoryPeak& peak);
-  void read_counts(std::uint64_t series, work::Counts& counts);
+  void read_counts(std::uint64_t series, work::Piece& piece);
+  void read_kernels(work::Piece& piece);
+  void open_series(ByteReader& in, std::vector<SeriesReader>& series);
 
   const WorkTrace* trace_;
+  bool with_kernels_;
   std::size_t next_chunk_ = 0;
   int frame_ = 0;        ///< number of the next
   int frames_left_ = 0;  ///< of the chunk
@@ -82,6 +102,10 @@ class WorkFrames {
   std::string content_;
   ByteReader text_;
   std::vector<SeriesReader> series_;
+  std::string kernel_place_;
+  std::string kernel_content_;
+  ByteReader kernel_text_;
+  std::vector<SeriesReader> kernel_series_;
   std::vector<work::MemoryPeak> peaks_;
   std::int32_t background_ = 0;  ///< transfers of the job so far
   std::int32_t waits_ = 0;

@@ -14,7 +14,8 @@
 namespace leviosim::traces {
 namespace {
 
-constexpr FileKind kKind{"LEVIOWT\n", "a work trace", 1};
+constexpr FileKind kKind{"LEVIOWT\n", "a work trace", 2};
+constexpr std::uint32_t kWithKernels = 2;
 constexpr int kFramesPerChunk = 32;
 constexpr int kLevel = 9;  ///< of zstd; higher ones take longer than the run for 2 % of size
 constexpr std::uint64_t kMostCores = 1024;
@@ -217,14 +218,17 @@ WorkTrace::WorkTrace(std::string name, std::string bytes)
   info_.l2 = read_l2(in, names_);
   int frames = 0;
   const std::size_t chunks = in.count("sections of frames");
-  if (chunks + 1 != sections.size())
+  has_kernels_ = version_of(bytes_) >= kWithKernels;
+  const std::size_t expected = has_kernels_ ? 2 * chunks : chunks;
+  if (expected + 1 != sections.size())
     throw InputError(fmt::format(
         "{}, byte {}: the file ends after {} sections of frames; expected {}: it is truncated",
-        name_, bytes_.size(), sections.size() - 1, chunks));
+        name_, bytes_.size(), sections.size() - 1, expected));
   for (std::size_t i = 0; i < chunks; ++i) {
     const auto n = static_cast<int>(read_number(in, 1 << 16, "frames of a section"));
     if (n == 0) in.fail("a section without frames");
-    chunks_.push_back({frames, n, sections[i + 1]});
+    chunks_.push_back({frames, n, sections[i + 1], {}});
+    if (has_kernels_) chunks_.back().kernels = sections[i + 1 + chunks];
     frames += n;
   }
   read_stamps(in, info_.stamps_ns);
@@ -238,7 +242,9 @@ struct WorkTraceWriter::State {
 
   void end_chunk() {
     chunk_frames.push_back(chunk.frames());
-    sections += packed_section(chunk.finish(), kLevel);
+    const ChunkWriter::Contents contents = chunk.finish();
+    sections += packed_section(contents.frames, kLevel);
+    kernels += packed_section(contents.kernels, kLevel);
   }
 
   int cores;
@@ -247,6 +253,7 @@ struct WorkTraceWriter::State {
   std::vector<int> chunk_frames;
   std::vector<std::int64_t> stamps_ns;
   std::string sections;
+  std::string kernels;  ///< likewise
 };
 
 WorkTraceWriter::WorkTraceWriter(int cores) : state_(std::make_unique<State>(cores)) {}
@@ -266,7 +273,7 @@ std::string WorkTraceWriter::finish(WorkTraceInfo info) {
   info.stamps_ns = state_->stamps_ns;
   return file_head(kKind) +
          packed_section(summary_of(info, state_->names, state_->chunk_frames), kLevel) +
-         state_->sections;
+         state_->sections + state_->kernels;
 }
 
 }  // namespace leviosim::traces

@@ -94,6 +94,8 @@ class WorkTrace {
   const WorkTraceInfo& info() const { return info_; }
   int frames() const { return static_cast<int>(info_.stamps_ns.size()); }
   const std::vector<std::string>& names() const { return names_; }
+  /// Whether it says what of the work was done in calls of kernels: those of version 1 do not.
+  bool has_kernels() const { return has_kernels_; }
   std::size_t file_size() const { return bytes_.size(); }
 
   /// Sections of frames, in order; decoded by WorkFrames (work_frames.h).
@@ -101,6 +103,7 @@ class WorkTrace {
     int first = 0;
     int frames = 0;
     Section section;
+    std::optional<Section> kernels;  ///< calls of kernels in the frames
   };
   const std::vector<Chunk>& chunks() const { return chunks_; }
   /// Which counter of work::Counts (operations, then classes of reuse) a field of the file is.
@@ -113,6 +116,7 @@ class WorkTrace {
   std::vector<std::string> names_;
   std::vector<std::size_t> fields_;
   std::vector<Chunk> chunks_;
+  bool has_kernels_ = false;
 };
 
 /// Makes a trace of frames that are given in order.

@@ -114,7 +114,7 @@ Task<> Cluster::step(const work::Fork& fork, Account& account) {
 }
 
 Process Cluster::worker(int id) {
-  work::Counts sum;
+  work::Piece sum;
   for (;;) {
     const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
     co_await kernel_.delay(cycles(config_.events.fork_worker));
@@ -125,6 +125,7 @@ Process Cluster::worker(int id) {
     account.divider += time.divider;
     account.banks += time.banks;
     account.fetch += time.fetch;
+    account.accelerator += time.accelerator;
     account.rounding += time.rounding;
     last_arrival_ = kernel_.now();
     arrivals_ += cycles_since(dispatch.begin, last_arrival_);
@@ -132,7 +133,7 @@ Process Cluster::worker(int id) {
   }
 }
 
-const work::Counts& Cluster::shares_of(int id, const work::Fork& fork, work::Counts& sum) const {
+const work::Piece& Cluster::shares_of(int id, const work::Fork& fork, work::Piece& sum) const {
   const std::size_t shares = fork.shares.size() - (fork.master_takes_part ? 1 : 0);
   const auto first = static_cast<std::size_t>(id);
   const auto step = static_cast<std::size_t>(workers_);

@@ -44,7 +44,7 @@ class Cluster {
   Task<> step(const work::TransferWait& wait, Account& account);
   Task<> until_arrived(Time arrival);
   /// The worker's share; where it has several, their sum, which is put into `sum`.
-  const work::Counts& shares_of(int id, const work::Fork& fork, work::Counts& sum) const;
+  const work::Piece& shares_of(int id, const work::Fork& fork, work::Piece& sum) const;
   Duration cycles(double n) const;
   double cycles_since(Time begin, Time end) const;
 

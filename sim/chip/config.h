@@ -11,6 +11,7 @@
 
 #include "sim/energy/config.h"
 #include "sim/units.h"
+#include "sim/work/kernel_calls.h"
 #include "sim/work/op.h"
 
 namespace leviosim::sim {
@@ -23,8 +24,13 @@ enum class Unit : std::uint8_t {
   Int64,
   Bank,    ///< the one bank of L1 that holds a word which all cores use
   Refill,  ///< of the shared instruction cache from L2; no operation's, but code's
+  /// Accelerators follow, one for each kind of kernel; no operation's, but calls'.
 };
-inline constexpr std::size_t kUnitCount = 6;
+inline constexpr std::size_t kFirstAccelerator = 6;
+inline constexpr std::size_t kUnitCount = kFirstAccelerator + work::kKernelCount;
+constexpr Unit accelerator_of(work::KernelKind kind) {
+  return static_cast<Unit>(kFirstAccelerator + work::index(kind));
+}
 
 /// What one counted operation costs a core that is alone.
 struct OpCost {
@@ -77,6 +83,16 @@ struct L1Config {
   int banks = 1;
 };
 
+/// Hardware that serves the calls of one kind of kernel (accelerator.h).
+struct AcceleratorConfig {
+  int units = 0;               ///< 0: there is none
+  double start_up = 0;         ///< instructions of the calling core per call
+  double latency = 0;          ///< cycles of a call besides those of its items
+  double items_per_cycle = 1;  ///< of each unit
+  double l1_words = 0;         ///< words of L1 that a unit moves per cycle while it works
+};
+using Accelerators = std::array<AcceleratorConfig, work::kKernelCount>;
+
 struct DmaConfig {
   double programming = 0;      ///< cycles of the programming core per transfer, API included
   double first_data = 0;       ///< latency until the first beat arrives
@@ -101,6 +117,7 @@ struct ClusterConfig {
   L1Config l1;
   DmaConfig dma;
   EventUnitConfig events;
+  Accelerators accelerators{};
 };
 
 /// Memory outside of the chip, which the controller copies from and to L2 (hw_facts 6.2). A
@@ -118,6 +135,7 @@ struct ControllerConfig {
   InstructionCacheConfig icache;
   ExternalMemoryConfig external{};
   bool shares_core = false;  ///< a chip with one core: its work and the cluster's take turns
+  Accelerators accelerators{};
 };
 
 struct L2Config {

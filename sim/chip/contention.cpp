@@ -14,8 +14,6 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr int kMaxRounds = 16;
 constexpr double kSettled = 1e-9;
 
-constexpr std::array kShared = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::Refill};
-
 constexpr std::size_t index(Unit unit) { return static_cast<std::size_t>(unit); }
 
 /// Requests of one runner to a unit: per lone cycle, and per cycle at its present rate.
@@ -80,6 +78,13 @@ Contention::Contention(const ClusterConfig& config)
   pools_[index(Unit::Int64)] = mapped(fpu.int64_units);
   pools_[index(Unit::Bank)] = {1, 1.0};
   pools_[index(Unit::Refill)] = {1, config.icache.refills};
+  shared_ = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::Refill};
+  for (const work::KernelInfo& info : work::kKernels) {
+    const int units = config.accelerators[work::index(info.kernel)].units;
+    if (units == 0) continue;
+    shared_.push_back(accelerator_of(info.kernel));
+    pools_[index(shared_.back())] = {1, static_cast<double>(units)};
+  }
 }
 
 /// Finds the highest rates that the units of one kind allow at the present rates.
@@ -103,8 +108,8 @@ void Contention::limit(std::size_t unit, const std::vector<Runner>& runners) {
 /// The rate that all kinds of units but one allow a runner.
 double Contention::allowed(std::size_t runner, std::size_t except) const {
   double rate = kUnlimited;
-  for (std::size_t unit = 0; unit < kUnitCount; ++unit)
-    if (unit != except) rate = std::min(rate, limits_[unit][runner]);
+  for (const Unit unit : shared_)
+    if (index(unit) != except) rate = std::min(rate, limits_[index(unit)][runner]);
   return rate;
 }
 
@@ -136,7 +141,7 @@ void Contention::blame(std::size_t i, Progress& p) const {
   p.banks = p.rate * l1_delay(i);
   p.fetch = p.rate * fetch_delay(i);
   const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch);
-  const auto tightest = std::min_element(kShared.begin(), kShared.end(), [&](Unit a, Unit b) {
+  const auto tightest = std::min_element(shared_.begin(), shared_.end(), [&](Unit a, Unit b) {
     return limits_[index(a)][i] < limits_[index(b)][i];
   });
   switch (*tightest) {
@@ -149,8 +154,12 @@ void Contention::blame(std::size_t i, Progress& p) const {
     case Unit::Refill:
       p.fetch += lost;
       break;
-    default:
+    case Unit::Fpu:
+    case Unit::Int64:
       p.fpu = lost;
+      break;
+    default:
+      p.accelerator = lost;
   }
 }
 
@@ -158,7 +167,7 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
                        double dma_words) {
   const std::size_t n = runners.size();
   rate_.assign(n, 1.0);
-  for (std::vector<double>& limits : limits_) limits.assign(n, kUnlimited);
+  for (const Unit unit : shared_) limits_[index(unit)].assign(n, kUnlimited);
   progress.assign(n, Progress{});
   if (n < 2 && dma_words == 0) return;
 
@@ -176,9 +185,9 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
     }
     return true;
   };
-  std::array<Unit, kShared.size()> scarce{};
+  std::array<Unit, kUnitCount> scarce{};
   std::size_t scarce_units = 0;
-  for (const Unit unit : kShared)
+  for (const Unit unit : shared_)
     if (!serves_everybody(unit)) scarce[scarce_units++] = unit;
 
   std::vector<double> free_rate(n);  // without units that serve in turn

@@ -28,11 +28,12 @@ namespace leviosim::sim {
 
 /// What slows a core down while it runs beside others, per cycle of its running time.
 struct Progress {
-  double rate = 1;     ///< cycles of lone progress per cycle
-  double fpu = 0;      ///< share of the time lost to floating-point and 64-bit integer units
-  double divider = 0;  ///< … to the divider
-  double banks = 0;    ///< … to L1 bank conflicts
-  double fetch = 0;    ///< … to the shared instruction cache and its refills
+  double rate = 1;         ///< cycles of lone progress per cycle
+  double fpu = 0;          ///< share of the time lost to floating-point and 64-bit integer units
+  double divider = 0;      ///< … to the divider
+  double banks = 0;        ///< … to L1 bank conflicts
+  double fetch = 0;        ///< … to the shared instruction cache and its refills
+  double accelerator = 0;  ///< … to accelerators
 };
 
 /// One running segment as the solver sees it.
@@ -72,6 +73,7 @@ class Contention {
   void blame(std::size_t runner, Progress& progress) const;
 
   std::array<Pools, kUnitCount> pools_;
+  std::vector<Unit> shared_;  ///< kinds of units that there are
   int banks_;
   int code_banks_;
   const std::vector<Runner>* runners_ = nullptr;  ///< while solving

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "sim/check.h"
+#include "sim/chip/accelerator.h"
 
 namespace leviosim::sim {
 
 Task<JobTiming> Controller::run(const work::Job& job) {
   JobTiming timing{kernel_.now(), kernel_.now(), {}};
   for (const work::StageRun& stage : job.stages) {
-    const Demand demand = price(work::counts_of(stage), config_.core, code_);
+    const Demand demand = demand_of(stage);
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
     const double transfer = transfer_cycles(stage);
     s.cycles = Cycles(static_cast<std::int64_t>(std::ceil(demand.cycles() + transfer)));
@@ -23,6 +24,12 @@ Task<JobTiming> Controller::run(const work::Job& job) {
   }
   timing.end = kernel_.now();
   co_return timing;
+}
+
+Demand Controller::demand_of(const work::StageRun& stage) const {
+  if (!has_accelerators(config_.accelerators))
+    return price(work::counts_of(stage), config_.core, code_);
+  return price(work::pieces_of(stage), config_.core, config_.accelerators, code_);
 }
 
 /// Only external memory is far from a controller.

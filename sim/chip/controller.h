@@ -26,6 +26,7 @@ class Controller {
   const ClockDomain& clock() const { return clock_; }
 
  private:
+  Demand demand_of(const work::StageRun& stage) const;
   double transfer_cycles(const work::StageRun& stage) const;
 
   Kernel& kernel_;

@@ -39,11 +39,13 @@ CycleBreakdown& CycleBreakdown::operator+=(const CycleBreakdown& o) {
   memory += o.memory;
   arithmetic += o.arithmetic;
   fetch += o.fetch;
+  accelerator += o.accelerator;
   return *this;
 }
 
 CycleBreakdown operator*(const CycleBreakdown& b, double k) {
-  return {b.issue * k, b.load_use * k, b.control * k, b.memory * k, b.arithmetic * k, b.fetch * k};
+  return {b.issue * k,      b.load_use * k, b.control * k,    b.memory * k,
+          b.arithmetic * k, b.fetch * k,    b.accelerator * k};
 }
 
 Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {

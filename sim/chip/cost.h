@@ -13,14 +13,17 @@ namespace leviosim::sim {
 
 /// Where the cycles of a core that runs alone go. All in cycles of its clock.
 struct CycleBreakdown {
-  double issue = 0;       ///< instructions
-  double load_use = 0;    ///< waiting for a loaded value
-  double control = 0;     ///< refilling the pipeline after branches, calls and loop entries
-  double memory = 0;      ///< L2 latency and words that straddle
-  double arithmetic = 0;  ///< integer divisions and floating-point latencies
-  double fetch = 0;       ///< instructions that the private cache lacks
+  double issue = 0;        ///< instructions
+  double load_use = 0;     ///< waiting for a loaded value
+  double control = 0;      ///< refilling the pipeline after branches, calls and loop entries
+  double memory = 0;       ///< L2 latency and words that straddle
+  double arithmetic = 0;   ///< integer divisions and floating-point latencies
+  double fetch = 0;        ///< instructions that the private cache lacks
+  double accelerator = 0;  ///< calls of kernels that an accelerator serves
 
-  double total() const { return issue + load_use + control + memory + arithmetic + fetch; }
+  double total() const {
+    return issue + load_use + control + memory + arithmetic + fetch + accelerator;
+  }
   CycleBreakdown& operator+=(const CycleBreakdown& o);
   friend CycleBreakdown operator*(const CycleBreakdown& b, double k);
 };

@@ -21,6 +21,7 @@ Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config
     : kernel_(kernel),
       clock_(clock),
       core_config_(config.core),
+      accelerators_(config.accelerators),
       worker_code_(config.icache, config.icache.worker, workers),
       master_code_(config.icache, config.icache.master, 1),
       contention_(config),
@@ -29,11 +30,11 @@ Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config
   kernel_.spawn_server("contention", settle());
 }
 
-Task<SegmentTime> Team::execute(int id, const work::Counts& counts) {
+Task<SegmentTime> Team::execute(int id, const work::Piece& piece) {
   Core& core = *cores_.at(static_cast<std::size_t>(id));
   check(!core.running, "a core runs one piece of work at a time");
   const bool master = static_cast<std::size_t>(id) + 1 == cores_.size();
-  core.demand = price(counts, core_config_, master ? master_code_ : worker_code_);
+  core.demand = price(piece, core_config_, accelerators_, master ? master_code_ : worker_code_);
   core.runner = Runner::of(id, core.demand);
   core.remaining = core.demand.cycles();
   core.time = {};
@@ -88,6 +89,7 @@ void Team::advance() {
     core->time.divider += worked * core->progress.divider;
     core->time.banks += worked * core->progress.banks;
     core->time.fetch += worked * core->progress.fetch;
+    core->time.accelerator += worked * core->progress.accelerator;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim/chip/accelerator.h"
 #include "sim/chip/contention.h"
 #include "sim/chip/cost.h"
 #include "sim/kernel/kernel.h"
@@ -23,9 +24,10 @@ struct SegmentTime {
   double divider = 0;
   double banks = 0;
   double fetch = 0;
+  double accelerator = 0;
   double rounding = 0;
 
-  double waiting() const { return fpu + divider + banks + fetch; }
+  double waiting() const { return fpu + divider + banks + fetch + accelerator; }
 };
 
 class Team {
@@ -33,8 +35,8 @@ class Team {
   /// @param workers  ids 0 … workers-1; the master is core `workers`
   Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
 
-  /// co_await: core `id` runs `counts`; at most one piece of work per core at a time.
-  Task<SegmentTime> execute(int id, const work::Counts& counts);
+  /// co_await: core `id` runs the piece of work; at most one per core at a time.
+  Task<SegmentTime> execute(int id, const work::Piece& piece);
 
   /// The DMA moves so many words of L1 per cycle more (or less) from now on.
   void change_traffic(double words_per_cycle);
@@ -59,6 +61,7 @@ class Team {
   Kernel& kernel_;
   const ClockDomain& clock_;
   CoreConfig core_config_;
+  Accelerators accelerators_;
   CodeFetcher worker_code_;
   CodeFetcher master_code_;
   Contention contention_;

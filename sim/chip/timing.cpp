@@ -8,6 +8,7 @@ Account& Account::operator+=(const Account& o) {
   divider += o.divider;
   banks += o.banks;
   fetch += o.fetch;
+  accelerator += o.accelerator;
   imbalance += o.imbalance;
   synchronisation += o.synchronisation;
   transfer += o.transfer;

@@ -18,6 +18,7 @@ struct Account {
   double divider = 0;          ///< waiting for the shared divider
   double banks = 0;            ///< waiting for L1 banks
   double fetch = 0;            ///< waiting for the shared instruction cache that others use too
+  double accelerator = 0;      ///< waiting for an accelerator that serves others
   double imbalance = 0;        ///< waiting at the end of a fork for the slowest core
   double synchronisation = 0;  ///< forking, waking up, barriers
   double transfer = 0;         ///< waiting for the DMA
@@ -25,8 +26,8 @@ struct Account {
   double rounding = 0;         ///< ends of shares moved to the next clock edge
 
   double total() const {
-    return useful.total() + fpu + divider + banks + fetch + imbalance + synchronisation + transfer +
-           serial + rounding;
+    return useful.total() + fpu + divider + banks + fetch + accelerator + imbalance +
+           synchronisation + transfer + serial + rounding;
   }
   Account& operator+=(const Account& o);
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/chip/cost.h"
+#include "sim/chip/accelerator.h"
 
 namespace leviosim::sim {
 namespace {
@@ -58,6 +58,10 @@ Activity& Activity::operator+=(const Activity& o) {
   l2_accesses += o.l2_accesses;
   controller_instructions += o.controller_instructions;
   controller_f32_operations += o.controller_f32_operations;
+  for (std::size_t k = 0; k < work::kKernelCount; ++k) {
+    cluster_items[k] += o.cluster_items[k];
+    controller_items[k] += o.controller_items[k];
+  }
   cluster_cycles += o.cluster_cycles;
   idle_cluster_cycles += o.idle_cluster_cycles;
   soc_cycles += o.soc_cycles;
@@ -73,8 +77,8 @@ Seconds seconds(double cycles, Hertz clock) {
 }
 
 Activity cluster_activity(const ChipConfig& chip, int workers, const work::Counts& counts,
-                          const work::Transferred& transfers, const Account& account,
-                          Cycles cycles) {
+                          const work::Transferred& transfers, const Account& account, Cycles cycles,
+                          const std::vector<work::KernelWork>& served) {
   const Demand demand = demand_of(counts, chip.cluster.core, chip.cluster.icache, workers);
   const DmaConfig& dma = chip.cluster.dma;
   const auto bytes = static_cast<double>(transfers.bytes.count());
@@ -88,6 +92,12 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
   if (transfers.transfers > 0)
     a.transfer_cycles =
         static_cast<double>(transfers.transfers) * dma.first_data + bytes / dma.bytes_per_cycle;
+  for (const work::KernelWork& calls : served) {
+    const Service service = service_of(calls, chip.cluster.accelerators);
+    a.instructions += service.instructions;
+    a.l1_accesses += service.l1_words;
+    a.cluster_items[work::index(calls.kernel)] += static_cast<double>(calls.items);
+  }
   a.cluster_cycles = elapsed;
   a.time = seconds(elapsed, chip.cluster.clock);
   a.soc_cycles = a.time.count() * static_cast<double>(chip.controller.clock.count());
@@ -97,13 +107,18 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
 }
 
 Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
-                             const work::Transferred& transfers, Cycles cycles) {
+                             const work::Transferred& transfers, Cycles cycles,
+                             const std::vector<work::KernelWork>& served) {
   const Demand demand = demand_of(counts, chip.controller.core, chip.controller.icache, 1);
   Activity a;
   a.controller_instructions = demand.alone.issue;
   a.controller_f32_operations = f32_operations(demand);
   a.l2_accesses = local_accesses(demand) + l2_accesses(counts, demand, chip.controller.icache) +
                   static_cast<double>(transfers.external.count()) / kWord;
+  for (const work::KernelWork& calls : served) {
+    a.controller_instructions += service_of(calls, chip.controller.accelerators).instructions;
+    a.controller_items[work::index(calls.kernel)] += static_cast<double>(calls.items);
+  }
   a.controller_working = seconds(static_cast<double>(cycles.count()), chip.controller.clock);
   return a;
 }

@@ -9,6 +9,9 @@
 // arithmetic makes, and the camera's transfer into L2 (4800 words per frame of 160×120).
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "sim/chip/config.h"
 #include "sim/chip/timing.h"
 #include "sim/work/counts.h"
@@ -24,6 +27,9 @@ struct Activity {
   double l2_accesses = 0;      ///< by controller, cluster, DMA and refills of instruction caches
   double controller_instructions = 0;
   double controller_f32_operations = 0;
+  /// Items that accelerators served, by kind of kernel.
+  std::array<double, work::kKernelCount> cluster_items{};
+  std::array<double, work::kKernelCount> controller_items{};
 
   double cluster_cycles = 0;       ///< of the cluster's clock, at work
   double idle_cluster_cycles = 0;  ///< without work
@@ -41,14 +47,17 @@ struct Activity {
 Seconds seconds(double cycles, Hertz clock);
 
 /// Executions of a stage on the cluster, with a team of `workers`.
+/// @param counts   what cores executed
 /// @param account  core-cycles of the team
+/// @param served   calls that accelerators served
 Activity cluster_activity(const ChipConfig& chip, int workers, const work::Counts& counts,
-                          const work::Transferred& transfers, const Account& account,
-                          Cycles cycles);
+                          const work::Transferred& transfers, const Account& account, Cycles cycles,
+                          const std::vector<work::KernelWork>& served = {});
 
 /// Executions of a stage on the fabric controller, whose memory is L2.
 Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
-                             const work::Transferred& transfers, Cycles cycles);
+                             const work::Transferred& transfers, Cycles cycles,
+                             const std::vector<work::KernelWork>& served = {});
 
 /// Time during which the cluster has nothing to do.
 Activity idle_activity(const ChipConfig& chip, int workers, Seconds time);

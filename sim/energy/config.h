@@ -3,7 +3,10 @@
 // has its source and a range; a chip without these sections has no energy figures.
 #pragma once
 
+#include <array>
+
 #include "sim/units.h"
+#include "sim/work/kernel_calls.h"
 
 namespace leviosim::sim {
 
@@ -62,6 +65,11 @@ struct EnergyConfig {
     Joules cycle;  ///< in each cycle of the controller's clock
     Watts static_power;
   } soc;
+
+  /// Of an item of a call that an accelerator serves, by kind of kernel.
+  using Items = std::array<Joules, work::kKernelCount>;
+  Items cluster_accelerators{};
+  Items controller_accelerators{};
 };
 
 /// The numbers, and all of them at the ends of their ranges. No energy falls when a number rises.

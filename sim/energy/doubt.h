@@ -44,6 +44,11 @@ inline constexpr std::array kDoubts{
           [](const EnergyConfig& from, EnergyConfig& to) {
             to.cluster.idle_clock = from.cluster.idle_clock;
           }},
+    Doubt{"energy of accelerators",
+          [](const EnergyConfig& from, EnergyConfig& to) {
+            to.cluster_accelerators = from.cluster_accelerators;
+            to.controller_accelerators = from.controller_accelerators;
+          }},
 };
 
 inline constexpr std::size_t kDoubtCount = kDoubts.size();

@@ -29,13 +29,17 @@ class Model {
     e[index(Domain::Dma)] = events(a.transfer_cycles, c.dma.transfer_cycle) +
                             events(clocked, c.dma.cycle) + flow(c.dma.leakage, a.time);
     e[index(Domain::Cluster)] = events(clocked, c.cluster.cycle) + flow(c.cluster.leakage, a.time);
+    for (std::size_t k = 0; k < work::kKernelCount; ++k) {
+      e[index(Domain::Cluster)] += events(a.cluster_items[k], c.cluster_accelerators[k]);
+      e[index(Domain::Soc)] += events(a.controller_items[k], c.controller_accelerators[k]);
+    }
     e[index(Domain::Controller)] =
         events(a.controller_instructions, c.core.instruction) +
         events(a.controller_f32_operations, c.core.f32_operation) +
         flow(c.core.gated_leakage, a.time) +
         flow(c.core.leakage - c.core.gated_leakage, a.controller_working);
     e[index(Domain::L2)] = events(a.l2_accesses, c.l2.access);
-    e[index(Domain::Soc)] = events(a.soc_cycles, c.soc.cycle) + flow(c.soc.static_power, a.time);
+    e[index(Domain::Soc)] += events(a.soc_cycles, c.soc.cycle) + flow(c.soc.static_power, a.time);
     return e;
   }
 

@@ -4,16 +4,22 @@
 
 namespace leviosim::work {
 
-Counts take_tally() {
-  Counts taken = tally;
-  tally = Counts{};
+Counts settled(const RawCounts& raw) {
+  Counts taken{raw.n, {}};
   for (const Op op : {Op::LoadStream, Op::LoadIndexed, Op::StoreStream, Op::StoreIndexed,
                       Op::LoadL2, Op::StoreL2, Op::LoadShared, Op::StoreShared}) {
     taken[Op::Straddle] += taken[op] >> 32;
     taken[op] &= 0xffffffffu;
   }
-  taken[Op::BranchTaken] -= std::exchange(branches_not_taken_after_all, 0);
+  taken[Op::BranchTaken] -= raw.not_taken_after_all;
   taken[Op::BranchNotTaken] -= taken[Op::BranchTaken];
+  return taken;
+}
+
+Counts take_tally() {
+  Counts taken = settled({tally.n, std::exchange(branches_not_taken_after_all, 0)});
+  taken.code = tally.code;
+  tally = Counts{};
   return taken;
 }
 

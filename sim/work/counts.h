@@ -48,6 +48,14 @@ constexpr std::uint64_t access_weight(bool crosses_word) {
   return 1 + (std::uint64_t{crosses_word} << 32);
 }
 
+/// Operations in the form in which the tally has them.
+struct RawCounts {
+  std::array<std::uint64_t, kOpCount> n{};
+  std::uint64_t not_taken_after_all = 0;
+};
+/// The same as they are meant, without code.
+Counts settled(const RawCounts& raw);
+
 /// Returns what this thread counted since the last call, and starts again from zero.
 Counts take_tally();
 

@@ -16,9 +16,10 @@ void Machine::follow_code_of(int core) {
   current_code = &*tracker_;
 }
 
-Counts Machine::counted_so_far() {
+Piece Machine::counted_so_far() {
   fetch_code();
-  return take_tally();
+  std::vector<KernelWork> kernels = take_kernels();
+  return {take_tally(), std::move(kernels)};
 }
 
 void Machine::begin_stage(std::string_view name) {
@@ -90,8 +91,8 @@ void Machine::wait(Ticket ticket) {
 }
 
 void Machine::flush_serial() {
-  const Counts counts = counted_so_far();
-  if (!counts.empty()) job_.stages.back().steps.emplace_back(Serial{counts});
+  Piece counts = counted_so_far();
+  if (!counts.empty()) job_.stages.back().steps.emplace_back(Serial{std::move(counts)});
 }
 
 Job Machine::take_job() {

@@ -175,7 +175,7 @@ class Machine {
   void note_transfer(const Transfer& transfer);
   void flush_serial();
   /// By the core that the host executes at the moment, since this was last asked.
-  static Counts counted_so_far();
+  static Piece counted_so_far();
   /// From now on the host executes the code of this core; the master's id is cores().
   void follow_code_of(int core);
 

@@ -272,7 +272,8 @@ TEST(Loader, LoadsFilesByPath) {
 TEST(Loader, BuiltInPlatformsAreListedAndLoad) {
   EXPECT_EQ(platform_names(),
             (std::vector<std::string>{"arm1176", "cortex-m4f", "cortex-m7", "cortex-m7-h7a3",
-                                      "gap8", "gap9", "gap9-240mhz", "gap9-370mhz"}));
+                                      "gap8", "gap9", "gap9-240mhz", "gap9-370mhz", "gap9-corners",
+                                      "gap9-eigen", "gap9-hamming"}));
   for (const std::string& name : platform_names()) EXPECT_NO_THROW(load_platform(name));
 }
 

@@ -86,14 +86,14 @@ TEST(Cluster, TheDmaTakesBanksFromTheCores) {
   Counts work;
   work[Op::LoadStream] = 10'000;
   const work::Transfer in{work::Direction::L2ToL1, Bytes(1'000'000), true};
-  work::Fork fork{"fork", std::vector<Counts>(8, work)};
+  work::Fork fork{"fork", std::vector<work::Piece>(8, work)};
   const JobTiming t = run(one_stage({in, fork, work::TransferWait{0}}));
   // Two words per cycle on 16 banks: an access waits 2/(2·16) cycles.
   EXPECT_NEAR(t.stages[0].account.banks, 8 * 10'000 * 2.0 / 32, 8 * 3);
 }
 
 TEST(Cluster, AMasterThatTakesPartIsOneMoreCore) {
-  work::Fork fork{"fork", std::vector<Counts>(9, alu(100)), true};
+  work::Fork fork{"fork", std::vector<work::Piece>(9, alu(100)), true};
   fork.shares.back() = alu(1000);
   const JobTiming t = run(one_stage({fork}));
   EXPECT_EQ(t.stages[0].cycles.count(), 40 + 1000 + 10) << "the master needs no wake-up";
@@ -111,7 +111,7 @@ TEST(Cluster, ABarrierReleasesOnTheLastArrival) {
 }
 
 TEST(Cluster, OneWorkerRunsAllSharesOfEight) {
-  work::Fork fork{"fork", std::vector<Counts>(8, alu(100))};
+  work::Fork fork{"fork", std::vector<work::Piece>(8, alu(100))};
   EXPECT_EQ(run(one_stage({fork}), 1).stages[0].cycles.count(), 800 + kForkCost);
   EXPECT_EQ(run(one_stage({fork}), 3).stages[0].cycles.count(), 300 + kForkCost);
 }
@@ -186,7 +186,7 @@ TEST(Chip, AnOffloadCostsBothWays) {
 TEST(Chip, TheControllerRunsForksAsOneCore) {
   Chip chip(test_chip(), 8);
   JobTiming timing;
-  const work::Job job = one_stage({work::Fork{"f", std::vector<Counts>(8, alu(10))}});
+  const work::Job job = one_stage({work::Fork{"f", std::vector<work::Piece>(8, alu(10))}});
   const auto body = [&]() -> Process { timing = co_await chip.controller().run(job); };
   chip.kernel().spawn("test", body());
   chip.kernel().run();

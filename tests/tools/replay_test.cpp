@@ -123,6 +123,23 @@ TEST_F(Replayed, OnAnotherChipIsTheLiveRunThere) {
   }
 }
 
+/// On chips with accelerators, from a trace of one without.
+TEST_F(Replayed, OnAChipWithAcceleratorsIsTheLiveRunThere) {
+  for (const char* chip : {"gap9-eigen", "gap9-hamming", "gap9-corners"}) {
+    RunRequest request = request_on({});
+    request.platform = platform::resolve_platform(chip);
+    const Replay there = replay(*on_gap9().trace, request, [](const Progress&) {});
+    ASSERT_TRUE(all_the_same(there)) << chip;
+    EXPECT_EQ(files_of(there.run), files_of(live(request))) << chip;
+    EXPECT_LT(there.run.frames.back().cycles, on_gap9().run.frames.back().cycles) << chip;
+    // What is computed is the same.
+    EXPECT_EQ(traces::format_tum(there.run.trajectory),
+              traces::format_tum(on_gap9().run.trajectory));
+    EXPECT_NE(statistics_text(there.run).find(".served."), std::string::npos);
+  }
+  EXPECT_EQ(statistics_text(on_gap9().run).find(".served."), std::string::npos);
+}
+
 TEST_F(Replayed, OtherNumbersOfCoresHaveTracesOfTheirOwn) {
   const Recorded three = record(request_on({}, 3));
   EXPECT_EQ(files_of(replayed(*three.trace, {}, nullptr, 3).run), files_of(three.run));

@@ -18,6 +18,17 @@ inline work::Counts counts(std::uint64_t loops) {
   return c;
 }
 
+/// The piece of work with calls of two kernels in it.
+inline work::Piece with_kernels(work::Piece piece, std::uint64_t calls) {
+  work::Counts of_calls;
+  of_calls[work::Op::F32Fma] = piece[work::Op::F32Fma] / 3;
+  work::Counts of_others;
+  of_others[work::Op::LoopIteration] = piece[work::Op::LoopIteration] / 2;
+  piece.kernels = {{work::KernelKind::Eigen12, calls, 5 * calls, of_calls},
+                   {work::KernelKind::Hamming, 1, calls, of_others}};
+  return piece;
+}
+
 inline work::StageRun cluster_stage(int frame) {
   const auto n = static_cast<std::uint64_t>(frame);
   work::StageRun stage{"matching", {}, {Bytes(900 + frame % 2), Bytes(500), {}}};
@@ -59,6 +70,24 @@ inline WorkFrame example_frame(int frame) {
   return f;
 }
 
+/// The same with calls of kernels in some of its work.
+inline WorkFrame example_frame_with_kernels(int frame) {
+  WorkFrame f = example_frame(frame);
+  for (work::StageRun& stage : f.front_end.stages)
+    for (work::Step& step : stage.steps) {
+      if (auto* fork = std::get_if<work::Fork>(&step)) {
+        fork->shares.front() = with_kernels(fork->shares.front(), 3);
+        fork->shares.back() =
+            with_kernels(fork->shares.back(), static_cast<std::uint64_t>(frame + 1));
+      }
+    }
+  for (work::Job& job : f.iterations) {
+    auto& serial = std::get<work::Serial>(job.stages.at(0).steps.at(0));
+    serial.counts = with_kernels(serial.counts, 1);
+  }
+  return f;
+}
+
 inline WorkTraceInfo example_info() {
   WorkTraceInfo info;
   info.program = "leviosim";
@@ -81,6 +110,12 @@ inline WorkTraceInfo example_info() {
 inline std::string example_trace(int frames) {
   WorkTraceWriter writer(3);
   for (int i = 0; i < frames; ++i) writer.add(example_frame(i));
+  return writer.finish(example_info());
+}
+
+inline std::string example_trace_with_kernels(int frames) {
+  WorkTraceWriter writer(3);
+  for (int i = 0; i < frames; ++i) writer.add(example_frame_with_kernels(i));
   return writer.finish(example_info());
 }
 
@@ -144,7 +179,7 @@ inline void expect_equal(const WorkFrame& a, const WorkFrame& b) {
 
 /// Everything that a replay reads.
 inline int read_all(const WorkTrace& trace) {
-  WorkFrames reader(trace);
+  WorkFrames reader(trace, trace.has_kernels());
   int frames = 0;
   for (WorkFrame frame; reader.next(frame);) ++frames;
   return frames;

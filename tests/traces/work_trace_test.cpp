@@ -14,9 +14,10 @@ using testing::expect_input_error;
 using testing::read_all;
 
 constexpr int kHeadBytes = 16;
+constexpr std::uint32_t kVersion = 2;
 
 /// The container around other contents, with checksums that are right.
-std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = 1) {
+std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = kVersion) {
   std::string file = file_head({"LEVIOWT\n", "a work trace", version});
   for (const std::string& content : contents) file += packed_section(content, 1);
   return file;
@@ -24,7 +25,7 @@ std::string trace_of(const std::vector<std::string>& contents, std::uint32_t ver
 
 std::vector<std::string> contents_of(const std::string& trace) {
   std::vector<std::string> contents;
-  for (const Section& section : sections_of({"LEVIOWT\n", "a work trace", 1}, "t", trace))
+  for (const Section& section : sections_of({"LEVIOWT\n", "a work trace", kVersion}, "t", trace))
     contents.push_back(unpacked(section, "t"));
   return contents;
 }
@@ -89,6 +90,38 @@ TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
   WorkFrames reader(golden);
   WorkFrame frame;
   for (int i = 0; reader.next(frame); ++i) testing::expect_equal(frame, example_frame(i));
+  EXPECT_FALSE(golden.has_kernels());
+  expect_input_error([&] { WorkFrames(golden, true); },
+                     {"version_1.trace", "version 1", "kernels", "record it again"});
+}
+
+TEST_P(FramesOfTraces, ComeBackWithTheirKernels) {
+  const WorkTrace trace("example", testing::example_trace_with_kernels(GetParam()));
+  WorkFrames reader(trace, true);
+  WorkFrames without(trace);
+  WorkFrame frame;
+  WorkFrame plain;
+  for (int i = 0; i < GetParam(); ++i) {
+    ASSERT_TRUE(reader.next(frame));
+    testing::expect_equal(frame, testing::example_frame_with_kernels(i));
+    ASSERT_TRUE(without.next(plain));
+    testing::expect_equal(plain, example_frame(i));
+  }
+  EXPECT_FALSE(reader.next(frame));
+}
+
+TEST(WorkTrace, RefusesKernelsThatCannotBe) {
+  const auto refuse = [](const char* from, const char* to,
+                         std::initializer_list<std::string> parts) {
+    std::vector<std::string> contents = contents_of(testing::example_trace_with_kernels(2));
+    const std::size_t at = contents[0].find(from);
+    ASSERT_NE(at, std::string::npos);
+    contents[0].replace(at, std::string(from).size(), to);
+    expect_input_error([&] { read_all(WorkTrace("t", trace_of(contents))); }, parts);
+  };
+  refuse("eigen12", "eigen17", {"kernels of frames 0 to 1", "'eigen17' is no kernel"});
+  // Order of the kinds: 12 after Hamming is twice the same or out of order.
+  refuse("eigen12", "hamming", {"comes twice"});
 }
 
 /// The same version with the vocabulary as it is now: a file names its operations, so more of them
@@ -97,7 +130,9 @@ TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
 TEST(WorkTrace, WritesTheContentOfTheFirstVersion) {
   const std::string golden = read_text_file(std::filesystem::path(LEVIOSIM_SOURCE_DIR) /
                                             "tests/traces/golden/version_1_46_operations.trace");
-  EXPECT_EQ(contents_of(golden), contents_of(example_trace(5)));
+  std::vector<std::string> contents = contents_of(example_trace(5));
+  contents.pop_back();  // kernels, since version 2
+  EXPECT_EQ(contents_of(golden), contents);
 }
 
 TEST(WorkTrace, EveryTruncationIsRefused) {
@@ -121,7 +156,7 @@ TEST(WorkTrace, EveryFlippedBitIsRefused) {
 /// Whatever a section holds: with right checksums, damage is found while reading or not at all, but
 /// never ends in anything else.
 TEST(WorkTrace, DamagedContentIsReadOrRefused) {
-  const std::vector<std::string> whole = contents_of(example_trace(5));
+  const std::vector<std::string> whole = contents_of(testing::example_trace_with_kernels(5));
   Rng rng(11);
   int refused = 0;
   for (int trial = 0; trial < 4000; ++trial) {
@@ -138,7 +173,7 @@ TEST(WorkTrace, DamagedContentIsReadOrRefused) {
 }
 
 TEST(WorkTrace, ContentThatIsCutIsRefused) {
-  const std::vector<std::string> whole = contents_of(example_trace(5));
+  const std::vector<std::string> whole = contents_of(testing::example_trace_with_kernels(5));
   for (std::size_t section = 0; section < whole.size(); ++section)
     for (std::size_t size = 0; size < whole[section].size(); ++size) {
       std::vector<std::string> contents = whole;
@@ -161,11 +196,11 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   std::string damaged = whole;
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
-  refuse(trace_of(contents_of(whole), 2), {"version 2", "up to 1", "newer"});
+  refuse(trace_of(contents_of(whole), 3), {"version 3", "up to 2", "newer"});
   std::string version = whole;
-  version[8] = 2;
+  version[8] = 1;
   refuse(version, {"byte 8", "checksum"});
-  refuse(trace_of({contents_of(whole)[0]}), {"after 0 sections", "expected 1", "truncated"});
+  refuse(trace_of({contents_of(whole)[0]}), {"after 0 sections", "expected 2", "truncated"});
   std::vector<std::string> contents = contents_of(whole);
   contents[1] += 'x';
   refuse(trace_of(contents), {"frames 0 to 4", "expected the end"});

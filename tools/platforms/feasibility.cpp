@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/chip/accelerator.h"
 #include "tools/replay/recording_source.h"
 #include "tools/replay/replay.h"
 #include "tools/run/energy.h"
@@ -22,8 +23,9 @@ constexpr Bytes kUnlimited{std::int64_t{1} << 40};
 /// Recorded frames that arrive at another pace, in memories that hold everything.
 class PacedSource : public TraceSource {
  public:
-  PacedSource(const traces::WorkTrace& work, std::int64_t period_ns)
-      : TraceSource(work, kUnlimited, kUnlimited), period_ns_(period_ns) {}
+  PacedSource(const traces::WorkTrace& work, const sim::ChipConfig& chip, std::int64_t period_ns)
+      : TraceSource(work, kUnlimited, kUnlimited, sim::has_accelerators(chip)),
+        period_ns_(period_ns) {}
 
   std::int64_t arrival_ns(int frame) const override { return frame * period_ns_; }
   void describe(RunResult& result) const override {
@@ -36,7 +38,7 @@ class PacedSource : public TraceSource {
 };
 
 RunResult paced(const traces::WorkTrace& work, const RunRequest& request, std::int64_t period_ns) {
-  PacedSource source(work, period_ns);
+  PacedSource source(work, request.platform.config, period_ns);
   return Simulation(request, source, [](const Progress&) {}).run();
 }
 
@@ -81,6 +83,10 @@ void add_times(const RunResult& run, Feasibility& found) {
     found.front_end_ms += ms / frames;
     found.worst_ms = std::max(found.worst_ms, ms);
   }
+  for (const StageResult& stage : run.stages)
+    if (stage.calls > 0)
+      found.stages.push_back({stage.name, static_cast<double>(stage.parallel.count()) * 1e-3 /
+                                              static_cast<double>(stage.calls)});
   for (const StageResult& stage : run.stages)
     if (stage.on_controller)
       found.optimiser_ms +=

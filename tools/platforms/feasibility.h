@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/energy/estimate.h"
 #include "tools/run/run_request.h"
@@ -26,6 +27,12 @@ struct MemoryVerdict {
   bool fits() const { return occupied <= size; }
 };
 
+/// A stage of the workload on a chip.
+struct StageTime {
+  std::string name;
+  double kilocycles = 0;  ///< of a call, mean
+};
+
 struct Feasibility {
   std::string platform;  ///< as asked for
   int cores = 0;
@@ -34,8 +41,9 @@ struct Feasibility {
   MemoryVerdict l2;
   double front_end_ms = 0;  ///< of a frame, mean; on a chip that has nothing else to do
   double worst_ms = 0;
-  double optimiser_ms = 0;   ///< per frame
-  bool shares_core = false;  ///< front end and optimiser take turns
+  double optimiser_ms = 0;        ///< per frame
+  std::vector<StageTime> stages;  ///< that were called
+  bool shares_core = false;       ///< front end and optimiser take turns
   /// At the rate at which the chip keeps up, or at that of the camera if that is lower; absent if
   /// the platform has no energy figures.
   std::optional<sim::Estimate<Joules>> energy_per_frame;

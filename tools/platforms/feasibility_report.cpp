@@ -87,6 +87,31 @@ std::string feasibility_table(const std::vector<Feasibility>& rows) {
   return text;
 }
 
+std::string stage_comparison(const std::vector<Feasibility>& rows) {
+  std::vector<TextTable::Column> columns{{"kilocycles of a call", TextTable::Align::Left}};
+  for (const Feasibility& row : rows) columns.push_back({row.platform});
+  TextTable table(std::move(columns));
+  const auto add = [&](const std::string& name, int decimals, auto&& of) {
+    std::vector<std::string> cells{name};
+    for (const Feasibility& row : rows) {
+      cells.push_back(fmt::format("{:.{}f}", of(row), decimals));
+      if (&row != &rows.front())
+        cells.back() += fmt::format(" (×{:.2f})", of(rows.front()) / of(row));
+    }
+    table.add(std::move(cells));
+  };
+  for (std::size_t i = 0; i < rows.front().stages.size(); ++i)
+    add(rows.front().stages[i].name, 1,
+        [&](const Feasibility& row) { return row.stages[i].kilocycles; });
+  add("frame ms", 2, [](const Feasibility& row) { return row.front_end_ms; });
+  add("worst frame ms", 2, [](const Feasibility& row) { return row.worst_ms; });
+  if (rows.front().energy_per_frame)
+    add("mJ/frame", 3, [](const Feasibility& row) {
+      return row.energy_per_frame ? row.energy_per_frame->value.count() * 1e3 : 0.0;
+    });
+  return table.str();
+}
+
 std::string feasibility_csv(const std::vector<Feasibility>& rows) {
   std::string text =
       "platform,cores,clock_hz,front_end_ms,worst_ms,published_ms,optimiser_ms,frames_per_s,"

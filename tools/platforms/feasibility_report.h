@@ -12,7 +12,11 @@ namespace leviosim::tools {
 /// A row per chip, and how to read it.
 std::string feasibility_table(const std::vector<Feasibility>& rows);
 
-/// The same with all digits.
+/// Stages by chip: kilocycles of a call, and how many times as fast as on the first; then the
+/// frame.
+std::string stage_comparison(const std::vector<Feasibility>& rows);
+
+/// The first table with all digits.
 std::string feasibility_csv(const std::vector<Feasibility>& rows);
 
 }  // namespace leviosim::tools

@@ -73,10 +73,10 @@ std::vector<int> teams_of(const platform::ResolvedPlatform& chip) {
   return {workers, 1};
 }
 
-std::vector<Feasibility> with_progress(const RunRequest& request,
-                                       const std::vector<std::string>& names,
-                                       const std::vector<platform::ResolvedPlatform>& chips,
-                                       ProgressLine::Style style) {
+std::vector<Feasibility> with_progress(
+    const RunRequest& request, const std::vector<std::string>& names,
+    const std::vector<platform::ResolvedPlatform>& chips, ProgressLine::Style style,
+    std::vector<int> (*teams)(const platform::ResolvedPlatform&)) {
   ProgressLine line(style);
   FeasibilityStudy study(request, [&](const Progress& p) {
     throw_if_interrupted();
@@ -85,11 +85,17 @@ std::vector<Feasibility> with_progress(const RunRequest& request,
   });
   std::vector<Feasibility> rows;
   for (std::size_t i = 0; i < chips.size(); ++i)
-    for (const int cores : teams_of(chips[i])) rows.push_back(study.on(names[i], chips[i], cores));
+    for (const int cores : teams(chips[i])) rows.push_back(study.on(names[i], chips[i], cores));
   return rows;
 }
 
-void feasibility(const PlatformsOptions& options) {
+std::vector<int> whole_team_of(const platform::ResolvedPlatform& chip) {
+  return {chip.config.cluster.workers};
+}
+
+/// Computes the work and times it on the chips.
+std::vector<Feasibility> rows_for(const PlatformsOptions& options,
+                                  std::vector<int> (*teams)(const platform::ResolvedPlatform&)) {
   const RunOptions& run = options.run;
   const std::vector<std::string> names =
       options.names.empty() ? platform::platform_names() : options.names;
@@ -103,10 +109,22 @@ void feasibility(const PlatformsOptions& options) {
   for (const std::string& name : names)
     chips.push_back(platform::resolve_platform(name, run.overrides));
   request.data = data_folder(run, style);
-  const std::vector<Feasibility> rows = with_progress(request, names, chips, style);
+  return with_progress(request, names, chips, style, teams);
+}
+
+void feasibility(const PlatformsOptions& options) {
+  const RunOptions& run = options.run;
+  const std::vector<Feasibility> rows = rows_for(options, teams_of);
   if (!run.out.empty()) traces::write_file_atomically(run.out, feasibility_csv(rows));
   fmt::print("{} on {}\n\n{}", run.profile, run.data, feasibility_table(rows));
   if (!run.out.empty()) fmt::print("table: {}\n", run.out);
+}
+
+void stages(const PlatformsOptions& options) {
+  if (!options.run.out.empty())
+    throw InputError("platforms stages: prints a table only; leave out --out");
+  const std::vector<Feasibility> rows = rows_for(options, whole_team_of);
+  fmt::print("{} on {}\n\n{}", options.run.profile, options.run.data, stage_comparison(rows));
 }
 
 void show(const PlatformsOptions& options) {
@@ -127,11 +145,12 @@ struct Action {
   void (*run)(const PlatformsOptions&);
 };
 
-const std::array<Action, 4> kActions = {{
+const std::array<Action, 5> kActions = {{
     {"list", 0, "no platform", [](const PlatformsOptions&) { list(); }},
     {"show", 1, "one platform", show},
     {"diff", 2, "two platforms", show_differences},
     {"feasibility", kAnyNumber, "platforms", feasibility},
+    {"stages", kAnyNumber, "platforms", stages},
 }};
 
 void run(const CLI::App& command, const PlatformsOptions& options) {
@@ -140,13 +159,13 @@ void run(const CLI::App& command, const PlatformsOptions& options) {
   const auto action = std::find_if(kActions.begin(), kActions.end(),
                                    [&](const Action& a) { return a.name == options.action; });
   if (action == kActions.end())
-    throw InputError(
-        fmt::format("platforms: unknown action '{}'; expected list, show, diff or feasibility{}",
-                    options.action, platform::did_you_mean(options.action, known)));
+    throw InputError(fmt::format(
+        "platforms: unknown action '{}'; expected list, show, diff, feasibility or stages{}",
+        options.action, platform::did_you_mean(options.action, known)));
   if (action->names != kAnyNumber && options.names.size() != action->names)
     throw InputError(fmt::format("platforms {}: expected {}, found {}", action->name,
                                  action->expected, options.names.size()));
-  if (action->run != feasibility)
+  if (action->names != kAnyNumber)
     for (const char* option : kOfFeasibility)
       if (command.count(option) > 0)
         throw InputError(
@@ -163,8 +182,9 @@ Command add_platforms_command(CLI::App& app) {
   const auto options = std::make_shared<PlatformsOptions>();
   RunOptions& run_options = options->run;
   run_options.data = "synthetic";
-  command->add_option("ACTION", options->action,
-                      "list (the default), show NAME, diff NAME NAME, or feasibility [NAME ...]");
+  command->add_option(
+      "ACTION", options->action,
+      "list (the default), show NAME, diff NAME NAME, feasibility or stages [NAME ...]");
   command->add_option("NAME", options->names, "chips: names or files");
   command
       ->add_option("-p,--set", run_options.overrides,
@@ -173,7 +193,7 @@ Command add_platforms_command(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, std::string("feasibility: ") + help)->type_name(type);
+    command->add_option(name, value, std::string("feasibility, stages: ") + help)->type_name(type);
   };
   add("--data", run_options.data, "DIR|synthetic",
       "ASL/EuRoC folder, or the synthetic flight [synthetic]");

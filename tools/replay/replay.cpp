@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "sim/chip/accelerator.h"
 #include "sim/error.h"
 #include "tools/run/simulation.h"
 
@@ -32,7 +33,7 @@ Replay replay(const traces::WorkTrace& trace, const RunRequest& request,
   check_cores(trace, request);
   const auto begin = std::chrono::steady_clock::now();
   const sim::ChipConfig& chip = request.platform.config;
-  TraceSource source(trace, chip.cluster.l1.size, chip.l2.size);
+  TraceSource source(trace, chip.cluster.l1.size, chip.l2.size, sim::has_accelerators(chip));
   Replay result;
   result.run = Simulation(request, source, progress).run();
   result.run.host_seconds =

@@ -20,7 +20,7 @@ struct TraceOptions {
 /// Everything that replay reads, its platform too.
 void check_trace(const traces::WorkTrace& trace) {
   recorded_platform(trace);
-  traces::WorkFrames reader(trace);
+  traces::WorkFrames reader(trace, trace.has_kernels());
   for (traces::WorkFrame frame; reader.next(frame);) {
   }
   fmt::print("{}: {} frames, all of them can be replayed\n", trace.name(), trace.frames());

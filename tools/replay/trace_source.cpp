@@ -18,8 +18,8 @@ PoseSource source_of(const traces::WorkFrame& frame, const traces::WorkTrace& tr
 
 }  // namespace
 
-TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2)
-    : trace_(trace), l1_(l1), l2_(l2), reader_(trace) {}
+TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool kernels)
+    : trace_(trace), l1_(l1), l2_(l2), reader_(trace, kernels) {}
 
 bool TraceSource::take_up(const FrameStart& start) {
   for (; number_ < start.frame; ++number_)

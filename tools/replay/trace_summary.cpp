@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 
 #include "sim/work/transfers.h"
@@ -31,7 +32,7 @@ double operations(const work::Counts& counts) {
 class Contents {
  public:
   explicit Contents(const traces::WorkTrace& trace) {
-    traces::WorkFrames reader(trace);
+    traces::WorkFrames reader(trace, trace.has_kernels());
     for (traces::WorkFrame frame; reader.next(frame);) {
       keyframes += frame.keyframe;
       optimised += frame.optimised;
@@ -61,13 +62,16 @@ class Contents {
   std::int64_t optimised = 0;
   std::int64_t iterations = 0;
   std::int64_t busy = 0;
+  work::Piece kernels;  ///< calls of them
 
  private:
   void add(const work::Job& job) {
     for (const work::StageRun& run : job.stages) {
       StageSum& sum = stages_[std::string(run.stage)];
       ++sum.calls;
-      sum.counts += work::counts_of(run);
+      work::Piece piece = work::pieces_of(run);
+      sum.counts += piece;
+      kernels += work::Piece({}, std::move(piece.kernels));
       sum.transfers += work::transferred_by(run);
       sum.peak = std::max(sum.peak, run.memory.parallel);
       for (const work::Step& step : run.steps) {
@@ -105,6 +109,18 @@ std::string stage_table(const traces::WorkTrace& trace, const Contents& contents
   return table.str();
 }
 
+/// What an accelerator might serve.
+std::string kernel_line(const traces::WorkTrace& trace, const Contents& contents) {
+  if (!trace.has_kernels()) return "calls of kernels are not in it: version 1\n";
+  std::string text;
+  for (const work::KernelWork& calls : contents.kernels.kernels)
+    text += fmt::format(
+        "{}{} {} ({} %)", text.empty() ? "" : ", ", work::kKernels[work::index(calls.kernel)].name,
+        calls.calls,
+        std::llround(100 * operations(calls.counts) / operations(contents.all().counts)));
+  return fmt::format("calls of kernels (share of operations): {}\n", text.empty() ? "none" : text);
+}
+
 }  // namespace
 
 std::string trace_summary(const traces::WorkTrace& trace) {
@@ -125,7 +141,7 @@ std::string trace_summary(const traces::WorkTrace& trace) {
              contents.keyframes, contents.optimised, contents.iterations, contents.busy,
              size * 1e-3, size * 1e-3 / frames, static_cast<double>(all.pieces) / frames,
              size / static_cast<double>(std::max(all.pieces, std::int64_t{1}))) +
-         stage_table(trace, contents);
+         stage_table(trace, contents) + kernel_line(trace, contents);
 }
 
 }  // namespace leviosim::tools

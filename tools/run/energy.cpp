@@ -15,10 +15,10 @@ std::optional<Estimate<Watts>> power_over(const Estimate<Joules>& energy, Second
 
 EnergyRow row_of(const RunResult& run, const StageResult& stage, const sim::ChipConfig& chip) {
   const sim::Activity activity =
-      stage.on_controller
-          ? sim::controller_activity(chip, stage.counts, stage.transfers, stage.parallel)
-          : sim::cluster_activity(chip, run.cores, stage.counts, stage.transfers, stage.account,
-                                  stage.parallel);
+      stage.on_controller ? sim::controller_activity(chip, stage.counts, stage.transfers,
+                                                     stage.parallel, stage.served)
+                          : sim::cluster_activity(chip, run.cores, stage.counts, stage.transfers,
+                                                  stage.account, stage.parallel, stage.served);
   return {stage.name,
           stage.unit,
           stage.on_controller,

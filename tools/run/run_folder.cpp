@@ -31,14 +31,15 @@ class CsvLine {
   std::vector<std::string> cells_;
 };
 
-std::string stages_header() {
+std::string stages_header(const RunResult& run) {
   CsvLine line;
   for (const char* name :
        {"stage", "call", "runs_on", "calls", "single_cycles", "parallel_cycles",
         "single_cycles_per_call", "parallel_cycles_per_call", "worst_parallel_cycles", "speedup",
         "parallel_ms_per_call", "memory_single_bytes", "memory_parallel_bytes"})
     line.add(std::string_view(name));
-  for (const AccountPart& part : kAccountParts) line.add(fmt::format("{}_core_cycles", part.key));
+  for (const AccountPart& part : account_parts(run))
+    line.add(fmt::format("{}_core_cycles", part.key));
   for (const work::OpInfo& op : work::kOps) line.add(fmt::format("{}_ops", op.name));
   return line.str();
 }
@@ -52,7 +53,7 @@ std::string stage_line(const RunResult& run, const StageResult& stage) {
   line.add(stage.calls).add(stage.single).add(stage.parallel);
   line.add(mean(stage.single, stage.calls)).add(parallel).add(stage.worst_parallel);
   line.add(speedup(stage)).add(ms).add(stage.memory.single).add(stage.memory.parallel);
-  for (const AccountPart& part : kAccountParts) line.add(part.of(stage.account));
+  for (const AccountPart& part : account_parts(run)) line.add(part.of(stage.account));
   for (const work::OpInfo& op : work::kOps)
     line.add(static_cast<std::int64_t>(stage.counts[op.op]));
   return line.str();
@@ -157,7 +158,7 @@ std::string delivery_lines(const RunResult& run) {
 }  // namespace
 
 std::string stages_csv(const RunResult& run) {
-  std::string text = stages_header();
+  std::string text = stages_header(run);
   for (const StageResult& stage : run.stages) text += stage_line(run, stage);
   return text;
 }

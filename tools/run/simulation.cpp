@@ -64,7 +64,7 @@ Simulation::Simulation(const RunRequest& request, JobSource& source, ProgressCal
       single_core_(request.platform.config, 1),
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(source.frames())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
-      book_(source.empty_stages()) {
+      book_(source.empty_stages(), request.platform.config) {
   if (request.camera) {
     result_.camera.emplace();
     result_.camera->deadline = request.camera->deadline;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/chip/accelerator.h"
+
 namespace leviosim::tools {
 
 StageResult& StageBook::find(std::string_view name) {
@@ -17,7 +19,7 @@ void StageBook::add_work(const work::Job& job) {
   for (const work::StageRun& run : job.stages) {
     StageResult& stage = find(run.stage);
     ++stage.calls;
-    stage.counts += work::counts_of(run);
+    add_pieces(run, stage);
     stage.transfers += work::transferred_by(run);
     stage.memory.single = std::max(stage.memory.single, run.memory.single);
     if (run.memory.parallel > stage.memory.parallel) {
@@ -25,6 +27,22 @@ void StageBook::add_work(const work::Job& job) {
       stage.memory.blocks = run.memory.blocks;
     }
   }
+}
+
+void StageBook::add_pieces(const work::StageRun& run, StageResult& stage) const {
+  const sim::Accelerators& accelerators = stage.on_controller ? controller_ : cluster_;
+  if (!sim::has_accelerators(accelerators)) {
+    stage.counts += work::counts_of(run);
+    return;
+  }
+  work::Piece piece = work::pieces_of(run);
+  stage.counts += sim::left_to_core(piece, accelerators);
+  std::erase_if(piece.kernels, [&](const work::KernelWork& calls) {
+    return accelerators[work::index(calls.kernel)].units == 0;
+  });
+  work::Piece sum({}, std::move(stage.served));
+  sum += work::Piece({}, std::move(piece.kernels));
+  stage.served = std::move(sum.kernels);
 }
 
 void StageBook::add_parallel(const sim::JobTiming& timing) {

@@ -13,7 +13,11 @@ namespace leviosim::tools {
 class StageBook {
  public:
   /// With the workload's stages, in its order; stages it did not name are appended as they come.
-  explicit StageBook(std::vector<StageResult> stages) : stages_(std::move(stages)) {}
+  /// @param chip  whose accelerators take work from the cores
+  StageBook(std::vector<StageResult> stages, const sim::ChipConfig& chip)
+      : stages_(std::move(stages)),
+        cluster_(chip.cluster.accelerators),
+        controller_(chip.controller.accelerators) {}
 
   /// What a job executed and occupied.
   void add_work(const work::Job& job);
@@ -25,8 +29,11 @@ class StageBook {
 
  private:
   StageResult& find(std::string_view name);
+  void add_pieces(const work::StageRun& run, StageResult& stage) const;
 
   std::vector<StageResult> stages_;
+  sim::Accelerators cluster_;
+  sim::Accelerators controller_;
 };
 
 }  // namespace leviosim::tools

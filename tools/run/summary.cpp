@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/chip/accelerator.h"
+
 namespace leviosim::tools {
 namespace {
 
@@ -121,6 +123,15 @@ Waiting frames_that_waited(const RunResult& run) {
     waiting.longest_ns = std::max(waiting.longest_ns, wait_ns);
   }
   return waiting;
+}
+
+std::vector<AccountPart> account_parts(const RunResult& run) {
+  std::vector<AccountPart> parts(kAccountParts.begin(), kAccountParts.end());
+  if (run.timed && sim::has_accelerators(run.chip.cluster.accelerators))
+    parts.insert(parts.end(), kAcceleratorParts.begin(), kAcceleratorParts.end());
+  else if (run.timed && sim::has_accelerators(run.chip.controller.accelerators))
+    parts.push_back(kAcceleratorParts[0]);
+  return parts;
 }
 
 std::vector<BlockGroup> grouped(const std::vector<work::Block>& blocks) {

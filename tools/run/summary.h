@@ -90,6 +90,16 @@ inline constexpr std::array kAccountParts{
                 [](const sim::Account& a) { return a.rounding; }},
 };
 
+/// Those that there are on chips with accelerators only.
+inline constexpr std::array kAcceleratorParts{
+    AccountPart{"accelerator", "waiting for accelerators while they serve the core",
+                [](const sim::Account& a) { return a.useful.accelerator; }},
+    AccountPart{"accelerator_contention", "waiting for accelerators while they serve others",
+                [](const sim::Account& a) { return a.accelerator; }},
+};
+/// All parts that a run has.
+std::vector<AccountPart> account_parts(const RunResult& run);
+
 /// Blocks of one name, e.g. the scratch of the cores.
 struct BlockGroup {
   std::string_view name;

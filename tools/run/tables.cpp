@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/chip/accelerator.h"
 #include "tools/eval/accuracy.h"
 #include "tools/run/camera_figures.h"
 #include "tools/run/energy_tables.h"
@@ -53,10 +54,24 @@ constexpr std::array kAccountColumns{
     AccountColumn{"serial", [](const sim::Account& a) { return a.serial; }},
 };
 
-std::vector<std::string> account_cells(const sim::Account& account) {
-  if (!(account.total() > 0)) return std::vector<std::string>(kAccountColumns.size() + 1, kNothing);
+/// Those of the run: what accelerators serve has columns where there are some.
+std::vector<AccountColumn> account_columns(const RunResult& run) {
+  std::vector<AccountColumn> columns(kAccountColumns.begin(), kAccountColumns.end());
+  if (!run.timed || !sim::has_accelerators(run.chip.cluster.accelerators)) return columns;
+  columns.front().of = [](const sim::Account& a) {
+    return a.useful.total() - a.useful.fetch - a.useful.accelerator;
+  };
+  columns.insert(columns.begin() + 1,
+                 {{"served", [](const sim::Account& a) { return a.useful.accelerator; }},
+                  {"queue", [](const sim::Account& a) { return a.accelerator; }}});
+  return columns;
+}
+
+std::vector<std::string> account_cells(const std::vector<AccountColumn>& columns,
+                                       const sim::Account& account) {
+  if (!(account.total() > 0)) return std::vector<std::string>(columns.size() + 1, kNothing);
   std::vector<double> parts;
-  for (const AccountColumn& column : kAccountColumns) parts.push_back(column.of(account));
+  for (const AccountColumn& column : columns) parts.push_back(column.of(account));
   std::vector<std::string> cells;
   for (const double percent : tenths_of_percent(parts)) cells.push_back(number(percent, 1));
   cells.push_back(number(account.total() * 1e-6, 1));
@@ -183,12 +198,13 @@ std::string stage_table(const RunResult& run) {
 
 std::string account_table(const RunResult& run) {
   std::vector<TextTable::Column> columns{{"stage", kLeft}};
-  for (const AccountColumn& column : kAccountColumns) columns.push_back({column.title});
+  const std::vector<AccountColumn> parts = account_columns(run);
+  for (const AccountColumn& column : parts) columns.push_back({column.title});
   columns.push_back({"core-Mcycles"});
   TextTable table(std::move(columns));
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;
-    std::vector<std::string> cells = account_cells(stage.account);
+    std::vector<std::string> cells = account_cells(parts, stage.account);
     cells.insert(cells.begin(), stage.name);
     table.add(std::move(cells));
   }

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "sim/check.h"
+#include "sim/chip/accelerator.h"
 #include "tools/run/job_timer.h"
 #include "tools/run/summary.h"
 #include "traces/parallel_for.h"
@@ -99,7 +100,7 @@ Outcome time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrac
   Average epnp;
   Average eight_point;
   Average iteration;
-  traces::WorkFrames reader(trace);
+  traces::WorkFrames reader(trace, sim::has_accelerators(chip));
   for (traces::WorkFrame recorded; reader.next(recorded);) {
     for (const work::Job& job : recorded.iterations) {
       Cycles cycles;

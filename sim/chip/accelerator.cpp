@@ -1,0 +1,51 @@
+#include "sim/chip/accelerator.h"
+
+#include <algorithm>
+
+namespace leviosim::sim {
+
+bool has_accelerators(const Accelerators& accelerators) {
+  return std::any_of(accelerators.begin(), accelerators.end(),
+                     [](const AcceleratorConfig& a) { return a.units > 0; });
+}
+
+bool has_accelerators(const ChipConfig& chip) {
+  return has_accelerators(chip.cluster.accelerators) ||
+         has_accelerators(chip.controller.accelerators);
+}
+
+work::Counts left_to_core(const work::Piece& piece, const Accelerators& accelerators) {
+  work::Counts left = piece;
+  for (const work::KernelWork& calls : piece.kernels) {
+    if (accelerators[work::index(calls.kernel)].units == 0) continue;
+    for (std::size_t i = 0; i < work::kOpCount; ++i) left.n[i] -= calls.counts.n[i];
+  }
+  return left;
+}
+
+Service service_of(const work::KernelWork& calls, const Accelerators& accelerators) {
+  const AcceleratorConfig& accelerator = accelerators[work::index(calls.kernel)];
+  if (accelerator.units == 0) return {};
+  const auto number = static_cast<double>(calls.calls);
+  const double busy = static_cast<double>(calls.items) / accelerator.items_per_cycle;
+  return {number * accelerator.start_up, number * accelerator.latency + busy, busy,
+          busy * accelerator.l1_words};
+}
+
+Demand price(const work::Piece& piece, const CoreConfig& core, const Accelerators& accelerators,
+             const CodeFetcher& code) {
+  if (piece.kernels.empty() || !has_accelerators(accelerators))
+    return price(static_cast<const work::Counts&>(piece), core, code);
+  Demand demand = price(left_to_core(piece, accelerators), core, code);
+  for (const work::KernelWork& calls : piece.kernels) {
+    const Service service = service_of(calls, accelerators);
+    demand.alone.issue += service.instructions;
+    demand.alone.accelerator += service.waiting;
+    demand.scattered += service.l1_words;
+    UnitDemand& unit = demand.units[static_cast<std::size_t>(accelerator_of(calls.kernel))];
+    if (service.busy > 0) unit = {static_cast<double>(calls.calls), service.busy};
+  }
+  return demand;
+}
+
+}  // namespace leviosim::sim
