@@ -75,7 +75,7 @@ TEST(Accelerators, OfTheControllerNeedNoL1) {
 /// A chip without energy figures may have accelerators without them.
 TEST(Accelerators, NeedNoEnergyWhereThereIsNone) {
   EXPECT_NO_THROW(load_platform(
-      "gap8",
+      LEVIOSIM_SOURCE_DIR "/tests/examples/quad.yaml",
       {"cluster.accelerators.hamming.units=1", "cluster.accelerators.hamming.start_up=30",
        "cluster.accelerators.hamming.latency=10", "cluster.accelerators.hamming.items_per_cycle=4",
        "cluster.accelerators.hamming.l1_words=4"}));

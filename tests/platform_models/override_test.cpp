@@ -102,6 +102,8 @@ bool related(const Field& field, const Field& other) {
 TEST(Override, EveryParameterCanBeChangedAndChangesOnlyItself) {
   const Schema schema;
   for (const Field& field : schema.fields()) {
+    // Given as a whole or not at all (accelerators_test.cpp); GAP9 has none.
+    if (field.path.find(".accelerators.") != std::string::npos) continue;
     const sim::ChipConfig before = with(beside(field));
     const sim::ChipConfig after = changed(field, field.get(before));
     EXPECT_NE(field.get(after), field.get(before)) << field.path;

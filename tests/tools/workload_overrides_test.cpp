@@ -65,7 +65,8 @@ TEST(WorkloadOverrides, RefuseContradictions) {
     request.workload = parse_workload_overrides(overrides);
     expect_input_error([&] { profile_of(request); }, parts);
   };
-  refuse("next", {"workload.joint=off"}, {"workload.subpixel_steps", "workload.joint=on"});
+  refuse("next", {"workload.joint=off", "workload.subpixel_steps=16"},
+         {"workload.subpixel_steps", "workload.joint=on"});
   refuse("levio", {"workload.subpixel_steps=4"}, {"workload.subpixel_steps=1"});
   refuse("levio-no-imu", {"workload.joint=on"}, {"without IMU"});
   RunRequest both;

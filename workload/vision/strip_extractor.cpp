@@ -13,23 +13,26 @@ namespace {
 /// Rows of pixels that two buffers of a pass over `rows` rows take.
 int rows_of_buffers(int rows, int reach) { return 2 * (rows + 2 * reach); }
 
-/// The most rows of cells whose strips fit in `room` bytes in every pass.
-int cell_rows_per_strip(const ExtractorOptions& options, int width, int height, Bytes room) {
-  const auto fits = [&](int cell_rows) {
+/// The most rows of cells whose strips fit in `memory` in every pass.
+int cell_rows_per_strip(const ExtractorOptions& options, int width, int height,
+                        const work::Arena& memory) {
+  const auto missing = [&](int cell_rows) {
     const int rows = cell_rows * options.cell;
     const int most = std::max({rows_of_buffers(rows, kHarrisReach),
                                rows_of_buffers(rows, kBlurRadius) + rows_of_buffers(rows, 0),
                                rows_of_buffers(rows, kDescriptorReach)});
-    return Bytes(static_cast<std::int64_t>(most) * width) <= room;
+    return Bytes(static_cast<std::int64_t>(most) * width) - memory.free();
   };
-  if (!fits(1))
+  if (missing(1) > Bytes(0))
     throw InputError(fmt::format(
-        "feature extraction: strips of one row of cells of {0} px, from an image of {1}x{2} px, do "
-        "not fit in {3} B of local memory; expected smaller cells (workload.cell), fewer features "
-        "(workload.features_per_cell), or a smaller image",
-        options.cell, width, height, room.count()));
+        "feature extraction: strips of one row of cells of {} px, from an image of {}x{} px, do "
+        "not "
+        "fit in {}: {} of {} bytes are in use, {} bytes are missing; expected smaller cells "
+        "(workload.cell), fewer features (workload.features_per_cell), or a smaller image",
+        options.cell, width, height, memory.name(), memory.used().count(),
+        memory.capacity().count(), missing(1).count()));
   int cell_rows = 1;
-  while (cell_rows < options.cells_along(height) && fits(cell_rows + 1)) ++cell_rows;
+  while (cell_rows < options.cells_along(height) && missing(cell_rows + 1) <= Bytes(0)) ++cell_rows;
   return cell_rows;
 }
 
@@ -87,7 +90,7 @@ void extract_features_in_strips(work::Machine& machine, ImageView<P> image_in_l2
   out.count = 0;
 
   with_pattern<P>(machine, options, [&](auto pattern) {
-    const int cell_rows = cell_rows_per_strip(options, width, height, memory.free());
+    const int cell_rows = cell_rows_per_strip(options, width, height, memory);
     const int rows = cell_rows * options.cell;
     const auto strips = [&](int reach) {
       return StripPlan(options.border, height - options.border, rows, reach, height);
