@@ -153,8 +153,9 @@ void check_accelerators(const Schema& schema, const Settings& settings, const Ch
         throw InputError(
             fmt::format("{}, but {} is missing ({}): expected all of an accelerator, or nothing",
                         state(*given), missing->path, missing->description));
+      if (!side.has_l1) continue;
       const auto& l1_words = settings[schema.find(section + "l1_words")];
-      if (side.has_l1 && l1_words->base > chip.cluster.l1.banks)
+      if (l1_words->base > chip.cluster.l1.banks)
         throw InputError(fmt::format("{}, but {}: expected no more words per cycle than banks",
                                      state(*l1_words),
                                      state(*settings[schema.find("cluster.l1.banks")])));
