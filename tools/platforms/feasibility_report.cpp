@@ -2,30 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
 #include "tools/run/text_table.h"
+#include "tools/validate/references.h"
 
 namespace leviosim::tools {
 namespace {
 
-/// Time of a frame of LEVIO in its paper.
+/// Time of a frame of LEVIO in its paper, on GAP9 at 370 MHz (validate/references.h).
 struct Published {
-  std::string_view platform;
   int cores;
-  std::string_view ms;
+  std::string_view reference;
+  int decimals;
+  std::string_view about;  ///< the paper says so in round numbers
 };
-constexpr std::array<Published, 4> kPublished = {{
-    {"gap9", 8, "45.9"},   // sum of the compute table with EPnP, at 370 MHz
-    {"gap9", 1, "≈ 300"},  // conclusion: "roughly 300 ms per iteration at 370 MHz"
-    {"gap9-370mhz", 8, "45.9"},
-    {"gap9-370mhz", 1, "≈ 300"},
-}};
+constexpr std::array<Published, 2> kPublished = {
+    {{8, "latency.epnp", 1, ""}, {1, "latency.single_core", 0, "≈ "}}};
+constexpr std::array<std::string_view, 2> kPublishedOn = {"gap9", "gap9-370mhz"};
 
 std::string published(const Feasibility& row) {
+  if (std::find(kPublishedOn.begin(), kPublishedOn.end(), row.platform) == kPublishedOn.end())
+    return {};
   for (const Published& p : kPublished)
-    if (p.platform == row.platform && p.cores == row.cores) return std::string(p.ms);
+    for (const Reference& reference : paper_references())
+      if (p.cores == row.cores && p.reference == reference.name)
+        return fmt::format("{}{:.{}f}", p.about, reference.value, p.decimals);
   return {};
 }
 
