@@ -82,6 +82,10 @@ struct Piece : Counts {
   }
 };
 
+/// Whether the marks of this thread mean anything. A machine sets it for the time of a stage
+/// (MachineConfig::kernels): a run whose chip has no accelerator does not pay for marks.
+inline constinit thread_local bool kernels_followed = true;
+
 /// What a mark does: the work of this thread until end_kernel() is that of a call.
 void begin_kernel(KernelKind kind, std::uint64_t items);
 void end_kernel();
@@ -94,7 +98,8 @@ std::vector<KernelWork> take_kernels();
 template <bool Counted>
 class KernelScope {
  public:
-  KernelScope(std::optional<KernelKind> kind, int items) : marked_(Counted && kind) {
+  KernelScope(std::optional<KernelKind> kind, int items)
+      : marked_(Counted && kind && kernels_followed) {
     if constexpr (Counted)
       if (marked_) begin_kernel(*kind, static_cast<std::uint64_t>(items));
   }

@@ -31,6 +31,7 @@ void Machine::begin_stage(std::string_view name) {
   if (!recording()) return;
   counted_so_far();  // what happened between stages belongs to none
   follow_code_of(config_.cores);
+  kernels_followed = config_.kernels;
   job_.stages.push_back({name, {}, {}});
 }
 
@@ -39,6 +40,7 @@ void Machine::end_stage() {
   if (!recording()) return;
   flush_serial();
   current_code = nullptr;
+  kernels_followed = true;
   MemoryPeak& memory = job_.stages.back().memory;
   memory = fork_peak_;
   memory.single = std::max(memory.single, local_.peak());

@@ -54,6 +54,7 @@ struct MachineConfig {
   Bytes capacity{128 * 1024};      ///< of the local memory
   int alignment = 4;               ///< of blocks, in bytes; 1 packs them
   bool record = false;             ///< keep a Job of what was done
+  bool kernels = true;             ///< … and in it what calls of kernels did, for accelerators
   const CodeMap* code = nullptr;   ///< sizes of the workload's compiled code; outlives the machine
 };
 

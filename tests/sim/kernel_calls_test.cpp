@@ -16,8 +16,8 @@ F32 add_up(int n) {
   return sum;
 }
 
-Piece recorded(const std::function<void()>& compute) {
-  Machine machine({.cores = 1, .record = true});
+Piece recorded(const std::function<void()>& compute, bool kernels = true) {
+  Machine machine({.cores = 1, .record = true, .kernels = kernels});
   {
     const auto stage = machine.stage("s");
     compute();
@@ -45,6 +45,18 @@ TEST(KernelCalls, HoldWhatIsComputedInsideOfThem) {
   EXPECT_EQ(piece.kernels[0].items, 10u);
   EXPECT_EQ(piece.kernels[0].counts[Op::F32Add], 30u);
   EXPECT_EQ(piece.kernels[0].counts[Op::LoopEntry], 2u);
+}
+
+TEST(KernelCalls, AreNotFollowedWhereTheMachineDoesNotAskForThem) {
+  const auto compute = [] {
+    const P::Kernel kernel(KernelKind::Hamming, 7);
+    add_up(10);
+  };
+  const Piece with = recorded(compute), without = recorded(compute, false);
+  EXPECT_EQ(with.kernels.size(), 1u);
+  EXPECT_TRUE(without.kernels.empty());
+  EXPECT_EQ(static_cast<const Counts&>(without), static_cast<const Counts&>(with));
+  EXPECT_TRUE(kernels_followed) << "outside of stages of a machine marks count";
 }
 
 /// Loads that straddle, branches that are not taken: the tally has them in another form.

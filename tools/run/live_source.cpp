@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "platform_models/compiled_code.h"
+#include "sim/chip/accelerator.h"
 #include "traces/evaluation.h"
 
 namespace leviosim::tools {
@@ -12,12 +13,18 @@ namespace {
 /// Room for a native run at any resolution; untouched pages cost nothing.
 constexpr Bytes kUnlimited{std::int64_t{1} << 30};
 
+/// Only an accelerator, of this chip or of one that replays the run, asks for calls of kernels.
+bool follows_kernels(const RunRequest& request) {
+  return request.recording || sim::has_accelerators(request.platform.config);
+}
+
 work::MachineConfig cluster_machine(const RunRequest& request, const vio::Profile& profile) {
   return {.cores = request.cores,
           .memory = "L1",
           .capacity = request.native ? kUnlimited : request.platform.config.cluster.l1.size,
           .alignment = profile.l1_alignment,
           .record = !request.native,
+          .kernels = follows_kernels(request),
           .code = &platform::compiled_code()};
 }
 
@@ -29,6 +36,7 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .capacity = request.native ? kUnlimited : l2,
           .alignment = 4,
           .record = !request.native,
+          .kernels = follows_kernels(request),
           .code = &platform::compiled_code()};
 }
 
