@@ -82,6 +82,27 @@ TEST(Stillness, ForgetsMotionAfterASecond) {
     EXPECT_EQ(verdicts[static_cast<std::size_t>(f)].still, f == 19) << "frame " << f;
 }
 
+TEST(Stillness, LeavesOutMotionThatHasJustBegun) {
+  Detector<Native> d;
+  TestRandom random(6);
+  feed<Native>(d.detector, kStill, 25, random);
+  // Slow enough to pass for rest yet: a turn of 0.1 rad/s for a tenth of the last second.
+  const Vector3d begun = kStill.gyro + Vector3d(0.1, 0.0, 0.0);
+  Stillness<Native> seen{}, earlier{};
+  for (int f = 0; f < 2; ++f) {
+    for (int i = 0; i < kSamplesPerFrame; ++i)
+      d.detector.add({0.005f, vec3<Native>(begun), vec3<Native>(kStill.accel)});
+    seen = d.detector.evaluate();
+    earlier = d.detector.without_recent(seen);
+    d.detector.end_frame();
+  }
+  ASSERT_TRUE(seen.still);
+  EXPECT_TRUE(earlier.still);
+  EXPECT_GT((eigen<Native>(seen.gyro_mean) - kStill.gyro).norm(), 0.008);
+  EXPECT_LT((eigen<Native>(earlier.gyro_mean) - kStill.gyro).norm(), 0.003);
+  EXPECT_LT((eigen<Native>(earlier.accel_mean) - kStill.accel).norm(), 0.03);
+}
+
 TEST(Stillness, CountsWhatItComputesNatively) {
   Detector<Native> native;
   Detector<Counting> counting;

@@ -190,6 +190,7 @@ struct Flown {
   std::vector<PoseSource> sources;
   double ate = 0;      ///< SE3-aligned [m]
   bool finite = true;  ///< all poses
+  double skew = 0;     ///< how far a rotation is from being one: largest element of RᵀR − I
 
   int count(PoseSource source) const {
     return static_cast<int>(std::count(sources.begin(), sources.end(), source));
@@ -218,6 +219,8 @@ inline Flown fly(const ShortFlight& flight, const Profile& profile) {
       T.translation()[r] = static_cast<double>(report.p_world_camera[static_cast<std::size_t>(r)]);
     }
     flown.finite = flown.finite && T.matrix().allFinite();
+    const Eigen::Matrix3d square = T.linear().transpose() * T.linear();
+    flown.skew = std::max(flown.skew, (square - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff());
     T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
     flown.trajectory.push_back({frame.t_ns, T * flight.T_body_camera.inverse()});
     flown.sources.push_back(report.source);

@@ -141,6 +141,25 @@ class StillnessDetector {
     return {still, gyro, accel};
   }
 
+  /// If still: with the means of the older half of the batches, so that a motion which has begun,
+  /// but is not told from rest yet, is not taken for a bias. Call as evaluate().
+  Stillness<P> without_recent(const Stillness<P>& seen) const {
+    Vec3<P> gyro{0.0f, 0.0f, 0.0f}, accel{0.0f, 0.0f, 0.0f};
+    F samples = 0.0f;
+    int oldest = current_;
+    for (int i : P::range(0, options_.batches / 2)) {
+      (void)i;
+      oldest = oldest + 1 == options_.batches ? 0 : oldest + 1;
+      const Span batch = memory_.subspan(oldest * kBatchFloats, kBatchFloats);
+      gyro = gyro + load_vec3<P>(batch, kGyro);
+      accel = accel + load_vec3<P>(batch, kAccel);
+      samples += F(batch[kSamples]);
+    }
+    if (!(samples > F(0.0f))) return seen;
+    const F scale = F(1.0f) / samples;
+    return {seen.still, gyro * scale, accel * scale};
+  }
+
  private:
   enum Place : int { kGyro = 0, kAccel = 3, kGyroSq = 6, kAccelSq = 7, kSamples = 8 };
 

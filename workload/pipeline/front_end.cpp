@@ -106,7 +106,7 @@ FrameReport FrontEnd<P>::process(const FrameInput& input) {
       report.source = PoseSource::Kept;
       pose = motion_.T_world_camera();
     }
-    frame.T_world_camera = *pose;
+    frame.T_world_camera = profile_.guided.enabled ? settled(*pose) : *pose;
     report.keyframe = is_keyframe(frame, report);
     if (report.keyframe) insert_keyframe(frame);
   }

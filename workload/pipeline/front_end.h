@@ -70,6 +70,7 @@ class FrontEnd {
   bool agrees_with_gyro(const Mat3<P>& R_camera_keyframe);
   bool map_is_plausible();
   bool is_plausible(const Pose<P>& T_world_camera, float seconds) const;
+  Pose<P> settled(const Pose<P>& T_world_camera);
   Pose<P> pose_by_motion(const Frame& frame);
   void remember_motion(const Frame& frame, bool keyframe, bool lost);
   int match_landmarks(Frame& frame, const MatchList<P>& matches);
@@ -106,7 +107,8 @@ class FrontEnd {
   bool velocity_known_ = false;  ///< the map began at rest
   std::uint32_t frame_number_ = 0;
   float time_since_keyframe_ = 0;
-  bool lost_ = false;  ///< the last pose was predicted; only for guided matching
+  bool lost_ = false;     ///< the last pose was predicted; only for guided matching
+  bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still
 };
 
 }  // namespace leviosim::vio

@@ -162,15 +162,36 @@ bool FrontEnd<P>::map_is_plausible() {
          is_plausible(last.T_world_camera, time_since_keyframe_);
 }
 
-/// Whether the camera can have got from where it was reported last to T_world_camera.
+/// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
+/// cannot tell rest from uniform motion: from where the images disagree with rest, it is not
+/// believed until the vehicle has moved.
+template <class P>
+Pose<P> FrontEnd<P>::settled(const Pose<P>& T_world_camera) {
+  constexpr float kFarthest = 0.05f;  // that the noise of a frame puts a camera at rest [m]
+  constexpr float kTurned = 0.02f;    // likewise, rad
+  const auto stage = machine_.stage(stages::kGuided);
+  const Pose<P> now{orthonormalised<P>(T_world_camera.R), T_world_camera.t};
+  const Pose<P> last = motion_.T_world_camera();
+  const Vec3<P> moved = now.t - last.t;
+  const auto& turn = (transpose(last.R) * now.R).m;
+  // The trace is 1 + 2 cos(angle).
+  const bool near = dot(moved, moved) < F(kFarthest * kFarthest) &&
+                    F(3.0f) - (turn[0][0] + turn[1][1] + turn[2][2]) < F(kTurned * kTurned);
+  may_rest_ = !rest_ || (may_rest_ && near);
+  return rest_ && may_rest_ ? last : now;
+}
+
+/// Whether T_world_camera is a pose to which the camera can have got from where it was reported
+/// last.
 /// @param seconds  that this took at most
 template <class P>
 bool FrontEnd<P>::is_plausible(const Pose<P>& T_world_camera, float seconds) const {
   constexpr float kCorrection = 1;  // that the optimiser may have made meanwhile, m
   const Vec3<P> moved = T_world_camera.t - motion_.T_world_camera().t;
   const float limit = profile_.recovery.max_speed * seconds + kCorrection;
-  const auto& R = T_world_camera.R.m;
-  return dot(moved, moved) < F(limit * limit) && R[0][0] + R[1][1] + R[2][2] < F(3.1f);
+  const Mat3<P>& R = T_world_camera.R;
+  const F size = dot(R.row(0), R.row(0)) + dot(R.row(1), R.row(1)) + dot(R.row(2), R.row(2));
+  return dot(moved, moved) < F(limit * limit) && size > F(2.9f) && size < F(3.1f);
 }
 
 template class FrontEnd<work::Native>;

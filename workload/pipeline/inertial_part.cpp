@@ -68,12 +68,14 @@ ImuNoise FrontEnd<P>::noise_of(const ImuInput& sample) const {
 template <class P>
 void FrontEnd<P>::detect_stillness(const Preintegration<P>& interval, float seconds) {
   const Stillness<P> seen = stillness_.evaluate();
+  const Stillness<P> at_rest =
+      profile_.optimiser.joint && seen.still ? stillness_.without_recent(seen) : seen;
   stillness_.end_frame();
   rest_.reset();
   recent_force_ = seen.accel_mean;
   if (!started_ || !profile_.use_imu || !seen.still) return;
   if (profile_.optimiser.joint) {
-    rest_ = seen;
+    rest_ = at_rest;
     return;  // it knows gravity, and learns the biases in motion as well
   }
   BiasPrior<P> prior = graph_in_l2_.bias_prior();
