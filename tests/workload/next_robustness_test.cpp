@@ -110,5 +110,23 @@ TEST(NextRobustnessOf, StandsStillAfterMotion) {
   RecordProperty("moved_mm", static_cast<int>(moved * 1000));
 }
 
+/// An IMU that sees rest, as in uniform motion, does not hold the pose while the images move.
+TEST(NextRobustnessOf, ImuAtRestWhileTheImagesMove) {
+  ShortFlight flight = from_rest();
+  for (std::size_t i = 100; i < 150; ++i)
+    for (ImuInput& sample : flight.frames[i].imu) {
+      const float dt = sample.dt;
+      sample = flight.frames[100].imu.front();
+      sample.dt = dt;
+    }
+  const Flown flown = fly(flight, profile_named("next", 1));
+  ASSERT_TRUE(flown.finite);
+  int held = 0;
+  for (std::size_t i = 123; i < 150; ++i)
+    held +=
+        flown.trajectory[i].T_world_body.matrix() == flown.trajectory[i - 1].T_world_body.matrix();
+  EXPECT_LE(held, 3);
+}
+
 }  // namespace
 }  // namespace leviosim::vio::test

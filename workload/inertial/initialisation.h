@@ -146,11 +146,9 @@ class StillnessDetector {
   Stillness<P> without_recent(const Stillness<P>& seen) const {
     Vec3<P> gyro{0.0f, 0.0f, 0.0f}, accel{0.0f, 0.0f, 0.0f};
     F samples = 0.0f;
-    int oldest = current_;
     for (int i : P::range(0, options_.batches / 2)) {
-      (void)i;
-      oldest = oldest + 1 == options_.batches ? 0 : oldest + 1;
-      const Span batch = memory_.subspan(oldest * kBatchFloats, kBatchFloats);
+      const int at = (current_ + 1 + i) % options_.batches;  // the oldest first
+      const Span batch = memory_.subspan(at * kBatchFloats, kBatchFloats);
       gyro = gyro + load_vec3<P>(batch, kGyro);
       accel = accel + load_vec3<P>(batch, kAccel);
       samples += F(batch[kSamples]);
