@@ -2,7 +2,9 @@
 // flights.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "platform_models/loader.h"
 #include "tests/tools/constant_source.h"
@@ -57,6 +59,28 @@ TEST(ClosedLoop, DropsAllFramesThatComeWhileOneIsWorkedOn) {
     EXPECT_EQ(figures.waited, 0) << period;
     EXPECT_EQ(figures.latency.p50_ns, length);
     EXPECT_EQ(figures.latency.max_ns, length);
+  }
+}
+
+/// A workload whose third pose is no number.
+class DivergingSource : public testing::ConstantSource {
+ public:
+  using ConstantSource::ConstantSource;
+  const work::Job& process_frame(FrameResult& result) override {
+    const work::Job& job = ConstantSource::process_frame(result);
+    if (result.index == 2) result.pose.T_world_body.translation().y() = std::nan("");
+    return job;
+  }
+};
+
+TEST(ClosedLoop, APoseThatIsNoNumberReachesNoTrajectory) {
+  for (const std::optional<Deadline> deadline : {std::optional<Deadline>(), {Deadline::Drop}}) {
+    DivergingSource source({.frames = 5});
+    const RunRequest request = testing::request_at(Hertz(100'000'000), deadline);
+    const RunResult result = Simulation(request, source, [](const Progress&) {}).run();
+    EXPECT_EQ(result.frames.size(), 5u);
+    EXPECT_EQ(result.trajectory.size(), 4u);
+    EXPECT_EQ(result.poses_left_out, 1);
   }
 }
 

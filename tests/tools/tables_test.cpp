@@ -173,6 +173,17 @@ TEST(TrajectorySummary, SaysWhereThereIsNoGroundTruth) {
   EXPECT_NE(trajectory_summary(run).find("no ground truth"), std::string::npos);
 }
 
+TEST(TrajectorySummary, SaysWhatCannotBeCompared) {
+  RunResult run = example_run();
+  run.ate.reset();
+  run.poses_left_out = 2;
+  run.not_comparable = "the positions are too large";
+  const std::string text = trajectory_summary(run);
+  EXPECT_NE(text.find("2 more are no numbers and are left out"), std::string::npos);
+  EXPECT_NE(text.find("ATE: none: the positions are too large"), std::string::npos);
+  EXPECT_EQ(text.find("no ground truth"), std::string::npos);
+}
+
 TEST(Report, OnlyItsLastLineIsAboutTheHost) {
   RunResult run = example_run();
   const std::vector<std::string> first = lines_of(report(run));

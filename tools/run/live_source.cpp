@@ -123,10 +123,19 @@ void LiveSource::describe(RunResult& result) const {
                                     {"pose graph", odometry_->pose_graph_memory()}})
     result.l2.push_back({name, arena.used(), arena.live()});
   if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= 3)
+    evaluate(result);
+}
+
+/// A run whose positions have diverged beyond comparison is still a run.
+void LiveSource::evaluate(RunResult& result) const {
+  try {
     result.ate =
         traces::evaluate(result.trajectory, traces::to_trajectory(feed_.data().ground_truth),
                          {.expected_poses = result.camera ? result.camera->deliveries.size()
                                                           : result.frames.size()});
+  } catch (const traces::NotComparable& failure) {
+    result.not_comparable = failure.what();
+  }
 }
 
 }  // namespace leviosim::tools

@@ -25,6 +25,8 @@ class LiveSource : public JobSource {
   void describe(RunResult& result) const override;
 
  private:
+  void evaluate(RunResult& result) const;
+
   vio::Profile profile_;
   bool evaluate_;
   Feed feed_;

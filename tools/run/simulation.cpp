@@ -20,7 +20,12 @@ void describe(RunResult& result, const RunRequest& request, const JobSource& sou
   if (result.timed) result.chip = chip;
   result.l1_size = chip.cluster.l1.size;
   result.l2_size = chip.l2.size;
-  for (const FrameResult& frame : result.frames) result.trajectory.push_back(frame.pose);
+  for (const FrameResult& frame : result.frames) {
+    if (frame.pose.T_world_body.matrix().allFinite())
+      result.trajectory.push_back(frame.pose);
+    else
+      ++result.poses_left_out;
+  }
   source.describe(result);
 }
 
