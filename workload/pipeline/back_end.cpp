@@ -75,6 +75,7 @@ void BackEnd<P>::publish() {
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
   if (profile_.use_imu && !options_.joint)
     estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
+  if (!profile_.use_imu) follow_positions();
   if (!solved_) prior_.keyframes = 0;  // rounding has spoilt it: the next window starts a new one
   const int last = window_.keyframes - 1;
   const I32 slot = window_.keyframe_slots[last];
@@ -82,6 +83,21 @@ void BackEnd<P>::publish() {
   const Pose<P> before = graph_.keyframe(slot).T_world_camera;
   vio::publish<P>(window_, graph_);
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
+}
+
+/// Without an IMU a keyframe's velocity is that at which it was reached from the one before, and the
+/// optimiser, which has moved both, knows nothing of it. It gives the next 8-point pose its length:
+/// left as it was, the scale of the map would run away from that of the poses added to it.
+template <class P>
+void BackEnd<P>::follow_positions() {
+  for (int k : P::range(1, window_.keyframes)) {
+    const F dt = window_.interval(k).duration();
+    if (!(dt > 0.0f)) continue;
+    KeyframeState<P> state = window_.state.keyframe(k);
+    const Vec3<P> moved = state.T_world_camera.t - window_.state.pose(k - 1).t;
+    state.velocity = moved * F(F(1.0f) / dt);
+    window_.state.set_keyframe(k, state);
+  }
 }
 
 /// Keyframes added since the snapshot were placed relative to the last one in it: they follow it.

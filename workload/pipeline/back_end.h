@@ -23,6 +23,7 @@ class BackEnd {
   void publish();
 
  private:
+  using F = typename P::F32;
   using I32 = typename P::I32;
 
   /// As many as two keyframes in slow flight lie frames apart.
@@ -30,6 +31,7 @@ class BackEnd {
 
   bool is_settled();
   void update_prior();
+  void follow_positions();
   void move_newer_keyframes(const Pose<P>& T_new_old);
 
   const Profile& profile_;
