@@ -122,6 +122,13 @@ class Scenes {
       const Function scene("scene: feature extraction");
       vio::extract_features<P>(machine_, image, options, features);
     }
+    {
+      vio::ExtractorOptions fine;  // which neither profile asks for
+      fine.subpixel_steps = 8;
+      const auto stage = machine_.stage("extraction between pixels");
+      const Function scene("scene: feature extraction between pixels");
+      vio::extract_features<P>(machine_, image, fine, features);
+    }
     // References: most are current descriptors with some bits flipped, in another order.
     constexpr int kCurrent = 300, kReferences = 500;
     const auto words = data_.alloc<Span<U32>>("descriptors", 8 * (kCurrent + kReferences));
