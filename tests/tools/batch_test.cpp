@@ -123,6 +123,22 @@ TEST(RunOutcome, AnEstimateThatDivergedIsAFailureAndNoFault) {
   }
 }
 
+TEST(RunOutcome, ARunSomeOfWhosePosesAreNoNumbersHasDiverged) {
+  RunResult run;
+  for (int i = 0; i < 10; ++i) {
+    run.trajectory.push_back({i * 50'000'000, Eigen::Isometry3d::Identity()});
+    run.trajectory.back().T_world_body.translation() << i, i % 3, 0;
+  }
+  run.frames.resize(12);
+  const traces::Trajectory truth = run.trajectory;
+  EXPECT_NEAR(outcome_of(run, truth, {}).ate_m.value(), 0, 1e-9);
+  run.poses_left_out = 2;
+  const RunOutcome diverged = outcome_of(run, truth, {});
+  EXPECT_EQ(diverged.failure, "2 poses are no numbers");
+  EXPECT_FALSE(diverged.ate_m);
+  EXPECT_EQ(diverged.frames, 12u);
+}
+
 TEST(Spread, TakesFailuresAsInfinitelyBad) {
   EXPECT_EQ(spread_of({}).runs, 0u);
   EXPECT_FALSE(spread_of({}).median);

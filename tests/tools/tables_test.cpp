@@ -81,7 +81,8 @@ TEST(AccountTable, SharesAddUpTo100PerCent) {
   const Cells cells = cells_after(line_of(text, "feature extraction"), 18);
   // 5 of 8 Mcycles are useful, 1 waits for a floating-point unit; rounding counts as imbalance.
   // Three tenths are handed out: to serial (99.875), imbalance (37.625) and divider (62.5).
-  EXPECT_EQ(cells, (Cells{"62.5", "0.0", "12.5", "6.3", "1.2", "3.8", "1.2", "2.5", "10.0", "8.0"}));
+  EXPECT_EQ(cells,
+            (Cells{"62.5", "0.0", "12.5", "6.3", "1.2", "3.8", "1.2", "2.5", "10.0", "8.0"}));
   double sum = 0;
   for (std::size_t i = 0; i + 1 < cells.size(); ++i) sum += std::stod(cells[i]);
   EXPECT_NEAR(sum, 100.0, 1e-9);

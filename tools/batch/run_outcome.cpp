@@ -1,5 +1,7 @@
 #include "tools/batch/run_outcome.h"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "tools/run/energy.h"
@@ -109,15 +111,17 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
 }
 
 RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, const Measure& how) {
-  if (!run.camera) return measure(run.trajectory, truth, how);
   constexpr std::size_t kFewest = 3;
+  const std::size_t expected = run.camera ? run.camera->deliveries.size() : run.frames.size();
   RunOutcome outcome;
-  if (run.trajectory.size() >= kFewest)
-    outcome = measure(run.trajectory, truth, how, run.camera->deliveries.size());
-  else
+  if (run.poses_left_out > 0)
+    outcome.failure = fmt::format("{} poses are no numbers", run.poses_left_out);
+  else if (run.camera && run.trajectory.size() < kFewest)
     outcome.failure = "fewer than three frames were processed";
-  outcome.frames = run.camera->deliveries.size();
-  outcome.loop = loop_of(run);
+  else
+    outcome = measure(run.trajectory, truth, how, expected);
+  outcome.frames = expected;
+  if (run.camera) outcome.loop = loop_of(run);
   return outcome;
 }
 

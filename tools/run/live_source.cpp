@@ -126,8 +126,12 @@ void LiveSource::describe(RunResult& result) const {
     evaluate(result);
 }
 
-/// A run whose positions have diverged beyond comparison is still a run.
+/// A run that has diverged is still a run, but has no error that could be compared with others.
 void LiveSource::evaluate(RunResult& result) const {
+  if (result.poses_left_out > 0) {
+    result.not_comparable = "some poses are no numbers";
+    return;
+  }
   try {
     result.ate =
         traces::evaluate(result.trajectory, traces::to_trajectory(feed_.data().ground_truth),

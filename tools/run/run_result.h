@@ -82,8 +82,8 @@ struct RunResult {
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
   std::vector<traces::StampedPose> trajectory;
-  int poses_left_out = 0;  ///< of the trajectory, since they are no numbers
-  std::optional<traces::Evaluation> ate;  ///< where ground truth exists
+  int poses_left_out = 0;                 ///< of the trajectory, since they are no numbers
+  std::optional<traces::Evaluation> ate;  ///< where ground truth exists and all poses are numbers
   std::string not_comparable;             ///< why there is no ATE although ground truth exists
   double host_seconds = 0;  ///< wall time; not part of anything that must be reproducible
   sim::ChipConfig chip{};   ///< that the run was timed on; unused if not timed

@@ -306,7 +306,8 @@ std::string trajectory_summary(const RunResult& run) {
   std::string text = fmt::format("trajectory: {} poses, {:.2f} m long\n", run.trajectory.size(),
                                  path_length(run.trajectory));
   if (run.poses_left_out > 0)
-    text += fmt::format("            {} more are no numbers and are left out\n", run.poses_left_out);
+    text +=
+        fmt::format("            {} more are no numbers and are left out\n", run.poses_left_out);
   if (!run.not_comparable.empty()) return text + "ATE: none: " + run.not_comparable + '\n';
   if (!run.ate) return text + "ATE: no ground truth in the data\n";
   return text + ate_text(*run.ate);

@@ -85,9 +85,9 @@ void BackEnd<P>::publish() {
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
 }
 
-/// Without an IMU a keyframe's velocity is that at which it was reached from the one before, and the
-/// optimiser, which has moved both, knows nothing of it. It gives the next 8-point pose its length:
-/// left as it was, the scale of the map would run away from that of the poses added to it.
+/// Without an IMU a keyframe's velocity is that at which it was reached from the one before, and
+/// the optimiser, which has moved both, knows nothing of it. It gives the next 8-point pose its
+/// length: left as it was, the scale of the map would run away from that of the poses added to it.
 template <class P>
 void BackEnd<P>::follow_positions() {
   for (int k : P::range(1, window_.keyframes)) {
