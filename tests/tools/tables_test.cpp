@@ -183,6 +183,8 @@ TEST(TrajectorySummary, SaysWhatCannotBeCompared) {
   EXPECT_NE(text.find("2 more are no numbers and are left out"), std::string::npos);
   EXPECT_NE(text.find("ATE: none: the positions are too large"), std::string::npos);
   EXPECT_EQ(text.find("no ground truth"), std::string::npos);
+  run.not_comparable.clear();  // as in a replay, which evaluates nothing
+  EXPECT_NE(trajectory_summary(run).find("ATE: none: 2 poses are no numbers"), std::string::npos);
 }
 
 TEST(Report, OnlyItsLastLineIsAboutTheHost) {

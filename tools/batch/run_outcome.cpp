@@ -1,11 +1,11 @@
 #include "tools/batch/run_outcome.h"
 
-#include <fmt/format.h>
-
 #include <array>
+#include <utility>
 
 #include "tools/run/energy.h"
 #include "tools/run/statistic_list.h"
+#include "tools/run/summary.h"
 #include "traces/relative_error.h"
 
 namespace leviosim::tools {
@@ -112,10 +112,10 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
 
 RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, const Measure& how) {
   constexpr std::size_t kFewest = 3;
-  const std::size_t expected = run.camera ? run.camera->deliveries.size() : run.frames.size();
+  const std::size_t expected = expected_poses(run);
   RunOutcome outcome;
-  if (run.poses_left_out > 0)
-    outcome.failure = fmt::format("{} poses are no numbers", run.poses_left_out);
+  if (std::string why = why_incomparable(run); !why.empty())
+    outcome.failure = std::move(why);
   else if (run.camera && run.trajectory.size() < kFewest)
     outcome.failure = "fewer than three frames were processed";
   else

@@ -5,6 +5,7 @@
 
 #include "platform_models/compiled_code.h"
 #include "sim/chip/accelerator.h"
+#include "tools/run/summary.h"
 #include "traces/evaluation.h"
 
 namespace leviosim::tools {
@@ -122,21 +123,17 @@ void LiveSource::describe(RunResult& result) const {
                                         "last keyframe", odometry_->last_keyframe_memory()},
                                     {"pose graph", odometry_->pose_graph_memory()}})
     result.l2.push_back({name, arena.used(), arena.live()});
-  if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= 3)
+  if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= 3 &&
+      why_incomparable(result).empty())
     evaluate(result);
 }
 
-/// A run that has diverged is still a run, but has no error that could be compared with others.
+/// A run that has diverged is still a run.
 void LiveSource::evaluate(RunResult& result) const {
-  if (result.poses_left_out > 0) {
-    result.not_comparable = "some poses are no numbers";
-    return;
-  }
   try {
     result.ate =
         traces::evaluate(result.trajectory, traces::to_trajectory(feed_.data().ground_truth),
-                         {.expected_poses = result.camera ? result.camera->deliveries.size()
-                                                          : result.frames.size()});
+                         {.expected_poses = expected_poses(result)});
   } catch (const traces::NotComparable& failure) {
     result.not_comparable = failure.what();
   }

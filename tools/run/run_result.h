@@ -84,7 +84,8 @@ struct RunResult {
   std::vector<traces::StampedPose> trajectory;
   int poses_left_out = 0;                 ///< of the trajectory, since they are no numbers
   std::optional<traces::Evaluation> ate;  ///< where ground truth exists and all poses are numbers
-  std::string not_comparable;             ///< why there is no ATE although ground truth exists
+  std::string
+      not_comparable;       ///< why the trajectory could not be evaluated; see why_incomparable()
   double host_seconds = 0;  ///< wall time; not part of anything that must be reproducible
   sim::ChipConfig chip{};   ///< that the run was timed on; unused if not timed
 };

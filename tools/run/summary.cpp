@@ -1,5 +1,7 @@
 #include "tools/run/summary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "sim/chip/accelerator.h"
@@ -90,6 +92,15 @@ Hertz clock_of(const RunResult& run, const StageResult& stage) {
 
 double milliseconds(double cycles, Hertz clock) {
   return cycles * 1e3 / static_cast<double>(clock.count());
+}
+
+std::size_t expected_poses(const RunResult& run) {
+  return run.camera ? run.camera->deliveries.size() : run.frames.size();
+}
+
+std::string why_incomparable(const RunResult& run) {
+  if (!run.not_comparable.empty() || run.poses_left_out == 0) return run.not_comparable;
+  return fmt::format("{} poses are no numbers", run.poses_left_out);
 }
 
 std::optional<double> Scenario::mean_latency_ns() const {

@@ -26,6 +26,11 @@ std::optional<double> speedup(const StageResult& stage);
 Hertz clock_of(const RunResult& run, const StageResult& stage);
 double milliseconds(double cycles, Hertz clock);
 
+/// That a trajectory without gaps would have: of the frames that the camera delivered.
+std::size_t expected_poses(const RunResult& run);
+/// Why the run has no error that could be compared with another's; empty if it may have one.
+std::string why_incomparable(const RunResult& run);
+
 /// Frames of one kind and how long they took.
 struct Scenario {
   std::string_view name;  ///< for people

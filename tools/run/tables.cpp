@@ -308,7 +308,8 @@ std::string trajectory_summary(const RunResult& run) {
   if (run.poses_left_out > 0)
     text +=
         fmt::format("            {} more are no numbers and are left out\n", run.poses_left_out);
-  if (!run.not_comparable.empty()) return text + "ATE: none: " + run.not_comparable + '\n';
+  if (const std::string why = why_incomparable(run); !why.empty())
+    return text + "ATE: none: " + why + '\n';
   if (!run.ate) return text + "ATE: no ground truth in the data\n";
   return text + ate_text(*run.ate);
 }
