@@ -5,6 +5,7 @@
 
 #include "platform_models/loader.h"
 #include "tests/examples/exposure.h"
+#include "tests/support/paths.h"
 #include "tools/run/simulation.h"
 #include "tools/run/tables.h"
 
@@ -74,7 +75,7 @@ TEST(ExampleWorkload, IsFasterOnMoreCores) {
 // [/run]
 
 TEST(ExampleChip, RunsTheWorkloadSlowerThanTheChipItWasMadeFrom) {
-  const std::string quad = std::string(LEVIOSIM_SOURCE_DIR) + "/tests/examples/quad.yaml";
+  const std::string quad = (leviosim::tests::source_folder() / "tests/examples/quad.yaml").string();
   const tools::RunResult on_quad = run_on(quad, two_frames(), 4);
   const tools::RunResult on_gap8 = run_on("gap8", two_frames(), 8);
   EXPECT_GT(on_quad.stages[0].parallel, on_gap8.stages[0].parallel);

@@ -8,12 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include "traces/csv.h"
 
 namespace leviosim::example {
 namespace {
 
-const std::filesystem::path kSource = LEVIOSIM_SOURCE_DIR;
+const std::filesystem::path kSource = leviosim::tests::source_folder();
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream stream(text);

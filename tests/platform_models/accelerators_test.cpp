@@ -1,6 +1,7 @@
 // Accelerators in platform files: all of one or nothing, and what contradicts the rest is refused.
 #include "platform_models/dimension.h"
 #include "tests/platform_models/platform_test.h"
+#include "tests/support/paths.h"
 
 namespace leviosim::platform {
 namespace {
@@ -75,7 +76,7 @@ TEST(Accelerators, OfTheControllerNeedNoL1) {
 /// A chip without energy figures may have accelerators without them.
 TEST(Accelerators, NeedNoEnergyWhereThereIsNone) {
   EXPECT_NO_THROW(load_platform(
-      LEVIOSIM_SOURCE_DIR "/tests/examples/quad.yaml",
+      (leviosim::tests::source_folder() / "tests/examples/quad.yaml").string(),
       {"cluster.accelerators.hamming.units=1", "cluster.accelerators.hamming.start_up=30",
        "cluster.accelerators.hamming.latency=10", "cluster.accelerators.hamming.items_per_cycle=4",
        "cluster.accelerators.hamming.l1_words=4"}));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "platform_models/loader.h"
+#include "tests/support/paths.h"
 #include "tests/tools/run_program.h"
 #include "tools/flow/binned_frames.h"
 #include "tools/flow/published.h"
@@ -53,7 +54,7 @@ TEST_F(FlowCommand, ChipsWithoutPublishedFiguresOrEnergyDoWithout) {
   const ProgramResult result = flow_of_flight("gap9", "out", {"--cores", "4"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out.find("published figures"), std::string::npos);
-  const std::string quad = LEVIOSIM_SOURCE_DIR "/tests/examples/quad.yaml";
+  const std::string quad = (leviosim::tests::source_folder() / "tests/examples/quad.yaml").string();
   ASSERT_EQ(flow_of_flight(quad, "quad").status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "quad/energy.csv"));
 }

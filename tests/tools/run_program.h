@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include "tests/traces/test_folder.h"
 
 namespace leviosim::tools::testing {
@@ -31,14 +32,15 @@ class Program {
     constexpr int kFlags = O_CREAT | O_WRONLY | O_TRUNC;
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out_.c_str(), kFlags, 0600);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err_.c_str(), kFlags, 0600);
-    words.insert(words.begin(), LEVIOSIM_BINARY);
+    const std::string program = leviosim::tests::program_path();
+    words.insert(words.begin(), program);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const int error =
-        posix_spawn(&pid_, LEVIOSIM_BINARY, &files, nullptr, arguments.data(), environ);
+        posix_spawn(&pid_, program.c_str(), &files, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&files);
-    EXPECT_EQ(error, 0) << LEVIOSIM_BINARY;
+    EXPECT_EQ(error, 0) << program;
   }
 
   void send(int signal) const { ::kill(pid_, signal); }

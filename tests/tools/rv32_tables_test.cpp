@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "sim/work/op.h"
+#include "tests/support/paths.h"
 #include "traces/csv.h"
 
 namespace leviosim::tools {
 namespace {
 
-const std::filesystem::path kSource = LEVIOSIM_SOURCE_DIR;
+const std::filesystem::path kSource = leviosim::tests::source_folder();
 
 /// The names in `typename P::Function function("name")` of the workload.
 std::set<std::string> named_functions() {

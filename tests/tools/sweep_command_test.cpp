@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "tests/support/paths.h"
 #include "tests/tools/run_program.h"
 #include "tools/replay/replay.h"
 #include "tools/sweep/sweep_store.h"
@@ -63,12 +64,13 @@ class SweepCommand : public ::testing::Test {
   }
   static int shell(const std::string& script) {
     const std::string line = fmt::format("cd '{}' && LEVIOSIM='{}' {} >shell.txt 2>&1", path(""),
-                                         LEVIOSIM_BINARY, script);
+                                         leviosim::tests::program_path(), script);
     const int status = std::system(line.c_str());  // NOLINT: the command is the test's own
     return WEXITSTATUS(status);
   }
   static std::string example(const std::string& name) {
-    return fmt::format("'{}/tools/sweep/examples/{}'", LEVIOSIM_SOURCE_DIR, name);
+    return fmt::format("'{}/tools/sweep/examples/{}'", leviosim::tests::source_folder().string(),
+                       name);
   }
 
   static fs::path folder_;
@@ -200,7 +202,7 @@ TEST_F(SweepCommand, SlurmArraysMakeOneRun) {
         0)
         << traces::read_text_file(folder_ / "shell.txt");
   ASSERT_EQ(shell(fmt::format("'{}' sweep --merge slurm/all slurm/shard-1 slurm/shard-2",
-                              LEVIOSIM_BINARY)),
+                              leviosim::tests::program_path())),
             0);
   EXPECT_EQ(csv("slurm/all"), csv("whole"));
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "tests/support/paths.h"
 #include "traces/asl_writer.h"
 #include "traces/atomic_file.h"
 #include "traces/csv.h"
@@ -76,7 +77,7 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
 inline std::filesystem::path recorded_data() {
   const char* folder = std::getenv("LEVIOSIM_DATA");
   if (folder != nullptr) return folder;
-  return std::filesystem::path(LEVIOSIM_SOURCE_DIR) / ".." / "shared" / "data";
+  return leviosim::tests::source_folder() / ".." / "shared" / "data";
 }
 
 /// A valid ASL folder: six 32x24 frames at 20 Hz from `kStartNs`, IMU and truth at 200 Hz from 50

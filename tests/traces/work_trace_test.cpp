@@ -1,5 +1,6 @@
 // A work trace gives back what was recorded, and everything else is refused.
 #include "traces/work_trace.h"
+#include "tests/support/paths.h"
 
 #include "tests/traces/test_folder.h"
 #include "tests/traces/work_trace_example.h"
@@ -84,8 +85,7 @@ TEST(WorkTrace, ReadersOfOneTraceDoNotMeet) {
 /// A file of version 1, as it was first written; later programs read it too. Made by writing
 /// example_trace(5) to that file.
 TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
-  const WorkTrace golden(std::filesystem::path(LEVIOSIM_SOURCE_DIR) /
-                         "tests/traces/golden/version_1.trace");
+  const WorkTrace golden(leviosim::tests::source_folder() / "tests/traces/golden/version_1.trace");
   ASSERT_EQ(golden.frames(), 5);
   WorkFrames reader(golden);
   WorkFrame frame;
@@ -128,7 +128,7 @@ TEST(WorkTrace, RefusesKernelsThatCannotBe) {
 /// make no other version. Made like the first; not the compressed bytes are compared, which another
 /// version of zstd may choose otherwise.
 TEST(WorkTrace, WritesTheContentOfTheFirstVersion) {
-  const std::string golden = read_text_file(std::filesystem::path(LEVIOSIM_SOURCE_DIR) /
+  const std::string golden = read_text_file(leviosim::tests::source_folder() /
                                             "tests/traces/golden/version_1_46_operations.trace");
   std::vector<std::string> contents = contents_of(example_trace(5));
   contents.pop_back();  // kernels, since version 2
