@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,10 +23,17 @@ struct ProgramResult {
   std::string err;
 };
 
+/// What a program may use before the system ends it; 0: as much as it likes.
+struct ProgramLimits {
+  std::uint64_t cpu_seconds = 0;
+  std::uint64_t memory_bytes = 0;  ///< of its address space
+};
+
 /// A running program with its output in files of `folder`.
 class Program {
  public:
-  Program(const std::filesystem::path& folder, std::vector<std::string> words)
+  Program(const std::filesystem::path& folder, std::vector<std::string> words,
+          const ProgramLimits& limits = {})
       : out_(folder / "stdout.txt"), err_(folder / "stderr.txt") {
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
@@ -41,15 +49,17 @@ class Program {
         posix_spawn(&pid_, program.c_str(), &files, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     EXPECT_EQ(error, 0) << program;
+    limit(RLIMIT_CPU, limits.cpu_seconds);
+    limit(RLIMIT_AS, limits.memory_bytes);
   }
 
   void send(int signal) const { ::kill(pid_, signal); }
   bool running() {
-    if (pid_ > 0 && !ended_) ended_ = ::waitpid(pid_, &wait_status_, WNOHANG) == pid_;
+    if (pid_ > 0 && !ended_) ended_ = ::wait4(pid_, &wait_status_, WNOHANG, &usage_) == pid_;
     return !ended_;
   }
   ProgramResult wait() {
-    if (!ended_) ::waitpid(pid_, &wait_status_, 0);
+    if (!ended_) ::wait4(pid_, &wait_status_, 0, &usage_);
     ended_ = true;
     ProgramResult result;
     result.status =
@@ -58,12 +68,21 @@ class Program {
     result.err = traces::read_text_file(err_);
     return result;
   }
+  /// Of the ended program.
+  const rusage& usage() const { return usage_; }
 
  private:
+  void limit(__rlimit_resource resource, std::uint64_t most) const {
+    if (most == 0) return;
+    const rlimit values{most, most};
+    ::prlimit(pid_, resource, &values, nullptr);
+  }
+
   std::filesystem::path out_;
   std::filesystem::path err_;
   pid_t pid_ = -1;
   int wait_status_ = 0;
+  rusage usage_{};
   bool ended_ = false;
 };
 
