@@ -82,10 +82,13 @@ void select_frames(std::vector<FrameRef>& frames, const FrameRange& range, const
 }
 
 void require_images(const std::vector<FrameRef>& frames, const fs::path& csv) {
-  for (const FrameRef& frame : frames)
-    if (!base::is_file(frame.path))
-      throw InputError(fmt::format("{}: the image {} does not exist", at_line(csv, frame.line),
-                                   frame.path.string()));
+  for (const FrameRef& frame : frames) {
+    const base::PathKind kind = base::kind_of(frame.path);
+    if (kind == base::PathKind::file) continue;
+    throw InputError(
+        fmt::format("{}: the image {} {}", at_line(csv, frame.line), frame.path.string(),
+                    kind == base::PathKind::missing ? "does not exist" : "is no regular file"));
+  }
 }
 
 /// Frames outside the samples by more than `tolerance_s`.
