@@ -83,7 +83,7 @@ const YamlEntry* find(const std::vector<YamlEntry>& entries, const std::string& 
 Document Reader::read_platform(const std::string& text, const std::optional<BaseOverride>& base,
                                std::vector<std::string> users) {
   users_ = std::move(users);
-  const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "", 1);
+  const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "");
   read_header(root);
   if (const YamlEntry* extends = find(root, kParentPath))
     read_parent(*extends, root, base);
@@ -96,7 +96,7 @@ Document Reader::read_platform(const std::string& text, const std::optional<Base
 
 Document Reader::read_instruction_set(const std::string& text, std::vector<std::string> users) {
   users_ = std::move(users);
-  const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "", 1);
+  const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "");
   read_header(root);
   for (const YamlEntry& entry : root)
     if ((!is_header(entry.key) || entry.key == kParentPath) && entry.key != kIsa)
@@ -113,9 +113,8 @@ Document Reader::read_instruction_set(const std::string& text, std::vector<std::
 void Reader::read_base(const std::vector<YamlEntry>& root,
                        const std::optional<BaseOverride>& other) {
   const YamlEntry* isa = find(root, kIsa);
-  const std::vector<YamlEntry> entries = isa == nullptr
-                                             ? std::vector<YamlEntry>{}
-                                             : entries_of(isa->value, file_, isa->key, isa->line);
+  const std::vector<YamlEntry> entries =
+      isa == nullptr ? std::vector<YamlEntry>{} : entries_of(isa->value, file_, isa->key);
   const YamlEntry* key = find(entries, kBase);
   if (other && key == nullptr)
     Place{other->where}.fail(
@@ -137,7 +136,7 @@ void Reader::read_parent(const YamlEntry& extends, const std::vector<YamlEntry>&
                          const std::optional<BaseOverride>& base) {
   const Place named = place(extends, kParentPath);
   if (const YamlEntry* isa = find(root, kIsa))
-    for (const YamlEntry& entry : entries_of(isa->value, file_, isa->key, isa->line))
+    for (const YamlEntry& entry : entries_of(isa->value, file_, isa->key))
       if (entry.key == kBase)
         place(entry, kBasePath)
             .fail("the platform that this one extends has named its instruction set");
@@ -193,7 +192,7 @@ void Reader::read_header(const std::vector<YamlEntry>& root) {
 }
 
 void Reader::read_sources(const YamlEntry& entry) {
-  for (const YamlEntry& source : entries_of(entry.value, file_, entry.key, entry.line))
+  for (const YamlEntry& source : entries_of(entry.value, file_, entry.key))
     document_.sources[source.key] =
         scalar(source.value, place(source, joined(entry.key, source.key)));
 }
@@ -204,7 +203,7 @@ void Reader::read_section(const std::vector<YamlEntry>& entries, const std::stri
     if (is_header(inner) || inner == kBasePath) continue;
     if (schema_.is_section(inner)) {
       section_lines_[inner] = entry.line;
-      read_section(entries_of(entry.value, file_, inner, entry.line), inner);
+      read_section(entries_of(entry.value, file_, inner), inner);
     } else if (!schema_.record(inner).empty()) {
       read_record(entry, inner);
     } else {
@@ -216,10 +215,10 @@ void Reader::read_section(const std::vector<YamlEntry>& entries, const std::stri
 void Reader::read_record(const YamlEntry& entry, const std::string& path) {
   const Place record = place(entry, path);
   const std::vector<std::size_t> indices = schema_.record(path);
-  if (!entry.value.IsMap())
+  if (!entry.value.is_mapping())
     record.fail(fmt::format("is {}; expected a map {{ {}: …, unit: …, source: …, confidence: … }}",
                             kind_of(entry.value), schema_.fields()[indices.front()].name));
-  const std::vector<YamlEntry> entries = entries_of(entry.value, file_, path, entry.line);
+  const std::vector<YamlEntry> entries = entries_of(entry.value, file_, path);
   check_keys(entries, path);
   const Provenance provenance = read_provenance(entries, path, record);
   bool any = false;
@@ -328,8 +327,8 @@ void Reader::read_field(std::size_t index, const std::vector<YamlEntry>& entries
 Range Reader::read_range_of(const Field& field, const YamlEntry& entry,
                             const Setting& value) const {
   const Place at = place(entry, joined(field.record, entry.key));
-  const YAML::Node& list = entry.value;
-  if (!list.IsSequence() || list.size() != 2)
+  const YamlNode& list = entry.value;
+  if (!list.is_sequence() || list.size() != 2)
     at.fail("expected a list of two numbers, [low, high]");
   return read_range(field, value, scalar(list[0], at), scalar(list[1], at), at);
 }

@@ -4,13 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "platform_models/builtin.h"
 #include "platform_models/nearest.h"
-#include "sim/error.h"
+#include "sim/base/input_file.h"
 
 namespace leviosim::platform {
 namespace {
@@ -31,10 +29,8 @@ TextFile find_file(const Shelf& shelf, const std::string& name, const std::strin
   if (is_path(name)) {
     const std::string path =
         (std::filesystem::path(from).parent_path() / name).lexically_normal().string();
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored))
-      place.fail(fmt::format("there is no file '{}'", path));
-    return {path, read_file(path, fmt::format("a file of the kind {}", shelf.what))};
+    if (!base::exists(path)) place.fail(fmt::format("there is no file '{}'", path));
+    return {path, base::read_file(path, base::InputKind::platform)};
   }
   std::vector<std::string> names;
   for (const BuiltinFile& file : shelf.builtin) {
@@ -53,14 +49,6 @@ TextFile find_file(const Shelf& shelf, const std::string& name, const std::strin
 bool is_path(std::string_view name) {
   return name.find('/') != std::string_view::npos || ends_with(name, ".yaml") ||
          ends_with(name, ".yml");
-}
-
-std::string read_file(const std::string& path, std::string_view what) {
-  std::error_code ignored;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, ignored))
-    throw InputError(fmt::format("{}: cannot be read as {}", path, what));
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
 TextFile find_instruction_set(const std::string& base, const std::string& from,

@@ -28,7 +28,4 @@ TextFile find_platform(const std::string& name, const std::string& from, const P
 /// Whether a platform or an instruction set is given by path and not by name.
 bool is_path(std::string_view name);
 
-/// Throws InputError "PATH: cannot be read as WHAT".
-std::string read_file(const std::string& path, std::string_view what);
-
 }  // namespace leviosim::platform

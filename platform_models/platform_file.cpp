@@ -13,6 +13,7 @@
 #include "platform_models/override.h"
 #include "platform_models/rules.h"
 #include "platform_models/value.h"
+#include "sim/base/input_file.h"
 #include "sim/check.h"
 #include "sim/error.h"
 
@@ -42,7 +43,8 @@ std::vector<std::pair<std::string, std::string>> cited_only(
 }  // namespace
 
 PlatformFile PlatformFile::named(const std::string& name_or_path) {
-  if (is_path(name_or_path)) return {name_or_path, read_file(name_or_path, "a platform file")};
+  if (is_path(name_or_path))
+    return {name_or_path, base::read_file(name_or_path, base::InputKind::platform)};
   for (const BuiltinFile& platform : builtin_platforms())
     if (platform.name == name_or_path)
       return {fmt::format("{}.yaml", platform.name), std::string(platform.text)};

@@ -6,7 +6,8 @@ set -euo pipefail
 packages=(
   g++ clang cmake ninja-build git          # compilers (Clang for tools/check_reproducible.sh), build
   libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
-  libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
+  libspng-dev libturbojpeg0-dev            # PNG and JPEG files
+  libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
   libsqlite3-dev                                              # results of sweeps
   parallel                                                    # an example of sweeps, tested

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "traces/csv.h"
+#include "traces/evaluation.h"
 #include "traces/sensor_yaml.h"
 
 namespace leviosim::traces {
@@ -15,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kQuaternionTolerance = 1e-3;
+constexpr const char* kTruth = "state_groundtruth_estimate0";
+constexpr const char* kTruthCsv = "state_groundtruth_estimate0/data.csv";
 constexpr double kGapSlack = 1.01;  // recorded stamps jitter by a few hundred nanoseconds
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -23,8 +27,28 @@ void require_rows(std::size_t rows, const fs::path& file) {
   if (rows == 0) throw InputError(fmt::format("{}: the sequence is empty (no row)", file.string()));
 }
 
-Eigen::Vector3d vector_at(const CsvRow& row, std::size_t column) {
-  return {row.number(column), row.number(column + 1), row.number(column + 2)};
+/// The largest magnitude of a kind of quantity.
+struct Bound {
+  double most;
+  const char* what;
+};
+// The fastest gyroscopes end at 70 rad/s and shock sensors at 2000 m/s². Positions of 1e7 m span
+// the Earth. Squares and integrals of such values stay numbers in single precision, too.
+constexpr Bound kGyro{1e3, "any gyroscope [rad/s]"};
+constexpr Bound kAccel{1e4, "any accelerometer [m/s^2]"};
+constexpr Bound kPosition{1e7, "any flight [m]"};
+constexpr Bound kVelocity{1e5, "any flight [m/s]"};
+
+Eigen::Vector3d vector_at(const CsvRow& row, std::size_t column, const Bound& bound) {
+  Eigen::Vector3d vector;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t at = column + static_cast<std::size_t>(k);
+    vector[k] = row.number(at);
+    if (std::abs(vector[k]) > bound.most)
+      row.fail(at, fmt::format("beyond {}; expected from {} to {}", bound.what, -bound.most,
+                               bound.most));
+  }
+  return vector;
 }
 
 Eigen::Quaterniond quaternion_at(const CsvRow& row, std::size_t w_column) {
@@ -37,13 +61,13 @@ Eigen::Quaterniond quaternion_at(const CsvRow& row, std::size_t w_column) {
 
 /// The mav0 folder in or at `folder`.
 fs::path find_mav0(const fs::path& folder) {
-  if (!fs::exists(folder)) throw InputError(fmt::format("{}: no such folder", folder.string()));
-  if (fs::is_directory(folder / "mav0")) return folder / "mav0";
+  if (!base::exists(folder)) throw InputError(fmt::format("{}: no such folder", folder.string()));
+  if (base::is_folder(folder / "mav0")) return folder / "mav0";
   return folder;
 }
 
 fs::path require_file(const fs::path& mav0, const char* name) {
-  if (!fs::is_regular_file(mav0 / name))
+  if (!base::is_file(mav0 / name))
     throw InputError(fmt::format(
         "{} not found in {}; an ASL folder has mav0/{{cam0,imu0}}, each with sensor.yaml and "
         "data.csv",
@@ -58,10 +82,13 @@ void select_frames(std::vector<FrameRef>& frames, const FrameRange& range, const
 }
 
 void require_images(const std::vector<FrameRef>& frames, const fs::path& csv) {
-  for (const FrameRef& frame : frames)
-    if (!fs::is_regular_file(frame.path))
-      throw InputError(fmt::format("{}: the image {} does not exist", at_line(csv, frame.line),
-                                   frame.path.string()));
+  for (const FrameRef& frame : frames) {
+    const base::PathKind kind = base::kind_of(frame.path);
+    if (kind == base::PathKind::file) continue;
+    throw InputError(
+        fmt::format("{}: the image {} {}", at_line(csv, frame.line), frame.path.string(),
+                    kind == base::PathKind::missing ? "does not exist" : "is no regular file"));
+  }
 }
 
 /// Frames outside the samples by more than `tolerance_s`.
@@ -133,7 +160,7 @@ std::vector<ImuSample> read_imu_csv(const fs::path& data_csv) {
   while (const CsvRow* row = csv.next()) {
     const std::int64_t t_ns = row->nanoseconds(0);
     stamps.add(*row, t_ns);
-    samples.push_back({t_ns, vector_at(*row, 1), vector_at(*row, 4)});
+    samples.push_back({t_ns, vector_at(*row, 1, kGyro), vector_at(*row, 4, kAccel)});
   }
   require_rows(samples.size(), data_csv);
   return samples;
@@ -150,10 +177,11 @@ std::vector<GroundTruthPose> read_ground_truth_csv(const fs::path& data_csv) {
     GroundTruthPose pose;
     pose.t_ns = row->nanoseconds(0);
     stamps.add(*row, pose.t_ns);
-    pose.T_world_body = Eigen::Translation3d(vector_at(*row, 1)) * quaternion_at(*row, 4);
-    pose.velocity = vector_at(*row, 8);
-    pose.bias_gyro = vector_at(*row, 11);
-    pose.bias_accel = vector_at(*row, 14);
+    pose.T_world_body =
+        Eigen::Translation3d(vector_at(*row, 1, kPosition)) * quaternion_at(*row, 4);
+    pose.velocity = vector_at(*row, 8, kVelocity);
+    pose.bias_gyro = vector_at(*row, 11, kGyro);
+    pose.bias_accel = vector_at(*row, 14, kAccel);
     poses.push_back(pose);
   }
   require_rows(poses.size(), data_csv);
@@ -173,9 +201,8 @@ Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
   data.imu_model = read_imu_model(imu_yaml);
   data.frames = read_frames_csv(frames_csv);
   data.imu = read_imu_csv(imu_csv);
-  if (fs::exists(mav0 / "state_groundtruth_estimate0"))
-    data.ground_truth =
-        read_ground_truth_csv(require_file(mav0, "state_groundtruth_estimate0/data.csv"));
+  if (base::exists(mav0 / kTruth))
+    data.ground_truth = read_ground_truth_csv(require_file(mav0, kTruthCsv));
 
   if (options.frames) select_frames(data.frames, *options.frames, frames_csv);
   require_images(data.frames, frames_csv);
@@ -185,17 +212,35 @@ Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
   return data;
 }
 
+void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stamps_ns) {
+  constexpr std::size_t kFewest = 3;
+  if (data.ground_truth.empty() || stamps_ns.size() < kFewest) return;
+  Trajectory frames;
+  for (const std::int64_t t_ns : stamps_ns) frames.push_back({t_ns, {}});
+  const EvaluationOptions how;
+  const std::size_t matched =
+      associate(frames, to_trajectory(data.ground_truth), how.max_gap_ns).size();
+  if (matched >= kFewest) return;
+  throw InputError(fmt::format(
+      "{}: {} of the {} frames ({} to {} ns) {} a true pose within {:g} ms; expected at least {}, "
+      "or no ground truth (it spans {} to {} ns)",
+      (data.frames_csv.parent_path().parent_path() / kTruthCsv).string(),
+      matched == 0 ? "none" : fmt::format("{}", matched), stamps_ns.size(), stamps_ns.front(),
+      stamps_ns.back(), matched > 1 ? "have" : "has", static_cast<double>(how.max_gap_ns) * 1e-6,
+      kFewest, data.ground_truth.front().t_ns, data.ground_truth.back().t_ns));
+}
+
 MotionRecord open_motion(const fs::path& folder) {
   MotionRecord record;
   record.mav0 = find_mav0(folder);
-  const fs::path truth_csv = require_file(record.mav0, "state_groundtruth_estimate0/data.csv");
+  const fs::path truth_csv = require_file(record.mav0, kTruthCsv);
   record.camera = read_camera_model(require_file(record.mav0, "cam0/sensor.yaml"));
   record.imu_model = read_imu_model(require_file(record.mav0, "imu0/sensor.yaml"));
   record.ground_truth = read_ground_truth_csv(truth_csv);
   require_smooth_truth(record.ground_truth, truth_csv);
-  if (fs::exists(record.mav0 / "imu0/data.csv"))
+  if (base::exists(record.mav0 / "imu0/data.csv"))
     record.imu = read_imu_csv(record.mav0 / "imu0/data.csv");
-  if (fs::exists(record.mav0 / "cam0/data.csv"))
+  if (base::exists(record.mav0 / "cam0/data.csv"))
     for (const FrameRef& frame : read_frames_csv(record.mav0 / "cam0/data.csv"))
       record.frame_stamps.push_back(frame.t_ns);
   return record;

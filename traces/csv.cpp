@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 
 namespace leviosim::traces {
@@ -17,6 +16,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+constexpr std::int64_t kMostSeconds = 9'000'000'000;
 constexpr std::size_t kDecimals = 9;
 
 std::string_view trim(std::string_view text) {
@@ -53,7 +53,7 @@ bool parse_plain_seconds(std::string_view text, std::int64_t& ns) {
   std::int64_t seconds = 0;
   std::int64_t fraction = 0;
   if (!parse_digits(whole, seconds) || !parse_digits(decimals, fraction)) return false;
-  if (seconds > INT64_MAX / kNsPerSecond - 1) return false;
+  if (seconds >= kMostSeconds) return false;
   ns = seconds * kNsPerSecond + fraction;
   return true;
 }
@@ -65,12 +65,7 @@ std::string at_line(const std::filesystem::path& file, std::size_t line) {
 }
 
 std::string read_text_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError(fmt::format("{}: cannot be opened for reading", file.string()));
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (in.bad()) throw InputError(fmt::format("{}: reading failed", file.string()));
-  return text;
+  return base::read_file(file, base::InputKind::table);
 }
 
 bool parse_number(std::string_view text, double& value) {
@@ -91,17 +86,16 @@ std::int64_t CsvRow::nanoseconds(std::size_t column) const {
   std::int64_t value = -1;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || value < 0)
-    fail(column, "not a time stamp, which is a non-negative integer of nanoseconds");
+  if (error != std::errc() || stop != end || value < 0 || value > kMostSeconds * kNsPerSecond)
+    fail(column, "not a time stamp, which is a non-negative integer of nanoseconds, at most 9e18");
   return value;
 }
 
 std::int64_t CsvRow::nanoseconds_from_seconds(std::size_t column) const {
-  constexpr double kMostSeconds = 9e9;
   std::int64_t ns = 0;
   if (parse_plain_seconds(cells_[column], ns)) return ns;
   const double seconds = number(column);
-  if (seconds < 0 || seconds > kMostSeconds)
+  if (seconds < 0 || seconds > static_cast<double>(kMostSeconds))
     fail(column, "not a time stamp, which is seconds from 0 to 9e9");
   return std::llround(seconds * static_cast<double>(kNsPerSecond));
 }

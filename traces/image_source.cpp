@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <opencv2/imgcodecs.hpp>
-
+#include "sim/base/input_file.h"
 #include "sim/check.h"
 #include "sim/error.h"
 #include "traces/csv.h"
+#include "traces/image_file.h"
 
 namespace leviosim::traces {
 
@@ -17,24 +17,18 @@ ImageSource::ImageSource(const Dataset& data, ImageSize size)
       preparation_(data.camera, size) {}
 
 cv::Mat ImageSource::decode(const FrameRef& frame) const {
-  const auto fail = [&](const std::string& message) {
-    throw InputError(fmt::format("image {} ({}): {}", frame.path.string(),
-                                 at_line(frames_csv_, frame.line), message));
-  };
-  cv::Mat image;
+  const std::string row = at_line(frames_csv_, frame.line);
+  std::string bytes;
   try {
-    image = cv::imread(frame.path.string(), cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception& e) {
-    fail(fmt::format("cannot be read as an image: {}", e.err));
+    bytes = base::read_file(frame.path, base::InputKind::image);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", row, error.what()));
   }
-  if (image.empty()) fail("cannot be read as an image");
-  if (image.type() != CV_8UC1)
-    fail(fmt::format("has {} channel{} of {} bits; expected 8-bit grey (1 channel)",
-                     image.channels(), image.channels() == 1 ? "" : "s", image.elemSize1() * 8));
-  if (image.size() != full_size_)
-    fail(fmt::format("is {}x{}; sensor.yaml says {}x{}", image.cols, image.rows, full_size_.width,
-                     full_size_.height));
-  return image;
+  try {
+    return decode_gray(bytes, full_size_);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("image {} ({}): {}", frame.path.string(), row, error.what()));
+  }
 }
 
 GrayImage ImageSource::read(std::size_t i) const {

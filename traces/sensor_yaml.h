@@ -10,6 +10,10 @@
 
 namespace leviosim::traces {
 
+/// The largest picture that is read: 4096x4096, which is beyond the cameras that odometry uses, and
+/// of which a picture and the tables that undistort it take 120 MB.
+constexpr int kMostPixels = 1 << 24;
+
 /// Reads cam0/sensor.yaml. Supported: camera_model pinhole, distortion_model radial-tangential.
 /// The optional key `prepared: true` is ours: CameraModel::prepared.
 CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);

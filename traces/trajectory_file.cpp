@@ -6,6 +6,7 @@
 #include <array>
 #include <string>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "traces/csv.h"
 #include "traces/kitti.h"
@@ -87,12 +88,13 @@ TrajectoryFormat detect_format(const fs::path& file) {
 }
 
 fs::path find_trajectory(const fs::path& path) {
-  if (!fs::exists(path)) throw InputError(fmt::format("{}: no such file or folder", path.string()));
-  if (!fs::is_directory(path)) return path;
+  if (!base::exists(path))
+    throw InputError(fmt::format("{}: no such file or folder", path.string()));
+  if (!base::is_folder(path)) return path;
   std::vector<fs::path> found;
   for (const fs::path& candidate :
        {path / kRunTrajectory, path / "mav0" / kAslTruth, path / kAslTruth})
-    if (fs::is_regular_file(candidate)) found.push_back(candidate);
+    if (base::is_file(candidate)) found.push_back(candidate);
   if (found.size() == 1) return found.front();
   if (found.empty())
     throw InputError(

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "traces/byte_stream.h"
-#include "traces/csv.h"
 #include "traces/work_columns.h"
 #include "traces/work_frames.h"
 
@@ -180,7 +180,7 @@ void read_stamps(ByteReader& in, std::vector<std::int64_t>& stamps) {
 }  // namespace
 
 WorkTrace::WorkTrace(const std::filesystem::path& file)
-    : WorkTrace(file.string(), read_text_file(file)) {}
+    : WorkTrace(file.string(), base::read_file(file, base::InputKind::work_trace)) {}
 
 WorkTrace::WorkTrace(std::string name, std::string bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {

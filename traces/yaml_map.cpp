@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "traces/csv.h"
 
@@ -27,66 +28,82 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-std::string_view kind_of(const YAML::Node& node) {
-  if (node.IsMap()) return "a mapping";
-  if (node.IsSequence()) return "a list";
-  if (node.IsScalar()) return "a single value";
+std::string_view kind_of(const base::YamlNode& node) {
+  if (node.is_mapping()) return "a mapping";
+  if (node.is_sequence()) return "a list";
+  if (node.is_scalar()) return "a single value";
   return "empty";
+}
+
+std::string place_of(const std::filesystem::path& file, int line, const std::string& key) {
+  const std::string place = at_line(file, static_cast<std::size_t>(line));
+  return key.empty() ? place : fmt::format("{}, key '{}'", place, key);
+}
+
+base::YamlNode parsed(const std::filesystem::path& file) {
+  try {
+    return base::parse_yaml(base::read_file(file, base::InputKind::sensor));
+  } catch (const base::YamlFault& fault) {
+    throw InputError(
+        fmt::format("{}: {}", place_of(file, fault.line(), fault.path()), fault.message()));
+  }
 }
 
 }  // namespace
 
-YamlMap::YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node)
-    : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
+YamlMap::YamlMap(std::filesystem::path file, std::string prefix, const base::YamlNode& node)
+    : file_(std::move(file)),
+      prefix_(std::move(prefix)),
+      line_(node.line()),
+      entries_(node.entries()) {}
 
 YamlMap YamlMap::load(const std::filesystem::path& file) {
-  try {
-    const YAML::Node root = YAML::Load(read_text_file(file));
-    if (!root.IsMap())
-      throw InputError(
-          fmt::format("{}: is {}; expected keys and values", file.string(), kind_of(root)));
-    return YamlMap(file, "", root);
-  } catch (const YAML::Exception& e) {
-    throw InputError(fmt::format("{}: is no valid YAML: {}",
-                                 at_line(file, static_cast<std::size_t>(e.mark.line + 1)), e.msg));
-  }
+  const base::YamlNode root = parsed(file);
+  if (!root.is_mapping())
+    throw InputError(
+        fmt::format("{}: is {}; expected keys and values", file.string(), kind_of(root)));
+  return YamlMap(file, "", root);
 }
 
 std::string YamlMap::nearest_key(const std::string& key) const {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(3, key.size() / 3 + 1);
-  for (const auto& entry : node_) {
-    const std::string name = entry.first.Scalar();
-    const std::size_t distance = edit_distance(name, key);
+  for (const base::YamlEntry& entry : entries_) {
+    // A name of another length is at least as far away as the lengths are.
+    if (entry.key.size() >= key.size() + best_distance) continue;
+    const std::size_t distance = edit_distance(entry.key, key);
     if (distance >= best_distance) continue;
-    best = name;
+    best = entry.key;
     best_distance = distance;
   }
   return best;
 }
 
-YAML::Node YamlMap::require(const std::string& key) const {
-  const YAML::Node node = node_[key];
-  if (node.IsDefined()) return node;
+const base::YamlEntry* YamlMap::find(const std::string& key) const {
+  const auto entry = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const base::YamlEntry& e) { return e.key == key; });
+  return entry == entries_.end() ? nullptr : &*entry;
+}
+
+base::YamlNode YamlMap::require(const std::string& key) const {
+  if (const base::YamlEntry* entry = find(key)) return entry->value;
   const std::string nearest = nearest_key(key);
-  fail_at(node_, key,
+  fail_at(line_, key,
           nearest.empty() ? "is missing" : fmt::format("is missing (there is '{}')", nearest));
 }
 
-void YamlMap::fail_at(const YAML::Node& node, const std::string& key,
-                      std::string_view message) const {
-  const auto line = static_cast<std::size_t>(std::max(0, node.Mark().line) + 1);
-  throw InputError(fmt::format("{}, key '{}{}': {}", at_line(file_, line), prefix_, key, message));
+void YamlMap::fail_at(int line, const std::string& key, std::string_view message) const {
+  throw InputError(fmt::format("{}: {}", place_of(file_, line, prefix_ + key), message));
 }
 
 void YamlMap::fail(const std::string& key, std::string_view message) const {
-  fail_at(require(key), key, message);
+  fail_at(require(key).line(), key, message);
 }
 
 std::string YamlMap::text(const std::string& key) const {
-  const YAML::Node node = require(key);
-  if (!node.IsScalar()) fail_at(node, key, fmt::format("is {}; expected a text", kind_of(node)));
-  return node.Scalar();
+  const base::YamlNode node = require(key);
+  if (!node.is_scalar()) fail(key, fmt::format("is {}; expected a text", kind_of(node)));
+  return node.scalar();
 }
 
 double YamlMap::number(const std::string& key) const {
@@ -96,20 +113,22 @@ double YamlMap::number(const std::string& key) const {
   return value;
 }
 
-double YamlMap::positive(const std::string& key) const {
+double YamlMap::positive(const std::string& key, double least, double most) const {
   const double value = number(key);
-  if (value <= 0) fail(key, fmt::format("is {}; expected a number above 0", value));
+  if (value < least || value > most)
+    fail(key, fmt::format("is {}; expected a number above 0, from {} to {}", value, least, most));
   return value;
 }
 
-double YamlMap::not_negative(const std::string& key) const {
+double YamlMap::not_negative(const std::string& key, double most) const {
   const double value = number(key);
-  if (value < 0) fail(key, fmt::format("is {}; expected a number not below 0", value));
+  if (value < 0 || value > most)
+    fail(key, fmt::format("is {}; expected a number not below 0, at most {}", value, most));
   return value;
 }
 
 bool YamlMap::flag(const std::string& key, bool by_default) const {
-  if (!node_[key].IsDefined()) return by_default;
+  if (find(key) == nullptr) return by_default;
   const std::string spelled = text(key);
   if (spelled != "true" && spelled != "false")
     fail(key, fmt::format("is '{}'; expected true or false", spelled));
@@ -118,27 +137,26 @@ bool YamlMap::flag(const std::string& key, bool by_default) const {
 
 std::vector<double> YamlMap::numbers(const std::string& key, std::size_t size,
                                      std::string_view meaning) const {
-  const YAML::Node node = require(key);
-  if (!node.IsSequence())
-    fail_at(node, key,
-            fmt::format("is {}; expected a list of {} numbers ({})", kind_of(node), size, meaning));
+  const base::YamlNode node = require(key);
+  if (!node.is_sequence())
+    fail(key,
+         fmt::format("is {}; expected a list of {} numbers ({})", kind_of(node), size, meaning));
   if (node.size() != size)
-    fail_at(node, key, fmt::format("has {} entries; expected {} ({})", node.size(), size, meaning));
+    fail(key, fmt::format("has {} entries; expected {} ({})", node.size(), size, meaning));
   std::vector<double> values(size);
   for (std::size_t i = 0; i < size; ++i) {
-    const YAML::Node entry = node[i];
-    if (!entry.IsScalar() || !parse_number(entry.Scalar(), values[i]))
-      fail_at(entry, key,
+    const base::YamlNode entry = node[i];
+    if (!entry.is_scalar() || !parse_number(entry.scalar(), values[i]))
+      fail_at(entry.line(), key,
               fmt::format("entry {} ('{}') is not a finite number", i + 1,
-                          entry.IsScalar() ? entry.Scalar() : std::string(kind_of(entry))));
+                          entry.is_scalar() ? entry.scalar() : std::string(kind_of(entry))));
   }
   return values;
 }
 
 YamlMap YamlMap::map(const std::string& key) const {
-  const YAML::Node node = require(key);
-  if (!node.IsMap())
-    fail_at(node, key, fmt::format("is {}; expected keys and values", kind_of(node)));
+  const base::YamlNode node = require(key);
+  if (!node.is_mapping()) fail(key, fmt::format("is {}; expected keys and values", kind_of(node)));
   return YamlMap(file_, fmt::format("{}{}.", prefix_, key), node);
 }
 

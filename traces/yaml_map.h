@@ -1,13 +1,13 @@
 // Strict access to one YAML mapping: every fault is an InputError that names file, line and key.
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "sim/base/yaml_document.h"
 
 namespace leviosim::traces {
 
@@ -19,10 +19,10 @@ class YamlMap {
   std::string text(const std::string& key) const;
   /// A finite number.
   double number(const std::string& key) const;
-  /// A finite number above zero.
-  double positive(const std::string& key) const;
-  /// A finite number not below zero.
-  double not_negative(const std::string& key) const;
+  /// A number above zero, from `least` to `most`.
+  double positive(const std::string& key, double least, double most) const;
+  /// A number from zero to `most`.
+  double not_negative(const std::string& key, double most) const;
   /// true or false; `by_default` if the key is not there.
   bool flag(const std::string& key, bool by_default) const;
   /// A list of exactly `size` finite numbers; `meaning` says what they are.
@@ -34,15 +34,16 @@ class YamlMap {
   [[noreturn]] void fail(const std::string& key, std::string_view message) const;
 
  private:
-  YamlMap(std::filesystem::path file, std::string prefix, YAML::Node node);
-  YAML::Node require(const std::string& key) const;
+  YamlMap(std::filesystem::path file, std::string prefix, const base::YamlNode& node);
+  const base::YamlEntry* find(const std::string& key) const;
+  base::YamlNode require(const std::string& key) const;
   std::string nearest_key(const std::string& key) const;
-  [[noreturn]] void fail_at(const YAML::Node& node, const std::string& key,
-                            std::string_view message) const;
+  [[noreturn]] void fail_at(int line, const std::string& key, std::string_view message) const;
 
   std::filesystem::path file_;
   std::string prefix_;  // of nested keys, "T_BS."
-  YAML::Node node_;
+  int line_;            // where it begins
+  std::vector<base::YamlEntry> entries_;
 };
 
 }  // namespace leviosim::traces

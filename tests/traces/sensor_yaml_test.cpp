@@ -93,6 +93,34 @@ TEST(SensorYaml, ImpossibleValues) {
   expect_broken_imu("rate_hz: 200", "rate_hz: [200]", {"key 'rate_hz'", "a list"});
 }
 
+TEST(SensorYaml, ValuesOnTheBounds) {
+  const auto read = [](const std::string& from, const std::string& to) {
+    const AslFolder folder;
+    folder.replace(kCamera, from, to);
+    return read_camera_model(folder.mav0(kCamera));
+  };
+  EXPECT_EQ(read("[32, 24]", "[4096, 4096]").width, 4096);
+  EXPECT_EQ(read("[32, 24]", "[65535, 256]").width, 65535);
+  expect_broken_camera("[32, 24]", "[4096, 4097]", {"line 14, key 'resolution'", "4096x4097"});
+  EXPECT_EQ(read("rate_hz: 20", "rate_hz: 0.001").rate_hz, 1e-3);
+  EXPECT_EQ(read("rate_hz: 20", "rate_hz: 1e5").rate_hz, 1e5);
+  expect_broken_camera("rate_hz: 20", "rate_hz: 100001", {"line 13, key 'rate_hz'", "100001"});
+  expect_broken_camera("rate_hz: 20", "rate_hz: 0.0009", {"line 13, key 'rate_hz'", "0.0009"});
+  EXPECT_EQ(read("[20, 21,", "[1e6, 21,").fx, 1e6);
+  expect_broken_camera("[20, 21,", "[1000001, 21,", {"line 16, key 'intrinsics'", "1000001"});
+  expect_broken_camera("0.05, 0.001", "0.05, 1001", {"'distortion_coefficients'", "1001"});
+  expect_broken_camera("data: [1, 0, 0, 0", "data: [1, 0, 0, -1001", {"'T_BS.data'", "-1001"});
+  expect_broken_imu("gyroscope_random_walk: ", "gyroscope_random_walk: 1001 # ",
+                    {"'gyroscope_random_walk'", "1001", "at most 1000"});
+}
+
+TEST(SensorYaml, KeysOccurOnceInOneDocument) {
+  expect_broken_camera("rate_hz: 20\n", "rate_hz: 20\nrate_hz: 20\n",
+                       {"line 14, key 'rate_hz': duplicate key, first given on line 13"});
+  expect_broken_camera("  data:", "  data: 1\n  data:", {"key 'T_BS.data': duplicate key"});
+  expect_broken_imu("rate_hz: 200\n", "---\nrate_hz: 200\n", {"a second document begins"});
+}
+
 TEST(SensorYaml, PreparedImagesAreMarked) {
   const AslFolder folder;
   EXPECT_FALSE(read_camera_model(folder.mav0("cam0/sensor.yaml")).prepared);
@@ -111,7 +139,7 @@ TEST(SensorYaml, TheImuMustBeTheBody) {
 
 TEST(SensorYaml, NoYamlAtAll) {
   expect_broken_camera("sensor_type: camera", "sensor_type: [camera",
-                       {"cam0/sensor.yaml line", "no valid YAML"});
+                       {"cam0/sensor.yaml line", "not valid YAML"});
   const TempFolder folder;
   write_file_atomically(folder / "sensor.yaml", "just a text\n");
   expect_input_error([&] { read_camera_model(folder / "sensor.yaml"); }, {"a single value"});

@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/cli/cache_folder.h"
 #include "traces/atomic_file.h"
-#include "traces/csv.h"
 
 namespace leviosim::tools {
 
@@ -20,8 +20,8 @@ fs::path RunCache::file_of(const std::string& key) const {
 
 std::optional<std::string> RunCache::find_text(const std::string& key) const {
   const fs::path file = file_of(key);
-  if (!fs::is_regular_file(file)) return std::nullopt;
-  return traces::read_text_file(file);
+  if (!base::is_file(file)) return std::nullopt;
+  return base::read_file(file, base::InputKind::cached_result);
 }
 
 void RunCache::store_text(const std::string& key, const std::string& text) const {

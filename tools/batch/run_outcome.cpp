@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "sim/error.h"
 #include "tools/run/energy.h"
 #include "tools/run/statistic_list.h"
 #include "tools/run/summary.h"
@@ -104,7 +105,7 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
     outcome.completion = evaluation.completion;
     outcome.path_m = evaluation.path_length_m;
     outcome.protocol = evaluation.protocol;
-  } catch (const traces::NotComparable& failure) {
+  } catch (const InputError& failure) {
     outcome.failure = failure.what();
   }
   return outcome;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/run/digest.h"
 #include "traces/asl_reader.h"
@@ -34,7 +35,7 @@ std::string folder_name(const std::string& folder) {
 NamedFolder parse_named_folder(const std::string& text) {
   NamedFolder named{"", text};
   const std::size_t equals = text.find('=');
-  if (equals != std::string::npos && !fs::exists(text) && equals < text.find('/'))
+  if (equals != std::string::npos && !base::exists(text) && equals < text.find('/'))
     named = {text.substr(0, equals), text.substr(equals + 1)};
   else
     named.name = folder_name(text);
@@ -60,6 +61,9 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
   if (data.ground_truth.empty())
     throw InputError(fmt::format(
         "--data {}: has no ground truth; expected mav0/state_groundtruth_estimate0", named.folder));
+  std::vector<std::int64_t> stamps_ns;
+  for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
+  traces::require_truth_at(data, stamps_ns);
   for (const traces::ImageSize& size : sizes) {
     try {
       traces::make_decimation(data.camera, size);

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
 #include "tools/replay/replay_report.h"
@@ -23,8 +24,8 @@ struct ReplayOptions : RunOptions {
 /// Of a run folder its trace is taken.
 std::filesystem::path trace_file(const std::string& name) {
   const std::filesystem::path path(name);
-  if (!std::filesystem::is_directory(path)) return path;
-  if (!std::filesystem::exists(path / kWorkTraceFile))
+  if (!base::is_folder(path)) return path;
+  if (!base::exists(path / kWorkTraceFile))
     throw InputError(
         fmt::format("{}: holds no {}; expected the folder of a run with --record, or a "
                     "work trace",

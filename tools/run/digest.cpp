@@ -5,8 +5,8 @@
 
 #include <array>
 
+#include "sim/base/input_file.h"
 #include "sim/check.h"
-#include "traces/csv.h"
 
 namespace leviosim::tools {
 
@@ -38,12 +38,12 @@ std::string Sha256::hex() {
 
 namespace {
 
-InputDigest digest_of(std::string name, const std::vector<fs::path>& files) {
+InputDigest digest_of(std::string name, const std::vector<fs::path>& files, base::InputKind kind) {
   InputDigest digest;
   digest.name = std::move(name);
   Sha256 sha;
   for (const fs::path& file : files) {
-    const std::string bytes = traces::read_text_file(file);
+    const std::string bytes = base::read_file(file, kind);
     sha.add(bytes);
     digest.bytes += static_cast<std::int64_t>(bytes.size());
   }
@@ -54,7 +54,7 @@ InputDigest digest_of(std::string name, const std::vector<fs::path>& files) {
 }  // namespace
 
 InputDigest digest_of_file(const fs::path& file) {
-  return digest_of(file.filename().string(), {file});
+  return digest_of(file.filename().string(), {file}, base::InputKind::work_trace);
 }
 
 std::vector<InputDigest> digest_inputs(const traces::Dataset& data) {
@@ -62,11 +62,12 @@ std::vector<InputDigest> digest_inputs(const traces::Dataset& data) {
   std::vector<InputDigest> digests;
   for (const char* name : {"cam0/sensor.yaml", "cam0/data.csv", "imu0/sensor.yaml", "imu0/data.csv",
                            "state_groundtruth_estimate0/data.csv"})
-    if (fs::exists(mav0 / name)) digests.push_back(digest_of(name, {mav0 / name}));
+    if (base::exists(mav0 / name))
+      digests.push_back(digest_of(name, {mav0 / name}, base::InputKind::table));
   std::vector<fs::path> images;
   for (const traces::FrameRef& frame : data.frames) images.push_back(frame.path);
-  digests.push_back(
-      digest_of(fmt::format("cam0/data, {} images concatenated", images.size()), images));
+  digests.push_back(digest_of(fmt::format("cam0/data, {} images concatenated", images.size()),
+                              images, base::InputKind::image));
   return digests;
 }
 

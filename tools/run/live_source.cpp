@@ -5,11 +5,19 @@
 
 #include "platform_models/compiled_code.h"
 #include "sim/chip/accelerator.h"
+#include "sim/error.h"
 #include "tools/run/summary.h"
+#include "traces/asl_reader.h"
 #include "traces/evaluation.h"
 
 namespace leviosim::tools {
 namespace {
+
+std::vector<std::int64_t> stamps_of(const Feed& feed) {
+  std::vector<std::int64_t> stamps_ns;
+  for (int i = 0; i < feed.size(); ++i) stamps_ns.push_back(feed.time_ns(i));
+  return stamps_ns;
+}
 
 /// Room for a native run at any resolution; untouched pages cost nothing.
 constexpr Bytes kUnlimited{std::int64_t{1} << 30};
@@ -67,6 +75,7 @@ LiveSource::LiveSource(const RunRequest& request)
       cluster_(cluster_machine(request, profile_)),
       controller_(controller_machine(request)),
       odometry_(vio::make_odometry(!request.native, profile_, feed_.rig(), cluster_, controller_)) {
+  if (evaluate_) traces::require_truth_at(feed_.data(), stamps_of(feed_));
 }
 
 bool LiveSource::take_up(const FrameStart& start) {
@@ -128,13 +137,13 @@ void LiveSource::describe(RunResult& result) const {
     evaluate(result);
 }
 
-/// A run that has diverged is still a run.
+/// A run that has diverged, or dropped the frames that the truth covers, is still a run.
 void LiveSource::evaluate(RunResult& result) const {
   try {
     result.ate =
         traces::evaluate(result.trajectory, traces::to_trajectory(feed_.data().ground_truth),
                          {.expected_poses = expected_poses(result)});
-  } catch (const traces::NotComparable& failure) {
+  } catch (const InputError& failure) {
     result.not_comparable = failure.what();
   }
 }

@@ -117,21 +117,21 @@ class RangeReader {
 
 }  // namespace
 
-Domain read_domain(const SweepKey& key, const YAML::Node& node, const std::string& file, int line,
-                   const std::string& path, platform::PlatformFile& reference) {
+Domain read_domain(const SweepKey& key, const platform::YamlNode& node, const std::string& file,
+                   int line, const std::string& path, platform::PlatformFile& reference) {
   const Place place = platform::place_of(file, line, path);
-  if (node.IsMap())
+  if (node.is_mapping())
     return RangeReader(key, file, path, reference)
-        .read(platform::entries_of(node, file, path, line), place);
+        .read(platform::entries_of(node, file, path), place);
   Domain domain;
-  const auto add = [&](const YAML::Node& value) {
+  const auto add = [&](const platform::YamlNode& value) {
     domain.values.push_back(normal_value(key, platform::scalar(value, place), reference, place));
   };
-  if (!node.IsSequence()) {
+  if (!node.is_sequence()) {
     add(node);
     return domain;
   }
-  for (const auto& value : node) add(value);
+  for (const platform::YamlNode& value : node.items()) add(value);
   if (domain.values.empty()) place.fail("is an empty list; expected values");
   return domain;
 }

@@ -5,11 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/yaml_document.h"
 #include "tools/sweep/key.h"
-
-namespace YAML {
-class Node;
-}
 
 namespace leviosim::tools {
 
@@ -28,9 +25,9 @@ struct Domain {
 
 /// `[240, 370]`, `240`, `{ from: 100, to: 400, step: 10 }` or `{ from: 1, to: 16, scale: log }`
 /// (without step, scale is `linear` unless given).
-/// @param line  of the node, for what has no line of its own
-Domain read_domain(const SweepKey& key, const YAML::Node& node, const std::string& file, int line,
-                   const std::string& path, platform::PlatformFile& reference);
+/// @param line  of the key
+Domain read_domain(const SweepKey& key, const base::YamlNode& node, const std::string& file,
+                   int line, const std::string& path, platform::PlatformFile& reference);
 
 /// The value that lies at `u` of the domain, 0 <= u < 1; of equal u, equal values. Numbers of a
 /// range have four digits, so that a point can be typed again.

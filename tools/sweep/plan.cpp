@@ -9,15 +9,16 @@
 
 #include "platform_models/nearest.h"
 #include "platform_models/yaml_entries.h"
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/cli/command_line.h"
-#include "traces/csv.h"
 
 namespace leviosim::tools {
 namespace {
 
 using platform::Place;
 using platform::YamlEntry;
+using platform::YamlNode;
 using Kind = SweepMember::Kind;
 
 constexpr std::int64_t kMostDraws = 1'000'000;
@@ -39,8 +40,7 @@ class PlanReader {
   }
 
   SweepPlan read() {
-    const std::vector<YamlEntry> root =
-        entries(platform::parse_yaml(plan_.file, plan_.text), "", 1);
+    const std::vector<YamlEntry> root = entries(platform::parse_yaml(plan_.file, plan_.text), "");
     check_keys(root, "", {"base", "points", "impossible"});
     const YamlEntry* base = find(root, "base");
     const YamlEntry* points = find(root, "points");
@@ -51,7 +51,7 @@ class PlanReader {
           "missing key 'points'; expected groups of grid, list, random or "
           "latin_hypercube");
     read_impossible(find(root, "impossible"));
-    const std::vector<YamlEntry> common = entries(base->value, "base", base->line);
+    const std::vector<YamlEntry> common = entries(base->value, "base");
     choose_reference(common, points->value);
     read_base(common);
     read_groups(*points);
@@ -59,8 +59,8 @@ class PlanReader {
   }
 
  private:
-  std::vector<YamlEntry> entries(const YAML::Node& node, const std::string& path, int line) const {
-    return platform::entries_of(node, plan_.file, path, line);
+  std::vector<YamlEntry> entries(const YamlNode& node, const std::string& path) const {
+    return platform::entries_of(node, plan_.file, path);
   }
   Place place(const YamlEntry& entry, const std::string& path) const {
     return platform::place_of(plan_.file, entry.line, platform::joined(path, entry.key));
@@ -89,28 +89,27 @@ class PlanReader {
   }
 
   /// The first value of a key anywhere in a tree, in the order of the file.
-  static std::string first_value(const YAML::Node& node, const std::string& key) {
-    if (node.IsSequence())
-      for (const auto& item : node)
+  static std::string first_value(const YamlNode& node, const std::string& key) {
+    if (node.is_sequence())
+      for (const YamlNode& item : node.items())
         if (std::string found = first_value(item, key); !found.empty()) return found;
-    if (!node.IsMap()) return {};
-    for (const auto& entry : node) {
-      const bool named = entry.first.IsScalar() && entry.first.Scalar() == key;
-      if (named && entry.second.IsScalar()) return entry.second.Scalar();
-      if (named && entry.second.IsSequence() && entry.second.size() > 0 &&
-          entry.second[0].IsScalar())
-        return entry.second[0].Scalar();
-      if (std::string found = first_value(entry.second, key); !found.empty()) return found;
+    if (!node.is_mapping()) return {};
+    for (const YamlEntry& entry : node.entries()) {
+      const YamlNode& value = entry.value;
+      if (entry.key == key && value.is_scalar()) return value.scalar();
+      if (entry.key == key && value.is_sequence() && value.size() > 0 && value[0].is_scalar())
+        return value[0].scalar();
+      if (std::string found = first_value(value, key); !found.empty()) return found;
     }
     return {};
   }
 
   /// Numbers without unit are in the units of the first platform that the plan names.
-  void choose_reference(const std::vector<YamlEntry>& base, const YAML::Node& points) {
+  void choose_reference(const std::vector<YamlEntry>& base, const YamlNode& points) {
     const auto first = [&](const char* key) {
       const YamlEntry* entry = find(base, key);
-      return entry != nullptr && entry->value.IsScalar() ? entry->value.Scalar()
-                                                         : first_value(points, key);
+      return entry != nullptr && entry->value.is_scalar() ? entry->value.scalar()
+                                                          : first_value(points, key);
     };
     const auto at = [&](const char* key) {
       const YamlEntry* entry = find(base, key);
@@ -136,20 +135,19 @@ class PlanReader {
 
   void read_groups(const YamlEntry& points) {
     const Place at = place(points, "");
-    if (points.value.IsMap()) {
+    if (points.value.is_mapping()) {
       read_group(points.value, "points", points.line);
-    } else if (points.value.IsSequence()) {
-      for (const auto& group : points.value)
-        read_group(group, "points", group.Mark().is_null() ? points.line : group.Mark().line + 1);
+    } else if (points.value.is_sequence()) {
+      for (const YamlNode& group : points.value.items()) read_group(group, "points", group.line());
     } else {
       at.fail(fmt::format("is {}; expected groups", platform::kind_of(points.value)));
     }
     if (plan_.groups.empty()) at.fail("is empty; expected groups");
   }
 
-  void read_group(const YAML::Node& node, const std::string& path, int line) {
+  void read_group(const YamlNode& node, const std::string& path, int line) {
     SweepGroup group{platform::place_of(plan_.file, line, path), {}};
-    const std::vector<YamlEntry> all = entries(node, path, line);
+    const std::vector<YamlEntry> all = entries(node, path);
     std::vector<std::string> names;
     for (const MemberName& m : kMembers) names.emplace_back(m.name);
     check_keys(all, path, names);
@@ -182,9 +180,9 @@ class PlanReader {
     if (member.kind == Kind::list)
       read_list(entry, inner, member);
     else if (member.kind == Kind::grid)
-      member.axes = read_axes(entries(entry.value, inner, entry.line), inner, false);
+      member.axes = read_axes(entries(entry.value, inner), inner, false);
     else
-      read_draws(entries(entry.value, inner, entry.line), inner, member);
+      read_draws(entries(entry.value, inner), inner, member);
     if (member.axes.empty()) member.place.fail("is empty; expected keys with their values");
     return member;
   }
@@ -215,7 +213,7 @@ class PlanReader {
       member.seed = static_cast<std::uint64_t>(
           whole(*seed, path, 0, std::numeric_limits<std::int64_t>::max()));
     const std::string inner = platform::joined(path, "over");
-    member.axes = read_axes(entries(over->value, inner, over->line), inner, true);
+    member.axes = read_axes(entries(over->value, inner), inner, true);
   }
 
   std::int64_t whole(const YamlEntry& entry, const std::string& path, std::int64_t low,
@@ -229,13 +227,12 @@ class PlanReader {
   }
 
   void read_list(const YamlEntry& list, const std::string& path, SweepMember& member) const {
-    if (!list.value.IsSequence())
+    if (!list.value.is_sequence())
       member.place.fail(fmt::format("is {}; expected a list of points, {{ key: value, … }} each",
                                     platform::kind_of(list.value)));
-    for (const auto& row : list.value) {
+    for (const YamlNode& row : list.value.items()) {
       SweepRow& values = member.rows.emplace_back();
-      for (const YamlEntry& entry :
-           entries(row, path, row.Mark().is_null() ? list.line : row.Mark().line + 1)) {
+      for (const YamlEntry& entry : entries(row, path)) {
         const Place at = place(entry, path);
         const SweepKey key = find_key(entry.key, plan_.reference->schema(), at);
         values[key.name] =
@@ -258,7 +255,7 @@ SweepPlan parse_plan(const std::string& file, const std::string& text, SweepInpu
 }
 
 SweepPlan read_plan(const std::string& file, SweepInputs& inputs) {
-  return parse_plan(file, traces::read_text_file(file), inputs);
+  return parse_plan(file, base::read_file(file, base::InputKind::plan), inputs);
 }
 
 }  // namespace leviosim::tools

@@ -3,13 +3,13 @@
 #include <functional>
 
 #include "platform_models/instruction_set.h"
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/batch/sequence.h"
 #include "tools/run/digest.h"
 #include "tools/run/run_folder.h"
 #include "tools/synth/flight_cache.h"
 #include "traces/asl_reader.h"
-#include "traces/csv.h"
 
 namespace leviosim::tools {
 namespace {
@@ -47,8 +47,8 @@ SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::
   if (known != traces_.end()) return known->second;
   return opened_at(place, [&]() -> std::reference_wrapper<Trace> {
     std::filesystem::path file = beside(name);
-    if (std::filesystem::is_directory(file)) file /= kWorkTraceFile;
-    std::string bytes = traces::read_text_file(file);
+    if (base::is_folder(file)) file /= kWorkTraceFile;
+    std::string bytes = base::read_file(file, base::InputKind::work_trace);
     Sha256 digest;
     digest.add(bytes);
     // Called as in the plan: what a point says must not depend on where the plan lies.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "platform_models/dimension.h"
+#include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/cli/version.h"
 #include "tools/sweep/pareto.h"
@@ -26,7 +27,7 @@ fs::path made(const fs::path& folder) {
 }
 
 fs::path existing(const fs::path& folder) {
-  if (!fs::is_regular_file(folder / kSweepFile))
+  if (!base::is_file(folder / kSweepFile))
     throw InputError(fmt::format("{}: holds no {}; expected the folder of a sweep", folder.string(),
                                  kSweepFile));
   return folder / kSweepFile;

@@ -1,0 +1,16 @@
+// Grey pictures from the bytes of a PNG or JPEG file, by libraries that print nothing and say what
+// is wrong. The head of the file is checked before memory is asked for.
+// Left out: colour, more than 8 bits, other formats; all of them are refused.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string_view>
+
+namespace leviosim::traces {
+
+/// The picture, 8-bit grey (CV_8UC1); PNG files of 1, 2 and 4 bits are scaled to 8. Throws
+/// InputError, without the file's name, for anything else, another size than `expected`, and files
+/// that are damaged or cut off.
+cv::Mat decode_gray(std::string_view bytes, cv::Size expected);
+
+}  // namespace leviosim::traces
