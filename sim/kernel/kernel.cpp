@@ -3,6 +3,7 @@
 #include <bit>
 #include <utility>
 
+#include "sim/kernel/time_limit.h"
 #include "sim/kernel/timer.h"
 
 namespace leviosim::sim {
@@ -75,7 +76,8 @@ void Kernel::unlink(ProcessState& process) {
 std::size_t Kernel::run() {
   check(!running_, "a kernel is run from within one of its processes");
   const Raised running(running_);
-  execute_all(Time::max());
+  execute_all(kLastTime);
+  if (future_.first() != EventKey::never()) fail_beyond_time();
   std::size_t deadlocked = 0;
   for (const ProcessState* p = first_process_; p != nullptr; p = p->next_process)
     deadlocked += p->server ? 0 : 1;
