@@ -148,13 +148,12 @@ void WorkFrames::read_facts(WorkFrame& frame) {
 }
 
 void WorkFrames::read_job(work::Job& job, bool on_controller) {
-  waited_.clear();
-  waits_ = 0;
+  background_ = waits_ = 0;
   job.stages.resize(text_.count("stages of a job", kStageMemory));
   for (work::StageRun& stage : job.stages) read_stage(stage, on_controller);
-  if (waits_ != waited_.size())
+  if (waits_ != background_)
     text_.fail(
-        fmt::format("a job waits {} times for {} background transfers", waits_, waited_.size()));
+        fmt::format("a job waits {} times for {} background transfers", waits_, background_));
 }
 
 /// There are few: what is reported has a part for each.
@@ -208,20 +207,14 @@ work::Transfer WorkFrames::read_transfer(bool background, bool on_controller) {
     text_.fail("a transfer of the cluster from or to external memory, which it cannot reach");
   const Bytes bytes(
       static_cast<std::int64_t>(text_.whole_below(kMostTransferred, "bytes of a transfer")));
-  if (background) waited_.push_back(false);
-  if (waited_.size() > kMostBackground)
-    text_.fail(fmt::format("a job has more than {} background transfers", kMostBackground));
+  background_ += background;
   return {direction, bytes, background};
 }
 
 work::TransferWait WorkFrames::read_wait() {
-  const std::size_t number =
-      text_.whole_below(waited_.size(), "the number of a background transfer");
-  if (waited_[number])
-    text_.fail(fmt::format("a job waits twice for its background transfer {}", number));
-  waited_[number] = true;
   ++waits_;
-  return {static_cast<std::int32_t>(number)};
+  return {static_cast<std::int32_t>(text_.whole_below(static_cast<std::uint64_t>(background_),
+                                                      "the number of a background transfer"))};
 }
 
 void WorkFrames::read_fork(work::Fork& fork, bool on_controller) {

@@ -120,8 +120,8 @@ class WorkFrames {
   std::vector<work::MemoryPeak> peaks_;
   std::vector<bool> stage_names_;  ///< by number of the name, whether it is that of a stage
   std::size_t stages_ = 0;         ///< so many are
-  std::vector<bool> waited_;       ///< of the job's background transfers so far
-  std::size_t waits_ = 0;
+  std::int32_t background_ = 0;    ///< transfers of the job so far
+  std::int32_t waits_ = 0;
 };
 
 }  // namespace leviosim::traces

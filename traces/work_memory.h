@@ -26,8 +26,6 @@ inline constexpr std::size_t kTextMemory = 128;   ///< beside its characters
 inline constexpr std::size_t kMostStages = 256;
 /// Memories of the summary; likewise.
 inline constexpr std::size_t kMostMemories = 256;
-/// Background transfers of a job: each is a process of the simulation, which has 65536 at most.
-inline constexpr std::size_t kMostBackground = 1 << 14;
 /// Bytes of a memory or block. No memory of such chips comes near.
 inline constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40;
 /// Bytes of a transfer. So low that sums over a trace do not overflow.

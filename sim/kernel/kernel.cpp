@@ -45,13 +45,15 @@ void Kernel::spawn_server(std::string name, Process process) {
 
 void Kernel::adopt(std::string name, Process process, bool server) {
   check(!closing_, "a process is spawned while its kernel is destroyed");
+  const Slot slot = add_alarm({});  // may throw: the process is still its own
   const Process::Handle handle = process.release();
   ProcessState& state = handle.promise();
   state.resume_point = handle;
   state.name = std::move(name);
   state.server = server;
   state.kernel = this;
-  state.slot = add_alarm({handle, &state, nullptr});
+  state.slot = slot;
+  alarms_[slot] = {handle, &state, nullptr};
   state.previous_process = last_process_;
   (last_process_ == nullptr ? first_process_ : last_process_->next_process) = &state;
   last_process_ = &state;
