@@ -5,6 +5,7 @@ set -euo pipefail
 
 packages=(
   g++ clang cmake ninja-build git          # compilers (Clang for tools/check_reproducible.sh), build
+  libclang-rt-14-dev                       # libFuzzer and its sanitizers (tools/fuzz.sh)
   libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
   libspng-dev libturbojpeg0-dev            # PNG and JPEG files
   libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256

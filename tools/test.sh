@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # Builds everything and runs every test; what CI calls. Exit status 0 only if all is well.
 #   tools/test.sh           release build (GCC), reproducibility over compilers, all tests
-#   tools/test.sh --fast    without the other compilers
+#                           and 20 s of each fuzz target
+#   tools/test.sh --fast    without the other compilers and fuzz targets
 #   tools/test.sh --asan    all tests under address and undefined-behaviour sanitizers
+#   tools/test.sh --tsan    tests of what runs in threads (sweeps, batches, drawing) under the
+#                           thread sanitizer
 #   tools/test.sh --clang   all tests, built by Clang
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,9 +16,10 @@ for option in "$@"; do
   case $option in
     --fast) reproducible=no ;;
     --asan) preset=asan reproducible=no ;;
+    --tsan) preset=tsan reproducible=no ;;
     --clang) preset=clang reproducible=no ;;
     *)
-      echo "test: unknown option $option; expected --fast, --asan or --clang" >&2
+      echo "test: unknown option $option; expected --fast, --asan, --tsan or --clang" >&2
       exit 2
       ;;
   esac
@@ -28,6 +32,7 @@ tools/build.sh "$preset"
 status=0
 if [[ $reproducible == yes ]]; then
   tools/check_reproducible.sh --quick || status=1
+  tools/fuzz.sh --seconds 20 || status=1
 fi
 # Last, so that its summary is what stands at the end of the log.
 ctest --preset "$preset" --parallel 2 || status=1

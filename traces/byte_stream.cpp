@@ -42,4 +42,8 @@ void ByteReader::fail_limit(const char* what, std::uint64_t value, std::uint64_t
   fail(fmt::format("{} is {}; expected 0 to {}", what, value, limit - 1));
 }
 
+void ByteReader::fail_budget(std::size_t number, std::size_t each, const char* what) const {
+  fail(budget_->refusal(fmt::format("{} ({})", what, number), number * each));
+}
+
 }  // namespace leviosim::traces

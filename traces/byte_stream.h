@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "traces/memory_budget.h"
+
 namespace leviosim::traces {
 
 class ByteWriter {
@@ -48,8 +50,13 @@ class ByteReader {
   ByteReader() = default;
   /// @param bytes  outlive the reader, as does `place`
   /// @param place  what these bytes are, e.g. "out/work.trace, frames 0 to 31"
-  ByteReader(std::string_view bytes, const std::string& place)
-      : begin_(bytes.data()), at_(begin_), end_(begin_ + bytes.size()), place_(&place) {}
+  /// @param budget  pays for what they stand for; outlives the reader, too
+  ByteReader(std::string_view bytes, const std::string& place, MemoryBudget* budget = nullptr)
+      : begin_(bytes.data()),
+        at_(begin_),
+        end_(begin_ + bytes.size()),
+        place_(&place),
+        budget_(budget) {}
 
   std::uint8_t byte(const char* what) {
     if (at_ == end_) [[unlikely]]
@@ -75,11 +82,19 @@ class ByteReader {
       fail_limit(what, value, limit);
     return value;
   }
-  /// How many things follow that take at least a byte each.
-  std::size_t count(const char* what) {
-    return static_cast<std::size_t>(whole_below(left() + 1, what));
+  /// How many things follow that take at least a byte each here, and so much memory each when they
+  /// are read: the budget pays for them. @throws InputError if it does not suffice
+  std::size_t count(const char* what, std::size_t memory_each) {
+    const auto number = static_cast<std::size_t>(whole_below(left() + 1, what));
+    charge(number, memory_each, what);
+    return number;
   }
-  std::string_view text(const char* what) { return take(count(what), what); }
+  /// The budget pays for things that are not counted in the file.
+  void charge(std::size_t number, std::size_t memory_each, const char* what) {
+    if (budget_ != nullptr && !budget_->take(number * memory_each)) [[unlikely]]
+      fail_budget(number, memory_each, what);
+  }
+  std::string_view text(const char* what) { return take(count(what, 1), what); }
   std::string_view take(std::size_t size, const char* what) {
     if (size > left()) fail_end(what);
     const std::string_view bytes(at_, size);
@@ -90,6 +105,7 @@ class ByteReader {
   std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
   std::size_t position() const { return static_cast<std::size_t>(at_ - begin_); }
   const std::string& place() const { return *place_; }
+  MemoryBudget* budget() const { return budget_; }
   /// @throws InputError if something is left
   void expect_end();
   /// @throws InputError "PLACE, byte N: MESSAGE"
@@ -100,11 +116,13 @@ class ByteReader {
   std::uint64_t long_whole(const char* what);
   [[noreturn]] void fail_end(const char* what) const;
   [[noreturn]] void fail_limit(const char* what, std::uint64_t value, std::uint64_t limit) const;
+  [[noreturn]] void fail_budget(std::size_t number, std::size_t each, const char* what) const;
 
   const char* begin_ = nullptr;
   const char* at_ = nullptr;
   const char* end_ = nullptr;
   const std::string* place_ = nullptr;
+  MemoryBudget* budget_ = nullptr;
 };
 
 }  // namespace leviosim::traces

@@ -21,14 +21,6 @@ constexpr std::size_t kSectionHead = kSizes + 4;
 /// No section of ours comes near; what a damaged or hostile file claims is not allocated.
 constexpr std::size_t kLargestContent = std::size_t{1} << 28;
 
-std::uint32_t crc_of(std::string_view a, std::string_view b = {}) {
-  uLong crc = 0;
-  for (const std::string_view bytes : {a, b})
-    if (!bytes.empty())  // zlib takes a null pointer for the wish to begin anew
-      crc = crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  return static_cast<std::uint32_t>(crc);
-}
-
 [[noreturn]] void fail(const std::string& file, std::size_t offset, std::string_view message) {
   throw InputError(fmt::format("{}, byte {}: {}", file, offset, message));
 }
@@ -50,6 +42,14 @@ void check_head(const FileKind& kind, const std::string& file, std::string_view 
 }
 
 }  // namespace
+
+std::uint32_t crc_of(std::string_view a, std::string_view b) {
+  uLong crc = 0;
+  for (const std::string_view bytes : {a, b})
+    if (!bytes.empty())  // zlib takes a null pointer for the wish to begin anew
+      crc = crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  return static_cast<std::uint32_t>(crc);
+}
 
 std::string file_head(const FileKind& kind) {
   check_equal(kind.magic.size(), kMagicSize, "bytes that name a kind of file");
@@ -112,17 +112,26 @@ std::vector<Section> sections_of(const FileKind& kind, const std::string& file,
   return sections;
 }
 
-std::string unpacked(const Section& section, const std::string& file) {
-  std::string content(section.content_size, '\0');
+std::string unpacked(const Section& section, const std::string& file, MemoryBudget& budget) {
+  const std::size_t expected = section.content_size;
+  // What the frame itself says is its size comes first: a lie about it costs nothing.
+  const unsigned long long stated =
+      ZSTD_getFrameContentSize(section.stored.data(), section.stored.size());
+  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated != ZSTD_CONTENTSIZE_ERROR && stated != expected)
+    fail(file, section.offset,
+         fmt::format("the section holds {} bytes; expected {}", stated, expected));
+  if (!budget.take(expected))
+    fail(file, section.offset, budget.refusal("the content of the section", expected));
+  std::string content(expected, '\0');
   const std::size_t size =
       ZSTD_decompress(content.data(), content.size(), section.stored.data(), section.stored.size());
   if (ZSTD_isError(size))
     fail(file, section.offset,
-         fmt::format("the section is no zstd frame of {} bytes: {}", content.size(),
+         fmt::format("the section is no zstd frame of {} bytes: {}", expected,
                      ZSTD_getErrorName(size)));
-  if (size != content.size())
+  if (size != expected)
     fail(file, section.offset,
-         fmt::format("the section holds {} bytes; expected {}", size, content.size()));
+         fmt::format("the section holds {} bytes; expected {}", size, expected));
   return content;
 }
 

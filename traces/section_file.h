@@ -16,6 +16,8 @@
 #include <string_view>
 #include <vector>
 
+#include "traces/memory_budget.h"
+
 namespace leviosim::traces {
 
 struct FileKind {
@@ -23,6 +25,9 @@ struct FileKind {
   const char* name;        ///< "a work trace"
   std::uint32_t version;   ///< the one that is written, and the newest that is read
 };
+
+/// Checksum of one text after the other.
+std::uint32_t crc_of(std::string_view a, std::string_view b = {});
 
 std::string file_head(const FileKind& kind);
 /// @param level  of zstd's compression
@@ -44,7 +49,9 @@ std::vector<Section> sections_of(const FileKind& kind, const std::string& file,
 /// Version that the head of a file names, of which sections_of() has read the sections.
 std::uint32_t version_of(std::string_view bytes);
 
-/// @throws InputError if the section does not decompress to the size that it states
-std::string unpacked(const Section& section, const std::string& file);
+/// The content. @param budget  pays for it
+/// @throws InputError if the section does not decompress to the size that it states, and, before
+///         anything is allocated, if the budget does not suffice
+std::string unpacked(const Section& section, const std::string& file, MemoryBudget& budget);
 
 }  // namespace leviosim::traces

@@ -182,21 +182,28 @@ SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns,
   const auto field = [&](const char* what) {
     return fields[static_cast<std::size_t>(head.whole_below(fields.size(), what))];
   };
-  for (std::size_t i = head.count("counters of a series"); i > 0; --i) {
+  // Each counter has one column or sum at most, and a sum has each counter once: what a piece of
+  // work costs to read is bounded.
+  const auto number_of = [&](const char* what, std::size_t memory_each) {
+    const auto number = static_cast<std::size_t>(head.whole_below(kCounters + 1, what));
+    head.charge(number, memory_each, what);
+    return number;
+  };
+  for (std::size_t i = number_of("counters of a series", 0); i > 0; --i) {
     const std::size_t k = field("a counter");
     counter(present_, k) =
         head.whole_below(std::uint64_t{1} << kCounterBits, "a count at the begin of a series");
   }
-  for (std::size_t i = head.count("columns of a series"); i > 0; --i) {
+  for (std::size_t i = number_of("columns of a series", sizeof(Column)); i > 0; --i) {
     const std::size_t k = field("the counter of a column");
     const auto size = static_cast<std::size_t>(
         head.whole_below(columns.left() + 1, "the number of bytes of a column"));
     columns_.push_back({k, ByteReader(columns.take(size, "a column"), columns.place())});
   }
-  for (std::size_t i = head.count("sums of a series"); i > 0; --i) {
+  for (std::size_t i = number_of("sums of a series", sizeof(Sum)); i > 0; --i) {
     Sum sum{field("the counter of a sum"), 0, terms_.size(), 0};
     sum.constant = counter(present_, sum.counter);
-    for (std::size_t j = head.count("terms of a sum"); j > 0; --j) {
+    for (std::size_t j = number_of("terms of a sum", sizeof(Term)); j > 0; --j) {
       const std::size_t k = field("the counter of a term");
       const auto factor = static_cast<std::uint64_t>(head.integer("a factor"));
       terms_.push_back({k, factor});

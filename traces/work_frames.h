@@ -73,6 +73,7 @@ class WorkFrames {
   /// @param trace  outlives the reader and the names in what it gives
   /// @param kernels  whether the calls of kernels are read, too
   /// @throws InputError if they are asked for, and the trace has none
+  /// Memory: what trace.budget() has left, at any time.
   explicit WorkFrames(const WorkTrace& trace, bool kernels = false);
 
   /// The next frame; storage of `frame` is used again. False at the end.
@@ -80,13 +81,19 @@ class WorkFrames {
   bool next(WorkFrame& frame);
 
  private:
-  void open_chunk();
+  void open_chunk(WorkFrame& frame);
+  void open_kernels(const WorkTrace::Chunk& chunk);
   void close_chunk();
+  void drop_storage(WorkFrame& frame);
   std::string_view read_name();
   void read_facts(WorkFrame& frame);
+  void read_iterations(WorkFrame& frame);
   void read_job(work::Job& job, bool on_controller);
   void read_stage(work::StageRun& stage, bool on_controller);
+  std::string_view read_stage_name();
   void read_step(work::Step& step, bool on_controller);
+  work::Transfer read_transfer(bool background, bool on_controller);
+  work::TransferWait read_wait();
   void read_fork(work::Fork& fork, bool on_controller);
   void read_peak(work::MemoryPeak& peak);
   void read_counts(std::uint64_t series, work::Piece& piece);
@@ -95,6 +102,10 @@ class WorkFrames {
 
   const WorkTrace* trace_;
   bool with_kernels_;
+  MemoryBudget budget_;
+  std::uint64_t of_chunk_ =
+      0;  ///< used of it at the first frame of the chunk, with peaks since then
+  std::uint64_t decoded_ = 0;  ///< entries that were struck out: frames and sections before
   std::size_t next_chunk_ = 0;
   int frame_ = 0;        ///< number of the next
   int frames_left_ = 0;  ///< of the chunk
@@ -107,7 +118,9 @@ class WorkFrames {
   ByteReader kernel_text_;
   std::vector<SeriesReader> kernel_series_;
   std::vector<work::MemoryPeak> peaks_;
-  std::int32_t background_ = 0;  ///< transfers of the job so far
+  std::vector<bool> stage_names_;  ///< by number of the name, whether it is that of a stage
+  std::size_t stages_ = 0;         ///< so many are
+  std::int32_t background_ = 0;    ///< transfers of the job so far
   std::int32_t waits_ = 0;
 };
 

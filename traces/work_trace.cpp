@@ -20,7 +20,8 @@ constexpr int kFramesPerChunk = 32;
 constexpr int kLevel = 9;  ///< of zstd; higher ones take longer than the run for 2 % of size
 constexpr std::uint64_t kMostCores = 1024;
 constexpr std::uint64_t kLargestSide = 1 << 16;
-constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 62;
+constexpr std::uint64_t kMostFrames = std::uint64_t{1} << 31;
+constexpr std::uint64_t kLongestPeriod = std::uint64_t{1} << 42;  ///< an hour [ns]
 
 void write_texts(ByteWriter& out, const std::vector<std::string>& texts) {
   out.whole(texts.size());
@@ -106,14 +107,14 @@ std::vector<std::size_t> read_fields(ByteReader& in) {
   std::vector<std::string> known;
   for (const work::OpInfo& op : work::kOps) known.emplace_back(op.name);
   std::vector<std::size_t> fields;
-  for (std::size_t i = in.count("operations"); i > 0; --i) {
+  for (std::uint64_t i = in.whole_below(work::kOpCount + 1, "operations"); i > 0; --i) {
     const std::string name(in.text("the name of an operation"));
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end())
       in.fail(fmt::format("counts operation '{}', which this leviosim does not know", name));
     fields.push_back(static_cast<std::size_t>(found - known.begin()));
   }
-  const std::size_t classes = in.count("classes of code reuse");
+  const std::uint64_t classes = in.whole("classes of code reuse");
   if (classes != work::kReuseClassEnds.size())
     in.fail(fmt::format("has {} classes of code reuse; expected {}", classes,
                         work::kReuseClassEnds.size()));
@@ -144,18 +145,19 @@ Evaluation read_ate(ByteReader& in) {
 
 std::vector<std::string> read_names(ByteReader& in) {
   std::vector<std::string> names;
-  for (std::size_t i = in.count("names"); i > 0; --i) names.emplace_back(in.text("a name"));
+  for (std::size_t i = in.count("names", kTextMemory); i > 0; --i)
+    names.emplace_back(in.text("a name"));
   return names;
 }
 
 /// @param names  where the names of the blocks stay
 std::vector<WorkTraceInfo::Memory> read_l2(ByteReader& in, const std::vector<std::string>& names) {
-  const auto bytes = [&] { return Bytes(read_number(in, kMostNumber, "bytes of memory")); };
-  std::vector<WorkTraceInfo::Memory> memories(in.count("memories"));
+  const auto bytes = [&] { return Bytes(read_number(in, kMostBytes, "bytes of memory")); };
+  std::vector<WorkTraceInfo::Memory> memories(in.whole_below(kMostMemories + 1, "memories"));
   for (WorkTraceInfo::Memory& memory : memories) {
     memory.name = in.text("the name of a memory");
     memory.bytes = bytes();
-    memory.blocks.resize(in.count("blocks of memory"));
+    memory.blocks.resize(in.count("blocks of memory", kBlockMemory));
     for (work::Block& block : memory.blocks) {
       block.name = names[in.whole_below(names.size(), "the number of a name")];
       block.offset = bytes();
@@ -167,7 +169,7 @@ std::vector<WorkTraceInfo::Memory> read_l2(ByteReader& in, const std::vector<std
 
 void read_stamps(ByteReader& in, std::vector<std::int64_t>& stamps) {
   std::int64_t before = 0;
-  for (std::size_t i = in.count("time stamps"); i > 0; --i) {
+  for (std::size_t i = in.count("time stamps", kFrameMemory); i > 0; --i) {
     const std::int64_t step = in.integer("the time between two frames");
     if ((!stamps.empty() && step <= 0) || step < 0 || step > (std::int64_t{1} << 61))
       in.fail("time stamps do not rise");
@@ -179,25 +181,39 @@ void read_stamps(ByteReader& in, std::vector<std::int64_t>& stamps) {
 
 }  // namespace
 
-WorkTrace::WorkTrace(const std::filesystem::path& file)
-    : WorkTrace(file.string(), base::read_file(file, base::InputKind::work_trace)) {}
+WorkTrace::WorkTrace(const std::filesystem::path& file, Bytes memory)
+    : WorkTrace(file.string(), base::read_file(file, base::InputKind::work_trace), memory) {}
 
-WorkTrace::WorkTrace(std::string name, std::string bytes)
-    : name_(std::move(name)), bytes_(std::move(bytes)) {
+WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
+    : name_(std::move(name)), bytes_(std::move(bytes)), budget_(memory) {
+  if (!budget_.take(bytes_.size()))
+    throw InputError(fmt::format("{}: {}", name_, budget_.refusal("the file", bytes_.size())));
   const std::vector<Section> sections = sections_of(kKind, name_, bytes_);
   if (sections.empty())
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",
                                  name_, bytes_.size()));
-  const std::string summary = unpacked(sections[0], name_);
+  has_kernels_ = version_of(bytes_) >= kWithKernels;
+  const std::string summary = unpacked(sections[0], name_, budget_);
   const std::string place =
       fmt::format("{}, summary (section at byte {})", name_, sections[0].offset);
-  ByteReader in(summary, place);
+  ByteReader in(summary, place, &budget_);
+  read_summary(in);
+  read_chunks(in, sections);
+  read_stamps(in, info_.stamps_ns);
+  const int frames = chunks_.empty() ? 0 : chunks_.back().first + chunks_.back().frames;
+  if (static_cast<std::size_t>(frames) != info_.stamps_ns.size())
+    in.fail(fmt::format("{} time stamps for {} frames", info_.stamps_ns.size(), frames));
+  in.expect_end();
+}
+
+/// Up to the sections of frames.
+void WorkTrace::read_summary(ByteReader& in) {
   for (std::string* text :
        {&info_.program, &info_.profile, &info_.data, &info_.platform, &info_.platform_yaml})
     *text = in.text("a text");
   info_.seed = static_cast<std::uint32_t>(read_number(in, std::uint64_t{1} << 32, "a seed"));
-  info_.first_frame = read_number(in, kMostNumber, "the first frame");
-  for (std::size_t i = in.count("inputs"); i > 0; --i) {
+  info_.first_frame = read_number(in, kMostFrames, "the first frame");
+  for (std::size_t i = in.count("inputs", 2 * kTextMemory); i > 0; --i) {
     const std::string input(in.text("the name of an input"));
     info_.inputs.emplace_back(input, in.text("the digest of an input"));
   }
@@ -205,9 +221,9 @@ WorkTrace::WorkTrace(std::string name, std::string bytes)
   if (info_.cores == 0) in.fail("work of no cores");
   info_.image_width = static_cast<int>(read_number(in, kLargestSide, "the width of an image"));
   info_.image_height = static_cast<int>(read_number(in, kLargestSide, "the height of an image"));
-  info_.frame_period_ns = read_number(in, kMostNumber, "the frame period");
+  info_.frame_period_ns = read_number(in, kLongestPeriod, "the frame period");
   fields_ = read_fields(in);
-  info_.stages.resize(in.count("stages"));
+  info_.stages.resize(in.whole_below(kMostStages + 1, "stages"));
   for (WorkTraceInfo::Stage& stage : info_.stages) {
     stage.name = in.text("the name of a stage");
     stage.unit = in.text("the unit of a stage");
@@ -216,9 +232,11 @@ WorkTrace::WorkTrace(std::string name, std::string bytes)
   if (read_flag(in, "whether the accuracy is known")) info_.ate = read_ate(in);
   names_ = read_names(in);
   info_.l2 = read_l2(in, names_);
+}
+
+void WorkTrace::read_chunks(ByteReader& in, const std::vector<Section>& sections) {
   int frames = 0;
-  const std::size_t chunks = in.count("sections of frames");
-  has_kernels_ = version_of(bytes_) >= kWithKernels;
+  const std::size_t chunks = in.count("sections of frames", sizeof(Chunk));
   const std::size_t expected = has_kernels_ ? 2 * chunks : chunks;
   if (expected + 1 != sections.size())
     throw InputError(fmt::format(
@@ -230,11 +248,8 @@ WorkTrace::WorkTrace(std::string name, std::string bytes)
     chunks_.push_back({frames, n, sections[i + 1], {}});
     if (has_kernels_) chunks_.back().kernels = sections[i + 1 + chunks];
     frames += n;
+    if (static_cast<std::size_t>(frames) > in.left()) in.fail("more frames than time stamps");
   }
-  read_stamps(in, info_.stamps_ns);
-  if (static_cast<std::size_t>(frames) != info_.stamps_ns.size())
-    in.fail(fmt::format("{} time stamps for {} frames", info_.stamps_ns.size(), frames));
-  in.expect_end();
 }
 
 struct WorkTraceWriter::State {

@@ -20,9 +20,13 @@
 
 #include "sim/work/program.h"
 #include "traces/evaluation.h"
+#include "traces/memory_budget.h"
 #include "traces/section_file.h"
+#include "traces/work_memory.h"
 
 namespace leviosim::traces {
+
+class ByteReader;
 
 /// One frame as it was recorded. Names in it are the trace's, and valid as long as that.
 struct WorkFrame {
@@ -83,10 +87,12 @@ struct WorkTraceInfo {
 class WorkTrace {
  public:
   /// Reads the file and compares all checksums.
-  /// @throws InputError for anything that is no whole work trace of a version that is known
-  explicit WorkTrace(const std::filesystem::path& file);
+  /// @param memory  that the file and everything that is read from it may take at any time
+  /// @throws InputError for anything that is no whole work trace of a version that is known, and if
+  ///         the memory does not suffice
+  explicit WorkTrace(const std::filesystem::path& file, Bytes memory = kTraceMemory);
   /// The same from its bytes; `name` is for messages.
-  WorkTrace(std::string name, std::string bytes);
+  WorkTrace(std::string name, std::string bytes, Bytes memory = kTraceMemory);
   WorkTrace(const WorkTrace&) = delete;
   WorkTrace& operator=(const WorkTrace&) = delete;
 
@@ -97,6 +103,8 @@ class WorkTrace {
   /// Whether it says what of the work was done in calls of kernels: those of version 1 do not.
   bool has_kernels() const { return has_kernels_; }
   std::size_t file_size() const { return bytes_.size(); }
+  /// Memory that is allowed, and used by what is the same for all frames.
+  const MemoryBudget& budget() const { return budget_; }
 
   /// Sections of frames, in order; decoded by WorkFrames (work_frames.h).
   struct Chunk {
@@ -110,8 +118,12 @@ class WorkTrace {
   const std::vector<std::size_t>& fields() const { return fields_; }
 
  private:
+  void read_summary(ByteReader& in);
+  void read_chunks(ByteReader& in, const std::vector<Section>& sections);
+
   std::string name_;
   std::string bytes_;
+  MemoryBudget budget_;
   WorkTraceInfo info_;
   std::vector<std::string> names_;
   std::vector<std::size_t> fields_;

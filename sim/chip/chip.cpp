@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sim/kernel/time_limit.h"
+
 namespace leviosim::sim {
 namespace {
 
@@ -46,8 +48,7 @@ Task<JobTiming> Chip::control(const work::Job& job) {
 Task<JobTiming> Chip::offload(const work::Job& job) {
   const Duration one_way =
       timebase_.clock("controller")
-          .duration(
-              Cycles(static_cast<std::int64_t>(std::llround(config_.cluster.events.offload))));
+          .duration(counted_cycles(std::round(config_.cluster.events.offload)));
   co_await take_core();
   const Time begin = kernel_.now();
   co_await kernel_.delay(one_way);

@@ -7,6 +7,7 @@
 
 #include "sim/check.h"
 #include "sim/error.h"
+#include "sim/kernel/time_limit.h"
 
 namespace leviosim::sim {
 namespace {
@@ -36,9 +37,7 @@ Cluster::Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& 
   }
 }
 
-Duration Cluster::cycles(double n) const {
-  return clock_.duration(Cycles(static_cast<std::int64_t>(std::llround(n))));
-}
+Duration Cluster::cycles(double n) const { return clock_.duration(counted_cycles(std::round(n))); }
 
 double Cluster::cycles_since(Time begin, Time end) const {
   return static_cast<double>(clock_.whole_cycles(end - begin).count());

@@ -1,10 +1,13 @@
 #include "sim/chip/controller.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "sim/check.h"
 #include "sim/chip/accelerator.h"
+#include "sim/error.h"
+#include "sim/kernel/time_limit.h"
 
 namespace leviosim::sim {
 
@@ -14,7 +17,7 @@ Task<JobTiming> Controller::run(const work::Job& job) {
     const Demand demand = demand_of(stage);
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
     const double transfer = transfer_cycles(stage);
-    s.cycles = Cycles(static_cast<std::int64_t>(std::ceil(demand.cycles() + transfer)));
+    s.cycles = counted_cycles(std::ceil(demand.cycles() + transfer));
     s.account.useful = demand.alone;
     s.account.transfer = transfer;
     s.account.rounding = static_cast<double>(s.cycles.count()) - demand.cycles() - transfer;
@@ -39,7 +42,10 @@ double Controller::transfer_cycles(const work::StageRun& stage) const {
   for (const work::Step& step : stage.steps) {
     const auto* transfer = std::get_if<work::Transfer>(&step);
     if (transfer == nullptr || work::is_between_l1_and_l2(transfer->direction)) continue;
-    check(memory.bytes_per_second > 0, "a transfer from or to external memory needs one");
+    if (memory.bytes_per_second <= 0)
+      throw InputError(fmt::format(
+          "{}: the work moves data from or to external memory, which the platform has not",
+          stage.stage));
     const Bytes moved = std::max(transfer->bytes, memory.burst);
     seconds +=
         memory.latency_seconds + static_cast<double>(moved.count()) / memory.bytes_per_second;

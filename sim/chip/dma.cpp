@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/check.h"
+#include "sim/kernel/time_limit.h"
 
 namespace leviosim::sim {
 namespace {
@@ -23,14 +24,13 @@ double transfer_cycles(const DmaConfig& dma, Bytes bytes) {
 Dma::Dma(Kernel& kernel, const ClockDomain& clock, const DmaConfig& config, Team& team)
     : kernel_(kernel), clock_(clock), config_(config), team_(team) {}
 
-Duration Dma::cycles(double n) const {
-  return clock_.duration(Cycles(static_cast<std::int64_t>(std::llround(n))));
-}
+Duration Dma::cycles(double n) const { return clock_.duration(counted_cycles(std::round(n))); }
 
 Time Dma::start(const work::Transfer& transfer) {
   check(work::is_between_l1_and_l2(transfer.direction), "the cluster's DMA reaches L1 and L2 only");
   Channel& channel = channels_[transfer.direction == work::Direction::L2ToL1 ? 0 : 1];
   const Time begin = std::max(channel.free, kernel_.now() + cycles(config_.first_data));
+  if (begin > kLastTime) fail_beyond_time();
   channel.free = begin + cycles(payload_cycles(config_, transfer.bytes));
   // Nobody computes during a transfer that the master waits for.
   if (transfer.background) kernel_.spawn("DMA data", disturb(begin, channel.free));

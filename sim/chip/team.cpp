@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/check.h"
+#include "sim/kernel/time_limit.h"
 
 namespace leviosim::sim {
 namespace {
@@ -103,8 +104,7 @@ void Team::solve() {
     Core& core = *cores_[static_cast<std::size_t>(runners_[i].core)];
     core.progress = progress_[i];
     const double left = std::ceil(core.remaining / core.progress.rate - kNothingLeft);
-    const Cycles cycles(static_cast<std::int64_t>(std::max(left, 0.0)));
-    core.end.arm(kernel_.now() + clock_.duration(cycles));
+    core.end.arm(kernel_.now() + clock_.duration(counted_cycles(std::max(left, 0.0))));
   }
 }
 

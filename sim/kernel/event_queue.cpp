@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "sim/check.h"
+#include "sim/error.h"
 
 namespace leviosim::sim {
 
@@ -14,7 +14,10 @@ Slot EventQueue::add_slot() {
     free_slots_.pop_back();
     return slot;
   }
-  check(slots_made_ < 1U << kSlotBits, "more than 65536 processes and timers at once");
+  if (slots_made_ >= 1U << kSlotBits)
+    throw InputError(
+        "the work has more under way at once than the simulation can follow, 65536 processes: it "
+        "begins too many background transfers without waiting for them");
   if (slots_made_ == nodes_.size() / 2) grow();
   return slots_made_++;
 }

@@ -3,6 +3,7 @@
 #include <bit>
 #include <utility>
 
+#include "sim/kernel/time_limit.h"
 #include "sim/kernel/timer.h"
 
 namespace leviosim::sim {
@@ -44,13 +45,15 @@ void Kernel::spawn_server(std::string name, Process process) {
 
 void Kernel::adopt(std::string name, Process process, bool server) {
   check(!closing_, "a process is spawned while its kernel is destroyed");
+  const Slot slot = add_alarm({});  // may throw: the process is still its own
   const Process::Handle handle = process.release();
   ProcessState& state = handle.promise();
   state.resume_point = handle;
   state.name = std::move(name);
   state.server = server;
   state.kernel = this;
-  state.slot = add_alarm({handle, &state, nullptr});
+  state.slot = slot;
+  alarms_[slot] = {handle, &state, nullptr};
   state.previous_process = last_process_;
   (last_process_ == nullptr ? first_process_ : last_process_->next_process) = &state;
   last_process_ = &state;
@@ -75,7 +78,8 @@ void Kernel::unlink(ProcessState& process) {
 std::size_t Kernel::run() {
   check(!running_, "a kernel is run from within one of its processes");
   const Raised running(running_);
-  execute_all(Time::max());
+  execute_all(kLastTime);
+  if (future_.first() != EventKey::never()) fail_beyond_time();
   std::size_t deadlocked = 0;
   for (const ProcessState* p = first_process_; p != nullptr; p = p->next_process)
     deadlocked += p->server ? 0 : 1;

@@ -9,6 +9,7 @@
 
 #include "sim/check.h"
 #include "sim/error.h"
+#include "sim/kernel/time_limit.h"
 
 namespace leviosim::sim {
 namespace {
@@ -71,7 +72,7 @@ ClockDomain::ClockDomain(std::string name, Hertz frequency, Duration period)
 
 Duration ClockDomain::duration(Cycles cycles) const {
   const auto ticks = multiply(cycles.count(), period_.count());
-  check(ticks.has_value(), "a number of cycles does not fit in 64 bits of ticks");
+  if (!ticks || Duration(*ticks) > kLongestDuration) fail_beyond_time();
   return Duration(*ticks);
 }
 

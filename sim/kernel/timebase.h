@@ -43,7 +43,7 @@ class ClockDomain {
   Hertz frequency() const { return frequency_; }
   Duration period() const { return period_; }
 
-  /// Length of `cycles` cycles; exact. Aborts when it does not fit (beyond an hour at the least).
+  /// Length of `cycles` cycles; exact. @throws InputError beyond kLongestDuration (time_limit.h)
   Duration duration(Cycles cycles) const;
   /// Whole cycles contained in a duration >= 0: rounded down.
   Cycles whole_cycles(Duration duration) const;

@@ -26,8 +26,9 @@ std::string trace_of(const std::vector<std::string>& contents, std::uint32_t ver
 
 std::vector<std::string> contents_of(const std::string& trace) {
   std::vector<std::string> contents;
+  MemoryBudget budget(kTraceMemory);
   for (const Section& section : sections_of({"LEVIOWT\n", "a work trace", kVersion}, "t", trace))
-    contents.push_back(unpacked(section, "t"));
+    contents.push_back(unpacked(section, "t", budget));
   return contents;
 }
 

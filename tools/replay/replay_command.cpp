@@ -7,6 +7,7 @@
 #include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/replay/memory_option.h"
 #include "tools/replay/replay_report.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
@@ -19,6 +20,7 @@ namespace {
 
 struct ReplayOptions : RunOptions {
   std::string trace;
+  std::string memory;
 };
 
 /// Of a run folder its trace is taken.
@@ -75,7 +77,7 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   require(command, "--out", "a folder for the results");
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   traces::StagedFolder staged(checked_out_folder(options.out, options.force));
-  const traces::WorkTrace trace(trace_file(options.trace));
+  const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
   const RunRequest request = request_for(trace, options);
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;
@@ -97,6 +99,7 @@ Command add_replay_command(CLI::App& app, const Words& words) {
   const auto options = std::make_shared<ReplayOptions>();
   command->add_option("TRACE", options->trace, "work.trace of a run with --record, or its folder");
   add_chip_options(*command, *options, " [that of the recording]");
+  add_memory_option(*command, options->memory);
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
   return {command, [=, &words] { run(*command, *options, words); }};

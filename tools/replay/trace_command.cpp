@@ -6,6 +6,7 @@
 
 #include "platform_models/nearest.h"
 #include "sim/error.h"
+#include "tools/replay/memory_option.h"
 #include "tools/replay/replay.h"
 #include "tools/replay/trace_summary.h"
 
@@ -15,6 +16,7 @@ namespace {
 struct TraceOptions {
   std::string action;
   std::string file;
+  std::string memory;
 };
 
 /// Everything that replay reads, its platform too.
@@ -29,10 +31,11 @@ void check_trace(const traces::WorkTrace& trace) {
 void run(const CLI::App& command, const TraceOptions& options) {
   require(command, "ACTION", "info or check");
   require(command, "FILE", "a work trace");
+  const Bytes memory = trace_memory(options.memory);
   if (options.action == "info")
-    fmt::print("{}", trace_summary(traces::WorkTrace(options.file)));
+    fmt::print("{}", trace_summary(traces::WorkTrace(options.file, memory)));
   else if (options.action == "check")
-    check_trace(traces::WorkTrace(options.file));
+    check_trace(traces::WorkTrace(options.file, memory));
   else
     throw InputError(fmt::format("trace: unknown action '{}'; expected info or check{}",
                                  options.action,
@@ -46,6 +49,7 @@ Command add_trace_command(CLI::App& app) {
   const auto options = std::make_shared<TraceOptions>();
   command->add_option("ACTION", options->action, "info, or check: read all of it");
   command->add_option("FILE", options->file, "work.trace of a run with --record");
+  add_memory_option(*command, options->memory);
   return {command, [=] { run(*command, *options); }};
 }
 

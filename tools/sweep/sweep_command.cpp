@@ -12,6 +12,7 @@
 #include "tools/cli/interrupts.h"
 #include "tools/cli/progress_line.h"
 #include "tools/cli/version.h"
+#include "tools/replay/memory_option.h"
 #include "tools/sweep/points.h"
 #include "tools/sweep/sweep_report.h"
 #include "tools/sweep/sweep_store.h"
@@ -31,6 +32,7 @@ struct SweepWords {
   std::string shard;
   std::string jobs;
   std::string cache;
+  std::string memory;
   std::vector<std::string> merge;
   bool list = false;
   bool force = false;
@@ -159,7 +161,7 @@ std::string expansion_text(const Expansion& expansion) {
 
 void run_plan(const SweepWords& words) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(words.quiet);
-  SweepInputs inputs(fs::absolute(words.plan).parent_path(), style);
+  SweepInputs inputs(fs::absolute(words.plan).parent_path(), style, trace_memory(words.memory));
   const SweepPlan plan = read_plan(words.plan, inputs);
   const Expansion expansion = expand(plan, inputs);
   if (words.list) {
@@ -221,6 +223,7 @@ Command add_sweep_command(CLI::App& app) {
       ->expected(2, 1'000'000);
   add("--jobs", words->jobs, "N", "points at a time [cores of the host]");
   add("--cache", words->cache, "DIR", "where finished points are kept and found again [user's]");
+  add_memory_option(*command, words->memory);
   command->add_flag("--force", words->force, "begin anew; finished points are found in the cache");
   command->add_flag("--quiet", words->quiet, "no progress");
   return {command, [=] { run(*command, *words); }};

@@ -52,7 +52,7 @@ SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::
     Sha256 digest;
     digest.add(bytes);
     // Called as in the plan: what a point says must not depend on where the plan lies.
-    auto work = std::make_unique<traces::WorkTrace>(name, std::move(bytes));
+    auto work = std::make_unique<traces::WorkTrace>(name, std::move(bytes), memory_);
     platform::PlatformFile chip(name + ", platform of the recording", work->info().platform_yaml);
     return traces_.emplace(name, Trace{std::move(work), digest.hex(), std::move(chip)})
         .first->second;

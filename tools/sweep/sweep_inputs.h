@@ -32,8 +32,10 @@ class SweepInputs {
   };
 
   /// @param progress  of the synthetic flight, if it has to be made
-  SweepInputs(std::filesystem::path folder, ProgressLine::Style progress)
-      : folder_(std::move(folder)), progress_(progress) {}
+  /// @param memory    that each reader of a trace may take
+  SweepInputs(std::filesystem::path folder, ProgressLine::Style progress,
+              Bytes memory = traces::kTraceMemory)
+      : folder_(std::move(folder)), progress_(progress), memory_(memory) {}
 
   /// What is returned stays valid as long as this. Asking for what was opened before reads only, so
   /// several threads may.
@@ -48,6 +50,7 @@ class SweepInputs {
 
   std::filesystem::path folder_;
   ProgressLine::Style progress_;
+  Bytes memory_;
   std::map<std::string, platform::PlatformFile> platforms_;
   std::map<std::string, Trace> traces_;
   std::map<std::pair<std::string, std::string>, Data> data_;

@@ -1,0 +1,122 @@
+// Writes the seeds of fuzz targets that need more than text: work traces, images, trajectories.
+//   seeds FOLDER   makes FOLDER/TARGET/* for the targets work_trace, work_trace_content, image and
+//                  evaluation
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "platform_models/loader.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/traces/trace_parts.h"
+#include "tests/traces/work_trace_example.h"
+
+namespace {
+
+using namespace leviosim;                   // NOLINT: a program of one file
+using namespace leviosim::traces::testing;  // NOLINT
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& file, std::string_view content) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string all;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    all += (i == 0 ? "" : std::string(fuzz::kBetweenParts)) + parts[i];
+  return all;
+}
+
+void write_trace(const fs::path& folder, const std::string& name, const std::string& trace) {
+  write(folder / "work_trace" / name, trace);
+  std::vector<std::string> contents;
+  for (const traces::Section& section :
+       traces::sections_of({"LEVIOWT\n", "a work trace", 2}, name, trace)) {
+    traces::MemoryBudget budget(traces::kTraceMemory);
+    contents.push_back(traces::unpacked(section, name, budget));
+  }
+  write(folder / "work_trace_content" / name, joined(contents));
+}
+
+void write_traces(const fs::path& folder) {
+  for (const int frames : {0, 1, 2, 5})
+    write_trace(folder, fmt::format("example_{}", frames), example_trace(frames));
+  write_trace(folder, "kernels", example_trace_with_kernels(2));
+  write_trace(folder, "two_sections", example_trace_with_kernels(33));
+  TraceParts parts;
+  parts.frames = {section(1, list(1, constant_series(3, 9)),
+                          frame_facts(4) +
+                              list(1, stage(bytes({4, 4, 0, 8, 0, 0, 5, 0, 2, 0, 0,
+                                                   0}))) +  // transfer, work, wait, fork
+                              list(2, list(1, stage(list(1, bytes({3, 2, 64}))))))};
+  write_trace(folder, "version_1", parts.file());
+}
+
+void write_images(const fs::path& folder) {
+  cv::Mat grey(48, 64, CV_8UC1);
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      grey.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(x * y);
+  cv::Mat deep;
+  grey.convertTo(deep, CV_16UC1);
+  const auto encoded = [](const char* kind, const cv::Mat& image) {
+    std::vector<std::uint8_t> code;
+    cv::imencode(kind, image, code);
+    return std::string(code.begin(), code.end());
+  };
+  write(folder / "image/grey.png", encoded(".png", grey));
+  write(folder / "image/deep.png", encoded(".png", deep));
+  write(folder / "image/small.png", encoded(".png", grey(cv::Rect(0, 0, 8, 8))));
+  write(folder / "image/grey.pgm", encoded(".pgm", grey));
+  write(folder / "image/grey.jpg", encoded(".jpg", grey));
+}
+
+/// A walk round a circle, in one of the formats.
+std::string poses(const std::string& format, int number) {
+  std::string text;
+  for (int i = 0; i < number; ++i) {
+    const double angle = 0.3 * i;
+    const Eigen::Vector3d p(2 * std::cos(angle), 2 * std::sin(angle), 0.1 * i);
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+    const Eigen::Matrix3d R = q.toRotationMatrix();
+    if (format == "tum")
+      text += fmt::format("{:.9f} {} {} {} {} {} {} {}\n", 1 + 0.05 * i, p.x(), p.y(), p.z(), q.x(),
+                          q.y(), q.z(), q.w());
+    else if (format == "euroc")
+      text += fmt::format("{},{},{},{},{},{},{},{},0,0,0,0,0,0,0,0,0\n", 1000000000 + 50000000L * i,
+                          p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    else
+      for (int row = 0; row < 3; ++row)
+        text += fmt::format("{} {} {} {}{}", R(row, 0), R(row, 1), R(row, 2), p[row],
+                            row < 2 ? " " : "\n");
+  }
+  return text;
+}
+
+void write_trajectories(const fs::path& folder) {
+  for (const char* estimate : {"tum", "euroc"})
+    for (const char* truth : {"tum", "euroc"})
+      write(folder / "evaluation" / fmt::format("{}_{}", estimate, truth),
+            joined({poses(estimate, 12), poses(truth, 14)}));
+  write(folder / "evaluation/kitti", joined({poses("kitti", 9), poses("kitti", 9)}));
+  std::string times;
+  for (int i = 0; i < 9; ++i) times += fmt::format("{}\n", 1 + 0.05 * i);
+  write(folder / "evaluation/kitti_times", joined({poses("kitti", 9), poses("kitti", 9), times}));
+  write(folder / "asl_tables/ground_truth", "g" + poses("euroc", 5));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "expected one argument: the folder for the seeds\n");
+    return 2;
+  }
+  write_traces(argv[1]);
+  write_images(argv[1]);
+  write_trajectories(argv[1]);
+}

@@ -1,0 +1,14 @@
+// Numbers in the frames of a work trace (work_trace.md) that its writer and reader share.
+#pragma once
+
+#include <cstdint>
+
+namespace leviosim::traces {
+
+/// Kinds of step.
+enum : std::uint64_t { kSerial, kFork, kForkWithMaster, kTransfer, kBackgroundTransfer, kWait };
+inline constexpr std::uint64_t kStepKinds = kWait + 1;
+inline constexpr std::uint64_t kDirections = 4;
+inline constexpr std::uint64_t kKeyframe = 1, kBusy = 2, kOptimised = 4, kAllFlags = 7;
+
+}  // namespace leviosim::traces

@@ -1,0 +1,34 @@
+// What the things in a work trace take of the host's memory once they are read, each with what a
+// replay or a report makes of it later: the entries of the reader's MemoryBudget. And the numbers
+// of things for which no budget stands.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/work/program.h"
+
+namespace leviosim::traces {
+
+/// By default for a whole trace. Recordings of a flight at 160x120 pixels take 2 to 20 MiB.
+inline constexpr Bytes kTraceMemory{std::int64_t{256} << 20};
+/// The frames of a trace are read one after the other; all together take no more than so many times
+/// the ceiling, which is hours of a flight. Bounds the time that a trace takes, however small.
+inline constexpr std::uint64_t kDecodedPerCeiling = 256;
+
+inline constexpr std::size_t kFrameMemory = 2048;  ///< stamp, result, comparison, rows of tables
+inline constexpr std::size_t kJobMemory = 1024;    ///< with its timing
+inline constexpr std::size_t kStageMemory = sizeof(work::StageRun) + 1024;  ///< likewise
+inline constexpr std::size_t kStepMemory = sizeof(work::Step) + 64;
+inline constexpr std::size_t kBlockMemory = 512;  ///< of a memory peak, with its statistics
+inline constexpr std::size_t kTextMemory = 128;   ///< beside its characters
+
+/// Kinds of stage; each gets some hundred statistics.
+inline constexpr std::size_t kMostStages = 256;
+/// Memories of the summary; likewise.
+inline constexpr std::size_t kMostMemories = 256;
+/// Bytes of a memory or block. No memory of such chips comes near.
+inline constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40;
+/// Bytes of a transfer. So low that sums over a trace do not overflow.
+inline constexpr std::uint64_t kMostTransferred = std::uint64_t{1} << 34;
+
+}  // namespace leviosim::traces
