@@ -25,7 +25,7 @@ OutputFile::OutputFile(OutputRequest request)
   if (error) refuse("cannot be written: " + error.message());
   judge();
   remove_leftover();
-  file_.emplace(hidden());
+  file_ = std::make_unique<NewFile>(hidden());
   if (const int fault = file_->reserve(kReserve)) refuse("cannot be written: " + reason(fault));
 }
 

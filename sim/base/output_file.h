@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,7 +42,7 @@ class OutputFile {
   OutputRequest request_;
   std::string shown_path_;
   std::filesystem::path target_;
-  std::optional<NewFile> file_;
+  std::unique_ptr<NewFile> file_;
 };
 
 /// Adds a line to the record of a folder, for what is not written through OutputFile.

@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "platform_models/instruction_set.h"
+#include "sim/base/sha256.h"
 #include "sim/error.h"
 #include "tools/batch/sequence.h"
-#include "tools/run/digest.h"
 #include "tools/run/run_folder.h"
 #include "tools/synth/flight_cache.h"
 #include "traces/asl_reader.h"
@@ -49,13 +49,11 @@ SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::
     std::filesystem::path file = beside(name);
     if (std::filesystem::is_directory(file)) file /= kWorkTraceFile;
     std::string bytes = traces::read_text_file(file);
-    Sha256 digest;
-    digest.add(bytes);
+    const std::string digest = base::sha256_of(bytes);
     // Called as in the plan: what a point says must not depend on where the plan lies.
     auto work = std::make_unique<traces::WorkTrace>(name, std::move(bytes));
     platform::PlatformFile chip(name + ", platform of the recording", work->info().platform_yaml);
-    return traces_.emplace(name, Trace{std::move(work), digest.hex(), std::move(chip)})
-        .first->second;
+    return traces_.emplace(name, Trace{std::move(work), digest, std::move(chip)}).first->second;
   });
 }
 
