@@ -9,7 +9,6 @@
 #include "sim/error.h"
 #include "traces/asl_reader.h"
 #include "traces/asl_writer.h"
-#include "traces/atomic_file.h"
 #include "traces/csv.h"
 #include "traces/frame_stamps.h"
 #include "traces/hall.h"
@@ -48,16 +47,6 @@ void check_options(const RenderedFlightOptions& options) {
   check_range("image noise [grey levels]", options.image_noise, 0, 255);
   check_range("lens spot [px]", options.spot_px, 0.1, 100);
   check_range("texel width [px]", options.texels, 0.25, 20);
-}
-
-/// The recording must survive --overwrite, whether its folder or the mav0 in it was named.
-void check_not_the_recording(const fs::path& mav0, const fs::path& out_dir) {
-  if (!fs::exists(out_dir)) return;
-  const fs::path recording = fs::canonical(mav0);
-  const fs::path out = fs::canonical(out_dir);
-  if (out == recording || out == recording.parent_path())
-    throw InputError(fmt::format(
-        "{}: holds the recorded motion; choose another folder for the flight", out_dir.string()));
 }
 
 bool simulates_imu(const MotionRecord& record, ImuSource source) {
@@ -118,10 +107,10 @@ double seconds_of_motion(const Plan& plan, std::int64_t t_ns) {
   return static_cast<double>(t_ns - plan.origin_ns) * 1e-9;
 }
 
-void write_streams(const fs::path& mav0, const Plan& plan, const RenderedFlightOptions& options) {
+void write_streams(base::OutputFolder& out, const Plan& plan,
+                   const RenderedFlightOptions& options) {
   const auto write = [&](const fs::path& name, const std::string& text) {
-    fs::create_directories((mav0 / name).parent_path());
-    write_file_atomically(mav0 / name, text);
+    out.write("mav0/" + name.string(), text);
   };
   const auto copy = [&](const fs::path& name) {
     write(name, read_text_file(plan.record.mav0 / name));
@@ -179,7 +168,7 @@ World make_world(const Plan& plan, const RenderedFlightOptions& options) {
   return make_hall(path, plan.record.camera, hall);
 }
 
-void write_pictures(const fs::path& folder, const Plan& plan, const RenderedFlightOptions& options,
+void write_pictures(base::OutputFolder& out, const Plan& plan, const RenderedFlightOptions& options,
                     const FlightProgress& progress) {
   const CameraModel& camera = plan.record.camera;
   const ImagePreparation preparation(
@@ -202,8 +191,7 @@ void write_pictures(const fs::path& folder, const Plan& plan, const RenderedFlig
     return preparation.apply(cv::Mat(camera.height, camera.width, CV_8UC1, pixels.data()));
   };
   const PinholeIntrinsics& size = preparation.intrinsics();
-  write_flight_images(folder, plan.frames, {size.width, size.height}, draw, options.threads,
-                      progress);
+  write_flight_images(out, plan.frames, {size.width, size.height}, draw, options.threads, progress);
 }
 
 }  // namespace
@@ -211,15 +199,20 @@ void write_pictures(const fs::path& folder, const Plan& plan, const RenderedFlig
 void write_rendered_flight(const fs::path& motion_dir, const fs::path& out_dir,
                            const RenderedFlightOptions& options, const FlightProgress& progress) {
   check_options(options);
-  check_flight_folder(out_dir, options.overwrite);
+  base::OutputFolder out({.option = {},
+                          .path = out_dir.string(),
+                          .replace = options.overwrite,
+                          .inputs = {motion_dir, motion_dir / "mav0"},
+                          .replace_option = "--overwrite"});
   const Plan plan = make_plan(motion_dir, options);
-  check_not_the_recording(plan.record.mav0, out_dir);
-  StagedFolder staged(out_dir);
-  const fs::path mav0 = staged.path() / "mav0";
-  fs::create_directories(mav0 / "cam0" / "data");
-  write_streams(mav0, plan, options);
-  write_pictures(mav0 / "cam0" / "data", plan, options, progress);
-  staged.commit();
+  const CameraModel& camera = plan.record.camera;
+  const ImageSize size = options.prepared.value_or(ImageSize{camera.width, camera.height});
+  const auto pixels =
+      static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
+  out.reserve(plan.frames.size() * pixels / 2);  // rather less: pictures with noise
+  write_streams(out, plan, options);
+  write_pictures(out, plan, options, progress);
+  commit_flight(out);
 }
 
 }  // namespace leviosim::traces

@@ -37,12 +37,12 @@ struct RenderedFlightOptions {
   double spot_px = 2;                    ///< softness of the lens, RenderOptions::spot_px
   double texels = 1;                     ///< HallOptions::texels
   unsigned threads = 0;    ///< 0: as many as the host has; the result does not depend on it
-  bool overwrite = false;  ///< replace an existing ASL folder (never any other folder)
+  bool overwrite = false;  ///< replace a flight that was written before (sim/base)
 };
 
 /// Writes `out_dir`/mav0/... from the motion in `motion_dir`. The folder appears under its name
 /// only when complete. Throws InputError for input that cannot be used, options out of range, if
-/// `out_dir` exists (unless overwrite) or is `motion_dir`, or if it cannot be written.
+/// `out_dir` exists (unless overwrite), holds anything else or `motion_dir`, or cannot be written.
 void write_rendered_flight(const std::filesystem::path& motion_dir,
                            const std::filesystem::path& out_dir,
                            const RenderedFlightOptions& options = {},

@@ -7,7 +7,6 @@
 
 #include "sim/error.h"
 #include "traces/asl_writer.h"
-#include "traces/atomic_file.h"
 #include "traces/flight_images.h"
 #include "traces/imu_synthesis.h"
 #include "traces/motion.h"
@@ -17,8 +16,6 @@
 
 namespace leviosim::traces {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Parts of the flight that have a seed of their own.
 enum SeedPart : std::uint64_t { kWorldSeed, kMotionSeed, kImuSeed, kImageSeed };
@@ -61,17 +58,15 @@ std::vector<std::int64_t> imu_stamps(const SyntheticOptions& options, std::int64
                 static_cast<std::int64_t>(std::ceil(span_s * rate - 1e-6)));
 }
 
-void write_text(const fs::path& mav0, const SyntheticOptions& options, const Motion& motion,
+void write_text(base::OutputFolder& out, const SyntheticOptions& options, const Motion& motion,
                 const std::vector<std::int64_t>& frames) {
   ImuSynthesizer imu(options.imu, derive_seed(options.seed, kImuSeed));
   const ImuTrack track =
       record_imu(motion, options.imu_errors ? &imu : nullptr, SyntheticOptions::kFirstFrameNs,
                  imu_stamps(options, frames.back()));
-  for (const char* folder : {"cam0/data", "imu0", "state_groundtruth_estimate0"})
-    fs::create_directories(mav0 / folder);
   const std::string comment = fmt::format("leviosim synthetic flight, seed {}", options.seed);
-  const auto write = [&mav0](const char* name, const std::string& text) {
-    write_file_atomically(mav0 / name, text);
+  const auto write = [&out](const char* name, const std::string& text) {
+    out.write(std::string("mav0/") + name, text);
   };
   write("cam0/sensor.yaml", format_camera_yaml(options.camera, comment));
   write("cam0/data.csv", format_frames_csv(frames));
@@ -81,7 +76,7 @@ void write_text(const fs::path& mav0, const SyntheticOptions& options, const Mot
   write("state_groundtruth_estimate0/data.csv", format_ground_truth_csv(track.truth));
 }
 
-void write_images(const fs::path& folder, const SyntheticOptions& options, const Motion& motion,
+void write_images(base::OutputFolder& out, const SyntheticOptions& options, const Motion& motion,
                   const std::vector<std::int64_t>& frames, const FlightProgress& progress) {
   const World world =
       make_room(derive_seed(options.seed, kWorldSeed), options.texel_m, options.threads);
@@ -93,23 +88,28 @@ void write_images(const fs::path& folder, const SyntheticOptions& options, const
     const double t_s = static_cast<double>(frames[i] - SyntheticOptions::kFirstFrameNs) * 1e-9;
     return renderer.render(motion.at(t_s).T_world_body * options.camera.T_body_camera, i);
   };
-  write_flight_images(folder, frames, {renderer.width(), renderer.height()}, draw, options.threads,
+  write_flight_images(out, frames, {renderer.width(), renderer.height()}, draw, options.threads,
                       progress);
 }
 
 }  // namespace
 
-void write_synthetic_flight(const fs::path& out_dir, const SyntheticOptions& options,
+void write_synthetic_flight(const std::filesystem::path& out_dir, const SyntheticOptions& options,
                             const FlightProgress& progress) {
   check_options(options);
-  check_flight_folder(out_dir, options.overwrite);
-  StagedFolder staged(out_dir);
-  const fs::path mav0 = staged.path() / "mav0";
+  base::OutputFolder out({.option = {},
+                          .path = out_dir.string(),
+                          .replace = options.overwrite || options.repair,
+                          .replace_option = "--overwrite",
+                          .repair = options.repair});
   const HandHeldFlight motion(derive_seed(options.seed, kMotionSeed));
   const std::vector<std::int64_t> frames = frame_stamps(options);
-  write_text(mav0, options, motion, frames);
-  write_images(mav0 / "cam0" / "data", options, motion, frames, progress);
-  staged.commit();
+  const auto pixels = static_cast<std::uint64_t>(options.camera.width) *
+                      static_cast<std::uint64_t>(options.camera.height);
+  out.reserve(frames.size() * pixels / 2);  // rather less: pictures with noise
+  write_text(out, options, motion, frames);
+  write_images(out, options, motion, frames, progress);
+  commit_flight(out);
 }
 
 }  // namespace leviosim::traces

@@ -26,14 +26,15 @@ struct SyntheticOptions {
   double image_noise = 1.2;      ///< standard deviation [grey levels]
   double texel_m = kRoomTexelM;  ///< of the room's textures; coarser paints faster
   unsigned threads = 0;          ///< 0: as many as the host has; the result does not depend on it
-  bool overwrite = false;        ///< replace an existing ASL folder (never any other folder)
+  bool overwrite = false;        ///< replace a flight that was written before (sim/base)
+  bool repair = false;           ///< also if it was changed since: a cache
   CameraModel camera = euroc_cam0();
   ImuModel imu = euroc_imu0();
 };
 
 /// Writes `out_dir`/mav0/... The folder appears under its name only when complete. Throws
-/// InputError for options out of range, if `out_dir` exists (unless overwrite), or if it cannot be
-/// written.
+/// InputError for options out of range, if `out_dir` exists (unless overwrite) or holds anything
+/// else, or if it cannot be written.
 void write_synthetic_flight(const std::filesystem::path& out_dir,
                             const SyntheticOptions& options = {},
                             const FlightProgress& progress = {});

@@ -10,15 +10,6 @@
 namespace leviosim::tools {
 namespace {
 
-TEST(Sha256, MatchesTheStandardsExamples) {
-  // FIPS 180-4 / NIST example values.
-  EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  Sha256 sha;
-  sha.add("a");
-  sha.add("bc");
-  EXPECT_EQ(sha.hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-}
-
 TEST(InputDigests, ChangeWithAPixelOfAFrameInRangeOnly) {
   const traces::testing::AslFolder asl;
   const auto digests = [&] {

@@ -6,9 +6,8 @@
 
 #include "tools/ablate/ablation_report.h"
 #include "tools/batch/runs_csv.h"
-#include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/cli/version.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -16,21 +15,17 @@ namespace {
 void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
   const BatchPlan plan = make_plan(command, words);
   const std::vector<BatchRun> runs = ablation_runs(plan);
-  traces::StagedFolder staged(plan.out);
   const std::vector<RunOutcome> outcomes =
       run_with_progress(plan, runs, ProgressLine::style_of_stderr(words.quiet));
   const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, paper_accuracy());
-  const auto write = [&](const char* name, const std::string& text) {
-    traces::write_file_atomically(staged.path() / name, text);
-  };
-  write("runs.csv", runs_csv(runs, outcomes, plan.measure));
-  write("table.md", ablation_markdown(plan, rows));
-  write("table.json", ablation_json(plan, rows).dump(2) + '\n');
-  write("manifest.json", batch_manifest(plan, command_line).dump(2) + '\n');
-  throw_if_interrupted();
-  staged.commit();
-  fmt::print("leviosim {}: {} native runs\n{}results: {}\n", version(), runs.size(),
-             ablation_text(plan, rows), words.out);
+  const std::string text = fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
+                                       ablation_text(plan, rows));
+  publish(*plan.out, text, [&] {
+    plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
+    plan.out->write("table.md", ablation_markdown(plan, rows));
+    plan.out->write("table.json", ablation_json(plan, rows).dump(2) + '\n');
+    plan.out->write("manifest.json", batch_manifest(plan, command_line).dump(2) + '\n');
+  });
 }
 
 }  // namespace

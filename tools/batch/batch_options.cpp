@@ -120,7 +120,11 @@ BatchPlan make_plan(const CLI::App& command, const BatchWords& words) {
                   parse_positive("--relative", words.relative)};
   plan.cache = words.cache.empty() ? default_run_cache().string() : words.cache;
   plan.threads = parse_jobs(words.jobs);
-  plan.out = checked_out_folder(words.out, words.force);
+  base::OutputRequest wanted{.option = "--out", .path = words.out, .replace = words.force};
+  for (const std::string& word : words.data)
+    for (const std::filesystem::path& input : data_inputs(parse_named_folder(word).folder))
+      wanted.inputs.push_back(input);
+  plan.out = std::make_shared<base::OutputFolder>(std::move(wanted));
   plan.sequences = open_all(words, plan, ProgressLine::style_of_stderr(words.quiet));
   return plan;
 }

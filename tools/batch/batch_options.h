@@ -2,9 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "sim/base/output_folder.h"
 #include "tools/batch/run_batch.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/progress_line.h"
@@ -38,9 +40,9 @@ struct BatchPlan {
   std::vector<vio::Assignment> workload;  ///< of every run
   std::optional<traces::FrameRange> frames;
   Measure measure;
-  std::filesystem::path out;  ///< for the results; nothing is lost by replacing it
-  std::string cache;          ///< folder
-  unsigned threads = 0;       ///< 0: as many as the host has
+  std::shared_ptr<base::OutputFolder> out;  ///< for the results
+  std::string cache;                        ///< folder
+  unsigned threads = 0;                     ///< 0: as many as the host has
 };
 
 void add_batch_options(CLI::App& command, BatchWords& words);

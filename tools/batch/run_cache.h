@@ -1,5 +1,7 @@
 // Finished runs on disk: one small file each, written whole or not at all, found by its key.
-// Several programs may use one folder at the same time.
+// A file begins with its key and a digest of the rest: what is damaged or lies under another key's
+// name counts as absent, and is written anew. Several programs may use one folder at the same
+// time.
 #pragma once
 
 #include <filesystem>

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "platform_models/loader.h"
-#include "tools/run/digest.h"
+#include "sim/base/sha256.h"
 
 namespace leviosim::tools {
 
@@ -35,9 +35,7 @@ std::string run_key(const RunRequest& request, const std::string& inputs, const 
   for (const std::string& setting : settings) text += fmt::format("set {}\n", setting);
   text += fmt::format("alignment {}\nlength {}\n", name_of(how.alignment), how.length_m);
   text += request.native ? std::string("native\n") : chip_key(request);
-  Sha256 digest;
-  digest.add(text);
-  return digest.hex();
+  return base::sha256_of(text);
 }
 
 }  // namespace leviosim::tools

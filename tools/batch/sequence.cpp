@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "sim/base/input_file.h"
+#include "sim/base/sha256.h"
 #include "sim/error.h"
 #include "tools/run/digest.h"
 #include "traces/asl_reader.h"
@@ -49,7 +50,7 @@ NamedFolder parse_named_folder(const std::string& text) {
 
 /// Each file counts with its name.
 std::string digest_of(const traces::Dataset& data) {
-  Sha256 all;
+  base::Sha256 all;
   for (const InputDigest& file : digest_inputs(data))
     all.add(fmt::format("{} {}\n", file.name, file.sha256));
   return all.hex();

@@ -6,8 +6,8 @@
 
 #include "sim/error.h"
 #include "tools/calibrate/calibration_report.h"
+#include "tools/cli/outputs.h"
 #include "tools/run/run_session.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -18,12 +18,12 @@ struct CalibrateOptions {
 };
 
 /// Loading takes what ends in .yaml for a file.
-void check_platform_file(const RunOptions& options) {
+std::optional<base::OutputFile> claimed_platform_file(const RunOptions& options) {
   const std::string extension = std::filesystem::path(options.out).extension().string();
   if (!options.out.empty() && extension != ".yaml" && extension != ".yml")
     throw InputError(
         fmt::format("--out {}: expected a platform file that ends in .yaml", options.out));
-  check_out_file(options);
+  return claimed_file(out_request(options));
 }
 
 void run(const CalibrateOptions& options) {
@@ -31,7 +31,7 @@ void run(const CalibrateOptions& options) {
   const std::vector<std::string> constants = parse_constants("--constants", options.constants);
   const platform::Variants platform(request.platform);
   bounds_of(platform, constants);  // refuses constants without a range before the run
-  check_platform_file(options.run);
+  std::optional<base::OutputFile> out = claimed_platform_file(options.run);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.run.quiet);
   request.data = data_folder(options.run, style);
   FrameLog log;
@@ -39,11 +39,10 @@ void run(const CalibrateOptions& options) {
   const RunResult result = simulate_with_progress(request, style);
   const Calibration calibration =
       calibrate(platform, stage_models(log, request.platform.config), constants);
-  if (!options.run.out.empty())
-    traces::write_file_atomically(options.run.out,
-                                  platform::to_yaml(calibrated_platform(platform, calibration)));
-  fmt::print("{}{}", heading(options.run, result), calibration_report(calibration));
-  if (!options.run.out.empty()) fmt::print("platform file: {}\n", options.run.out);
+  const std::string yaml =
+      out ? platform::to_yaml(calibrated_platform(platform, calibration)) : std::string();
+  publish({{out, yaml, "platform file"}},
+          heading(options.run, result) + calibration_report(calibration));
 }
 
 }  // namespace

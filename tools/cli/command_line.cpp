@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 
 #include "platform_models/nearest.h"
 #include "sim/error.h"
@@ -43,6 +42,20 @@ const std::string& first_fault(const Words& unknown) {
       fmt::format("{}unknown option '{}'{}", where, name, platform::did_you_mean(name, options)));
 }
 
+/// CLI11 takes the next word for the value of "--out=", and an empty word for no value.
+void refuse_empty_values(const Words& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool is_option = words[i].rfind("--", 0) == 0;
+    if (is_option && words[i].find('=') == words[i].size() - 1)
+      throw InputError(
+          fmt::format("{}: is empty; expected a value", words[i].substr(0, words[i].size() - 1)));
+    if (!words[i].empty()) continue;
+    const bool has_name = i > 0 && words[i - 1].rfind('-', 0) == 0;
+    throw InputError(
+        fmt::format("{}: is empty; expected a value", has_name ? words[i - 1] : "argument ''"));
+  }
+}
+
 [[noreturn]] void fail_without_command(const std::vector<Command>& commands, const Words& unknown,
                                        const CLI::App& app) {
   const std::vector<std::string> names = names_of(commands);
@@ -57,6 +70,7 @@ const std::string& first_fault(const Words& unknown) {
 }  // namespace
 
 int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& words) {
+  refuse_empty_values(words);
   // Unknown words are collected instead of refused, so that they can be answered with a suggestion.
   app.allow_extras();
   for (const Command& command : commands) command.app->allow_extras();
@@ -100,19 +114,6 @@ void require(const CLI::App& command, const std::string& option, const std::stri
   if (command.count(option) == 0)
     throw InputError(
         fmt::format("{}: {} is missing; expected {}", command.get_name(), option, expected));
-}
-
-void check_out_file(const std::string& option, const std::string& file, bool force) {
-  if (file.empty()) return;
-  const std::filesystem::path path = std::filesystem::absolute(file);
-  if (std::filesystem::is_directory(path))
-    throw InputError(fmt::format("{} {}: is a folder; expected a file", option, file));
-  if (!std::filesystem::is_directory(path.parent_path()))
-    throw InputError(
-        fmt::format("{} {}: there is no folder {}", option, file, path.parent_path().string()));
-  if (std::filesystem::exists(path) && !force)
-    throw InputError(
-        fmt::format("{} {}: exists; choose a new file, or --force to replace it", option, file));
 }
 
 }  // namespace leviosim::tools

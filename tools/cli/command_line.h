@@ -29,8 +29,4 @@ double parse_positive(const std::string& option, const std::string& text);
 /// @throws InputError if the option was not given
 void require(const CLI::App& command, const std::string& option, const std::string& expected);
 
-/// That `file`, the value of the option, can be written; nothing to check if it is empty.
-/// @throws InputError for a folder, a folder that is not there, and an existing file unless forced
-void check_out_file(const std::string& option, const std::string& file, bool force);
-
 }  // namespace leviosim::tools

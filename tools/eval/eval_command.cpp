@@ -5,11 +5,9 @@
 #include <memory>
 
 #include "sim/error.h"
-#include "tools/cli/interrupts.h"
 #include "tools/eval/accuracy.h"
 #include "tools/eval/eval_options.h"
 #include "tools/eval/trajectory_plot.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -87,14 +85,9 @@ void run(const CLI::App& command, const EvalOptions& options) {
   EvalRequest request = make_eval_request(command, options);
   const traces::TrajectoryPair pair = read_pair(options.estimate, options.truth, request.read);
   const Accuracy accuracy = measure(pair, request);
-  const std::string figures = json_text(pair, request, accuracy);
-  const std::string picture = trajectory_plot(pair, accuracy.evaluation);
-  throw_if_interrupted();
-  if (!options.json.empty()) traces::write_file_atomically(options.json, figures);
-  if (!options.plot.empty()) traces::write_file_atomically(options.plot, picture);
-  fmt::print("{}", report(pair, request, accuracy));
-  if (!options.json.empty()) fmt::print("figures: {}\n", options.json);
-  if (!options.plot.empty()) fmt::print("plot: {}\n", options.plot);
+  publish({{request.json, json_text(pair, request, accuracy), "figures"},
+           {request.plot, trajectory_plot(pair, accuracy.evaluation), "plot"}},
+          report(pair, request, accuracy));
 }
 
 }  // namespace

@@ -29,13 +29,22 @@ std::vector<double> parse_lengths(const std::vector<std::string>& words) {
   return lengths;
 }
 
-void check_outputs(const EvalOptions& options) {
+base::OutputRequest output(const EvalOptions& options, const char* option,
+                           const std::string& file) {
+  return {.option = option,
+          .path = file,
+          .replace = options.force,
+          .inputs = {options.estimate, options.truth, options.times}};
+}
+
+/// Told from each other as files, not as names.
+void claim_outputs(const EvalOptions& options, EvalRequest& request) {
   if (!options.plot.empty() && std::filesystem::path(options.plot).extension() != ".svg")
     throw InputError(fmt::format("--plot {}: expected a file that ends in .svg", options.plot));
-  if (!options.plot.empty() && options.plot == options.json)
+  request.json = claimed_file(output(options, "--json", options.json));
+  request.plot = claimed_file(output(options, "--plot", options.plot));
+  if (request.json && request.plot && request.json->path() == request.plot->path())
     throw InputError(fmt::format("--json {}: is the file of --plot too", options.json));
-  check_out_file("--json", options.json, options.force);
-  check_out_file("--plot", options.plot, options.force);
 }
 
 }  // namespace
@@ -78,7 +87,7 @@ EvalRequest make_eval_request(const CLI::App& command, const EvalOptions& option
   if (command.count("--format") > 0)
     request.read.format = traces::parse_trajectory_format(options.format);
   request.read.times = options.times;
-  check_outputs(options);
+  claim_outputs(options, request);
   return request;
 }
 

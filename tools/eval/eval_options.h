@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/cli/command_line.h"
+#include "tools/cli/outputs.h"
 #include "traces/evaluation.h"
 #include "traces/trajectory_file.h"
 
@@ -32,6 +34,8 @@ struct EvalRequest {
   traces::ReadOptions read;
   traces::EvaluationOptions evaluation;  ///< stamps are those of the files
   std::vector<double> lengths_m;         ///< rising, each once
+  std::optional<base::OutputFile> json;
+  std::optional<base::OutputFile> plot;
 };
 
 void add_eval_options(CLI::App& command, EvalOptions& options);

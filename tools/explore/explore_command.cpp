@@ -6,11 +6,10 @@
 #include <memory>
 
 #include "sim/error.h"
-#include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/cli/version.h"
 #include "tools/explore/exploration_report.h"
 #include "tools/explore/scatter_plot.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -73,22 +72,20 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   check_plan(plan, dimensions);
   const auto points = sample_points(dimensions, count, seed);
   const ExplorationRuns runs = exploration_runs(plan, points);
-  traces::StagedFolder staged(plan.out);
   const std::vector<RunOutcome> outcomes =
       run_with_progress(plan, runs.runs, ProgressLine::style_of_stderr(words.batch.quiet));
   const std::vector<ExploredPoint> explored = explored_points(plan, points, runs, outcomes);
-  const auto write = [&](const char* name, const std::string& text) {
-    traces::write_file_atomically(staged.path() / name, text);
-  };
-  write("runs.csv", runs_csv(runs.runs, outcomes, plan.measure, point_columns(dimensions, runs)));
-  write("points.csv", points_csv(dimensions, explored));
-  write("best.md", best_markdown(plan, explored));
-  write("scatter.svg", scatter_plot(plan, explored));
-  write("manifest.json", manifest_of(plan, words, dimensions, command_line).dump(2) + '\n');
-  throw_if_interrupted();
-  staged.commit();
-  fmt::print("leviosim {}: {} points, {} native runs\n{}results: {}\n", version(), points.size(),
-             runs.runs.size(), best_text(plan, explored), words.batch.out);
+  const std::string text = fmt::format("leviosim {}: {} points, {} native runs\n{}", version(),
+                                       points.size(), runs.runs.size(), best_text(plan, explored));
+  publish(*plan.out, text, [&] {
+    base::OutputFolder& out = *plan.out;
+    out.write("runs.csv",
+              runs_csv(runs.runs, outcomes, plan.measure, point_columns(dimensions, runs)));
+    out.write("points.csv", points_csv(dimensions, explored));
+    out.write("best.md", best_markdown(plan, explored));
+    out.write("scatter.svg", scatter_plot(plan, explored));
+    out.write("manifest.json", manifest_of(plan, words, dimensions, command_line).dump(2) + '\n');
+  });
 }
 
 }  // namespace

@@ -4,12 +4,11 @@
 
 #include <memory>
 
-#include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/flow/flow_report.h"
 #include "tools/flow/flow_source.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -53,10 +52,10 @@ FlowRun run_flow(const FlowOptions& options, const RunRequest& request, Progress
   return flow;
 }
 
-void write_folder(const std::filesystem::path& folder, const FlowRun& flow,
-                  const Manifest& manifest, const std::string& platform_yaml) {
+void write_folder(base::OutputFolder& out, const FlowRun& flow, const Manifest& manifest,
+                  const std::string& platform_yaml) {
   const auto write = [&](const char* name, const std::string& text) {
-    if (!text.empty()) traces::write_file_atomically(folder / name, text);
+    if (!text.empty()) out.write(name, text);
   };
   write("manifest.json", manifest_json(manifest, flow.run).dump(2) + '\n');
   write("platform.yaml", platform_yaml);
@@ -75,14 +74,12 @@ void run(const CLI::App& command, const FlowOptions& options, const Words& words
   if (!options.fps.empty()) parse_positive("--fps", options.fps);
   RunRequest request = request_of(options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  traces::StagedFolder staged(checked_out_folder(options.out, options.force));
+  base::OutputFolder out(out_request(options));
   request.data = data_folder(options, style);
   const FlowRun flow = run_flow(options, request, style);
-  write_folder(staged.path(), flow, make_manifest(options, request, words),
-               platform::to_yaml(request.platform));
-  throw_if_interrupted();
-  staged.commit();
-  fmt::print("{}{}results: {}\n", heading(options, flow.run), flow_report(flow), options.out);
+  const Manifest manifest = make_manifest(options, request, words);
+  publish(out, heading(options, flow.run) + flow_report(flow),
+          [&] { write_folder(out, flow, manifest, platform::to_yaml(request.platform)); });
 }
 
 }  // namespace

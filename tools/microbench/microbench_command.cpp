@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include "platform_models/loader.h"
+#include "tools/cli/outputs.h"
 #include "tools/microbench/board_kernels.h"
 #include "tools/microbench/report.h"
 #include "tools/microbench/unit_benches.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -21,22 +21,28 @@ struct MicrobenchOptions {
   std::string platform = "gap9";
   std::vector<std::string> overrides;
   std::string out;
+  bool force = false;
 };
 
 void run(const MicrobenchOptions& options) {
   const platform::ResolvedPlatform chip =
       platform::resolve_platform(options.platform, options.overrides);
+  std::optional<base::OutputFile> out = claimed_file({.option = "--out",
+                                                      .path = options.out,
+                                                      .replace = options.force,
+                                                      .inputs = {options.platform}});
   const bool is_board = chip.name == kBoard;
   std::vector<MicrobenchRow> rows;
+  std::string tables;
   if (!is_board) {
     rows = unit_rows(chip.config);
-    fmt::print("{}\n", microbench_table(chip.name, rows));
+    tables = microbench_table(chip.name, rows) + '\n';
   }
   const std::vector<MicrobenchRow> board =
       board_rows(is_board ? chip.config : platform::load_platform("gap8"));
-  fmt::print("{}", microbench_table(kBoard, board));
+  tables += microbench_table(kBoard, board);
   rows.insert(rows.end(), board.begin(), board.end());
-  if (!options.out.empty()) traces::write_file_atomically(options.out, microbench_csv(rows));
+  publish({{out, microbench_csv(rows), ""}}, tables);
 }
 
 }  // namespace
@@ -53,6 +59,7 @@ Command add_microbench_command(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   command->add_option("--out", options->out, "write the rows to a CSV file")->type_name("FILE");
+  command->add_flag("--force", options->force, "replace the file");
   return {command, [=] { run(*options); }};
 }
 

@@ -12,10 +12,10 @@
 #include "platform_models/nearest.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/platforms/feasibility_report.h"
 #include "tools/run/run_session.h"
 #include "tools/run/text_table.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -104,7 +104,6 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options,
   recording.platform = "gap9";
   recording.overrides = {};
   RunRequest request = make_chip_request(recording);
-  check_out_file(run);
   std::vector<platform::ResolvedPlatform> chips;
   for (const std::string& name : names)
     chips.push_back(platform::resolve_platform(name, run.overrides));
@@ -114,10 +113,12 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options,
 
 void feasibility(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
+  base::OutputRequest wanted = out_request(run);
+  wanted.inputs.insert(wanted.inputs.end(), options.names.begin(), options.names.end());
+  std::optional<base::OutputFile> out = claimed_file(wanted);
   const std::vector<Feasibility> rows = rows_for(options, teams_of);
-  if (!run.out.empty()) traces::write_file_atomically(run.out, feasibility_csv(rows));
-  fmt::print("{} on {}\n\n{}", run.profile, run.data, feasibility_table(rows));
-  if (!run.out.empty()) fmt::print("table: {}\n", run.out);
+  publish({{out, feasibility_csv(rows), "table"}},
+          fmt::format("{} on {}\n\n{}", run.profile, run.data, feasibility_table(rows)));
 }
 
 void stages(const PlatformsOptions& options) {

@@ -7,13 +7,13 @@
 #include "sim/base/input_file.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/replay/memory_option.h"
 #include "tools/replay/replay_report.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
 #include "tools/run/tables.h"
 #include "tools/run/workload_overrides.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -76,19 +76,20 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   require(command, "TRACE", "the work.trace of a run with --record, or its folder");
   require(command, "--out", "a folder for the results");
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  traces::StagedFolder staged(checked_out_folder(options.out, options.force));
+  base::OutputRequest wanted = out_request(options);
+  wanted.inputs.push_back(trace_file(options.trace));
+  base::OutputFolder out(std::move(wanted));
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
   const RunRequest request = request_for(trace, options);
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;
-  write_run_folder(staged.path(), result.run, manifest_of(trace, options, words),
-                   platform::to_yaml(request.platform));
-  traces::write_file_atomically(staged.path() / kReplayFile, replay_csv(result));
-  throw_if_interrupted();
-  staged.commit();
+  const Manifest manifest = manifest_of(trace, options, words);
   options.data = trace.info().data;
-  fmt::print("{}{}{}results: {}\n", heading(options, result.run), replay_report(result, trace),
-             report(result.run), options.out);
+  publish(out, heading(options, result.run) + replay_report(result, trace) + report(result.run),
+          [&] {
+            write_run_folder(out, result.run, manifest, platform::to_yaml(request.platform));
+            out.write(kReplayFile, replay_csv(result));
+          });
 }
 
 }  // namespace

@@ -1,47 +1,20 @@
 #include "tools/run/digest.h"
 
 #include <fmt/core.h>
-#include <openssl/evp.h>
-
-#include <array>
 
 #include "sim/base/input_file.h"
-#include "sim/check.h"
+#include "sim/base/sha256.h"
 
 namespace leviosim::tools {
 
 namespace fs = std::filesystem;
-
-struct Sha256::State {
-  EVP_MD_CTX* context = EVP_MD_CTX_new();
-  ~State() { EVP_MD_CTX_free(context); }
-};
-
-Sha256::Sha256() : state_(std::make_unique<State>()) {
-  check(EVP_DigestInit_ex(state_->context, EVP_sha256(), nullptr) == 1, "SHA-256 begins");
-}
-
-Sha256::~Sha256() = default;
-
-void Sha256::add(std::string_view bytes) {
-  check(EVP_DigestUpdate(state_->context, bytes.data(), bytes.size()) == 1, "SHA-256 goes on");
-}
-
-std::string Sha256::hex() {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned size = 0;
-  check(EVP_DigestFinal_ex(state_->context, digest.data(), &size) == 1, "SHA-256 ends");
-  std::string text;
-  for (unsigned i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
-  return text;
-}
 
 namespace {
 
 InputDigest digest_of(std::string name, const std::vector<fs::path>& files, base::InputKind kind) {
   InputDigest digest;
   digest.name = std::move(name);
-  Sha256 sha;
+  base::Sha256 sha;
   for (const fs::path& file : files) {
     const std::string bytes = base::read_file(file, kind);
     sha.add(bytes);

@@ -3,31 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "traces/dataset.h"
 
 namespace leviosim::tools {
-
-/// A running SHA-256 (OpenSSL's).
-class Sha256 {
- public:
-  Sha256();
-  ~Sha256();
-  Sha256(const Sha256&) = delete;
-  Sha256& operator=(const Sha256&) = delete;
-
-  void add(std::string_view bytes);
-  /// Ends the digest. @returns 64 hexadecimal digits
-  std::string hex();
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
 
 struct InputDigest {
   std::string name;  ///< relative to the data folder

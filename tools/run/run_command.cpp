@@ -5,13 +5,12 @@
 
 #include <memory>
 
-#include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/cli/version.h"
 #include "tools/replay/recording_source.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
 #include "tools/run/tables.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -34,22 +33,20 @@ void complete(traces::WorkTraceInfo& info, const RunOptions& options, const RunR
 void run(const CLI::App& command, const RunOptions& options, const Words& words) {
   RunRequest request = make_request(command, options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  traces::StagedFolder staged(checked_out_folder(options.out, options.force));
+  base::OutputFolder out(out_request(options));
   request.data = data_folder(options, style);
+  out.reserve(expected_bytes(request, options.record));
   WorkRecording recording(request.cores);
   if (options.record) request.recording = &recording;
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
-  write_run_folder(staged.path(), result, manifest,
-                   request.native ? std::string() : platform::to_yaml(request.platform));
-  if (options.record) {
+  publish(out, heading(options, result) + report(result), [&] {
+    write_run_folder(out, result, manifest,
+                     request.native ? std::string() : platform::to_yaml(request.platform));
+    if (!options.record) return;
     complete(recording.info, options, request, manifest);
-    traces::write_file_atomically(staged.path() / kWorkTraceFile,
-                                  recording.writer.finish(std::move(recording.info)));
-  }
-  throw_if_interrupted();
-  staged.commit();
-  fmt::print("{}{}results: {}\n", heading(options, result), report(result), options.out);
+    out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
+  });
 }
 
 }  // namespace

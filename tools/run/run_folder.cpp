@@ -5,7 +5,6 @@
 #include "tools/run/camera_figures.h"
 #include "tools/run/energy.h"
 #include "tools/run/summary.h"
-#include "traces/atomic_file.h"
 #include "traces/trajectory.h"
 
 namespace leviosim::tools {
@@ -196,10 +195,10 @@ std::string energy_csv(const RunResult& run) {
          energy_lines({"all", "frame", false, energy->frames, energy->time, energy->total()});
 }
 
-void write_run_folder(const std::filesystem::path& folder, const RunResult& run,
-                      const Manifest& manifest, const std::string& platform_yaml) {
+void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manifest& manifest,
+                      const std::string& platform_yaml, const std::string& below) {
   const auto write = [&](const char* name, const std::string& text) {
-    traces::write_file_atomically(folder / name, text);
+    out.write(below + name, text);
   };
   write("manifest.json", manifest_json(manifest, run).dump(2) + '\n');
   write("stats.json", statistics_text(run));

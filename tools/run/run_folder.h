@@ -16,9 +16,9 @@
 // A platform without energy figures leaves no energy.csv.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
+#include "sim/base/output_folder.h"
 #include "tools/run/manifest.h"
 #include "tools/run/run_result.h"
 
@@ -27,11 +27,12 @@ namespace leviosim::tools {
 inline constexpr const char* kWorkTraceFile = "work.trace";
 inline constexpr const char* kReplayFile = "replay.csv";
 
-/// Writes into an existing folder, which the caller has staged (traces/atomic_file.h).
+/// Writes into a folder that the caller has claimed.
 /// @param platform_yaml  unused for a native run
+/// @param below          folder in it, "chosen/"
 /// @throws InputError if a file cannot be written
-void write_run_folder(const std::filesystem::path& folder, const RunResult& run,
-                      const Manifest& manifest, const std::string& platform_yaml);
+void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manifest& manifest,
+                      const std::string& platform_yaml, const std::string& below = {});
 
 /// The texts of the CSV files; the units stand in the column names.
 std::string stages_csv(const RunResult& run);

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "sim/energy/model.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
@@ -15,24 +17,29 @@ namespace leviosim::tools {
 
 namespace fs = std::filesystem;
 
-fs::path checked_out_folder(const std::string& folder, bool force) {
-  const fs::path out = fs::absolute(folder).lexically_normal();
-  if (!fs::exists(out)) return out;
-  if (!fs::is_directory(out))
-    throw InputError(fmt::format("--out {}: is a file; expected a folder", folder));
-  if (fs::is_empty(out)) return out;
-  if (!fs::exists(out / "manifest.json"))
-    throw InputError(fmt::format(
-        "--out {}: exists and holds something else than results; choose a new folder", folder));
-  if (!force)
-    throw InputError(fmt::format(
-        "--out {}: exists and holds results; choose a new folder, or --force to replace them",
-        folder));
-  return out;
+base::OutputRequest out_request(const RunOptions& options) {
+  base::OutputRequest request{.option = "--out", .path = options.out, .replace = options.force};
+  request.inputs = data_inputs(options.data);
+  request.inputs.emplace_back(options.platform);
+  return request;
 }
 
-void check_out_file(const RunOptions& options) {
-  check_out_file("--out", options.out, options.force);
+std::vector<fs::path> data_inputs(const std::string& data) {
+  const fs::path folder = data == "synthetic" ? flight_folder() : fs::path(data);
+  return {folder, folder / "mav0"};
+}
+
+std::uint64_t expected_bytes(const RunRequest& request, bool record) {
+  constexpr std::uint64_t kLineOfList = 44;  // two stamps
+  constexpr std::uint64_t kRowOfFrame = 512;
+  constexpr std::uint64_t kWorkOfFrame = 16 << 10;  // of large images with many features
+  std::error_code error;
+  const fs::path folder = fs::path(request.data);
+  const std::uintmax_t list = fs::file_size(
+      (fs::exists(folder / "mav0", error) ? folder / "mav0" : folder) / "cam0/data.csv", error);
+  std::uint64_t frames = error ? 0 : list / kLineOfList;
+  if (request.frames) frames = std::min<std::uint64_t>(frames, request.frames->end);
+  return frames * (kRowOfFrame + (record ? kWorkOfFrame : 0));
 }
 
 std::string data_folder(const RunOptions& options, ProgressLine::Style progress) {

@@ -1,8 +1,11 @@
 // What every command that runs the workload does around the run.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
+#include "sim/base/output_request.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/progress_line.h"
 #include "tools/run/job_source.h"
@@ -11,15 +14,14 @@
 
 namespace leviosim::tools {
 
-/// The absolute path of --out. Results replace nothing but results: a mistyped --out --force must
-/// not cost anybody's files.
-/// @throws InputError if it is a file, or a folder with something else than results, or with
-///         results and without --force
-std::filesystem::path checked_out_folder(const std::string& out, bool force);
+/// What --out and --force ask for; what the run reads stays as it is.
+base::OutputRequest out_request(const RunOptions& options);
 
-/// The same for commands whose --out is one file: as cli/command_line.h says. Before the run, so
-/// that nobody waits for a file that cannot be written.
-void check_out_file(const RunOptions& options);
+/// What --data stands for: the folder, and the one in it that may be a link.
+std::vector<std::filesystem::path> data_inputs(const std::string& data);
+
+/// About what a run with all frames will write, rather more. [bytes]
+std::uint64_t expected_bytes(const RunRequest& request, bool record);
 
 /// The folder that --data names; makes the synthetic flight if it is asked for and not there yet.
 std::string data_folder(const RunOptions& options, ProgressLine::Style progress);

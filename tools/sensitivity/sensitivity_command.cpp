@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/replay/recording_source.h"
 #include "tools/run/run_session.h"
 #include "tools/sensitivity/sensitivity_report.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -26,7 +26,7 @@ Sensitivity with_progress(const platform::Variants& platform, int cores,
 
 void run(const RunOptions& options) {
   RunRequest request = make_chip_request(options);
-  check_out_file(options);
+  std::optional<base::OutputFile> out = claimed_file(out_request(options));
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);
@@ -35,9 +35,8 @@ void run(const RunOptions& options) {
   const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
   const Sensitivity found =
       with_progress(platform::Variants(std::move(request.platform)), request.cores, trace, style);
-  if (!options.out.empty()) traces::write_file_atomically(options.out, sensitivity_csv(found));
-  fmt::print("{}{}", heading(options, result), sensitivity_table(found, result.cores));
-  if (!options.out.empty()) fmt::print("table: {}\n", options.out);
+  publish({{out, sensitivity_csv(found), "table"}},
+          heading(options, result) + sensitivity_table(found, result.cores));
 }
 
 }  // namespace

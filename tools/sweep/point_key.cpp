@@ -2,14 +2,12 @@
 
 #include <fmt/core.h>
 
-#include "tools/run/digest.h"
+#include "sim/base/sha256.h"
 
 namespace leviosim::tools {
 
 std::string point_key(const std::string& identity) {
-  Sha256 digest;
-  digest.add(fmt::format("simulator {}\n{}", simulator_version(), identity));
-  return digest.hex();
+  return base::sha256_of(fmt::format("simulator {}\n{}", simulator_version(), identity));
 }
 
 }  // namespace leviosim::tools

@@ -14,6 +14,7 @@
 #include "tools/cli/version.h"
 #include "tools/replay/memory_option.h"
 #include "tools/sweep/points.h"
+#include "tools/sweep/sweep_folder.h"
 #include "tools/sweep/sweep_report.h"
 #include "tools/sweep/sweep_store.h"
 
@@ -38,24 +39,6 @@ struct SweepWords {
   bool force = false;
   bool quiet = false;
 };
-
-/// Results of sweeps are all that a sweep adds to or replaces.
-fs::path out_folder(const SweepWords& words) {
-  const fs::path out = fs::absolute(words.out).lexically_normal();
-  if (!fs::exists(out)) return out;
-  if (!fs::is_directory(out))
-    throw InputError(fmt::format("--out {}: is a file; expected a folder", words.out));
-  if (!fs::is_empty(out) && !fs::exists(out / kSweepFile))
-    throw InputError(fmt::format(
-        "--out {}: exists and holds something else than a sweep; choose a new folder", words.out));
-  return out;
-}
-
-void remove_results(const fs::path& out) {
-  for (const char* suffix : {"", "-journal", "-wal", "-shm"})
-    fs::remove(out / (std::string(kSweepFile) + suffix));
-  fs::remove(out / kSweepCsv);
-}
 
 /// Numbers of the points that --point or --shard ask for.
 std::vector<std::size_t> chosen_points(const SweepWords& words, std::size_t count) {
@@ -130,22 +113,22 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
 void merge(const SweepWords& words) {
   if (words.merge.size() < 2)
     throw InputError("--merge: expected OUT IN..., the folder to merge into and those to merge");
-  SweepWords out_words = words;
-  out_words.out = words.merge.front();
-  const fs::path out = out_folder(out_words);
-  if (words.force) remove_results(out);
   for (std::size_t i = 1; i < words.merge.size(); ++i)
     SweepStore{fs::path(words.merge[i])};  // refused before anything is written
-  SweepStore(fs::path(words.merge[1])).copy_plan_to(out);
-  SweepStore store(out);
+  SweepFolder out(
+      {"--merge", words.merge.front(), {words.merge.begin() + 1, words.merge.end()}, {}});
+  if (words.force) out.empty();
+  SweepStore(fs::path(words.merge[1])).copy_plan_to(out.path());
+  SweepStore store(out.path());
   for (std::size_t i = 1; i < words.merge.size(); ++i) {
     throw_if_interrupted();
     SweepStore part{fs::path(words.merge[i])};
     store.merge(part);
   }
-  store.publish();
+  const std::optional<std::string> elsewhere = store.publish(out.csv());
   fmt::print("leviosim {}: {} folders merged\n{}results: {}\n", version(), words.merge.size() - 1,
              sweep_report(store), words.merge.front());
+  if (elsewhere) throw InputError(*elsewhere);
 }
 
 std::string expansion_text(const Expansion& expansion) {
@@ -174,13 +157,15 @@ void run_plan(const SweepWords& words) {
   const unsigned threads =
       words.jobs.empty() ? 0
                          : static_cast<unsigned>(parse_whole("--jobs", words.jobs, 1, kMostJobs));
-  const fs::path out = out_folder(words);
-  if (words.force) remove_results(out);
+  const fs::path cache_path =
+      words.cache.empty() ? cache_folder() / "sweeps" : fs::path(words.cache);
+  SweepFolder out({"--out", words.out, {words.plan}, cache_path});
+  if (words.force) out.empty();
   const auto begin = std::chrono::steady_clock::now();
-  SweepStore store(out, plan.text, expansion.points);
-  const RunCache cache(words.cache.empty() ? cache_folder() / "sweeps" : fs::path(words.cache));
+  SweepStore store(out.path(), plan.text, expansion.points);
+  const RunCache cache(cache_path);
   const Tally tally = run_points({plan, expansion, inputs}, chosen, store, cache, threads, style);
-  store.publish();
+  const std::optional<std::string> elsewhere = store.publish(out.csv());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   fmt::print(
@@ -188,6 +173,7 @@ void run_plan(const SweepWords& words) {
       "results: {}\n",
       version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.stored,
       sweep_report(store), words.out);
+  if (elsewhere) throw InputError(*elsewhere);
 }
 
 void run(const CLI::App& command, const SweepWords& words) {

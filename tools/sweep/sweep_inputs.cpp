@@ -4,9 +4,9 @@
 
 #include "platform_models/instruction_set.h"
 #include "sim/base/input_file.h"
+#include "sim/base/sha256.h"
 #include "sim/error.h"
 #include "tools/batch/sequence.h"
-#include "tools/run/digest.h"
 #include "tools/run/run_folder.h"
 #include "tools/synth/flight_cache.h"
 #include "traces/asl_reader.h"
@@ -49,13 +49,11 @@ SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::
     std::filesystem::path file = beside(name);
     if (base::is_folder(file)) file /= kWorkTraceFile;
     std::string bytes = base::read_file(file, base::InputKind::work_trace);
-    Sha256 digest;
-    digest.add(bytes);
+    const std::string digest = base::sha256_of(bytes);
     // Called as in the plan: what a point says must not depend on where the plan lies.
     auto work = std::make_unique<traces::WorkTrace>(name, std::move(bytes), memory_);
     platform::PlatformFile chip(name + ", platform of the recording", work->info().platform_yaml);
-    return traces_.emplace(name, Trace{std::move(work), digest.hex(), std::move(chip)})
-        .first->second;
+    return traces_.emplace(name, Trace{std::move(work), digest, std::move(chip)}).first->second;
   });
 }
 

@@ -5,6 +5,23 @@ namespace leviosim::tools {
 
 inline constexpr const char* kSweepFormat = "leviosim sweep 1";
 
+/// "lvio": marks a data base as a sweep's (PRAGMA application_id).
+inline constexpr int kSweepApplication = 0x6c76696f;
+
+/// Takes out all of a sweep, and nothing that others added.
+inline constexpr const char* kSweepEmpty = R"(
+DROP VIEW IF EXISTS wide;
+DROP VIEW IF EXISTS metrics;
+DROP VIEW IF EXISTS points;
+DROP TABLE IF EXISTS front;
+DROP TABLE IF EXISTS figure_values;
+DROP TABLE IF EXISTS figures;
+DROP TABLE IF EXISTS outcomes;
+DROP TABLE IF EXISTS parameters;
+DROP TABLE IF EXISTS planned;
+DROP TABLE IF EXISTS sweep;
+)";
+
 inline constexpr const char* kSweepTables = R"(
 CREATE TABLE IF NOT EXISTS sweep(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS planned(point INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE);

@@ -11,7 +11,6 @@
 #include "tools/sweep/pareto.h"
 #include "tools/sweep/point_key.h"
 #include "tools/sweep/sweep_schema.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -63,6 +62,7 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan,
     : folder_(folder), database_(made(folder), Database::Mode::create) {
   Transaction transaction(database_);
   database_.run(kSweepTables);
+  database_.run(fmt::format("PRAGMA application_id = {}", kSweepApplication));
   Keys asked;
   for (const SweepPoint& p : points) asked.emplace_back(p.number, p.key);
   const Keys held = keys();
@@ -295,7 +295,7 @@ std::set<int> SweepStore::front() {
   return points;
 }
 
-void SweepStore::publish() {
+std::optional<std::string> SweepStore::publish(base::OutputFile& file) {
   Transaction transaction(database_);  // of several processes, the last sees what all have done
   std::vector<std::string> parameters;
   Statement select(database_,
@@ -305,8 +305,30 @@ void SweepStore::publish() {
   const std::vector<std::string> figures = figure_names();
   make_views(parameters, figures);
   write_front();
-  traces::write_file_atomically(folder_ / kSweepCsv, csv(parameters, figures));
+  std::optional<std::string> elsewhere = file.publish(csv(parameters, figures));
   select.reset();
+  transaction.commit();
+  return elsewhere;
+}
+
+bool is_sweep(const fs::path& folder, bool may_be_empty) {
+  Database database(folder / kSweepFile, Database::Mode::existing);
+  const auto count = [&](const char* sql) {
+    Statement statement(database, sql);
+    return statement.step() ? statement.whole(0) : 0;
+  };
+  if (count("PRAGMA application_id") == kSweepApplication) return true;
+  // Those of before were not marked.
+  if (count("SELECT COUNT(*) FROM sqlite_master WHERE name IN ('sweep', 'planned', 'outcomes')") ==
+      3)
+    return true;
+  return may_be_empty && count("SELECT COUNT(*) FROM sqlite_master") == 0;
+}
+
+void empty_sweep(const fs::path& folder) {
+  Database database(folder / kSweepFile, Database::Mode::existing);
+  Transaction transaction(database);
+  database.run(kSweepEmpty);
   transaction.commit();
 }
 

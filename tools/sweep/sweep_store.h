@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/output_file.h"
 #include "tools/sweep/point_run.h"
 #include "tools/sweep/sqlite.h"
 
@@ -54,7 +55,8 @@ class SweepStore {
 
   /// Brings views, front and sweep.csv up to date: a row per finished point, a column per parameter
   /// and figure, in an order that does not depend on which was finished first.
-  void publish();
+  /// @returns nothing, or why sweep.csv has another name now
+  [[nodiscard]] std::optional<std::string> publish(base::OutputFile& file);
 
  private:
   using Keys = std::vector<std::pair<int, std::string>>;
@@ -72,5 +74,11 @@ class SweepStore {
   std::filesystem::path folder_;
   Database database_;
 };
+
+/// Whether a folder's data base is a sweep's; `may_be_empty`: also one without any table.
+/// @throws InputError if it is no data base
+bool is_sweep(const std::filesystem::path& folder, bool may_be_empty);
+/// Takes all of the sweep out of the data base, or nothing.
+void empty_sweep(const std::filesystem::path& folder);
 
 }  // namespace leviosim::tools

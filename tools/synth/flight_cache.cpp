@@ -8,11 +8,11 @@
 #include <chrono>
 #include <thread>
 
+#include "sim/base/output_record.h"
 #include "sim/error.h"
 #include "tools/cli/cache_folder.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/version.h"
-#include "traces/synthetic.h"
 
 namespace leviosim::tools {
 namespace {
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 class FileLock {
  public:
   explicit FileLock(const fs::path& file)
-      : descriptor_(::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+      : descriptor_(::open(file.c_str(), O_CREAT | O_RDWR | O_NOFOLLOW | O_CLOEXEC, 0644)) {
     if (descriptor_ < 0) throw InputError(fmt::format("{}: cannot be written", file.string()));
   }
   ~FileLock() { ::close(descriptor_); }
@@ -41,6 +41,12 @@ class FileLock {
   int descriptor_;
 };
 
+/// Whether all files of the flight are there as they were drawn.
+bool is_whole(const fs::path& folder) {
+  const std::optional<base::OutputRecord> record = base::OutputRecord::read(folder);
+  return record && !record->paths().empty() && record->is_complete(folder);
+}
+
 }  // namespace
 
 fs::path flight_folder() {
@@ -48,13 +54,9 @@ fs::path flight_folder() {
          fmt::format("synthetic-{}-{:g}s-{}", kFlightSeed, kFlightSeconds, flight_version());
 }
 
-void write_flight(const fs::path& folder, std::uint64_t seed, double seconds, bool overwrite,
+void write_flight(const fs::path& folder, const traces::SyntheticOptions& options,
                   ProgressLine::Style progress) {
   ProgressLine line(progress);
-  traces::SyntheticOptions options;
-  options.seed = seed;
-  options.duration_s = seconds;
-  options.overwrite = overwrite;
   traces::write_synthetic_flight(folder, options, [&](std::size_t done, std::size_t total) {
     throw_if_interrupted();
     line.show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total),
@@ -69,9 +71,15 @@ fs::path cached_flight(ProgressLine::Style progress) {
   if (error)
     throw InputError(
         fmt::format("{}: cannot be created: {}", folder.parent_path().string(), error.message()));
+  cache_folder();  // refuses it if it is not the user's
   FileLock lock(folder.string() + ".lock");
   lock.acquire();
-  if (!fs::exists(folder)) write_flight(folder, kFlightSeed, kFlightSeconds, false, progress);
+  if (is_whole(folder)) return folder;
+  traces::SyntheticOptions options;
+  options.seed = kFlightSeed;
+  options.duration_s = kFlightSeconds;
+  options.repair = true;
+  write_flight(folder, options, progress);
   return folder;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tools/cli/progress_line.h"
+#include "traces/synthetic.h"
 
 namespace leviosim::tools {
 
@@ -15,12 +16,12 @@ inline constexpr double kFlightSeconds = 20;
 /// sources that make the flight, so an outdated one is never read.
 std::filesystem::path flight_folder();
 
-/// The folder of the flight, which is made if it is not there. Several processes may ask at once.
-/// @throws InputError if it cannot be written, Interrupted
+/// The folder of the flight, which is made if it is not there, or not as it was drawn. Several
+/// processes may ask at once. @throws InputError if it cannot be written, Interrupted
 std::filesystem::path cached_flight(ProgressLine::Style progress);
 
 /// Writes a flight to `folder` with progress. @throws InputError, Interrupted
-void write_flight(const std::filesystem::path& folder, std::uint64_t seed, double seconds,
-                  bool overwrite, ProgressLine::Style progress);
+void write_flight(const std::filesystem::path& folder, const traces::SyntheticOptions& options,
+                  ProgressLine::Style progress);
 
 }  // namespace leviosim::tools

@@ -32,10 +32,6 @@ struct SynthOptions {
 constexpr auto kMotionOptions = {"--size",   "--full-size",   "--imu",
                                  "--frames", "--motion-blur", "--illumination"};
 
-std::filesystem::path out_folder(const SynthOptions& options) {
-  return std::filesystem::absolute(options.out).lexically_normal();
-}
-
 std::uint64_t seed(const SynthOptions& options) {
   return static_cast<std::uint64_t>(
       parse_whole("--seed", options.seed, 0, std::numeric_limits<std::int64_t>::max()));
@@ -71,7 +67,7 @@ void render(const CLI::App& command, const SynthOptions& options) {
   const traces::RenderedFlightOptions rendered = rendered_options(command, options);
   ProgressLine line(ProgressLine::style_of_stderr(options.quiet));
   traces::write_rendered_flight(
-      options.motion, out_folder(options), rendered, [&](std::size_t done, std::size_t total) {
+      options.motion, options.out, rendered, [&](std::size_t done, std::size_t total) {
         throw_if_interrupted();
         line.show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total),
                   [&] { return fmt::format("rendered flight: image {}/{}", done, total); });
@@ -88,9 +84,11 @@ void run(const CLI::App& command, const SynthOptions& options) {
   for (const char* option : kMotionOptions)
     if (command.count(option) > 0)
       throw InputError(fmt::format("synth: {} goes with --motion DIR", option));
-  const double seconds = parse_positive("--duration", options.duration);
-  write_flight(out_folder(options), seed(options), seconds, options.overwrite,
-               ProgressLine::style_of_stderr(options.quiet));
+  traces::SyntheticOptions flight;
+  flight.seed = seed(options);
+  flight.duration_s = parse_positive("--duration", options.duration);
+  flight.overwrite = options.overwrite;
+  write_flight(options.out, flight, ProgressLine::style_of_stderr(options.quiet));
   fmt::print("synthetic flight: {}\n", options.out);
 }
 
@@ -121,7 +119,8 @@ Command add_synth_command(CLI::App& app) {
   command->add_option("--seed", options->seed, "of world, path and noise [1]");
   command->add_option("--duration", options->duration, "seconds [20]");
   add_motion_options(*command, *options);
-  command->add_flag("--overwrite", options->overwrite, "replace an existing ASL folder");
+  command->add_flag("--overwrite,--force", options->overwrite,
+                    "replace a flight that was written before");
   command->add_flag("--quiet", options->quiet, "no progress");
   return {command, [=] { run(*command, *options); }};
 }

@@ -7,12 +7,12 @@
 #include "sim/error.h"
 #include "tools/batch/batch_options.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/cli/version.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
 #include "tools/tune/tune_plot.h"
 #include "tools/tune/tune_report.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -32,29 +32,21 @@ RunResult run_again(const TunePlan& plan, const TunePoint& point) {
   return std::move(results.front());
 }
 
-void write_chosen(const std::filesystem::path& folder, const TunePlan& plan, const TunePoint& point,
-                  const RunResult& result, const Words& command_line) {
+void write_chosen(const TunePlan& plan, const TunePoint& point, const RunResult& result,
+                  const Words& command_line) {
   const RunRequest request = request_of(plan, point.fps, point.setting, plan.seeds.front());
-  std::filesystem::create_directory(folder);
-  write_run_folder(folder, result,
+  write_run_folder(*plan.out, result,
                    make_manifest(run_options_of(plan, point), request, command_line),
-                   platform::to_yaml(request.platform));
+                   platform::to_yaml(request.platform), "chosen/");
 }
 
 void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
                   const std::optional<RunResult>& again, const Words& command_line) {
-  if (plan.out.empty()) return;
   const std::vector<Choice> all = choices(plan, points);
-  traces::StagedFolder staged(plan.out);
-  const auto write = [&](const char* name, const std::string& text) {
-    traces::write_file_atomically(staged.path() / name, text);
-  };
-  write("runs.csv", tune_csv(plan, points));
-  write("tune.svg", tune_plot(plan, points, all));
-  if (again) write_chosen(staged.path() / "chosen", plan, *chosen(all), *again, command_line);
-  write("manifest.json", tune_manifest(plan, all, command_line).dump(2) + '\n');
-  throw_if_interrupted();
-  staged.commit();
+  plan.out->write("runs.csv", tune_csv(plan, points));
+  plan.out->write("tune.svg", tune_plot(plan, points, all));
+  if (again) write_chosen(plan, *chosen(all), *again, command_line);
+  plan.out->write("manifest.json", tune_manifest(plan, all, command_line).dump(2) + '\n');
 }
 
 void run(const CLI::App& command, const TuneWords& words, const Words& command_line) {
@@ -67,13 +59,15 @@ void run(const CLI::App& command, const TuneWords& words, const Words& command_l
   const TunePoint* best = chosen(all);
   std::optional<RunResult> again;
   if (best != nullptr) again = run_again(plan, *best);
-  write_folder(plan, points, again, command_line);
-  fmt::print("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}",
-             version(), plan.request.profile, plan.options.platform, plan.request.cores,
-             plan.sequence.frames, plan.options.data, runs.size(), tune_table(plan, points),
-             choice_text(plan, all));
-  if (again) fmt::print("run again by itself, it gave the same figures: confirmed\n");
-  if (!plan.out.empty()) fmt::print("results: {}\n", words.run.out);
+  std::string text = fmt::format(
+      "leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}", version(),
+      plan.request.profile, plan.options.platform, plan.request.cores, plan.sequence.frames,
+      plan.options.data, runs.size(), tune_table(plan, points), choice_text(plan, all));
+  if (again) text += "run again by itself, it gave the same figures: confirmed\n";
+  if (plan.out)
+    publish(*plan.out, text, [&] { write_folder(plan, points, again, command_line); });
+  else
+    fmt::print("{}", text);
 }
 
 }  // namespace

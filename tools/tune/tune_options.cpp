@@ -191,7 +191,8 @@ TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
   if (!words.fps.empty()) plan.fps = parse_rates(words.fps);
   plan.cache = words.cache.empty() ? default_run_cache() : std::filesystem::path(words.cache);
   plan.threads = parse_jobs(words.jobs);
-  if (!words.run.out.empty()) plan.out = checked_out_folder(words.run.out, words.run.force);
+  if (!words.run.out.empty())
+    plan.out = std::make_shared<base::OutputFolder>(out_request(words.run));
   plan.request.data = data_folder(words.run, ProgressLine::style_of_stderr(words.run.quiet));
   plan.recorded_hz = checked_recorded_rate(plan.request, plan.fps);
   if (plan.fps.empty()) plan.fps = {plan.recorded_hz};

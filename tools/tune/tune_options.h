@@ -3,10 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/base/output_folder.h"
 #include "tools/batch/run_batch.h"
 #include "tools/run/run_options.h"
 
@@ -43,9 +45,9 @@ struct TunePlan {
   double miss_rate = 0;  ///< share of missed frames that is allowed
   double ate_m = 0;      ///< error that is allowed
   Measure measure;
-  std::filesystem::path cache;  ///< folder
-  unsigned threads = 0;         ///< 0: as many as the host has
-  std::filesystem::path out;    ///< empty: no folder
+  std::filesystem::path cache;              ///< folder
+  unsigned threads = 0;                     ///< 0: as many as the host has
+  std::shared_ptr<base::OutputFolder> out;  ///< if results are to be written
 };
 
 void add_tune_options(CLI::App& command, TuneWords& words);

@@ -4,11 +4,10 @@
 
 #include <memory>
 
-#include "tools/cli/interrupts.h"
+#include "tools/cli/outputs.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
 #include "tools/validate/validation_report.h"
-#include "traces/atomic_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -16,38 +15,37 @@ namespace {
 constexpr const char* kNotExamined = "not examined yet";
 
 /// The folder of the run, with what was found out about it.
-void write_folder(const std::filesystem::path& folder, const Validation& validation,
-                  const RunResult& run, const Manifest& manifest, const std::string& platform) {
-  write_run_folder(folder, run, manifest, platform);
-  traces::write_file_atomically(folder / "validation.csv", validation_csv(validation));
-  traces::write_file_atomically(folder / "validation.json",
-                                validation_json(validation).dump(2) + '\n');
+void write_folder(base::OutputFolder& out, const Validation& validation, const RunResult& run,
+                  const Manifest& manifest, const std::string& platform) {
+  write_run_folder(out, run, manifest, platform);
+  out.write("validation.csv", validation_csv(validation));
+  out.write("validation.json", validation_json(validation).dump(2) + '\n');
   std::vector<std::optional<double>> values;
   for (const Comparison& comparison : validation.comparisons) values.push_back(comparison.value);
-  traces::write_file_atomically(
-      folder / "paper.csv",
-      updated_references("paper.csv", paper_references_text(), values, kNotExamined));
+  out.write("paper.csv",
+            updated_references("paper.csv", paper_references_text(), values, kNotExamined));
 }
 
 void run(const RunOptions& options, const Words& words) {
   RunRequest request = make_chip_request(options);
   const std::vector<Reference> references = paper_references();
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  std::optional<traces::StagedFolder> staged;
-  if (!options.out.empty()) staged.emplace(checked_out_folder(options.out, options.force));
+  std::optional<base::OutputFolder> out;
+  if (!options.out.empty()) out.emplace(out_request(options));
   request.data = data_folder(options, style);
   FrameLog log;
   request.observer = &log;
   const RunResult result = simulate_with_progress(request, style);
   const Validation validation = validate(result, log, profile_of(request), references);
-  if (staged) {
-    write_folder(staged->path(), validation, result, make_manifest(options, request, words),
-                 platform::to_yaml(request.platform));
-    throw_if_interrupted();
-    staged->commit();
+  const std::string text = heading(options, result) + validation_report(validation, result.cores);
+  if (!out) {
+    fmt::print("{}", text);
+    return;
   }
-  fmt::print("{}{}", heading(options, result), validation_report(validation, result.cores));
-  if (staged) fmt::print("results: {}\n", options.out);
+  const Manifest manifest = make_manifest(options, request, words);
+  publish(*out, text, [&] {
+    write_folder(*out, validation, result, manifest, platform::to_yaml(request.platform));
+  });
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// The record of a folder while lines are added to it: one process at a time.
+#pragma once
+
+#include <filesystem>
+
+#include "sim/base/output_record.h"
+
+namespace leviosim::base {
+
+class HeldRecord {
+ public:
+  /// Waits for others; makes the file if there is none. @throws InputError if that fails
+  explicit HeldRecord(const std::filesystem::path& folder);
+
+  /// Adds a line, unless it is there. @throws InputError if that fails
+  void add(const std::string& path, const FileState& state);
+  const OutputRecord& record() const { return record_; }
+
+ private:
+  [[noreturn]] void fail(int error) const;
+
+  std::filesystem::path file_;
+  Descriptor descriptor_;
+  OutputRecord record_;
+};
+
+}  // namespace leviosim::base

@@ -1,0 +1,33 @@
+// How commands end: results are put in place, then the report is printed. What fails to be put in
+// place costs nobody the report.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string>
+
+#include "sim/base/output_file.h"
+#include "sim/base/output_folder.h"
+
+namespace leviosim::tools {
+
+/// Writes a folder of results, gives it its name, and prints the report with the line
+/// "results: DIR". @param write  the files
+/// @throws InputError, after the report, if the results are not under their name; Interrupted
+void publish(base::OutputFolder& out, const std::string& report, const std::function<void()>& write,
+             const std::string& label = "results");
+
+/// The file of an option; none if the option is empty. @throws InputError if it cannot be written
+std::optional<base::OutputFile> claimed_file(const base::OutputRequest& request);
+
+struct FileOutput {
+  std::optional<base::OutputFile>& file;
+  std::string bytes;
+  std::string label;  ///< of the line after the report, "table"; empty: none
+};
+
+/// The same for single files: those that were claimed.
+void publish(std::initializer_list<FileOutput> files, const std::string& report);
+
+}  // namespace leviosim::tools
