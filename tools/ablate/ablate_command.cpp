@@ -7,6 +7,7 @@
 #include "tools/ablate/ablation_report.h"
 #include "tools/batch/runs_csv.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/version.h"
 #include "traces/atomic_file.h"
 
@@ -25,12 +26,12 @@ void run(const CLI::App& command, const BatchWords& words, const Words& command_
   };
   write("runs.csv", runs_csv(runs, outcomes, plan.measure));
   write("table.md", ablation_markdown(plan, rows));
-  write("table.json", ablation_json(plan, rows).dump(2) + '\n');
-  write("manifest.json", batch_manifest(plan, command_line).dump(2) + '\n');
+  write("table.json", json_text(ablation_json(plan, rows), 2) + '\n');
+  write("manifest.json", json_text(batch_manifest(plan, command_line), 2) + '\n');
   throw_if_interrupted();
   staged.commit();
-  fmt::print("leviosim {}: {} native runs\n{}results: {}\n", version(), runs.size(),
-             ablation_text(plan, rows), words.out);
+  print_result("leviosim {}: {} native runs\n{}results: {}\n", version(), runs.size(),
+               ablation_text(plan, rows), printable(words.out));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "sim/error.h"
 #include "tools/calibrate/calibration_report.h"
+#include "tools/cli/terminal.h"
 #include "tools/run/run_session.h"
 #include "traces/atomic_file.h"
 
@@ -42,8 +43,8 @@ void run(const CalibrateOptions& options) {
   if (!options.run.out.empty())
     traces::write_file_atomically(options.run.out,
                                   platform::to_yaml(calibrated_platform(platform, calibration)));
-  fmt::print("{}{}", heading(options.run, result), calibration_report(calibration));
-  if (!options.run.out.empty()) fmt::print("platform file: {}\n", options.run.out);
+  print_result("{}{}", heading(options.run, result), calibration_report(calibration));
+  if (!options.run.out.empty()) print_result("platform file: {}\n", printable(options.run.out));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/eval/accuracy.h"
 #include "tools/eval/eval_options.h"
 #include "tools/eval/trajectory_plot.h"
@@ -37,7 +38,7 @@ Accuracy measure(const traces::TrajectoryPair& pair, EvalRequest& request) {
 }
 
 std::string file_line(const char* what, const TrajectoryFile& trajectory) {
-  return fmt::format("{:<14}{} ({}, {} poses)\n", what, trajectory.file.string(),
+  return fmt::format("{:<14}{} ({}, {} poses)\n", what, printable(trajectory.file.string()),
                      name_of(trajectory.format), trajectory.poses.size());
 }
 
@@ -67,8 +68,8 @@ Json protocol_json(const EvalRequest& request) {
           {"relative_lengths_m", request.lengths_m}};
 }
 
-std::string json_text(const traces::TrajectoryPair& pair, const EvalRequest& request,
-                      const Accuracy& accuracy) {
+std::string figures_text(const traces::TrajectoryPair& pair, const EvalRequest& request,
+                         const Accuracy& accuracy) {
   StatisticList list;
   add_ate(list, accuracy.evaluation);
   list.add("accuracy.longest_gap", "s", "between successive matched poses",
@@ -87,14 +88,14 @@ void run(const CLI::App& command, const EvalOptions& options) {
   EvalRequest request = make_eval_request(command, options);
   const traces::TrajectoryPair pair = read_pair(options.estimate, options.truth, request.read);
   const Accuracy accuracy = measure(pair, request);
-  const std::string figures = json_text(pair, request, accuracy);
+  const std::string figures = figures_text(pair, request, accuracy);
   const std::string picture = trajectory_plot(pair, accuracy.evaluation);
   throw_if_interrupted();
   if (!options.json.empty()) traces::write_file_atomically(options.json, figures);
   if (!options.plot.empty()) traces::write_file_atomically(options.plot, picture);
-  fmt::print("{}", report(pair, request, accuracy));
-  if (!options.json.empty()) fmt::print("figures: {}\n", options.json);
-  if (!options.plot.empty()) fmt::print("plot: {}\n", options.plot);
+  print_result("{}", report(pair, request, accuracy));
+  if (!options.json.empty()) print_result("figures: {}\n", printable(options.json));
+  if (!options.plot.empty()) print_result("plot: {}\n", printable(options.plot));
 }
 
 }  // namespace

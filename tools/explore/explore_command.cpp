@@ -7,6 +7,7 @@
 
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/version.h"
 #include "tools/explore/exploration_report.h"
 #include "tools/explore/scatter_plot.h"
@@ -84,11 +85,11 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   write("points.csv", points_csv(dimensions, explored));
   write("best.md", best_markdown(plan, explored));
   write("scatter.svg", scatter_plot(plan, explored));
-  write("manifest.json", manifest_of(plan, words, dimensions, command_line).dump(2) + '\n');
+  write("manifest.json", json_text(manifest_of(plan, words, dimensions, command_line), 2) + '\n');
   throw_if_interrupted();
   staged.commit();
-  fmt::print("leviosim {}: {} points, {} native runs\n{}results: {}\n", version(), points.size(),
-             runs.runs.size(), best_text(plan, explored), words.batch.out);
+  print_result("leviosim {}: {} points, {} native runs\n{}results: {}\n", version(), points.size(),
+               runs.runs.size(), best_text(plan, explored), printable(words.batch.out));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/flow/flow_report.h"
 #include "tools/flow/flow_source.h"
 #include "tools/run/run_folder.h"
@@ -58,7 +59,7 @@ void write_folder(const std::filesystem::path& folder, const FlowRun& flow,
   const auto write = [&](const char* name, const std::string& text) {
     if (!text.empty()) traces::write_file_atomically(folder / name, text);
   };
-  write("manifest.json", manifest_json(manifest, flow.run).dump(2) + '\n');
+  write("manifest.json", json_text(manifest_json(manifest, flow.run), 2) + '\n');
   write("platform.yaml", platform_yaml);
   write("flow.csv", flow_csv(flow));
   write("stages.csv", stages_csv(flow.run));
@@ -82,7 +83,8 @@ void run(const CLI::App& command, const FlowOptions& options, const Words& words
                platform::to_yaml(request.platform));
   throw_if_interrupted();
   staged.commit();
-  fmt::print("{}{}results: {}\n", heading(options, flow.run), flow_report(flow), options.out);
+  print_result("{}{}results: {}\n", heading(options, flow.run), flow_report(flow),
+               printable(options.out));
 }
 
 }  // namespace

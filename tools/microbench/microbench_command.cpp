@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "platform_models/loader.h"
+#include "tools/cli/terminal.h"
 #include "tools/microbench/board_kernels.h"
 #include "tools/microbench/report.h"
 #include "tools/microbench/unit_benches.h"
@@ -30,11 +31,11 @@ void run(const MicrobenchOptions& options) {
   std::vector<MicrobenchRow> rows;
   if (!is_board) {
     rows = unit_rows(chip.config);
-    fmt::print("{}\n", microbench_table(chip.name, rows));
+    print_result("{}\n", microbench_table(printable(chip.name), rows));
   }
   const std::vector<MicrobenchRow> board =
       board_rows(is_board ? chip.config : platform::load_platform("gap8"));
-  fmt::print("{}", microbench_table(kBoard, board));
+  print_result("{}", microbench_table(kBoard, board));
   rows.insert(rows.end(), board.begin(), board.end());
   if (!options.out.empty()) traces::write_file_atomically(options.out, microbench_csv(rows));
 }

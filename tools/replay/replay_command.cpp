@@ -6,6 +6,7 @@
 
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/replay/replay_report.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
@@ -84,8 +85,8 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   throw_if_interrupted();
   staged.commit();
   options.data = trace.info().data;
-  fmt::print("{}{}{}results: {}\n", heading(options, result.run), replay_report(result, trace),
-             report(result.run), options.out);
+  print_result("{}{}{}results: {}\n", heading(options, result.run), replay_report(result, trace),
+               report(result.run), printable(options.out));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "sim/base/interruption.h"
 #include "sim/check.h"
 #include "traces/csv.h"
 
@@ -24,6 +25,11 @@ Sha256::Sha256() : state_(std::make_unique<State>()) {
 Sha256::~Sha256() = default;
 
 void Sha256::add(std::string_view bytes) {
+  constexpr std::size_t kChunk = std::size_t{1} << 22;  // some milliseconds
+  for (; bytes.size() > kChunk; bytes.remove_prefix(kChunk)) {
+    throw_if_interrupted();
+    check(EVP_DigestUpdate(state_->context, bytes.data(), kChunk) == 1, "SHA-256 goes on");
+  }
   check(EVP_DigestUpdate(state_->context, bytes.data(), bytes.size()) == 1, "SHA-256 goes on");
 }
 
@@ -43,6 +49,7 @@ InputDigest digest_of(std::string name, const std::vector<fs::path>& files) {
   digest.name = std::move(name);
   Sha256 sha;
   for (const fs::path& file : files) {
+    throw_if_interrupted();
     const std::string bytes = traces::read_text_file(file);
     sha.add(bytes);
     digest.bytes += static_cast<std::int64_t>(bytes.size());

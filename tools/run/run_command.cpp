@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/version.h"
 #include "tools/replay/recording_source.h"
 #include "tools/run/run_folder.h"
@@ -49,7 +50,8 @@ void run(const CLI::App& command, const RunOptions& options, const Words& words)
   }
   throw_if_interrupted();
   staged.commit();
-  fmt::print("{}{}results: {}\n", heading(options, result), report(result), options.out);
+  print_result("{}{}results: {}\n", heading(options, result), report(result),
+               printable(options.out));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/replay/recording_source.h"
 #include "tools/run/run_session.h"
 #include "tools/sensitivity/sensitivity_report.h"
@@ -36,8 +37,8 @@ void run(const RunOptions& options) {
   const Sensitivity found =
       with_progress(platform::Variants(std::move(request.platform)), request.cores, trace, style);
   if (!options.out.empty()) traces::write_file_atomically(options.out, sensitivity_csv(found));
-  fmt::print("{}{}", heading(options, result), sensitivity_table(found, result.cores));
-  if (!options.out.empty()) fmt::print("table: {}\n", options.out);
+  print_result("{}{}", heading(options, result), sensitivity_table(found, result.cores));
+  if (!options.out.empty()) print_result("table: {}\n", printable(options.out));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "sim/error.h"
 #include "tools/batch/batch_options.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/version.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
@@ -52,7 +53,7 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
   write("runs.csv", tune_csv(plan, points));
   write("tune.svg", tune_plot(plan, points, all));
   if (again) write_chosen(staged.path() / "chosen", plan, *chosen(all), *again, command_line);
-  write("manifest.json", tune_manifest(plan, all, command_line).dump(2) + '\n');
+  write("manifest.json", json_text(tune_manifest(plan, all, command_line), 2) + '\n');
   throw_if_interrupted();
   staged.commit();
 }
@@ -68,12 +69,12 @@ void run(const CLI::App& command, const TuneWords& words, const Words& command_l
   std::optional<RunResult> again;
   if (best != nullptr) again = run_again(plan, *best);
   write_folder(plan, points, again, command_line);
-  fmt::print("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}",
-             version(), plan.request.profile, plan.options.platform, plan.request.cores,
-             plan.sequence.frames, plan.options.data, runs.size(), tune_table(plan, points),
-             choice_text(plan, all));
-  if (again) fmt::print("run again by itself, it gave the same figures: confirmed\n");
-  if (!plan.out.empty()) fmt::print("results: {}\n", words.run.out);
+  print_result("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}",
+               version(), plan.request.profile, printable(plan.options.platform),
+               plan.request.cores, plan.sequence.frames, printable(plan.options.data), runs.size(),
+               tune_table(plan, points), choice_text(plan, all));
+  if (again) print_result("run again by itself, it gave the same figures: confirmed\n");
+  if (!plan.out.empty()) print_result("results: {}\n", printable(words.run.out));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
 #include "tools/validate/validation_report.h"
@@ -21,7 +22,7 @@ void write_folder(const std::filesystem::path& folder, const Validation& validat
   write_run_folder(folder, run, manifest, platform);
   traces::write_file_atomically(folder / "validation.csv", validation_csv(validation));
   traces::write_file_atomically(folder / "validation.json",
-                                validation_json(validation).dump(2) + '\n');
+                                json_text(validation_json(validation), 2) + '\n');
   std::vector<std::optional<double>> values;
   for (const Comparison& comparison : validation.comparisons) values.push_back(comparison.value);
   traces::write_file_atomically(
@@ -46,8 +47,8 @@ void run(const RunOptions& options, const Words& words) {
     throw_if_interrupted();
     staged->commit();
   }
-  fmt::print("{}{}", heading(options, result), validation_report(validation, result.cores));
-  if (staged) fmt::print("results: {}\n", options.out);
+  print_result("{}{}", heading(options, result), validation_report(validation, result.cores));
+  if (staged) print_result("results: {}\n", printable(options.out));
 }
 
 }  // namespace
