@@ -134,7 +134,8 @@ std::vector<Field> accelerator_fields(std::string_view section) {
   return fields;
 }
 
-void check_accelerators(const Schema& schema, const Settings& settings, const ChipConfig& chip) {
+void check_accelerators_are_whole(const Schema& schema, const Settings& settings,
+                                  const ChipConfig& chip) {
   const bool knows_energy = sim::knows_energy(chip);
   for (const Side& side : kSides)
     for (const work::KernelInfo& kernel : work::kKernels) {
@@ -148,18 +149,26 @@ void check_accelerators(const Schema& schema, const Settings& settings, const Ch
         else if (missing == nullptr && (knows_energy || !is_energy(schema.fields()[i])))
           missing = &schema.fields()[i];
       }
-      if (given == nullptr) continue;
-      if (missing != nullptr)
+      if (given != nullptr && missing != nullptr)
         throw InputError(
             fmt::format("{}, but {} is missing ({}): expected all of an accelerator, or nothing",
                         state(*given), missing->path, missing->description));
-      if (!side.has_l1) continue;
-      const auto& l1_words = settings[schema.find(section + "l1_words")];
-      if (l1_words->base > chip.cluster.l1.banks)
-        throw InputError(fmt::format("{}, but {}: expected no more words per cycle than banks",
-                                     state(*l1_words),
-                                     state(*settings[schema.find("cluster.l1.banks")])));
     }
+}
+
+void check_accelerators(const Schema& schema, const Settings& settings, const ChipConfig& chip) {
+  for (const Side& side : kSides) {
+    if (!side.has_l1) continue;
+    for (const work::KernelInfo& kernel : work::kKernels) {
+      const AcceleratorConfig& accelerator =
+          side.of(const_cast<ChipConfig&>(chip))[work::index(kernel.kernel)];
+      if (accelerator.units == 0 || accelerator.l1_words <= chip.cluster.l1.banks) continue;
+      const auto& l1_words = settings[schema.find(section_of(side, kernel) + ".l1_words")];
+      throw InputError(fmt::format("{}, but {}: expected no more words per cycle than banks",
+                                   state(*l1_words),
+                                   state(*settings[schema.find("cluster.l1.banks")])));
+    }
+  }
 }
 
 }  // namespace leviosim::platform

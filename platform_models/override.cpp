@@ -44,6 +44,20 @@ SplitOverrides split_overrides(const std::vector<std::string>& overrides) {
   return split;
 }
 
+Setting read_override(const Field& field, const std::optional<Setting>& replaced,
+                      std::string_view value, const Place& place) {
+  std::string unit = default_unit(field, replaced);
+  std::string_view number = value;
+  if (!field.is_choice()) {
+    const std::optional<Measure> measure = split_measure(value);
+    if (measure && !measure->unit.empty()) {
+      unit = std::string(measure->unit);
+      number = trim(value.substr(0, value.size() - unit.size()));
+    }
+  }
+  return read_value(field, number, unit, place);
+}
+
 void apply_override(const Schema& schema, Settings& settings, const std::string& text) {
   const Place place{"-p " + text};
   const std::size_t equals = text.find('=');
@@ -58,16 +72,7 @@ void apply_override(const Schema& schema, Settings& settings, const std::string&
   std::optional<Setting>& setting = settings[index];
   if (setting && setting->parameter.overridden)
     place.fail(fmt::format("'{}' is already given by {}", path, setting->where));
-  std::string unit = default_unit(field, setting);
-  std::string_view number = value;
-  if (!field.is_choice()) {
-    const std::optional<Measure> measure = split_measure(value);
-    if (measure && !measure->unit.empty()) {
-      unit = std::string(measure->unit);
-      number = trim(value.substr(0, value.size() - unit.size()));
-    }
-  }
-  setting = read_value(field, number, unit, place);
+  setting = read_override(field, setting, value, place);
   setting->where = place.where;
   setting->parameter.source = kOverrideSource;
   setting->parameter.confidence = "assumed";

@@ -7,6 +7,7 @@
 
 #include "platform_models/document.h"
 #include "platform_models/schema.h"
+#include "platform_models/value.h"
 
 namespace leviosim::platform {
 
@@ -23,9 +24,14 @@ struct SplitOverrides {
 };
 SplitOverrides split_overrides(const std::vector<std::string>& overrides);
 
-/// Replaces one setting. Without a unit, the number is in the unit of the value it replaces, or in
-/// the base unit where there is none. Such a value has no source but the person who gave it, hence
-/// no range either, and its confidence is "assumed".
+/// A value as -p takes it, "240MHz", "240". Without a unit, a number is in the unit of what it
+/// replaces, or in the base unit where there is nothing.
+/// @throws InputError as for a value in a file
+Setting read_override(const Field& field, const std::optional<Setting>& replaced,
+                      std::string_view value, const Place& place);
+
+/// Replaces one setting as read_override() reads it. Such a value has no source but the person who
+/// gave it, hence no range either, and its confidence is "assumed".
 /// @param text  "path=value", "path=number unit"
 /// @throws InputError as for a value in a file, for unknown paths, and for paths given twice
 void apply_override(const Schema& schema, Settings& settings, const std::string& text);

@@ -59,10 +59,8 @@ const Document& PlatformFile::document(const std::optional<BaseOverride>& base) 
 }
 
 ResolvedPlatform PlatformFile::resolve(const std::vector<std::string>& overrides) {
-  const SplitOverrides split = split_overrides(overrides);
-  const Document& read = document(split.base);
-  Settings settings = read.settings;
-  for (const std::string& override : split.parameters) apply_override(schema_, settings, override);
+  const Document& read = document(split_overrides(overrides).base);
+  const Settings settings = settings_with(overrides);
   ResolvedPlatform platform;
   platform.config = configure(schema_, read.name, settings);
   check_rules(schema_, settings, platform.config);
@@ -76,6 +74,13 @@ ResolvedPlatform PlatformFile::resolve(const std::vector<std::string>& overrides
   return platform;
 }
 
+Settings PlatformFile::settings_with(const std::vector<std::string>& overrides) {
+  const SplitOverrides split = split_overrides(overrides);
+  Settings settings = document(split.base).settings;
+  for (const std::string& override : split.parameters) apply_override(schema_, settings, override);
+  return settings;
+}
+
 const Parameter* PlatformFile::find(const std::string& path) {
   const std::size_t index = schema_.find(path);
   if (index == Schema::kNone) return nullptr;
@@ -83,23 +88,23 @@ const Parameter* PlatformFile::find(const std::string& path) {
   return setting ? &setting->parameter : nullptr;
 }
 
-std::string canonical_text(const Schema& schema, const ResolvedPlatform& platform) {
-  std::string text = fmt::format("chip {}\n", platform.name);
+std::vector<CanonicalLine> canonical_lines(const Schema& schema, const ResolvedPlatform& platform) {
+  std::vector<CanonicalLine> lines{{"", fmt::format("chip {}\n", platform.name)}};
   for (const Parameter& parameter : platform.parameters) {
     const std::size_t index = schema.find(parameter.path);
     check(index != Schema::kNone, "a resolved parameter is not in the schema");
     const Field& field = schema.fields()[index];
     const Setting setting =
         read_value(field, parameter.value, parameter.unit, Place{parameter.path});
-    text += fmt::format("{} {}", parameter.path, number_text(setting.base));
+    std::string text = fmt::format("{} {}", parameter.path, number_text(setting.base));
     if (field.set_band && parameter.range) {
       const double factor = field.dimension->find(parameter.unit)->factor;
       text += fmt::format(" {} {}", number_text(parameter.range->low * factor),
                           number_text(parameter.range->high * factor));
     }
-    text += '\n';
+    lines.push_back({parameter.path, text + '\n'});
   }
-  return text;
+  return lines;
 }
 
 }  // namespace leviosim::platform

@@ -23,6 +23,9 @@ class PlatformFile {
   /// @throws InputError as resolve_platform() does
   ResolvedPlatform resolve(const std::vector<std::string>& overrides);
 
+  /// The parameters with overrides, before the rules between them are checked.
+  Settings settings_with(const std::vector<std::string>& overrides);
+
   /// The same parameter by its path; nullptr if the file does not give it.
   const Parameter* find(const std::string& path);
 
@@ -38,9 +41,14 @@ class PlatformFile {
   std::map<std::string, Document> documents_;
 };
 
+struct CanonicalLine {
+  std::string path;  ///< of the parameter; empty in the first line, the name of the chip
+  std::string text;  ///< "cluster.clock 240000000\n"
+};
+
 /// What the chip is, whatever its file looks like: a line per parameter in base units. Ends of a
-/// range count where the chip depends on them (Field::set_band). Platforms of the same text time
+/// range count where the chip depends on them (Field::set_band). Platforms of the same lines time
 /// and price work alike.
-std::string canonical_text(const Schema& schema, const ResolvedPlatform& platform);
+std::vector<CanonicalLine> canonical_lines(const Schema& schema, const ResolvedPlatform& platform);
 
 }  // namespace leviosim::platform

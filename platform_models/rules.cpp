@@ -75,7 +75,7 @@ std::string state(const Setting& setting) {
                      setting.where);
 }
 
-void check_rules(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip) {
+void check_values(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip) {
   const Rules rules(schema, settings);
   const sim::ClusterConfig& cluster = chip.cluster;
   if (cluster.workers > cluster.max_workers)
@@ -94,6 +94,12 @@ void check_rules(const Schema& schema, const Settings& settings, const sim::Chip
   for (const work::OpInfo& info : work::kOps) rules.require_latency(info, cluster.core[info.op]);
   check_supply(schema, settings, chip);
   check_accelerators(schema, settings, chip);
+}
+
+void check_rules(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip) {
+  check_energy_is_whole(schema, settings);
+  check_accelerators_are_whole(schema, settings, chip);
+  check_values(schema, settings, chip);
 }
 
 }  // namespace leviosim::platform

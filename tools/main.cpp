@@ -1,5 +1,5 @@
-// The leviosim command. Exit status: 0 if done, 2 for bad input, with one message on stderr. Faults
-// of leviosim itself abort.
+// The leviosim command. Exit status: 0 if done, 2 for bad input, with one message on stderr, 130
+// and 143 where it was interrupted. Faults of leviosim itself abort.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include "tools/ablate/ablate_command.h"
 #include "tools/calibrate/calibrate_command.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/version.h"
 #include "tools/eval/eval_command.h"
 #include "tools/explore/explore_command.h"
@@ -28,10 +29,10 @@ namespace leviosim::tools {
 namespace {
 
 constexpr int kBadInput = 2;
-constexpr int kInterrupted = 130;  // only seen if the pending signal does not end the process
+constexpr int kSignalled = 128;  // and its number; seen if the signal does not end the process
 
 int fail(const std::exception& error) {
-  fmt::print(stderr, "leviosim: {}\n", error.what());
+  print_error(error.what());
   return kBadInput;
 }
 
@@ -40,7 +41,7 @@ int run_program(const Words& words) {
                "leviosim");
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
   try {
-    return run_command_line(
+    const int status = run_command_line(
         app,
         {add_run_command(app, words), add_synth_command(app), add_platforms_command(app),
          add_workload_command(app), add_eval_command(app), add_ablate_command(app, words),
@@ -49,12 +50,15 @@ int run_program(const Words& words) {
          add_replay_command(app, words), add_trace_command(app), add_tune_command(app, words),
          add_sweep_command(app), add_flow_command(app, words)},
         words);
+    flush_results();
+    throw_if_interrupted();
+    return status;
   } catch (const InputError& error) {
     return fail(error);
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(error);
-  } catch (const Interrupted&) {
-    return kInterrupted;
+  } catch (const Interrupted& stop) {
+    return kSignalled + stop.signal();
   }
 }
 

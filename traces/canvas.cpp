@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/interruption.h"
+
 namespace leviosim::traces {
 namespace {
 
@@ -34,9 +36,11 @@ Canvas::Canvas(double width_m, double height_m, double texel_m)
       grey_(static_cast<std::size_t>(columns_) * rows_) {}
 
 void Canvas::fill(const std::function<float(double, double)>& shader) {
-  for (int y = 0; y < rows_; ++y)
+  for (int y = 0; y < rows_; ++y) {
+    throw_if_interrupted();
     for (int x = 0; x < columns_; ++x)
       at(x, y) = shader((x + 0.5) * texel_m_, (y + 0.5) * texel_m_);
+  }
 }
 
 void Canvas::add_noise(double cell_m, float amplitude, std::uint64_t seed) {
@@ -52,6 +56,7 @@ void Canvas::add_noise(double cell_m, float amplitude, std::uint64_t seed) {
   for (int x = 0; x < columns_; ++x) across.push_back(lattice_position(x, cells_per_texel));
   std::vector<float> line(static_cast<std::size_t>(lattice_columns));
   for (int y = 0; y < rows_; ++y) {
+    throw_if_interrupted();
     const LatticePosition down = lattice_position(y, cells_per_texel);
     const float* upper = lattice.data() + static_cast<std::size_t>(down.cell) * lattice_columns;
     const float* lower = upper + lattice_columns;
@@ -66,6 +71,7 @@ void Canvas::add_noise(double cell_m, float amplitude, std::uint64_t seed) {
 }
 
 void Canvas::stamp(const Patch& patch, const std::function<float(double, double)>& shader) {
+  throw_if_interrupted();
   const double cosine = std::cos(patch.angle_rad);
   const double sine = std::sin(patch.angle_rad);
   const double reach_x = std::abs(cosine) * patch.half_x_m + std::abs(sine) * patch.half_y_m;

@@ -1,4 +1,5 @@
-// A drawing board in metres: grey levels as floats, clipped only when the texture is made.
+// A drawing board in metres: grey levels as floats, clipped only when the texture is made. Walls
+// have 10^8 texels, so that drawing throws Interrupted in the middle of one.
 #pragma once
 
 #include <cstdint>

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/base/input_file.h"
+#include "sim/base/interruption.h"
 #include "sim/error.h"
 
 namespace leviosim::traces {
@@ -18,6 +19,7 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kMostSeconds = 9'000'000'000;
 constexpr std::size_t kDecimals = 9;
+constexpr std::size_t kLinesPerPoll = 1024;
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(kBlanks);
@@ -155,6 +157,7 @@ void CsvReader::split(std::string_view line) {
 
 bool CsvReader::advance() {
   while (position_ < text_.size()) {
+    if (line_ % kLinesPerPoll == 0) throw_if_interrupted();
     const std::string_view line = trim(next_line());
     if (!line.empty() && line.front() == '#') continue;
     row_.line_ = line_;

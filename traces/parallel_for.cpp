@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "sim/base/interruption.h"
+
 namespace leviosim::traces {
 
 void parallel_for(std::size_t count, unsigned threads,
@@ -17,6 +19,7 @@ void parallel_for(std::size_t count, unsigned threads,
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
+        throw_if_interrupted();
         job(i);
       } catch (...) {
         const std::lock_guard<std::mutex> lock(mutex);

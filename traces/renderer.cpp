@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "sim/base/interruption.h"
 #include "sim/check.h"
 #include "traces/ray_packet.h"
 #include "traces/rng.h"
@@ -113,7 +114,10 @@ std::vector<std::uint8_t> Renderer::expose(const std::vector<float>& light, floa
 
 std::vector<std::uint8_t> Renderer::render(const Exposure& exposure) const {
   std::vector<float> light(pixels_.size(), 0.0f);
-  for (const Eigen::Isometry3d& pose : exposure.T_world_camera) add_light(pose, light);
+  for (const Eigen::Isometry3d& pose : exposure.T_world_camera) {
+    throw_if_interrupted();
+    add_light(pose, light);
+  }
   const float mean = exposure.gain / static_cast<float>(exposure.T_world_camera.size());
   return expose(light, mean, exposure.frame);
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "sim/base/interruption.h"
 #include "sim/check.h"
 
 namespace leviosim::traces {
@@ -43,6 +44,7 @@ void Texture::add_half(const Level& from) {
   const Level half{from.width / 2, from.height / 2, texels_.size()};
   texels_.reserve(texels_.size() + static_cast<std::size_t>(half.width) * half.height);
   for (int y = 0; y < half.height; ++y) {
+    throw_if_interrupted();
     for (int x = 0; x < half.width; ++x) {
       const std::uint8_t* top =
           texels_.data() + from.offset + static_cast<std::size_t>(2 * y) * from.width + 2 * x;

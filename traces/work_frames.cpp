@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "sim/base/interruption.h"
 #include "sim/check.h"
 #include "sim/error.h"
 #include "traces/work_layout.h"
@@ -29,6 +30,7 @@ WorkFrames::WorkFrames(const WorkTrace& trace, bool kernels)
 }
 
 bool WorkFrames::next(WorkFrame& frame) {
+  throw_if_interrupted();
   if (frames_left_ == 0) {
     if (next_chunk_ == trace_->chunks().size()) return false;
     open_chunk(frame);

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "tests/traces/test_folder.h"
 #include "tools/sweep/pareto.h"
+#include "tools/sweep/point_key.h"
 #include "tools/sweep/sampling.h"
 #include "tools/sweep/sweep_report.h"
 #include "traces/rng.h"
@@ -40,7 +42,9 @@ class SweepPlans : public ::testing::Test {
   }
   std::vector<std::string> settings(const std::string& points, const std::string& more = {}) {
     std::vector<std::string> texts;
-    for (const SweepPoint& p : expanded(points, more).points) texts.push_back(settings_text(p));
+    const Expansion all = expanded(points, more);
+    for (std::size_t i = 0; i < all.points.size(); ++i)
+      texts.push_back(all.points.settings_text(i));
     return texts;
   }
   void expect_refused(const std::string& points, std::initializer_list<std::string> parts) {
@@ -73,9 +77,9 @@ TEST_F(SweepPlans, MembersAreMultipliedAndGroupsFollowEachOther) {
       "  - random: { number: 5, over: { platform.cluster.clock: { from: 100, to: 370 } } }\n");
   EXPECT_EQ(all.asked, 2u * 3 + 5);
   EXPECT_EQ(all.points.size(), 11u);
-  EXPECT_EQ(settings_text(all.points[1]),
+  EXPECT_EQ(all.points.settings_text(1),
             "profile=levio seed=3 cores=2 platform.cluster.clock=370MHz");
-  EXPECT_EQ(all.points.back().number, 11);
+  EXPECT_EQ(all.points[10].number, 11);
 }
 
 TEST_F(SweepPlans, TheSamePointIsThereOnceHoweverItIsWritten) {
@@ -87,7 +91,8 @@ TEST_F(SweepPlans, TheSamePointIsThereOnceHoweverItIsWritten) {
       "  - grid: { cores: [4] }\n");
   // 370 MHz, 240 MHz, perhaps the window, 4 workers; 4 of 8 workers is another chip.
   std::set<std::string> keys;
-  for (const SweepPoint& p : all.points) EXPECT_TRUE(keys.insert(p.key).second);
+  for (std::size_t i = 0; i < all.points.size(); ++i)
+    EXPECT_TRUE(keys.insert(all.points.key(i)).second);
   const bool window_differs =
       vio::find_parameter("workload.window")->get(vio::profile_named("levio", 1)) != 10;
   EXPECT_EQ(all.points.size(), window_differs ? 5u : 4u);
@@ -132,8 +137,8 @@ TEST_F(SweepPlans, ImpossiblePointsAreLeftOutIfThePlanSaysSo) {
       "platform.controller.clock: [240] } }\n"
       "impossible: skip");
   EXPECT_EQ(all.points.size(), 3u);
-  ASSERT_EQ(all.impossible.size(), 1u);
-  EXPECT_NE(all.impossible.front().find("370"), std::string::npos);
+  ASSERT_EQ(all.impossible, 1u);
+  EXPECT_NE(all.first_impossible.find("370"), std::string::npos);
 }
 
 TEST_F(SweepPlans, DrawsAreWithinTheirRangesAndCanBeTypedAgain) {
@@ -146,7 +151,8 @@ TEST_F(SweepPlans, DrawsAreWithinTheirRangesAndCanBeTypedAgain) {
   EXPECT_GT(all.points.size(), 190u);
   std::set<double> windows;
   std::set<std::string> mappings;
-  for (const SweepPoint& p : all.points) {
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const SweepPoint p = all.points[i];
     EXPECT_GE(*p.parameters[0].number, 100);
     EXPECT_LE(*p.parameters[0].number, 370);
     EXPECT_LE(p.parameters[0].text.size(), 8u) << p.parameters[0].text;
@@ -158,28 +164,147 @@ TEST_F(SweepPlans, DrawsAreWithinTheirRangesAndCanBeTypedAgain) {
   EXPECT_EQ(mappings.size(), 2u);
 }
 
+/// Values of a key of some kind, good and bad ones, and such as contradict others.
+const std::map<std::string, std::vector<std::string>>& some_values() {
+  static const std::map<std::string, std::vector<std::string>> values{
+      {"platform", {"gap9", "gap8", "gap9"}},
+      {"platform.cluster.clock", {"240", "0.24GHz", "370MHz", "100", "371"}},
+      {"platform.controller.clock", {"240", "100"}},
+      {"platform.supply.voltage", {"0.65", "0.8V", "650mV"}},
+      {"platform.cluster.workers", {"8", "4", "1"}},
+      {"platform.cluster.max_workers", {"8", "9", "4"}},
+      {"platform.cluster.fpu.mapping", {"fixed", "dynamic"}},
+      {"platform.cluster.fpu.units", {"0", "4", "1"}},
+      {"platform.isa.ops.f32_add.stall", {"0", "1"}},
+      {"platform.cluster.core.ops.f32_add.stall", {"2"}},
+      {"platform.energy.core.instruction", {"1"}},
+      {"profile", {"levio", "levio-no-imu", "next"}},
+      {"workload.window", {"10", "4"}},
+      {"workload.joint", {"on", "off"}},
+      {"workload.subpixel_steps", {"1", "4"}},
+      {"seed", {"1", "2"}},
+      {"size", {"160x120", "80x60", "64x47"}},
+      {"cores", {"1", "4", "8", "9"}}};
+  return values;
+}
+
+TEST_F(SweepPlans, PointsAreWhatResolvingEachOfThemGives) {
+  // Random lists and grids with "skip": the same points, in the same order, of the same keys, as
+  // are found by resolving every row by itself.
+  traces::Rng rng(17);
+  int points = 0;
+  int left_out = 0;
+  for (int trial = 0; trial < 25; ++trial) {
+    std::vector<SweepRow> rows;
+    std::string list;
+    std::vector<std::string> names;
+    for (const auto& [name, values] : some_values())
+      if (rng.chance(0.35)) names.push_back(name);
+    if (names.empty()) continue;
+    for (int row = 0; row < 20; ++row) {
+      SweepRow set;
+      for (const std::string& name : names)
+        if (const auto& values = some_values().at(name); rng.chance(0.7))
+          set[name] = values[static_cast<std::size_t>(rng.below(static_cast<int>(values.size())))];
+      if (set.empty()) set["seed"] = "1";
+      std::string text;
+      for (const auto& [name, value] : set)
+        text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", name, value);
+      list += fmt::format("  - {{ {} }}\n", text);
+      rows.push_back(set);
+    }
+    Expansion all{SweepPoints(plan_)};
+    try {
+      all = expanded("impossible: skip\npoints:\n list:\n" + list);
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("plan.yaml"), std::string::npos);
+      continue;  // a value that this chip cannot have, or no point at all
+    }
+    std::set<std::string> seen;
+    std::size_t impossible = 0;
+    std::size_t i = 0;
+    for (const SweepRow& row : plan_.groups.front().members.front().rows) {
+      SweepRow settings = row;
+      settings.insert(plan_.base.begin(), plan_.base.end());
+      std::string identity;
+      try {
+        identity = identity_text(resolve(plan_, settings, inputs_, "a point"));
+      } catch (const InputError&) {
+        ++impossible;
+        continue;
+      }
+      if (!seen.insert(identity).second) continue;
+      ASSERT_LT(i, all.points.size());
+      const SweepPoint point = all.points[i++];
+      EXPECT_EQ(point.key, point_key(identity));
+      EXPECT_EQ(point.settings, settings);
+      EXPECT_EQ(point.number, static_cast<int>(i));
+    }
+    EXPECT_EQ(i, all.points.size());
+    EXPECT_EQ(all.impossible, impossible);
+    points += static_cast<int>(i);
+    left_out += static_cast<int>(impossible);
+  }
+  EXPECT_GT(points, 50);
+  EXPECT_GT(left_out, 20);
+}
+
+TEST_F(SweepPlans, ParametersAreShownAsTheyAreWhereNothingSetsThem) {
+  const Expansion all = expanded(
+      "points:\n"
+      "  - list:\n"
+      "      - { platform.cluster.clock: 100, platform.cluster.fpu.mapping: dynamic }\n"
+      "      - { workload.window: 4, profile: levio-no-imu, size: 80x60 }\n"
+      "      - { platform.cluster.workers: 4 }\n"
+      "      - { cores: 2, seed: 7 }\n");
+  ASSERT_EQ(all.points.size(), 4u);
+  const auto window = vio::find_parameter("workload.window")->get(vio::profile_named("levio", 1));
+  EXPECT_EQ(all.points.settings_text(0),
+            fmt::format("platform.cluster.clock=100MHz platform.cluster.fpu.mapping=dynamic "
+                        "workload.window={} profile=levio size=160x120 platform.cluster.workers="
+                        "8cores cores=8 seed=1",
+                        window));
+  EXPECT_EQ(all.points.settings_text(1),
+            "platform.cluster.clock=370MHz platform.cluster.fpu.mapping=fixed workload.window=4 "
+            "profile=levio-no-imu size=80x60 platform.cluster.workers=8cores cores=8 seed=1");
+  EXPECT_EQ(all.points[2].parameters[6].text, "4");  // as many as workers
+  EXPECT_EQ(all.points[2].parameters[6].number, 4);
+  EXPECT_EQ(all.points[3].parameters[7].number, 7);
+}
+
 TEST(SweepSampling, ALatinHypercubeHasOnePointInEachStratumOfEachDimension) {
   for (const std::size_t count : {1u, 2u, 17u, 1000u}) {
-    const auto cube = latin_hypercube(count, 3, 7);
-    ASSERT_EQ(cube.size(), count);
     for (std::size_t d = 0; d < 3; ++d) {
+      const std::vector<double> draws = latin_draws(count, d, 7);
+      ASSERT_EQ(draws.size(), count);
       std::set<std::size_t> strata;
-      for (const auto& point : cube) {
-        ASSERT_TRUE(point[d] >= 0 && point[d] < 1);
-        strata.insert(static_cast<std::size_t>(point[d] * static_cast<double>(count)));
+      for (const double draw : draws) {
+        ASSERT_TRUE(draw >= 0 && draw < 1);
+        strata.insert(static_cast<std::size_t>(draw * static_cast<double>(count)));
       }
       EXPECT_EQ(strata.size(), count) << d;
     }
   }
-  EXPECT_EQ(latin_hypercube(50, 2, 1), latin_hypercube(50, 2, 1));
-  EXPECT_NE(latin_hypercube(50, 2, 1), latin_hypercube(50, 2, 2));
+  EXPECT_EQ(latin_draws(50, 1, 1), latin_draws(50, 1, 1));
+  EXPECT_NE(latin_draws(50, 1, 1), latin_draws(50, 1, 2));
+  EXPECT_NE(latin_draws(50, 1, 1), latin_draws(50, 0, 1));
 }
 
 TEST(SweepSampling, MoreRandomPointsContinueFewer) {
-  const auto few = random_cube(10, 3, 1);
-  const auto more = random_cube(20, 3, 1);
+  const auto few = random_draws(10, 2, 1);
+  const auto more = random_draws(20, 2, 1);
   EXPECT_TRUE(std::equal(few.begin(), few.end(), more.begin()));
-  EXPECT_NE(more[0], more[1]);
+  EXPECT_NE(random_draws(10, 1, 1), few);
+}
+
+TEST(ValuePool, HoldsEachTextOncePerKey) {
+  ValuePool pool(2);
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(pool.add(0, fmt::format("v{}", i)), ValueId(i));
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(pool.add(0, fmt::format("v{}", i)), ValueId(i));
+  EXPECT_EQ(pool.size(0), 5000u);
+  EXPECT_EQ(pool.size(1), 0u);
+  EXPECT_EQ(pool.add(1, "v7"), 0u);
+  EXPECT_EQ(pool.text(0, 4711), "v4711");
 }
 
 TEST(SweepFront, IsWhatComparingAllPairsGives) {

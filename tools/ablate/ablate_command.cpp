@@ -23,8 +23,8 @@ void run(const CLI::App& command, const BatchWords& words, const Words& command_
   publish(*plan.out, text, [&] {
     plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
     plan.out->write("table.md", ablation_markdown(plan, rows));
-    plan.out->write("table.json", ablation_json(plan, rows).dump(2) + '\n');
-    plan.out->write("manifest.json", batch_manifest(plan, command_line).dump(2) + '\n');
+    plan.out->write("table.json", json_text(ablation_json(plan, rows), 2) + '\n');
+    plan.out->write("manifest.json", json_text(batch_manifest(plan, command_line), 2) + '\n');
   });
 }
 

@@ -27,6 +27,7 @@ std::vector<Job> jobs_of(const std::vector<BatchRun>& runs, const Measure& how) 
   std::vector<Job> jobs;
   std::map<std::string, std::size_t> job_of_key;
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    throw_if_interrupted();
     std::string key = run_key(runs[i].request, runs[i].sequence->inputs, how);
     const auto [it, is_new] = job_of_key.try_emplace(key, jobs.size());
     if (is_new) jobs.push_back({std::move(key), {}});

@@ -139,7 +139,7 @@ std::string to_text(const RunOutcome& outcome) {
   json["path_m"] = outcome.path_m;
   json["protocol"] = outcome.protocol;
   json["loop"] = loop_json(outcome.loop);
-  return json.dump() + '\n';
+  return json_text(json) + '\n';
 }
 
 std::optional<RunOutcome> parse_outcome(std::string_view text) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/interruption.h"
 #include "sim/check.h"
 
 namespace leviosim::tools {
@@ -40,6 +41,7 @@ class Problem {
   }
 
   VectorXd residuals(const VectorXd& x) const {
+    throw_if_interrupted();
     const std::vector<double> r = residuals_(in_units(x));
     return Eigen::Map<const VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
   }

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
 #include "platform_models/nearest.h"
 #include "sim/error.h"
+#include "tools/cli/terminal.h"
 #include "traces/csv.h"
 
 namespace leviosim::tools {
@@ -77,7 +79,10 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands, const 
   try {
     app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    std::ostringstream text;
+    const int status = app.exit(help_or_version, text, text);
+    print_result_text(text.str());
+    return status;
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }

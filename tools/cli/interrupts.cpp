@@ -1,28 +1,25 @@
 #include "tools/cli/interrupts.h"
 
-#include <array>
-
 namespace leviosim::tools {
 namespace {
 
-constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+/// Shells start background jobs with SIGINT ignored; one that is sent all the same is meant.
+bool stays_ignored(int signal) {
+  if (signal != SIGHUP && signal != SIGPIPE) return false;
+  struct sigaction action = {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
 
 }  // namespace
 
 DeferredInterrupts::DeferredInterrupts() {
   sigset_t held;
   sigemptyset(&held);
-  for (const int signal : kSignals) sigaddset(&held, signal);
+  for (const int signal : interrupting_signals())
+    if (!stays_ignored(signal)) sigaddset(&held, signal);
   pthread_sigmask(SIG_BLOCK, &held, &before_);
 }
 
 DeferredInterrupts::~DeferredInterrupts() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
-void throw_if_interrupted() {
-  sigset_t pending;
-  sigpending(&pending);
-  for (const int signal : kSignals)
-    if (sigismember(&pending, signal) == 1) throw Interrupted();
-}
 
 }  // namespace leviosim::tools

@@ -4,6 +4,7 @@
 
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 
 namespace leviosim::tools {
 namespace {
@@ -29,8 +30,8 @@ void publish(base::OutputFolder& out, const std::string& report, const std::func
     is_written = true;
     return elsewhere;
   });
-  fmt::print("{}", report);
-  if (is_written) fmt::print("{}: {}\n", label, out.shown_path());
+  print_result("{}", report);
+  if (is_written) print_result("{}: {}\n", label, printable(out.shown_path()));
   if (fault) throw InputError(*fault);
 }
 
@@ -52,10 +53,10 @@ void publish(std::initializer_list<FileOutput> files, const std::string& report)
       return elsewhere;
     });
     if (is_written && !output.label.empty())
-      lines += fmt::format("{}: {}\n", output.label, output.file->shown_path());
+      lines += fmt::format("{}: {}\n", output.label, printable(output.file->shown_path()));
     if (fault && !first_fault) first_fault = fault;
   }
-  fmt::print("{}{}", report, lines);
+  print_result("{}{}", report, lines);
   if (first_fault) throw InputError(*first_fault);
 }
 

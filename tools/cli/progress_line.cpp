@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "sim/base/printable_text.h"
+
 namespace leviosim::tools {
 namespace {
 
@@ -29,14 +31,14 @@ void ProgressLine::show(std::int64_t done, std::int64_t total,
     const std::int64_t tenth = done * 10 / total;
     if (tenth == last_tenth_) return;
     last_tenth_ = tenth;
-    fmt::print(stderr, "{}\n", text());
+    std::fputs((printable(text()) + '\n').c_str(), stderr);
     return;
   }
   const Clock::time_point now = Clock::now();
   if (done < total && now - last_shown_ < kBetweenRewrites) return;
   last_shown_ = now;
   visible_ = true;
-  fmt::print(stderr, "{}{}", kErase, text());
+  std::fputs((kErase + printable(text())).c_str(), stderr);
   std::fflush(stderr);
 }
 

@@ -1,5 +1,5 @@
 // Progress on stderr: one line that is rewritten if stderr is a terminal, else ten lines in all, so
-// that logs stay short. stdout is left to results.
+// that logs stay short. stdout is left to results. A stderr that cannot be written is no fault.
 #pragma once
 
 #include <chrono>

@@ -35,7 +35,7 @@ Accuracy measure(const traces::TrajectoryPair& pair, EvalRequest& request) {
 }
 
 std::string file_line(const char* what, const TrajectoryFile& trajectory) {
-  return fmt::format("{:<14}{} ({}, {} poses)\n", what, trajectory.file.string(),
+  return fmt::format("{:<14}{} ({}, {} poses)\n", what, printable(trajectory.file.string()),
                      name_of(trajectory.format), trajectory.poses.size());
 }
 
@@ -65,8 +65,8 @@ Json protocol_json(const EvalRequest& request) {
           {"relative_lengths_m", request.lengths_m}};
 }
 
-std::string json_text(const traces::TrajectoryPair& pair, const EvalRequest& request,
-                      const Accuracy& accuracy) {
+std::string figures_text(const traces::TrajectoryPair& pair, const EvalRequest& request,
+                         const Accuracy& accuracy) {
   StatisticList list;
   add_ate(list, accuracy.evaluation);
   list.add("accuracy.longest_gap", "s", "between successive matched poses",
@@ -85,7 +85,7 @@ void run(const CLI::App& command, const EvalOptions& options) {
   EvalRequest request = make_eval_request(command, options);
   const traces::TrajectoryPair pair = read_pair(options.estimate, options.truth, request.read);
   const Accuracy accuracy = measure(pair, request);
-  publish({{request.json, json_text(pair, request, accuracy), "figures"},
+  publish({{request.json, figures_text(pair, request, accuracy), "figures"},
            {request.plot, trajectory_plot(pair, accuracy.evaluation), "plot"}},
           report(pair, request, accuracy));
 }

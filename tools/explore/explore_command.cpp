@@ -84,7 +84,8 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
     out.write("points.csv", points_csv(dimensions, explored));
     out.write("best.md", best_markdown(plan, explored));
     out.write("scatter.svg", scatter_plot(plan, explored));
-    out.write("manifest.json", manifest_of(plan, words, dimensions, command_line).dump(2) + '\n');
+    out.write("manifest.json",
+              json_text(manifest_of(plan, words, dimensions, command_line), 2) + '\n');
   });
 }
 

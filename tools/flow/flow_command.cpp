@@ -57,7 +57,7 @@ void write_folder(base::OutputFolder& out, const FlowRun& flow, const Manifest& 
   const auto write = [&](const char* name, const std::string& text) {
     if (!text.empty()) out.write(name, text);
   };
-  write("manifest.json", manifest_json(manifest, flow.run).dump(2) + '\n');
+  write("manifest.json", json_text(manifest_json(manifest, flow.run), 2) + '\n');
   write("platform.yaml", platform_yaml);
   write("flow.csv", flow_csv(flow));
   write("stages.csv", stages_csv(flow.run));

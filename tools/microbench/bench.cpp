@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/base/interruption.h"
+
 namespace leviosim::tools {
 namespace {
 
@@ -52,6 +54,7 @@ sim::StageTiming Bench::fork(const std::function<void(work::Core&)>& body) {
 }
 
 work::Job Bench::record(const std::function<void(work::Machine&)>& body) {
+  throw_if_interrupted();
   {
     const auto stage = machine_.stage(kStage);
     body(machine_);

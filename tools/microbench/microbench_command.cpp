@@ -36,7 +36,7 @@ void run(const MicrobenchOptions& options) {
   std::string tables;
   if (!is_board) {
     rows = unit_rows(chip.config);
-    tables = microbench_table(chip.name, rows) + '\n';
+    tables = microbench_table(printable(chip.name), rows) + '\n';
   }
   const std::vector<MicrobenchRow> board =
       board_rows(is_board ? chip.config : platform::load_platform("gap8"));

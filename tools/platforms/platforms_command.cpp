@@ -13,6 +13,7 @@
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/outputs.h"
+#include "tools/cli/terminal.h"
 #include "tools/platforms/feasibility_report.h"
 #include "tools/run/run_session.h"
 #include "tools/run/text_table.h"
@@ -32,7 +33,7 @@ constexpr std::array kOfFeasibility{"--data", "--frames", "--profile", "--seed",
 
 void list() {
   for (const std::string& name : platform::platform_names())
-    fmt::print("{}: {}\n", name, platform::resolve_platform(name).description);
+    print_result("{}: {}\n", name, printable(platform::resolve_platform(name).description));
 }
 
 std::string in_words(const platform::Parameter* parameter) {
@@ -61,9 +62,9 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
   }
   for (const platform::Parameter& parameter : b.parameters)
     if (of_b.count(parameter.path) > 0) compare(parameter.path, nullptr, &parameter);
-  if (differences > 0) fmt::print("{}", table.str());
-  fmt::print("{} of {} parameters differ\n", differences,
-             std::max(a.parameters.size(), b.parameters.size()));
+  if (differences > 0) print_result("{}", table.str());
+  print_result("{} of {} parameters differ\n", differences,
+               std::max(a.parameters.size(), b.parameters.size()));
 }
 
 /// On all its workers, and on one of them.
@@ -118,18 +119,19 @@ void feasibility(const PlatformsOptions& options) {
   std::optional<base::OutputFile> out = claimed_file(wanted);
   const std::vector<Feasibility> rows = rows_for(options, teams_of);
   publish({{out, feasibility_csv(rows), "table"}},
-          fmt::format("{} on {}\n\n{}", run.profile, run.data, feasibility_table(rows)));
+          fmt::format("{} on {}\n\n{}", run.profile, printable(run.data), feasibility_table(rows)));
 }
 
 void stages(const PlatformsOptions& options) {
   if (!options.run.out.empty())
     throw InputError("platforms stages: prints a table only; leave out --out");
   const std::vector<Feasibility> rows = rows_for(options, whole_team_of);
-  fmt::print("{} on {}\n\n{}", options.run.profile, options.run.data, stage_comparison(rows));
+  print_result("{} on {}\n\n{}", options.run.profile, printable(options.run.data),
+               stage_comparison(rows));
 }
 
 void show(const PlatformsOptions& options) {
-  fmt::print(
+  print_result(
       "{}", platform::to_yaml(platform::resolve_platform(options.names[0], options.run.overrides)));
 }
 

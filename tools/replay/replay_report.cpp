@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/base/printable_text.h"
 #include "tools/run/text_table.h"
 
 namespace leviosim::tools {
@@ -61,8 +62,9 @@ std::string replay_report(const Replay& replay, const traces::WorkTrace& trace) 
   };
   const auto differs = [](const FrameComparison& f) { return !f.computes_the_same(); };
   const auto first = std::find_if(replay.frames.begin(), replay.frames.end(), differs);
-  std::string text = fmt::format("replay of {}, recorded on {} with {} cores\n", trace.name(),
-                                 trace.info().platform, trace.info().cores);
+  std::string text =
+      fmt::format("replay of {}, recorded on {} with {} cores\n", printable(trace.name()),
+                  printable(trace.info().platform), trace.info().cores);
   if (first == replay.frames.end())
     text +=
         "the algorithm sees in every frame what it saw in the recording: a run on this chip "

@@ -6,6 +6,7 @@
 
 #include "platform_models/nearest.h"
 #include "sim/error.h"
+#include "tools/cli/terminal.h"
 #include "tools/replay/memory_option.h"
 #include "tools/replay/replay.h"
 #include "tools/replay/trace_summary.h"
@@ -25,7 +26,8 @@ void check_trace(const traces::WorkTrace& trace) {
   traces::WorkFrames reader(trace, trace.has_kernels());
   for (traces::WorkFrame frame; reader.next(frame);) {
   }
-  fmt::print("{}: {} frames, all of them can be replayed\n", trace.name(), trace.frames());
+  print_result("{}: {} frames, all of them can be replayed\n", printable(trace.name()),
+               trace.frames());
 }
 
 void run(const CLI::App& command, const TraceOptions& options) {
@@ -33,7 +35,7 @@ void run(const CLI::App& command, const TraceOptions& options) {
   require(command, "FILE", "a work trace");
   const Bytes memory = trace_memory(options.memory);
   if (options.action == "info")
-    fmt::print("{}", trace_summary(traces::WorkTrace(options.file, memory)));
+    print_result("{}", trace_summary(traces::WorkTrace(options.file, memory)));
   else if (options.action == "check")
     check_trace(traces::WorkTrace(options.file, memory));
   else

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/base/printable_text.h"
 #include "sim/work/transfers.h"
 #include "tools/run/text_table.h"
 #include "traces/work_frames.h"
@@ -136,10 +137,11 @@ std::string trace_summary(const traces::WorkTrace& trace) {
              "keyframes {}, optimisations {} with {} iterations, optimiser busy at {} frames\n"
              "{:.1f} kB, {:.2f} kB per frame; {:.0f} pieces of work per frame, {:.2f} bytes "
              "each\n\n",
-             trace.name(), info.program, info.platform, info.cores, info.profile, info.seed,
-             info.data, trace.frames(), info.first_frame, info.image_width, info.image_height,
-             contents.keyframes, contents.optimised, contents.iterations, contents.busy,
-             size * 1e-3, size * 1e-3 / frames, static_cast<double>(all.pieces) / frames,
+             printable(trace.name()), printable(info.program), printable(info.platform), info.cores,
+             printable(info.profile), info.seed, printable(info.data), trace.frames(),
+             info.first_frame, info.image_width, info.image_height, contents.keyframes,
+             contents.optimised, contents.iterations, contents.busy, size * 1e-3,
+             size * 1e-3 / frames, static_cast<double>(all.pieces) / frames,
              size / static_cast<double>(std::max(all.pieces, std::int64_t{1}))) +
          stage_table(trace, contents) + kernel_line(trace, contents);
 }

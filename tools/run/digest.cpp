@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "sim/base/input_file.h"
+#include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
 
 namespace leviosim::tools {
@@ -16,6 +17,7 @@ InputDigest digest_of(std::string name, const std::vector<fs::path>& files, base
   digest.name = std::move(name);
   base::Sha256 sha;
   for (const fs::path& file : files) {
+    throw_if_interrupted();
     const std::string bytes = base::read_file(file, kind);
     sha.add(bytes);
     digest.bytes += static_cast<std::int64_t>(bytes.size());

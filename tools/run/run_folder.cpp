@@ -200,7 +200,7 @@ void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manif
   const auto write = [&](const char* name, const std::string& text) {
     out.write(below + name, text);
   };
-  write("manifest.json", manifest_json(manifest, run).dump(2) + '\n');
+  write("manifest.json", json_text(manifest_json(manifest, run), 2) + '\n');
   write("stats.json", statistics_text(run));
   write("frames.csv", frames_csv(run));
   write("trajectory.tum", traces::format_tum(run.trajectory));

@@ -3,9 +3,7 @@
 #include "sim/error.h"
 
 namespace leviosim::tools {
-namespace {
 
-/// What must hold between parameters, whatever each may be on its own.
 void check_together(const vio::Profile& profile) {
   if (profile.extractor.subpixel_steps > 1 && !profile.optimiser.joint)
     throw InputError(
@@ -16,8 +14,6 @@ void check_together(const vio::Profile& profile) {
         "workload.joint is on, but the profile works without IMU: expected workload.joint=off, or "
         "a profile with IMU");
 }
-
-}  // namespace
 
 vio::Profile profile_of(const RunRequest& request) {
   vio::Profile profile = vio::profile_named(request.profile, request.seed);

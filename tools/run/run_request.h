@@ -36,7 +36,11 @@ struct RunRequest {
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
 };
 
-/// The profile with the parameters that were set. @throws InputError if they contradict each other
+/// What must hold between parameters of the workload, whatever each may be on its own.
+/// @throws InputError if they contradict each other
+void check_together(const vio::Profile& profile);
+
+/// The profile with the parameters that were set. @throws InputError as check_together() does
 vio::Profile profile_of(const RunRequest& request);
 
 /// Called after every frame.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/base/printable_text.h"
 #include "sim/energy/model.h"
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
@@ -87,10 +88,11 @@ Manifest make_manifest(const RunOptions& options, const RunRequest& request, con
 std::string heading(const RunOptions& options, const RunResult& run) {
   const std::size_t frames = run.camera ? run.camera->deliveries.size() : run.frames.size();
   std::string text = fmt::format("leviosim {}: {} on {}, {} of {}, {}x{}", version(), run.profile,
-                                 run.timed ? options.platform : "the host",
+                                 run.timed ? printable(options.platform) : "the host",
                                  frames == 1 ? "1 frame" : fmt::format("{} frames", frames),
-                                 options.data, run.image_width, run.image_height);
-  for (const std::string& set : split_overrides(options.overrides).workload) text += ", " + set;
+                                 printable(options.data), run.image_width, run.image_height);
+  for (const std::string& set : split_overrides(options.overrides).workload)
+    text += ", " + printable(set);
   const auto mhz = [](Hertz f) { return static_cast<double>(f.count()) * 1e-6; };
   if (run.timed)
     text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,

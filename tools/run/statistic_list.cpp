@@ -6,13 +6,10 @@
 #include <utility>
 
 namespace leviosim::tools {
-namespace {
 
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
-
-}  // namespace
 
 Json value_of(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -46,10 +43,10 @@ Json statistics_document(Json list, const Json& about) {
 std::string statistics_document_text(const Json& document) {
   std::string text;
   for (const auto& [key, value] : document.items())
-    if (key != "statistics") text += fmt::format("{}: {}, ", text_of(key), text_of(value));
+    if (key != "statistics") text += fmt::format("{}: {}, ", json_text(key), json_text(value));
   std::string lines;
   for (const Json& entry : document.at("statistics"))
-    lines += (lines.empty() ? "\n" : ",\n") + text_of(entry);
+    lines += (lines.empty() ? "\n" : ",\n") + json_text(entry);
   return fmt::format("{{{}\"statistics\": [{}\n]}}\n", text, lines);
 }
 

@@ -11,6 +11,11 @@ namespace leviosim::tools {
 
 using Json = nlohmann::ordered_json;
 
+/// The text of any document. Bytes that are no UTF-8, which names of files may have, are replaced
+/// by U+FFFD instead of thrown.
+/// @param indent  -1: all on one line
+std::string json_text(const Json& json, int indent = -1);
+
 /// null for what does not exist.
 Json value_of(std::optional<double> value);
 
@@ -35,7 +40,7 @@ class StatisticList {
 Json statistics_document(Json list, const Json& about = Json::object());
 
 /// The text of a document with one statistic on a line, so that documents can be compared line by
-/// line. Bytes that are no UTF-8, which names of files may have, are replaced.
+/// line.
 std::string statistics_document_text(const Json& document);
 
 }  // namespace leviosim::tools

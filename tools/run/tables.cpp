@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/base/printable_text.h"
 #include "sim/chip/accelerator.h"
 #include "tools/eval/accuracy.h"
 #include "tools/run/camera_figures.h"
@@ -84,7 +85,7 @@ std::vector<std::string> block_list(const std::vector<work::Block>& blocks) {
   std::vector<std::string> items;
   std::vector<std::string> small;
   for (const BlockGroup& group : grouped(blocks)) {
-    std::string name(group.name);
+    std::string name = printable(group.name);
     if (group.copies > 1) name += fmt::format(" ×{}", group.copies);
     if (group.bytes < kShownSize)
       small.push_back(std::move(name));
@@ -98,7 +99,7 @@ std::vector<std::string> block_list(const std::vector<work::Block>& blocks) {
 
 /// A row of the memory table and the blocks it stands for.
 struct Occupant {
-  std::string_view name;
+  std::string name;  ///< printable
   const char* memory;
   Bytes size;  ///< of the memory
   std::optional<Bytes> single;
@@ -110,7 +111,7 @@ std::vector<Occupant> occupants(const RunResult& run) {
   std::vector<Occupant> all;
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;  // its memory is L2, below
-    Occupant row{stage.name, "L1", run.l1_size, {}, {}, &stage.memory.blocks};
+    Occupant row{printable(stage.name), "L1", run.l1_size, {}, {}, &stage.memory.blocks};
     if (stage.calls > 0) {
       row.single = stage.memory.single;
       row.parallel = stage.memory.parallel;
@@ -118,7 +119,7 @@ std::vector<Occupant> occupants(const RunResult& run) {
     all.push_back(row);
   }
   for (const L2Row& part : run.l2)
-    all.push_back({part.name, "L2", run.l2_size, part.bytes, {}, &part.blocks});
+    all.push_back({printable(part.name), "L2", run.l2_size, part.bytes, {}, &part.blocks});
   return all;
 }
 
@@ -275,8 +276,8 @@ std::string memory_table(const RunResult& run) {
     const auto percent = [&](std::optional<Bytes> b) {
       return b ? number(percent_of_nominal(*b, row.size), 2) : kNothing;
     };
-    table.add({std::string(row.name), row.memory, kb(row.single), kb(row.parallel),
-               percent(row.single), percent(row.parallel)});
+    table.add({row.name, row.memory, kb(row.single), kb(row.parallel), percent(row.single),
+               percent(row.parallel)});
   }
   return fmt::format("memory (kB of 1000 bytes, % of {} kB L1 and {} kB L2)\n",
                      run.l1_size.count() / 1024, run.l2_size.count() / 1024) +

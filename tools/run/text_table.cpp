@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/base/printable_text.h"
 #include "sim/check.h"
 
 namespace leviosim::tools {
@@ -20,10 +21,13 @@ int display_width(std::string_view text) {
          static_cast<int>(std::count_if(text.begin(), text.end(), continues));
 }
 
-TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {
+  for (Column& column : columns_) column.title = printable(column.title);
+}
 
 void TextTable::add(std::vector<std::string> cells) {
   check_equal(cells.size(), columns_.size(), "cells in a table row");
+  for (std::string& cell : cells) cell = printable(cell);
   rows_.push_back(std::move(cells));
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "tools/cli/terminal.h"
 #include "tools/run/text_table.h"
 #include "tools/run/workload_overrides.h"
 
@@ -32,7 +33,7 @@ void run(const WorkloadOptions& options) {
   for (const vio::Parameter& p : vio::parameters())
     table.add({std::string(p.name), vio::value_text(p, p.get(profile)), range_text(p),
                std::string(p.unit), std::string(p.description)});
-  fmt::print("{}\n{}", text, table.str());
+  print_result("{}\n{}", text, table.str());
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ std::string to_text(const PointResult& result) {
   json["figures"] = Json::array();
   for (const SweepFigure& f : result.figures)
     json["figures"].push_back(Json::array({f.name, f.unit, f.description, f.value}));
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json) + '\n';
 }
 
 std::optional<PointResult> parse_point_result(std::string_view text) {

@@ -4,151 +4,121 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
-#include <set>
+#include <bit>
 
+#include "sim/base/interruption.h"
 #include "sim/check.h"
 #include "sim/error.h"
-#include "tools/cli/command_line.h"
-#include "tools/cli/interrupts.h"
-#include "tools/replay/replay.h"
-#include "tools/run/run_options.h"
-#include "tools/run/workload_overrides.h"
 #include "tools/sweep/point_key.h"
-#include "tools/sweep/sampling.h"
-#include "traces/image_preparation.h"
 
 namespace leviosim::tools {
+
+SweepPoints::SweepPoints(const SweepPlan& plan)
+    : plan_(&plan), pool_(std::make_unique<ValuePool>(plan.keys.size())) {
+  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+    const auto set = plan.base.find(plan.keys[k].name);
+    base_.push_back(set == plan.base.end() ? kUnset : pool_->add(k, set->second));
+  }
+}
+
+void SweepPoints::put_values(std::size_t row, std::span<ValueId> values) const {
+  std::copy(base_.begin(), base_.end(), values.begin());
+  const auto after = std::upper_bound(first_rows_.begin(), first_rows_.end(), row);
+  const auto group = static_cast<std::size_t>(after - first_rows_.begin()) - 1;
+  groups_[group].put(row - first_rows_[group], values);
+}
+
+std::vector<ValueId> SweepPoints::values_of(std::size_t row) const {
+  std::vector<ValueId> values(base_.size());
+  put_values(row, values);
+  return values;
+}
+
+const PointFamily& SweepPoints::family_of(std::span<const ValueId> values) const {
+  return *families_.at(PointFamily::identifier(*plan_, values));
+}
+
+SweepRow SweepPoints::settings_of(std::span<const ValueId> values) const {
+  SweepRow settings = plan_->base;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (values[k] != kUnset) settings[plan_->keys[k].name] = pool_->text(k, values[k]);
+  return settings;
+}
+
+SweepRow SweepPoints::settings(std::size_t i) const { return settings_of(values_of(rows_[i])); }
+
+std::string SweepPoints::key(std::size_t i) const {
+  const std::vector<ValueId> values = values_of(rows_[i]);
+  return point_key(family_of(values).identity(values));
+}
+
+SweepPoint SweepPoints::operator[](std::size_t i) const {
+  const std::vector<ValueId> values = values_of(rows_[i]);
+  const PointFamily& family = family_of(values);
+  SweepPoint point{static_cast<int>(i) + 1, settings_of(values), {}, {}};
+  for (std::size_t k = 0; k < values.size(); ++k)
+    point.parameters.push_back(family.parameter(k, values));
+  point.key = point_key(family.identity(values));
+  return point;
+}
+
+std::string SweepPoints::settings_text(std::size_t i) const {
+  const std::vector<ValueId> values = values_of(rows_[i]);
+  const PointFamily& family = family_of(values);
+  std::string text;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const PointParameter p = family.parameter(k, values);
+    text += fmt::format("{}{}={}", k == 0 ? "" : " ", p.name, p.text);
+  }
+  return text;
+}
+
 namespace {
 
-using Kind = SweepKey::Kind;
-
-class Resolver {
+/// The rows of different points, found again by a hash of what they are.
+class SeenRows {
  public:
-  Resolver(const SweepPlan& plan, const SweepRow& settings, SweepInputs& inputs,
-           const std::string& where)
-      : plan_(plan), settings_(settings), inputs_(inputs), place_{where} {}
-
-  ResolvedPoint resolve() {
-    if (has("trace") == has("data"))
-      place_.fail(has("trace") ? "has a trace and data; expected one of them"
-                               : "has neither trace nor data; expected one of them");
-    try {
-      if (has("trace"))
-        take_recording();
-      else
-        take_data();
-    } catch (const InputError& error) {
-      const std::string what = error.what();
-      if (what.starts_with(place_.where)) throw;
-      place_.fail(what);
-    }
-    return std::move(point_);
+  /// Whether the row is new. @param is_same  whether a row that was there is the same point
+  template <class IsSame>
+  bool add(std::uint32_t hash, std::uint32_t row, const IsSame& is_same) {
+    if (2 * (count_ + 1) > slots_.size()) grow();
+    std::size_t at = hash & (slots_.size() - 1);
+    for (; slots_[at].row != kFree; at = (at + 1) & (slots_.size() - 1))
+      if (slots_[at].hash == hash && is_same(slots_[at].row)) return false;
+    slots_[at] = {hash, row};
+    ++count_;
+    return true;
   }
 
  private:
-  bool has(const std::string& name) const { return settings_.count(name) > 0; }
-  std::string text(const std::string& name, const std::string& otherwise = {}) const {
-    const auto it = settings_.find(name);
-    return it == settings_.end() ? otherwise : it->second;
+  static constexpr std::uint32_t kFree = UINT32_MAX;
+  struct Slot {
+    std::uint32_t hash = 0;
+    std::uint32_t row = kFree;
+  };
+  void grow() {
+    std::vector<Slot> before(std::max<std::size_t>(16, 2 * slots_.size()));
+    before.swap(slots_);
+    for (const Slot& slot : before) {
+      if (slot.row == kFree) continue;
+      std::size_t at = slot.hash & (slots_.size() - 1);
+      while (slots_[at].row != kFree) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = slot;
+    }
   }
-  std::vector<std::string> with_prefix(std::string_view prefix, bool keep) const {
-    std::vector<std::string> found;
-    for (const auto& [name, value] : settings_)
-      if (name.starts_with(prefix))
-        found.push_back(fmt::format("{}={}", keep ? name : name.substr(prefix.size()), value));
-    return found;
-  }
-
-  void take_chip(platform::PlatformFile& file) {
-    point_.request.platform = file.resolve(with_prefix("platform.", false));
-    const sim::ClusterConfig& cluster = point_.request.platform.config.cluster;
-    point_.request.cores =
-        has("cores") ? static_cast<int>(parse_whole("cores", text("cores"), 1, cluster.max_workers))
-                     : cluster.workers;
-    point_.identity += fmt::format("cores {}\n{}", point_.request.cores,
-                                   canonical_text(file.schema(), point_.request.platform));
-  }
-
-  void take_recording() {
-    for (const auto& [name, value] : settings_)
-      if (find_key(name, plan_.reference->schema(), place_).belongs_to_recording())
-        place_.fail(
-            fmt::format("{}: recorded work is that of a run as it was; expected data in place of "
-                        "the trace",
-                        name));
-    SweepInputs::Trace& trace = inputs_.trace(text("trace"), place_);
-    point_.trace = trace.work.get();
-    point_.identity = fmt::format("trace {}\n", trace.sha256);
-    take_chip(has("platform") ? inputs_.platform(text("platform"), place_) : trace.platform);
-    check_cores(*trace.work, point_.request);
-  }
-
-  void take_data() {
-    if (!has("platform")) place_.fail("has no platform; expected one (leviosim platforms)");
-    RunRequest& request = point_.request;
-    const SweepInputs::Data& data = inputs_.data(text("data"), text("frames"), place_);
-    request.data = data.folder;
-    if (has("frames")) request.frames = traces::parse_frame_range(text("frames"));
-    request.image_size = parse_size(text("size", "160x120"));
-    traces::make_decimation(data.camera, request.image_size);
-    request.profile = text("profile", "levio");
-    request.seed = static_cast<std::uint32_t>(
-        parse_whole("seed", text("seed", "1"), 0, std::numeric_limits<std::uint32_t>::max()));
-    request.workload = parse_workload_overrides(with_prefix(vio::kParameterPrefix, true));
-    point_.identity = fmt::format("data {}\nsize {}x{}\nseed {}\nprofile {}\n", data.sha256,
-                                  request.image_size.width, request.image_size.height, request.seed,
-                                  request.profile);
-    const vio::Profile profile = profile_of(request);
-    for (const vio::Parameter& p : vio::parameters())
-      point_.identity += fmt::format("{} {}\n", p.name, value_text(p, p.get(profile)));
-    take_chip(inputs_.platform(text("platform"), place_));
-  }
-
-  const SweepPlan& plan_;
-  const SweepRow& settings_;
-  SweepInputs& inputs_;
-  platform::Place place_;
-  ResolvedPoint point_;
+  std::vector<Slot> slots_;
+  std::size_t count_ = 0;
 };
 
-PointParameter chip_parameter(const SweepPlan& plan, const SweepKey& key,
-                              const platform::ResolvedPlatform& chip) {
-  const auto it = std::find_if(chip.parameters.begin(), chip.parameters.end(),
-                               [&](const auto& p) { return p.path == key.path; });
-  if (it == chip.parameters.end()) return {key.name, {}, {}, {}};
-  if (!key.is_number(plan.reference->schema())) return {key.name, it->value, {}, {}};
-  const SweepNumber number =
-      number_of(key, it->value + it->unit, *plan.reference, platform::Place{key.name});
-  return {key.name, number.text(), number.value, number.unit};
-}
-
-PointParameter workload_value(const SweepKey& key, const RunRequest& request) {
-  const double value = key.parameter->get(profile_of(request));
-  return {key.name, value_text(*key.parameter, value), value, std::string(key.parameter->unit)};
-}
-
-/// What a key is where nothing sets it.
-std::string unset(const SweepKey& key, const ResolvedPoint& point) {
-  const RunRequest& r = point.request;
-  if (key.kind == Kind::cores) return fmt::format("{}", r.cores);
-  if (point.trace != nullptr) return {};
-  if (key.kind == Kind::seed) return fmt::format("{}", r.seed);
-  if (key.kind == Kind::profile) return r.profile;
-  if (key.kind == Kind::size) return fmt::format("{}x{}", r.image_size.width, r.image_size.height);
-  return {};
-}
-
-PointParameter parameter_of(const SweepPlan& plan, const SweepKey& key, const SweepRow& settings,
-                            const ResolvedPoint& point) {
-  if (key.kind == Kind::chip) return chip_parameter(plan, key, point.request.platform);
-  if (key.kind == Kind::workload && point.trace == nullptr)
-    return workload_value(key, point.request);
-  const auto set = settings.find(key.name);
-  const std::string text = set != settings.end() ? set->second : unset(key, point);
-  if (key.kind == Kind::seed || key.kind == Kind::cores)
-    return {key.name, text, platform::parse_number(text), {}};
-  return {key.name, text, {}, {}};
+/// Of an outline and numbers: all bits count (the finaliser of MurmurHash3).
+std::uint32_t hash_of(std::size_t outline, std::span<const double> numbers) {
+  std::uint64_t hash = outline;
+  for (const double number : numbers) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0xFF51AFD7ED558CCDu;
+    hash = (hash ^ (hash >> 33)) * 0xC4CEB9FE1A85EC53u;
+    hash ^= hash >> 33;
+  }
+  return static_cast<std::uint32_t>(hash ^ (hash >> 32));
 }
 
 std::string text_of(const SweepRow& row) {
@@ -157,59 +127,116 @@ std::string text_of(const SweepRow& row) {
   return fmt::format("{}", fmt::join(parts, " "));
 }
 
-/// Points of a group set what the base sets for all.
-SweepRow with_base(SweepRow row, const SweepRow& base) {
-  row.insert(base.begin(), base.end());
-  return row;
-}
-
 }  // namespace
 
-ResolvedPoint resolve(const SweepPlan& plan, const SweepRow& settings, SweepInputs& inputs,
-                      const std::string& where) {
-  return Resolver(plan, settings, inputs, where).resolve();
-}
+class Expander {
+ public:
+  Expander(const SweepPlan& plan, SweepInputs& inputs)
+      : plan_(plan), inputs_(inputs), expansion_{SweepPoints(plan)}, points_(expansion_.points) {}
 
-Expansion expand(const SweepPlan& plan, SweepInputs& inputs) {
-  Expansion expansion;
-  std::set<std::string> seen;
-  for (const SweepGroup& group : plan.groups) {
-    const std::vector<SweepRow> rows = rows_of(group);
-    if (expansion.asked + rows.size() > kMostPoints)
-      group.place.fail(fmt::format("gives more than {} points in all", kMostPoints));
-    for (const SweepRow& row : rows) {
-      throw_if_interrupted();
-      ++expansion.asked;
-      SweepPoint point;
-      point.settings = with_base(row, plan.base);
-      try {
-        const ResolvedPoint resolved =
-            resolve(plan, point.settings, inputs,
-                    fmt::format("{}: point {}", group.place.where, text_of(row)));
-        point.key = point_key(resolved.identity);
-        if (!seen.insert(point.key).second) continue;
-        for (const SweepKey& key : plan.keys)
-          point.parameters.push_back(parameter_of(plan, key, point.settings, resolved));
-      } catch (const InputError& error) {
-        if (!plan.skip_impossible) throw;
-        expansion.impossible.emplace_back(error.what());
-        continue;
+  Expansion expand() {
+    for (const SweepGroup& group : plan_.groups) {
+      points_.groups_.emplace_back(plan_, group, *points_.pool_);
+      points_.first_rows_.push_back(expansion_.asked);
+      const std::size_t rows = points_.groups_.back().size();
+      if (expansion_.asked + rows > kMostPoints)
+        group.place.fail(fmt::format("gives more than {} points in all", kMostPoints));
+      for (std::size_t i = 0; i < rows; ++i) add(group, expansion_.asked++);
+    }
+    if (points_.size() == 0)
+      throw InputError(fmt::format("{}: no point of the plan is possible: {}", plan_.file,
+                                   expansion_.first_impossible));
+    return std::move(expansion_);
+  }
+
+ private:
+  struct Known {
+    PointFamily* family = nullptr;
+    std::size_t outline = 0;  ///< equal for equal outlines
+  };
+
+  void add(const SweepGroup& group, std::size_t row) {
+    constexpr std::size_t kRowsPerPoll = 64;
+    if (row % kRowsPerPoll == 0) throw_if_interrupted();
+    points_.put_values(row, values_);
+    Known* known = known_of(values_);
+    if (known == nullptr || !known->family->accepts(values_)) {
+      if (known != nullptr && expansion_.impossible > 0) {
+        ++expansion_.impossible;
+        return;
       }
-      point.number = static_cast<int>(expansion.points.size()) + 1;
-      expansion.points.push_back(std::move(point));
+      const std::optional<ResolvedPoint> point = resolved(group, row);
+      if (!point) return;
+      check(known == nullptr, "resolve() accepts what a family of points does not");
+      known = &make_family(*point);
+    }
+    known->family->put_numbers(values_, numbers_);
+    const auto is_same = [&](std::uint32_t other) { return is_point(other, *known); };
+    if (seen_.add(hash_of(known->outline, numbers_), static_cast<std::uint32_t>(row), is_same))
+      points_.rows_.push_back(static_cast<std::uint32_t>(row));
+  }
+
+  /// Nothing, if the plan says to leave out what is impossible.
+  std::optional<ResolvedPoint> resolved(const SweepGroup& group, std::size_t row) {
+    try {
+      std::vector<ValueId> own(values_.size(), kUnset);
+      points_.groups_.back().put(row - points_.first_rows_.back(), own);
+      SweepRow shown;
+      for (std::size_t k = 0; k < own.size(); ++k)
+        if (own[k] != kUnset) shown[plan_.keys[k].name] = points_.pool_->text(k, own[k]);
+      return resolve(plan_, points_.settings_of(values_), inputs_,
+                     fmt::format("{}: point {}", group.place.where, text_of(shown)));
+    } catch (const InputError& error) {
+      if (!plan_.skip_impossible) throw;
+      if (expansion_.impossible++ == 0) expansion_.first_impossible = error.what();
+      return std::nullopt;
     }
   }
-  if (expansion.points.empty())
-    throw InputError(fmt::format("{}: no point of the plan is possible: {}", plan.file,
-                                 expansion.impossible.front()));
-  return expansion;
-}
 
-std::string settings_text(const SweepPoint& point) {
-  std::vector<std::string> parts;
-  for (const PointParameter& p : point.parameters)
-    parts.push_back(fmt::format("{}={}", p.name, p.text));
-  return fmt::format("{}", fmt::join(parts, " "));
+  Known* known_of(std::span<const ValueId> values) {
+    std::vector<ValueId> identifier = PointFamily::identifier(plan_, values);
+    if (last_ != nullptr && last_->first == identifier) return &last_->second;
+    const auto it = known_.find(identifier);
+    if (it == known_.end()) return nullptr;
+    last_ = &*it;
+    return &it->second;
+  }
+
+  Known& make_family(const ResolvedPoint& point) {
+    std::vector<ValueId> identifier = PointFamily::identifier(plan_, values_);
+    auto& family = points_.families_[identifier];
+    family = std::make_unique<PointFamily>(plan_, *points_.pool_, values_,
+                                           points_.settings_of(values_), point);
+    const std::size_t outline =
+        outlines_.emplace(family->outline(), outlines_.size()).first->second;
+    return known_[std::move(identifier)] = Known{family.get(), outline};
+  }
+
+  /// Whether the point of a row is the one whose numbers are in numbers_.
+  bool is_point(std::size_t row, const Known& known) {
+    points_.put_values(row, other_values_);
+    const Known& other = *known_of(other_values_);
+    if (other.outline != known.outline) return false;
+    other.family->put_numbers(other_values_, other_numbers_);
+    return other_numbers_ == numbers_;
+  }
+
+  const SweepPlan& plan_;
+  SweepInputs& inputs_;
+  Expansion expansion_;
+  SweepPoints& points_;
+  std::map<std::vector<ValueId>, Known> known_;  ///< families by identifier
+  std::pair<const std::vector<ValueId>, Known>* last_ = nullptr;
+  std::map<std::string, std::size_t> outlines_;
+  SeenRows seen_;
+  std::vector<ValueId> values_ = std::vector<ValueId>(plan_.keys.size());
+  std::vector<ValueId> other_values_ = values_;
+  std::vector<double> numbers_ = std::vector<double>(plan_.keys.size());
+  std::vector<double> other_numbers_ = numbers_;
+};
+
+Expansion expand(const SweepPlan& plan, SweepInputs& inputs) {
+  return Expander(plan, inputs).expand();
 }
 
 }  // namespace leviosim::tools

@@ -3,13 +3,29 @@
 #include <fmt/core.h>
 #include <sqlite3.h>
 
+#include <chrono>
+#include <thread>
+
+#include "sim/base/interruption.h"
 #include "sim/error.h"
 
 namespace leviosim::tools {
 namespace {
 
 /// For how long one process waits for another that writes.
-constexpr int kPatienceMs = 60'000;
+constexpr std::chrono::milliseconds kBetweenTries{20};
+constexpr int kMostTries = 3000;  // a minute
+
+/// Statements that take this many steps of SQLite's machine look whether they are to stop.
+constexpr int kStepsPerPoll = 100'000;
+
+int try_again(void*, int tries) {
+  if (tries >= kMostTries || pending_interrupt() != 0) return 0;
+  std::this_thread::sleep_for(kBetweenTries);
+  return 1;
+}
+
+int is_to_stop(void*) { return pending_interrupt(); }
 
 }  // namespace
 
@@ -21,7 +37,8 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file.st
     sqlite3_close(handle_);
     throw InputError(fmt::format("{}: cannot be opened: {}", file_, message));
   }
-  sqlite3_busy_timeout(handle_, kPatienceMs);
+  sqlite3_busy_handler(handle_, try_again, nullptr);
+  sqlite3_progress_handler(handle_, kStepsPerPoll, is_to_stop, nullptr);
 }
 
 Database::~Database() { sqlite3_close(handle_); }
@@ -30,14 +47,19 @@ void Database::fail(std::string_view message) const {
   throw InputError(fmt::format("{}: {}", file_, message));
 }
 
+void Database::fail_with_reason() const {
+  throw_if_interrupted();  // which SQLite takes for a fault
+  fail(sqlite3_errmsg(handle_));
+}
+
 void Database::run(const std::string& sql) {
   if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
-    fail(sqlite3_errmsg(handle_));
+    fail_with_reason();
 }
 
 Statement::Statement(Database& database, const std::string& sql) : database_(database) {
   if (sqlite3_prepare_v2(database.handle_, sql.c_str(), -1, &handle_, nullptr) != SQLITE_OK)
-    database.fail(sqlite3_errmsg(database.handle_));
+    database.fail_with_reason();
 }
 
 Statement::~Statement() { sqlite3_finalize(handle_); }
@@ -63,7 +85,7 @@ Statement& Statement::bind(int place, std::string_view value) {
 bool Statement::step() {
   const int result = sqlite3_step(handle_);
   if (result == SQLITE_ROW) return true;
-  if (result != SQLITE_DONE) database_.fail(sqlite3_errmsg(database_.handle_));
+  if (result != SQLITE_DONE) database_.fail_with_reason();
   return false;
 }
 
@@ -103,8 +125,8 @@ Transaction::~Transaction() {
   if (!open_) return;
   try {
     database_.run("ROLLBACK");
-  } catch (const InputError&) {
-    // SQLite has undone it already, as it does after faults of the disk.
+  } catch (const std::exception&) {
+    // SQLite has undone it already, as it does after faults of the disk, or will when it is closed.
   }
 }
 

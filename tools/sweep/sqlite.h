@@ -1,5 +1,6 @@
 // As much of SQLite as sweeps need: statements with bound values, rows one after the other. Faults,
-// such as a file that is no data base or a full disk, are InputErrors that name the file.
+// such as a file that is no data base or a full disk, are InputErrors that name the file. Waiting
+// for other processes and long statements end with Interrupted (sim/base/interruption.h).
 #pragma once
 
 #include <cstdint>
@@ -25,6 +26,8 @@ class Database {
   /// Statements without values, separated by semicolons.
   void run(const std::string& sql);
   [[noreturn]] void fail(std::string_view message) const;
+  /// With what SQLite says of the last statement. @throws Interrupted if that was stopped
+  [[noreturn]] void fail_with_reason() const;
 
  private:
   friend class Statement;

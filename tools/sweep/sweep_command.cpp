@@ -11,6 +11,7 @@
 #include "tools/cli/cache_folder.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/progress_line.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/version.h"
 #include "tools/replay/memory_option.h"
 #include "tools/sweep/points.h"
@@ -80,25 +81,25 @@ struct Tally {
 Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, SweepStore& store,
                  const RunCache& cache, unsigned threads, ProgressLine::Style style) {
   const std::set<int> finished = store.finished();
-  std::vector<const SweepPoint*> open;
+  const SweepPoints& points = sweep.expansion.points;
+  std::vector<std::size_t> open;
   for (const std::size_t i : chosen)
-    if (finished.count(sweep.expansion.points[i].number) == 0)
-      open.push_back(&sweep.expansion.points[i]);
+    if (finished.count(static_cast<int>(i) + 1) == 0) open.push_back(i);
   Tally tally;
   tally.stored = static_cast<std::int64_t>(chosen.size() - open.size());
   ProgressLine line(style);
   JobBatch batch;
-  for (const SweepPoint* p : open) batch.keys.push_back(p->key);
+  for (const std::size_t i : open) batch.keys.push_back(points.key(i));
   batch.readable = [](const std::string& text) { return parse_point_result(text).has_value(); };
   batch.compute = [&](std::size_t job) {
-    const SweepPoint& p = *open[job];
-    const ResolvedPoint point = resolve(sweep.plan, p.settings, sweep.inputs,
-                                        fmt::format("{}: point {}", sweep.plan.file, p.number));
+    const ResolvedPoint point =
+        resolve(sweep.plan, points.settings(open[job]), sweep.inputs,
+                fmt::format("{}: point {}", sweep.plan.file, open[job] + 1));
     const PointResult result = run_point(point);
     return JobText{to_text(result), result.failure.empty()};
   };
   batch.take = [&](std::size_t job, const std::string& text, bool found) {
-    store.put(open[job]->number, parse_point_result(text).value());
+    store.put(static_cast<int>(open[job]) + 1, parse_point_result(text).value());
     ++(found ? tally.found : tally.computed);
     const std::int64_t before = tally.stored + tally.found;
     line.show(before + tally.computed, static_cast<std::int64_t>(chosen.size()), [&] {
@@ -126,19 +127,19 @@ void merge(const SweepWords& words) {
     store.merge(part);
   }
   const std::optional<std::string> elsewhere = store.publish(out.csv());
-  fmt::print("leviosim {}: {} folders merged\n{}results: {}\n", version(), words.merge.size() - 1,
-             sweep_report(store), words.merge.front());
+  print_result("leviosim {}: {} folders merged\n{}results: {}\n", version(), words.merge.size() - 1,
+               sweep_report(store), printable(words.merge.front()));
   if (elsewhere) throw InputError(*elsewhere);
 }
 
 std::string expansion_text(const Expansion& expansion) {
   const std::size_t points = expansion.points.size();
-  const std::size_t repeated = expansion.asked - points - expansion.impossible.size();
+  const std::size_t repeated = expansion.asked - points - expansion.impossible;
   std::string text = fmt::format("{} points", points);
   if (repeated > 0) text += fmt::format(", {} more that are the same as one of them", repeated);
-  if (!expansion.impossible.empty())
-    text += fmt::format(", {} left out as impossible, the first: {}", expansion.impossible.size(),
-                        expansion.impossible.front());
+  if (expansion.impossible > 0)
+    text += fmt::format(", {} left out as impossible, the first: {}", expansion.impossible,
+                        printable(expansion.first_impossible));
   return text;
 }
 
@@ -148,7 +149,10 @@ void run_plan(const SweepWords& words) {
   const SweepPlan plan = read_plan(words.plan, inputs);
   const Expansion expansion = expand(plan, inputs);
   if (words.list) {
-    for (const SweepPoint& p : expansion.points) fmt::print("{}\t{}\n", p.number, settings_text(p));
+    for (std::size_t i = 0; i < expansion.points.size(); ++i) {
+      throw_if_interrupted();
+      print_result("{}\t{}\n", i + 1, printable(expansion.points.settings_text(i)));
+    }
     return;
   }
   if (words.out.empty())
@@ -168,11 +172,11 @@ void run_plan(const SweepWords& words) {
   const std::optional<std::string> elsewhere = store.publish(out.csv());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  fmt::print(
+  print_result(
       "leviosim {}: {}\n{} computed in {:.1f} s, {} found in the cache, {} done before\n{}"
       "results: {}\n",
       version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.stored,
-      sweep_report(store), words.out);
+      sweep_report(store), printable(words.out));
   if (elsewhere) throw InputError(*elsewhere);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/base/printable_text.h"
 #include "tools/run/text_table.h"
 #include "tools/sweep/pareto.h"
 
@@ -51,7 +52,8 @@ std::string failures(SweepStore& store, const std::vector<SweepOutcome>& outcome
   for (const SweepOutcome& o : outcomes) {
     if (o.failure.empty()) continue;
     if (++count <= kMostFailures)
-      text += fmt::format("  point {} ({}): {}\n", o.point, store.settings_of(o.point), o.failure);
+      text += fmt::format("  point {} ({}): {}\n", o.point, printable(store.settings_of(o.point)),
+                          printable(o.failure));
   }
   if (count > kMostFailures) text += fmt::format("  and {} more\n", count - kMostFailures);
   return count == 0 ? text : fmt::format("{} of the points cannot run:\n{}", count, text);

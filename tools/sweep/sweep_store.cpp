@@ -6,6 +6,7 @@
 
 #include "platform_models/dimension.h"
 #include "sim/base/input_file.h"
+#include "sim/base/interruption.h"
 #include "sim/error.h"
 #include "tools/cli/version.h"
 #include "tools/sweep/pareto.h"
@@ -57,17 +58,13 @@ bool is_objective(const std::string& name) {
 
 }  // namespace
 
-SweepStore::SweepStore(const fs::path& folder, const std::string& plan,
-                       const std::vector<SweepPoint>& points)
+SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const SweepPoints& points)
     : folder_(folder), database_(made(folder), Database::Mode::create) {
   Transaction transaction(database_);
   database_.run(kSweepTables);
   database_.run(fmt::format("PRAGMA application_id = {}", kSweepApplication));
-  Keys asked;
-  for (const SweepPoint& p : points) asked.emplace_back(p.number, p.key);
-  const Keys held = keys();
-  if (!held.empty()) {
-    if (held != asked)
+  if (planned() > 0) {
+    if (!holds(points))
       database_.fail(
           "holds the results of another plan, of other data or of another leviosim; choose a new "
           "folder, or --force to begin anew (finished points are found again where they are the "
@@ -83,9 +80,27 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan,
   say("program", fmt::format("leviosim {} {}", version(), revision()));
   say("simulator", simulator_version());
   say("plan", plan);
+  this->plan(points);
+  transaction.commit();
+}
+
+bool SweepStore::holds(const SweepPoints& points) {
+  if (planned() != static_cast<std::int64_t>(points.size())) return false;
+  Statement select(database_, "SELECT point, key FROM planned ORDER BY point");
+  for (std::size_t i = 0; select.step(); ++i) {
+    throw_if_interrupted();
+    if (select.whole(0) != static_cast<std::int64_t>(i) + 1 || select.text(1) != points.key(i))
+      return false;
+  }
+  return true;
+}
+
+void SweepStore::plan(const SweepPoints& points) {
   Statement point(database_, "INSERT INTO planned VALUES(?, ?)");
   Statement parameter(database_, "INSERT INTO parameters VALUES(?, ?, ?, ?, ?, ?)");
-  for (const SweepPoint& p : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    throw_if_interrupted();
+    const SweepPoint p = points[i];
     point.bind(1, std::int64_t{p.number}).bind(2, std::string_view(p.key)).run();
     std::int64_t place = 0;
     for (const PointParameter& v : p.parameters) {
@@ -96,7 +111,6 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan,
       parameter.run();
     }
   }
-  transaction.commit();
 }
 
 SweepStore::SweepStore(const fs::path& folder)

@@ -31,7 +31,7 @@ class SweepStore {
   /// Opens the file, or makes it with the points of a sweep.
   /// @throws InputError if it holds another sweep
   SweepStore(const std::filesystem::path& folder, const std::string& plan,
-             const std::vector<SweepPoint>& points);
+             const SweepPoints& points);
   /// Opens what is there. @throws InputError if it is no sweep's
   explicit SweepStore(const std::filesystem::path& folder);
 
@@ -62,6 +62,8 @@ class SweepStore {
   using Keys = std::vector<std::pair<int, std::string>>;
 
   Keys keys();
+  bool holds(const SweepPoints& points);
+  void plan(const SweepPoints& points);
   std::optional<PointResult> result_of(int point);
   void write(int point, const PointResult& result);
   std::vector<std::string> figure_names();

@@ -7,6 +7,7 @@
 
 #include "sim/error.h"
 #include "tools/cli/interrupts.h"
+#include "tools/cli/terminal.h"
 #include "tools/run/run_options.h"
 #include "tools/synth/flight_cache.h"
 #include "traces/rendered_flight.h"
@@ -73,9 +74,9 @@ void render(const CLI::App& command, const SynthOptions& options) {
                   [&] { return fmt::format("rendered flight: image {}/{}", done, total); });
       });
   line.clear();
-  fmt::print("rendered flight: {}\n", options.out);
+  print_result("rendered flight: {}\n", printable(options.out));
   if (!options.full_size && options.size != SynthOptions().size)
-    fmt::print("its images are prepared for one size: run --size {}\n", options.size);
+    print_result("its images are prepared for one size: run --size {}\n", options.size);
 }
 
 void run(const CLI::App& command, const SynthOptions& options) {
@@ -89,7 +90,7 @@ void run(const CLI::App& command, const SynthOptions& options) {
   flight.duration_s = parse_positive("--duration", options.duration);
   flight.overwrite = options.overwrite;
   write_flight(options.out, flight, ProgressLine::style_of_stderr(options.quiet));
-  fmt::print("synthetic flight: {}\n", options.out);
+  print_result("synthetic flight: {}\n", printable(options.out));
 }
 
 void add_motion_options(CLI::App& command, SynthOptions& options) {

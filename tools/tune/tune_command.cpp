@@ -8,6 +8,7 @@
 #include "tools/batch/batch_options.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/outputs.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/version.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
@@ -46,7 +47,7 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
   plan.out->write("runs.csv", tune_csv(plan, points));
   plan.out->write("tune.svg", tune_plot(plan, points, all));
   if (again) write_chosen(plan, *chosen(all), *again, command_line);
-  plan.out->write("manifest.json", tune_manifest(plan, all, command_line).dump(2) + '\n');
+  plan.out->write("manifest.json", json_text(tune_manifest(plan, all, command_line), 2) + '\n');
 }
 
 void run(const CLI::App& command, const TuneWords& words, const Words& command_line) {
@@ -59,15 +60,16 @@ void run(const CLI::App& command, const TuneWords& words, const Words& command_l
   const TunePoint* best = chosen(all);
   std::optional<RunResult> again;
   if (best != nullptr) again = run_again(plan, *best);
-  std::string text = fmt::format(
-      "leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}", version(),
-      plan.request.profile, plan.options.platform, plan.request.cores, plan.sequence.frames,
-      plan.options.data, runs.size(), tune_table(plan, points), choice_text(plan, all));
+  std::string text =
+      fmt::format("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}",
+                  version(), plan.request.profile, printable(plan.options.platform),
+                  plan.request.cores, plan.sequence.frames, printable(plan.options.data),
+                  runs.size(), tune_table(plan, points), choice_text(plan, all));
   if (again) text += "run again by itself, it gave the same figures: confirmed\n";
   if (plan.out)
     publish(*plan.out, text, [&] { write_folder(plan, points, again, command_line); });
   else
-    fmt::print("{}", text);
+    print_result("{}", text);
 }
 
 }  // namespace

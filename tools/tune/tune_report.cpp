@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/base/printable_text.h"
 #include "tools/batch/batch_options.h"
 #include "tools/batch/run_key.h"
 #include "tools/batch/runs_csv.h"
@@ -165,7 +166,8 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
   const TunePoint* best = chosen(choices);
   if (best == nullptr) return text + "no point is enough\n";
   return text + fmt::format("the lowest of all: {} at {:g} frames/s\n  {}\n",
-                            clock_text(best->setting), best->fps, run_command_text(plan, *best));
+                            clock_text(best->setting), best->fps,
+                            printable(run_command_text(plan, *best)));
 }
 
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,

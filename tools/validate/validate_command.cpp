@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/cli/outputs.h"
+#include "tools/cli/terminal.h"
 #include "tools/run/run_folder.h"
 #include "tools/run/run_session.h"
 #include "tools/validate/validation_report.h"
@@ -19,7 +20,7 @@ void write_folder(base::OutputFolder& out, const Validation& validation, const R
                   const Manifest& manifest, const std::string& platform) {
   write_run_folder(out, run, manifest, platform);
   out.write("validation.csv", validation_csv(validation));
-  out.write("validation.json", validation_json(validation).dump(2) + '\n');
+  out.write("validation.json", json_text(validation_json(validation), 2) + '\n');
   std::vector<std::optional<double>> values;
   for (const Comparison& comparison : validation.comparisons) values.push_back(comparison.value);
   out.write("paper.csv",
@@ -39,7 +40,7 @@ void run(const RunOptions& options, const Words& words) {
   const Validation validation = validate(result, log, profile_of(request), references);
   const std::string text = heading(options, result) + validation_report(validation, result.cores);
   if (!out) {
-    fmt::print("{}", text);
+    print_result("{}", text);
     return;
   }
   const Manifest manifest = make_manifest(options, request, words);

@@ -1,0 +1,92 @@
+#include "sim/base/printable_text.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <iterator>
+
+namespace leviosim {
+namespace {
+
+struct Character {
+  std::uint32_t code = 0;
+  std::size_t length = 1;  ///< in bytes
+  bool valid = false;      ///< UTF-8
+};
+
+std::uint8_t byte_at(std::string_view text, std::size_t i) {
+  return static_cast<std::uint8_t>(text[i]);
+}
+
+/// The character that `text` begins with, decoded as RFC 3629 says.
+Character first_character(std::string_view text) {
+  const std::uint8_t lead = byte_at(text, 0);
+  if (lead < 0x80u) return {lead, 1, true};
+  constexpr std::array<std::uint32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  const std::size_t length = lead >= 0xF0u ? 4 : lead >= 0xE0u ? 3 : 2;
+  if (lead < 0xC0u || lead >= 0xF8u || text.size() < length) return {};
+  std::uint32_t code = lead & (0xFFu >> (length + 1));
+  for (std::size_t i = 1; i < length; ++i) {
+    const std::uint8_t next = byte_at(text, i);
+    if ((next & 0xC0u) != 0x80u) return {};
+    code = code << 6 | (next & 0x3Fu);
+  }
+  const bool surrogate = code >= 0xD800u && code <= 0xDFFFu;
+  if (code < kLeast[length] || code > 0x10FFFFu || surrogate) return {};
+  return {code, length, true};
+}
+
+struct CodeRange {
+  std::uint32_t first, last;
+};
+constexpr std::array kEscaped{
+    CodeRange{0x00, 0x1F},      // C0
+    CodeRange{0x7F, 0x9F},      // DEL, C1
+    CodeRange{0x2028, 0x2029},  // separators of lines and paragraphs
+    CodeRange{0x202A, 0x202E},  // embeddings and overrides of the direction
+    CodeRange{0x2066, 0x2069},  // isolates of the direction
+    CodeRange{0xFFFE, 0xFFFF},  // no characters, which XML refuses
+};
+
+bool is_escaped(const Character& c) {
+  if (!c.valid) return true;
+  for (const CodeRange& range : kEscaped)
+    if (c.code >= range.first && c.code <= range.last) return true;
+  return false;
+}
+
+void append_escaped(std::string& out, std::string_view bytes) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] == '\n')
+      out += "\\n";
+    else if (bytes[i] == '\t')
+      out += "\\t";
+    else if (bytes[i] == '\r')
+      out += "\\r";
+    else
+      fmt::format_to(std::back_inserter(out), "\\x{:02x}", byte_at(bytes, i));
+  }
+}
+
+std::string escaped(std::string_view text, std::string_view kept) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const Character c = first_character(text);
+    const std::string_view bytes = text.substr(0, c.length);
+    if (!is_escaped(c) || kept.find(bytes) != std::string_view::npos)
+      out += bytes;
+    else
+      append_escaped(out, bytes);
+    text.remove_prefix(c.length);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) { return escaped(text, ""); }
+std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }
+
+}  // namespace leviosim

@@ -1,0 +1,19 @@
+// Text from outside (names of files, cells, values of YAML, traces) made fit for a terminal, a log
+// or a JSON file: always valid UTF-8, never a control character. What is escaped can be read, but
+// not turned back: a backslash stays as it is, since names and messages are full of them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace leviosim {
+
+/// One line of text. Escaped are control characters (C0, DEL, C1), the separators of lines and
+/// paragraphs, the characters that change the direction of writing, U+FFFE, U+FFFF, and bytes that
+/// are no UTF-8: "\n", "\t", "\r" and else "\x1b" for each byte.
+std::string printable(std::string_view text);
+
+/// The same for text of several lines, such as tables: newlines and tabs stay.
+std::string printable_lines(std::string_view text);
+
+}  // namespace leviosim

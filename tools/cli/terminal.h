@@ -1,0 +1,31 @@
+// All that leviosim prints. stdout has results, stderr one line per error; progress is in
+// progress_line.h. Nothing raw leaves: control characters and bytes that are no UTF-8 are escaped
+// (sim/base/printable_text.h). Newlines and tabs of results stay, so texts from outside are made
+// printable() where they enter a result.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <string_view>
+#include <utility>
+
+#include "sim/base/printable_text.h"
+
+namespace leviosim::tools {
+
+/// To stdout. @throws InputError if it cannot be written, Interrupted if nobody reads it any more
+void print_result_text(std::string_view text);
+
+template <class... Args>
+void print_result(fmt::format_string<Args...> format, Args&&... args) {
+  print_result_text(fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// Hands what was printed to the system, which may refuse it only now: a full disk. Throws as
+/// print_result_text() does.
+void flush_results();
+
+/// "leviosim: MESSAGE" on one line of stderr, whatever the message holds.
+void print_error(std::string_view message);
+
+}  // namespace leviosim::tools
