@@ -171,6 +171,7 @@ TEST(FrontEndRules, AShiftedViewGivesLandmarksThatBothKeyframesSee) {
 
 TEST(FrontEndRules, WithoutAnImuAKeyframeHasTheMeanVelocitySinceTheLast) {
   FrontEndAlone alone("levio-no-imu");
+  alone.profile.keyframe_parallax = -1;
   alone.frame(alone.picture);
   alone.graph.set_keyframe(alone.graph.newest_keyframe(),
                            {Pose<work::Native>::identity(), {0.0f, 0.5f, 0.0f}});
