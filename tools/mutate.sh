@@ -144,7 +144,7 @@ run_tests() { # run_tests FILTER; logs are $copy/logs/N.txt
   for ((part = 0; part < jobs; ++part)); do
     (
       ulimit -v 16000000 -c 0
-      GTEST_SHARD_INDEX=$part exec timeout -s KILL "$limit" "$binary/leviosim_tests" \
+      GTEST_SHARD_INDEX=$part exec timeout -s KILL "$limit" "$binary/tests/leviosim_tests" \
         --gtest_fail_fast --gtest_filter="$1"
     ) >"$copy/logs/$part.txt" 2>&1 &
     parts+=($!)

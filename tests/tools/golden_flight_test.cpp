@@ -2,7 +2,7 @@
 // digit: poses and where they come from, keyframes, matches, inliers, landmarks, error, and cycles
 // per stage on GAP9. Determinism makes exact values possible, and no data is needed. Whoever means
 // to change what is computed makes golden_flight.csv anew, and looks at what has changed:
-//   LEVIOSIM_RENEW_GOLDEN=1 build/release/leviosim_tests --gtest_filter='*GoldenFlight*'
+//   LEVIOSIM_RENEW_GOLDEN=1 build/release/tests/leviosim_tests --gtest_filter='*GoldenFlight*'
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
