@@ -98,6 +98,19 @@ TEST(AlignPoints, NeverMirrors) {
     EXPECT_NEAR(align_points(from, to, alignment).rotation.determinant(), 1, 1e-12);
 }
 
+TEST(AlignPoints, TheScaleOfMirroredDataIsThatOfTheRotation) {
+  // No rotation brings the two together: the smallest singular value counts against the scale.
+  const Points from = random_points(7, 40);
+  Points to = from;
+  for (Eigen::Vector3d& point : to) point = 2 * Eigen::Vector3d(-point.x(), point.y(), point.z());
+  const Similarity best = align_points(from, to, Alignment::sim3);
+  EXPECT_LT(best.scale, 1.9) << "the mirror image itself would have 2";
+  const double least = cost(from, to, best);
+  for (int k = 0; k < freedoms(Alignment::sim3); ++k)
+    for (const double step : {1e-3, -1e-3, 0.2, -0.2})
+      EXPECT_GT(cost(from, to, nudged(best, k, step)), least) << k << " " << step;
+}
+
 TEST(AlignPoints, NoneIsTheIdentity) {
   const Similarity s = align_points({{1, 2, 3}}, {{4, 5, 6}}, Alignment::none);
   EXPECT_EQ(s.scale, 1);

@@ -100,6 +100,31 @@ TEST(Evaluation, PathLengthOfTheMatchedSpanOnly) {
   EXPECT_NEAR(evaluate(estimate, truth).path_length_m, seconds * std::sqrt(1.09), 1e-4);
 }
 
+TEST(Evaluation, HalfTheTruthIsHalfComplete) {
+  const Trajectory truth = helix(5'000'000, 2001);  // 10 s
+  Trajectory half = helix(50'000'000, 201);
+  half.erase(half.begin() + 151, half.end());   // until 7.5 s …
+  half.erase(half.begin(), half.begin() + 50);  // … from 2.5 s on
+  const Evaluation by_time = evaluate(half, truth);
+  EXPECT_DOUBLE_EQ(by_time.completion, 0.5);
+  EXPECT_NE(by_time.protocol.find("completion 50.0 % (10.00 s of truth"), std::string::npos)
+      << by_time.protocol;
+  EvaluationOptions by_number;
+  by_number.stamps = Stamps::pose_number;
+  Trajectory first_half = truth;
+  first_half.resize(1000);
+  const Trajectory numbered(truth.begin(), truth.begin() + 2000);
+  EXPECT_DOUBLE_EQ(evaluate(first_half, numbered, by_number).completion, 0.5);
+}
+
+TEST(Evaluation, TheLongestGapIsThatBetweenTwoPoses) {
+  const Trajectory truth = helix(5'000'000, 2001);
+  Trajectory estimate = helix(50'000'000, 201);
+  estimate.erase(estimate.begin() + 40, estimate.begin() + 59);
+  EXPECT_DOUBLE_EQ(evaluate(estimate, truth).longest_gap_s.value(), 1.0);
+  EXPECT_DOUBLE_EQ(evaluate(estimate, truth).completion, 1.0);
+}
+
 TEST(Evaluation, NothingMatched) {
   const Trajectory truth = helix(5'000'000, 10);
   const Trajectory later{{1'000'000'000'000, Eigen::Isometry3d::Identity()}};

@@ -130,7 +130,8 @@ TEST(Epnp, RotationsAreProper) {
 
 TEST(Epnp, PlanarPointsAreOftenMissedButNeverGiveNonsense) {
   // A wall at 3 m, seen straight on: the third control axis has no length, and in single precision
-  // the squared normal matrix often loses the pose. What comes out is a rotation or declared invalid.
+  // the squared normal matrix often loses the pose. What comes out is a rotation or declared
+  // invalid.
   Random random(3);
   int recovered = 0;
   for (int trial = 0; trial < 100; ++trial) {
@@ -152,6 +153,32 @@ TEST(Epnp, CollinearAndCoincidentSamplesAreInvalid) {
   EXPECT_FALSE(solve_first(scene, 4).valid);
   scene.points = {0, 0, 3, 1, 1, 4, 2, 2, 5, 4, 4, 7};
   EXPECT_FALSE(solve_first(scene, 4).valid);
+}
+
+/// Points beside a line: `ratio` is their spread across it over that along it.
+Scene beside_a_line(Random& random, double ratio) {
+  Scene scene = make_scene(random, {.points = 6});
+  const Eigen::Matrix3d axes = random_rotation(random);
+  const double along[] = {-2.5, -1.5, -0.5, 0.5, 1.5, 2.5}, across[] = {1, -1, 1, 1, -1, -1};
+  for (int i = 0; i < 6; ++i) {
+    const double side = 1.7 * ratio * across[i];  // 1.7: the spread along the line
+    const Eigen::Vector3d point = axes.col(0) * along[i] + axes.col(1) * side;
+    const Eigen::Vector3d x = scene.R * point + Eigen::Vector3d(0, 0, 5);
+    for (int c = 0; c < 3; ++c) scene.points[3 * i + c] = static_cast<float>(point(c));
+    scene.pixels[2 * i] = static_cast<float>(double(kCamera.fx) * x(0) / x(2) + 77.8);
+    scene.pixels[2 * i + 1] = static_cast<float>(double(kCamera.fy) * x(1) / x(2) + 62.09);
+  }
+  return scene;
+}
+
+TEST(Epnp, NearlyCollinearSamplesAreInvalid) {
+  Random random(9);
+  int wider = 0;
+  for (int trial = 0; trial < 50; ++trial) {
+    EXPECT_FALSE(solve_first(beside_a_line(random, 3e-4), 6).valid) << trial;
+    wider += solve_first(beside_a_line(random, 1e-2), 6).valid ? 1 : 0;
+  }
+  EXPECT_GE(wider, 45);
 }
 
 TEST(Epnp, DegenerateSamplesNeverYieldAPoseThatIsNotFinite) {

@@ -1,0 +1,74 @@
+// Figures that are easily taken one for the other: percentiles, longest calls and sums.
+#include <gtest/gtest.h>
+
+#include "platform_models/loader.h"
+#include "tests/tools/example_run.h"
+#include "tools/run/camera_figures.h"
+#include "tools/run/stage_book.h"
+#include "tools/run/statistics.h"
+#include "tools/run/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+Json value(const Json& document, const std::string& name) {
+  for (const Json& entry : document.at("statistics"))
+    if (entry.at("name") == name) return entry.at("value");
+  ADD_FAILURE() << "no statistic " << name;
+  return {};
+}
+
+/// 200 frames in a closed loop, with latencies of 200, 199 … 1 µs.
+RunResult long_loop() {
+  RunResult run = testing::example_run();
+  run.camera = CameraRecord{20, Deadline::Drop, {}};
+  run.frames.clear();
+  for (int i = 0; i < 200; ++i) {
+    run.frames.push_back(testing::frame(i, PoseSource::Epnp, false, 1'000 * (200 - i)));
+    run.camera->deliveries.push_back({i, 0, 50'000'000 * std::int64_t{i}, 0, false});
+  }
+  return run;
+}
+
+TEST(RunFigures, EveryPercentileOfLatencyIsItsOwn) {
+  const Json document = statistics(long_loop());
+  EXPECT_EQ(value(document, "latency.all.p50"), 100'000);
+  EXPECT_EQ(value(document, "latency.all.p95"), 190'000);
+  EXPECT_EQ(value(document, "latency.all.p99"), 198'000);
+  EXPECT_EQ(value(document, "latency.all.worst"), 200'000);
+}
+
+TEST(RunFigures, ALatencyOfExactlyThePeriodIsInTime) {
+  RunResult run = testing::example_run();
+  EXPECT_FALSE(is_late(testing::frame(0, PoseSource::Epnp, false, run.frame_period_ns), run));
+  EXPECT_TRUE(is_late(testing::frame(0, PoseSource::Epnp, false, run.frame_period_ns + 1), run));
+  run.frames = {testing::frame(0, PoseSource::Epnp, false, run.frame_period_ns)};
+  EXPECT_EQ(value(statistics(run), "latency.epnp.over_period"), 0);
+}
+
+TEST(RunFigures, TheWorstIsTheLongestOfSeveralAndNoSum) {
+  const Json document = statistics(testing::example_run());
+  EXPECT_EQ(value(document, "stages.feature_extraction.cycles.parallel.sum"), 2'000'000);
+  EXPECT_EQ(value(document, "stages.feature_extraction.cycles.parallel.worst"), 1'200'000);
+  EXPECT_EQ(value(document, "latency.epnp.worst"), 40'000'000);  // of two frames: 30 and 40 ms
+}
+
+TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
+  StageBook book({}, platform::load_platform("gap9"));
+  for (const int cycles : {300, 500, 200}) {
+    sim::StageTiming stage{"matching", {}, {}, Cycles(cycles), {}};
+    stage.account.serial = cycles;
+    book.add_parallel({{}, {}, {stage}});
+    stage.cycles = Cycles(10 * cycles);
+    book.add_single({{}, {}, {stage}});
+  }
+  ASSERT_EQ(book.stages().size(), 1u);
+  const StageResult& stage = book.stages().front();
+  EXPECT_EQ(stage.parallel, Cycles(1000));
+  EXPECT_EQ(stage.worst_parallel, Cycles(500));
+  EXPECT_EQ(stage.single, Cycles(10000));
+  EXPECT_EQ(stage.account.serial, 1000);
+}
+
+}  // namespace
+}  // namespace leviosim::tools

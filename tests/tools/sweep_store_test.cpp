@@ -1,0 +1,128 @@
+// The store of a sweep alone: which plan it takes for its own, what a merge accepts, and what the
+// front of an earlier publication leaves behind.
+#include "tools/sweep/sweep_store.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/traces/test_folder.h"
+
+namespace leviosim::tools {
+namespace {
+
+using traces::testing::expect_input_error;
+using traces::testing::TempFolder;
+
+/// A plan with one parameter, its values in MHz.
+std::vector<SweepPoint> plan_of(const std::vector<int>& clocks) {
+  std::vector<SweepPoint> points;
+  for (const int clock : clocks) {
+    SweepPoint point;
+    point.number = static_cast<int>(points.size()) + 1;
+    point.parameters = {{"clock", fmt::format("{}MHz", clock), static_cast<double>(clock), "MHz"}};
+    point.key = fmt::format("key of {}", clock);
+    points.push_back(point);
+  }
+  return points;
+}
+
+PointResult result_of(double latency_ms, double l1_bytes = 1000) {
+  return {"",
+          {{"objective.latency", "ms", "of a frame", latency_ms},
+           {"objective.l1_peak", "byte", "peak", l1_bytes}}};
+}
+
+double latency(SweepStore& store, int point) {
+  for (const SweepOutcome& outcome : store.outcomes())
+    if (outcome.point == point) return outcome.objectives[0].value();
+  ADD_FAILURE() << "point " << point << " is not finished";
+  return 0;
+}
+
+TEST(SweepStore, TheSamePlanGoesOnWhereItWas) {
+  const TempFolder folder;
+  SweepStore(folder.path(), "plan", plan_of({100, 200})).put(2, result_of(5));
+  SweepStore again(folder.path(), "plan", plan_of({100, 200}));
+  EXPECT_EQ(again.finished(), std::set<int>{2});
+  EXPECT_EQ(again.planned(), 2);
+  EXPECT_EQ(again.settings_of(1), "clock=100MHz");
+}
+
+TEST(SweepStore, APlanOfTheSameSizeWithOtherValuesIsAnother) {
+  const TempFolder folder;
+  SweepStore(folder.path(), "plan", plan_of({100, 200})).put(1, result_of(5));
+  for (const std::vector<int>& other :
+       {std::vector{100, 300}, std::vector{200, 100}, std::vector{100}, std::vector{100, 200, 300}})
+    expect_input_error([&] { SweepStore(folder.path(), "plan", plan_of(other)); },
+                       {"sweep.sqlite", "another plan"});
+  SweepStore kept(folder.path());
+  EXPECT_EQ(kept.planned(), 2);
+  EXPECT_EQ(kept.settings_of(2), "clock=200MHz");
+}
+
+TEST(SweepStore, OfTwoResultsOfAPointTheFirstStays) {
+  const TempFolder folder;
+  SweepStore store(folder.path(), "plan", plan_of({100}));
+  store.put(1, result_of(5));
+  store.put(1, result_of(6));
+  EXPECT_EQ(latency(store, 1), 5);
+}
+
+TEST(SweepStore, AMergeTakesWhatIsMissing) {
+  const TempFolder a, b;
+  SweepStore ours(a.path(), "plan", plan_of({100, 200, 300}));
+  SweepStore theirs(b.path(), "plan", plan_of({100, 200, 300}));
+  ours.put(1, result_of(5));
+  theirs.put(1, result_of(5));  // the same, by both
+  theirs.put(3, {"too little L1", {}});
+  ours.merge(theirs);
+  EXPECT_EQ(ours.finished(), (std::set<int>{1, 3}));
+  EXPECT_EQ(ours.outcomes().back().failure, "too little L1");
+}
+
+TEST(SweepStore, AMergeRefusesDifferentResultsOfAPointAndTakesNothing) {
+  struct {
+    const char* what;
+    PointResult result;
+  } const others[] = {
+      {"another value", result_of(5.5)},
+      {"a failure", {"too little L1", {}}},
+      {"a figure less", {"", {result_of(5).figures[0]}}},
+  };
+  for (const auto& other : others) {
+    SCOPED_TRACE(other.what);
+    const TempFolder a, b;
+    SweepStore ours(a.path(), "plan", plan_of({100, 200}));
+    SweepStore theirs(b.path(), "plan", plan_of({100, 200}));
+    theirs.put(1, result_of(4));
+    ours.put(2, result_of(5));
+    theirs.put(2, other.result);
+    expect_input_error([&] { ours.merge(theirs); },
+                       {b.path().string(), "other results for point 2", a.path().string()});
+    EXPECT_EQ(ours.finished(), std::set<int>{2});
+    EXPECT_EQ(latency(ours, 2), 5);
+  }
+}
+
+TEST(SweepStore, AMergeRefusesAnotherPlan) {
+  const TempFolder a, b;
+  SweepStore ours(a.path(), "plan", plan_of({100, 200}));
+  SweepStore theirs(b.path(), "plan", plan_of({100, 300}));
+  theirs.put(1, result_of(4));
+  expect_input_error([&] { ours.merge(theirs); }, {"another plan"});
+  EXPECT_TRUE(ours.finished().empty());
+}
+
+TEST(SweepStore, TheFrontIsThatOfTheLastPublication) {
+  const TempFolder folder;
+  SweepStore store(folder.path(), "plan", plan_of({100, 200, 300}));
+  store.put(1, result_of(5, 1000));
+  store.publish();
+  EXPECT_EQ(store.front(), std::set<int>{1});
+  store.put(2, result_of(4, 900));   // better in all
+  store.put(3, result_of(3, 2000));  // faster, but larger
+  store.publish();
+  EXPECT_EQ(store.front(), (std::set<int>{2, 3}));
+}
+
+}  // namespace
+}  // namespace leviosim::tools
