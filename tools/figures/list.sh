@@ -1,0 +1,170 @@
+# The figures of the pages: tools/figures.sh reads this file and says what its words mean. `data` are
+# 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `slow` takes minutes.
+# No figure shows the host's times, the commit, or anything else that differs from run to run.
+
+# README.md
+figure tune
+needs data slow
+shows 'leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130:370:30 --fps 10,15,20 --seed 1,2,3 --out tuned'
+keeps tuned/tune.svg
+
+figure stages
+needs data
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+cut 'table stage stage "kcycles, 1 core" "kcycles, 8 cores" speed-up ms | rows feature matching RANSAC triang iteration'
+
+figure one-fpu
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim replay recorded -p cluster.fpu.units=1 --out one-fpu'
+cut 'table stage stage "kcycles, 8 cores" speed-up ms | rows ^EPnP ^8-point'
+
+figure missed-deadlines
+needs data
+shows 'leviosim run --platform gap9 -p cluster.clock=130MHz -p controller.clock=130MHz \
+      -p supply.voltage=0.65V --data euroc/MH_01_easy_t05_t20 --camera-fps 10 --deadline drop --out slow'
+cut 'lines "^frames: .* arrived" ^latency ^ATE'
+
+figure sweep
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded
+cat >clocks.yaml <<YAML
+base: { trace: recorded }
+points:
+  - list:
+      - { platform.cluster.clock: 240MHz, platform.controller.clock: 240MHz, platform.supply.voltage: 0.65V }
+      - { platform.cluster.clock: 370MHz }
+    grid:
+      platform.cluster.fpu.units: [1, 4]
+YAML'
+shows 'leviosim sweep clocks.yaml --out clocks'
+cut 'table point point "latency ms" "energy mJ" "L1 peak kB" "ATE m"'
+
+# sim/VALIDATION.md
+figure paper-compute
+needs data
+shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
+cut 'table stage'
+
+figure paper-others
+needs data
+shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
+cut 'table quantity'
+
+figure paper-inputs
+needs data
+shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
+cut 'table "input, mean"'
+
+figure breakdown
+needs data
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+cut 'sed "1,/^where the core-cycles go/d" | table stage stage useful I-cache FPU divider banks imbalance transfer serial'
+
+figure latency
+needs data
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+cut 'table "pose from"'
+
+figure sensitivity
+needs data
+shows 'leviosim sensitivity --data euroc/MH_01_easy_t05_t20 --frames 0:100'
+cut 'table number number confidence value range frame optimiser | first 14'
+
+figure calibrate
+needs data
+shows 'leviosim calibrate --data euroc/MH_01_easy_t05_t20 --constants isa.instruction_overhead'
+cut 'sed -n "/^constant/,/^mean/p; /^stage, left/,/^mean/p"'
+
+figure microbench
+shows 'leviosim microbench'
+cut 'lines "^GAP.: "'
+
+figure gap8-board
+shows 'leviosim microbench'
+cut 'sed "1,/^GAP9: /d; /^GAP8: /d; /^─/d; /^$/d; s/  *\(SDK-12\|source\).*//" | awk "!/cores  unit/ || !header++"'
+
+# workload/ACCURACY.md
+figure next-stages
+needs data
+shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
+cut 'table stage stage calls "kcycles, 1 core" "kcycles, 8 cores" speed-up ms "worst ms"'
+
+figure next-error
+needs data
+shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
+cut 'lines ^ATE SE3'
+
+figure levio-error
+needs data
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+cut 'lines ^ATE SE3'
+
+figure next-memory
+needs data
+shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
+cut 'table peak | rows ^feature ^triangulation "L2  "'
+
+# platform_models/CHIPS.md
+figure chips
+shows 'leviosim platforms list'
+
+figure feasibility
+needs data
+shows 'leviosim platforms feasibility --data euroc/MH_01_easy_t05_t20'
+cut 'table chip chip cores MHz "frame ms" worst published "optimiser ms" frames/s mJ/frame mW'
+
+figure feasibility-memory
+needs data
+shows 'leviosim platforms feasibility --data euroc/MH_01_easy_t05_t20'
+cut 'table chip chip cores memory | rows "[0-9]+.kB"'
+
+figure accelerators
+needs data
+shows 'leviosim platforms stages gap9 gap9-eigen gap9-hamming gap9-corners --data euroc/MH_01_easy_t05_t20'
+cut 'table "kilocycles of a call"'
+
+# workload/flow/VALIDATION.md
+figure flow
+needs data
+shows 'leviosim flow --platform gap8 -p cluster.clock=50MHz -p controller.clock=50MHz \
+      -p supply.voltage=1.0V --data euroc/MH_01_easy_t05_t20 --fps 500 --out flow'
+cut 'table figure figure cores MHz unit published here "difference %"'
+
+# tools/COMMANDS.md
+figure tune-table
+needs data slow
+shows 'leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130:370:30 --fps 10,15,20 --seed 1,2,3 --out tuned'
+cut 'table frames/s | rows " (130|160|250|310|370)  "'
+
+figure tune-choice
+needs data slow
+shows 'leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130:370:30 --fps 10,15,20 --seed 1,2,3 --out tuned'
+cut 'sed -n "/^the lowest of these/,/^run again/p"'
+
+figure replay
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim replay recorded -p controller.clock=100MHz --out slow-controller'
+cut 'sed -n "/^replay of/,/^stages/p" | first 10'
+
+figure trace-info
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim trace info recorded/work.trace'
+cut 'sed 1d'
+
+figure eval
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim eval recorded euroc/MH_01_easy_t05_t20 --relative 1'
+
+figure flow-stages
+needs data
+shows 'leviosim flow --platform gap8 -p cluster.clock=50MHz -p controller.clock=50MHz \
+      -p supply.voltage=1.0V --data euroc/MH_01_easy_t05_t20 --fps 500 --out flow'
+cut 'table stage stage call "kcycles, 1 core" "kcycles, 8 cores" speed-up ms'
+
+figure profiles
+shows 'leviosim workload'
+cut 'sed -n "/^profiles/,/^$/p" | sed "/^$/d"'
