@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim/error.h"
+#include "tools/cli/terminal.h"
 #include "tools/eval/accuracy.h"
 #include "tools/eval/eval_options.h"
 #include "tools/eval/trajectory_plot.h"
