@@ -42,8 +42,8 @@ for preset in "${others[@]}"; do
   run "$preset" "$preset"
 done
 
-# Left out: manifest.json, which holds the command line and the host's time.
-mapfile -t files < <(cd "$results/release" && find . -type f ! -name manifest.json | sort)
+# Left out: manifest.json, which holds the command line and the host's time, and its digest.
+mapfile -t files < <(cd "$results/release" && find . -type f ! -name manifest.json ! -name .leviosim-files | sort)
 status=0
 printf '%-20s %-6s %s\n' build files "sha256 of all of them"
 for build in release release-again "${others[@]}"; do

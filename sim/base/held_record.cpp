@@ -14,6 +14,7 @@ HeldRecord::HeldRecord(const std::filesystem::path& folder) : file_(folder / kRe
   for (bool is_held = false; !is_held;) {
     constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
     descriptor_ = Descriptor(::open(file_.c_str(), kFlags, 0666));
+    if (!descriptor_ && (errno == EACCES || errno == EPERM || errno == EROFS)) break;
     if (!descriptor_) fail(errno);
     lock(descriptor_.get(), true);
     struct stat held {};
@@ -24,7 +25,7 @@ HeldRecord::HeldRecord(const std::filesystem::path& folder) : file_(folder / kRe
 }
 
 void HeldRecord::add(const std::string& path, const FileState& state) {
-  if (record_.says(path, state)) return;
+  if (!descriptor_ || record_.says(path, state)) return;
   struct stat before {};
   if (::fstat(descriptor_.get(), &before) != 0) fail(errno);
   const std::string line = OutputRecord::line(path, state);

@@ -9,7 +9,9 @@ namespace leviosim::base {
 
 class HeldRecord {
  public:
-  /// Waits for others; makes the file if there is none. @throws InputError if that fails
+  /// Waits for others; makes the file if there is none. One that belongs to somebody else, as in
+  /// /tmp, is only read: what is written there is not recorded, and so never replaced.
+  /// @throws InputError if that fails
   explicit HeldRecord(const std::filesystem::path& folder);
 
   /// Adds a line, unless it is there. @throws InputError if that fails

@@ -23,8 +23,13 @@ OutputFile::OutputFile(OutputRequest request)
   std::error_code error;
   target_ = resolved(request_.path, error);
   if (error) refuse("cannot be written: " + error.message());
-  judge();
-  remove_leftover();
+  {
+    // Another process may be replacing the file; its steps must not be seen.
+    std::optional<HeldRecord> held;
+    if (status_of(target_.parent_path() / kRecordName)) held.emplace(target_.parent_path());
+    judge();
+    remove_leftover();
+  }
   file_ = std::make_unique<NewFile>(hidden());
   if (const int fault = file_->reserve(kReserve)) refuse("cannot be written: " + reason(fault));
 }

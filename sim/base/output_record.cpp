@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <set>
 
@@ -130,6 +131,7 @@ OutputRecord OutputRecord::parse(std::string_view text, const std::string& name)
 std::optional<OutputRecord> OutputRecord::read(const fs::path& folder) {
   const fs::path file = folder / kRecordName;
   if (!status_of(file)) return std::nullopt;
+  if (::access(file.c_str(), R_OK) != 0 && errno == EACCES) return std::nullopt;  // another user's
   const std::optional<std::string> text = read_file(file, kLargestRecord);
   if (!text) throw InputError(fmt::format("{}: cannot be read as a record", file.string()));
   return parse(*text, file.string());

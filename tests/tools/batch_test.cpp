@@ -67,6 +67,26 @@ TEST(RunCache, TakesNoFileThatWasCutOffOrIsOfAnotherKind) {
   }
 }
 
+TEST(RunCache, BelievesNoFileOfAnotherKeyAndWritesItAnew) {
+  const TempFolder folder;
+  const RunCache cache(folder / "runs");
+  const std::string key(64, 'a');
+  const std::string other(64, 'b');
+  RunOutcome swapped = example_outcome();
+  swapped.ate_m = 7;
+  cache.store(key, example_outcome());
+  cache.store(other, swapped);
+  const fs::path file = folder / "runs/aa" / (key + ".json");
+  fs::copy_file(folder / "runs/bb" / (other + ".json"), file, fs::copy_options::overwrite_existing);
+  EXPECT_FALSE(cache.find(key));
+  EXPECT_TRUE(cache.find(other));
+  cache.store(key, example_outcome());
+  ASSERT_TRUE(cache.find(key));
+  EXPECT_EQ(cache.find(key)->ate_m, example_outcome().ate_m);
+  cache.store(key, swapped);  // what is whole stays
+  EXPECT_EQ(cache.find(key)->ate_m, example_outcome().ate_m);
+}
+
 TEST(RunKey, DependsOnEverythingButTheFolder) {
   const RunRequest request = example_request();
   const Measure how;

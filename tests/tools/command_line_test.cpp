@@ -5,6 +5,8 @@
 #include <fstream>
 #include <thread>
 
+#include "sim/base/output_folder.h"
+#include "sim/error.h"
 #include "tests/tools/run_program.h"
 #include "tests/traces/test_folder.h"
 #include "tools/run/run_options.h"
@@ -42,7 +44,7 @@ class CommandLine : public ::testing::Test {
   }
   void expect_nothing_staged() const {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path()))
-      EXPECT_EQ(entry.path().filename().string().find(".partial"), std::string::npos)
+      EXPECT_EQ(entry.path().filename().string().find(".leviosim"), std::string::npos)
           << entry.path();
   }
   std::string out() const { return (folder_ / "out").string(); }
@@ -166,8 +168,10 @@ TEST_F(CommandLine, NeverReplacesWhatIsNoResult) {
 
 TEST_F(CommandLine, ReplacesResultsOnlyIfForced) {
   fs::create_directory(folder_ / "out");
-  std::ofstream(folder_ / "out/manifest.json") << "{}";
-  expect_refusal(run_words(data_.root().string(), out()), {"--force"});
+  std::ofstream(folder_ / "out/manifest.json") << "{}";  // of an older leviosim, or of others
+  std::vector<std::string> words = run_words(data_.root().string(), out());
+  words.push_back("--force");
+  expect_refusal(words, {"manifest.json", "no record", "by hand"});
   EXPECT_EQ(traces::read_text_file(folder_ / "out/manifest.json"), "{}");
 }
 
@@ -215,7 +219,7 @@ TEST_F(CommandLine, AnInterruptEndsTheProgramAndLeavesNothingBehind) {
   Program program(folder_.path(), {"synth", "--out", out()});
   const auto staged = [&] {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path()))
-      if (entry.path().filename().string().find(".partial") != std::string::npos) return true;
+      if (entry.path().filename().string().find(".leviosim") != std::string::npos) return true;
     return false;
   };
   while (program.running() && !staged()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -230,16 +234,23 @@ TEST(RunOptions, ParsesSizes) {
   EXPECT_EQ(parse_size("752x480").height, 480);
 }
 
-TEST(FlightCache, AnExistingFlightIsUsedAsItIs) {
+TEST(FlightCache, AnExistingFlightIsUsedIfItIsWhole) {
   const TempFolder cache;
   const char* before = std::getenv("XDG_CACHE_HOME");
   const std::string kept = before == nullptr ? "" : before;
   ::setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
   const fs::path folder = flight_folder();
   EXPECT_EQ(folder.string().rfind(cache.path().string(), 0), 0u);
-  fs::create_directories(folder / "mav0");
+  fs::create_directories(folder / "mav0/cam0");  // put there by somebody
+  EXPECT_THROW(cached_flight(ProgressLine::Style::None), InputError);
+  fs::remove_all(folder);
+  {
+    base::OutputFolder drawn({.option = {}, .path = folder.string()});
+    drawn.write("mav0/flight", "x");
+    EXPECT_FALSE(drawn.commit());
+  }
   EXPECT_EQ(cached_flight(ProgressLine::Style::None), folder);
-  EXPECT_FALSE(fs::exists(folder / "mav0/cam0"));
+  EXPECT_TRUE(fs::exists(folder / "mav0/flight"));
   if (before == nullptr)
     ::unsetenv("XDG_CACHE_HOME");
   else

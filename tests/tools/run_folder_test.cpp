@@ -9,7 +9,6 @@
 #include "platform_models/loader.h"
 #include "tests/tools/example_run.h"
 #include "tests/traces/test_folder.h"
-#include "traces/atomic_file.h"
 #include "traces/csv.h"
 
 namespace leviosim::tools {
@@ -60,6 +59,12 @@ Manifest example_manifest() {
   return manifest;
 }
 
+void write_to(const fs::path& folder, const RunResult& run, const std::string& platform) {
+  base::OutputFolder out({.option = {}, .path = folder.string()});
+  write_run_folder(out, run, example_manifest(), platform);
+  EXPECT_FALSE(out.commit());
+}
+
 TEST(StagesCsv, HasARowPerStageAndAccountsThatAddUp) {
   const std::vector<Row> rows = parse_csv(stages_csv(example_run()));
   ASSERT_EQ(rows.size(), 3u);
@@ -107,7 +112,7 @@ TEST(MemoryCsv, BlocksOfTheExampleAddUp) {
 TEST(RunFolder, HoldsFilesThatParse) {
   const TempFolder folder;
   const platform::ResolvedPlatform platform = platform::resolve_platform("gap9");
-  write_run_folder(folder.path(), example_run(), example_manifest(), platform::to_yaml(platform));
+  write_to(folder.path(), example_run(), platform::to_yaml(platform));
   const auto read = [&](const char* name) { return traces::read_text_file(folder / name); };
   EXPECT_EQ(Json::parse(read("stats.json")), statistics(example_run()));
   const Json manifest = Json::parse(read("manifest.json"));
@@ -122,13 +127,12 @@ TEST(RunFolder, HoldsFilesThatParse) {
 TEST(RunFolder, OnlyTheManifestsHostPartDependsOnTheHost) {
   const TempFolder folder;
   RunResult run = example_run();
-  fs::create_directories(folder / "a");
-  fs::create_directories(folder / "b");
-  write_run_folder(folder / "a", run, example_manifest(), "x");
+  write_to(folder / "a", run, "x");
   run.host_seconds = 99;
-  write_run_folder(folder / "b", run, example_manifest(), "x");
+  write_to(folder / "b", run, "x");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder / "a")) {
     const std::string name = entry.path().filename().string();
+    if (name == base::kRecordName) continue;
     std::string a = traces::read_text_file(folder / ("a/" + name));
     std::string b = traces::read_text_file(folder / ("b/" + name));
     if (name == "manifest.json") {
@@ -148,12 +152,12 @@ TEST(RunFolder, OfANativeRunHasNoFilesAboutAChip) {
   const TempFolder folder;
   RunResult run = example_run();
   run.timed = false;
-  write_run_folder(folder.path(), run, example_manifest(), "");
+  write_to(folder.path(), run, "");
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
     names.insert(entry.path().filename().string());
-  EXPECT_EQ(names,
-            (std::set<std::string>{"manifest.json", "stats.json", "frames.csv", "trajectory.tum"}));
+  EXPECT_EQ(names, (std::set<std::string>{base::kRecordName, "manifest.json", "stats.json",
+                                          "frames.csv", "trajectory.tum"}));
   EXPECT_TRUE(
       Json::parse(traces::read_text_file(folder / "manifest.json")).at("platform").is_null());
 }
@@ -161,11 +165,10 @@ TEST(RunFolder, OfANativeRunHasNoFilesAboutAChip) {
 TEST(RunFolder, NothingIsLeftWhenWritingFails) {
   const TempFolder folder;
   {
-    traces::StagedFolder staged(folder / "out");
-    fs::create_directory(staged.path() / "stats.json");  // where a file is to be written
+    base::OutputFolder out({.option = "--out", .path = (folder / "out").string()});
+    out.write("stats.json", "x");  // where a file is to be written
     traces::testing::expect_input_error(
-        [&] { write_run_folder(staged.path(), example_run(), example_manifest(), "x"); },
-        {"stats.json"});
+        [&] { write_run_folder(out, example_run(), example_manifest(), "x"); }, {"stats.json"});
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }

@@ -54,9 +54,10 @@ TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
   traces::write_file_atomically(folder_ / "mine.yaml", "mine");
   fs::create_directory(folder_ / "folder");
   traces::write_file_atomically(folder_ / "folder/thesis.tex", "mine");
-  expect_refusal({"calibrate", "--data", "x", "--out", path("mine.yaml")}, {"exists", "--force"});
+  expect_refusal({"calibrate", "--data", "x", "--out", path("mine.yaml")},
+                 {"exists", "not a file that leviosim wrote"});
   expect_refusal({"calibrate", "--data", "x", "--out", path("mine.csv")}, {"ends in .yaml"});
-  expect_refusal({"sensitivity", "--data", "x", "--out", path("mine.yaml")}, {"--force"});
+  expect_refusal({"sensitivity", "--data", "x", "--out", path("mine.yaml"), "--force"}, {"exists"});
   expect_refusal({"sensitivity", "--data", "x", "--out", path("folder")}, {"is a folder"});
   expect_refusal({"sensitivity", "--data", "x", "--out", path("none/a.csv")}, {"no folder"});
   expect_refusal({"validate", "--data", "x", "--out", path("folder"), "--force"},

@@ -33,36 +33,5 @@ TEST(AtomicFile, FailsCleanly) {
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 
-TEST(StagedFolder, AppearsOnlyWhenCommitted) {
-  const TempFolder folder;
-  {
-    StagedFolder staged(folder / "out/");
-    write_file_atomically(staged.path() / "x", "1");
-    EXPECT_FALSE(fs::exists(folder / "out"));
-    staged.commit();
-  }
-  EXPECT_EQ(read_text_file(folder / "out/x"), "1");
-  EXPECT_EQ(entries(folder.path()), 1u);
-}
-
-TEST(StagedFolder, VanishesWithoutCommit) {
-  const TempFolder folder;
-  { const StagedFolder staged(folder / "out"); }
-  EXPECT_EQ(entries(folder.path()), 0u);
-}
-
-TEST(StagedFolder, ReplacesTheOldOneAsAWhole) {
-  const TempFolder folder;
-  fs::create_directories(folder / "out/old");
-  {
-    StagedFolder staged(folder / "out");
-    write_file_atomically(staged.path() / "x", "1");
-    staged.commit();
-  }
-  EXPECT_FALSE(fs::exists(folder / "out/old"));
-  EXPECT_TRUE(fs::exists(folder / "out/x"));
-  EXPECT_EQ(entries(folder.path()), 1u);
-}
-
 }  // namespace
 }  // namespace leviosim::traces

@@ -248,8 +248,7 @@ TEST(RenderedFlight, NeverReplacesTheRecordingItIsMadeFrom) {
   RenderedFlightOptions options = coarse();
   options.overwrite = true;
   for (const fs::path& named : {motion.root(), motion.root() / "mav0"})
-    expect_input_error([&] { write_rendered_flight(named, motion.root(), options); },
-                       {"holds the recorded motion"});
+    expect_input_error([&] { write_rendered_flight(named, motion.root(), options); }, {"is read"});
   EXPECT_TRUE(fs::exists(motion.mav0("imu0/data.csv")));
 }
 

@@ -98,15 +98,30 @@ TEST(Synthetic, OverwritesOnlyWhatItMay) {
   SyntheticOptions options = small_flight();
   options.duration_s = 0.1;
   write_synthetic_flight(folder / "a", options);
-  expect_input_error([&] { write_synthetic_flight(folder / "a", options); }, {"a: already exists"});
+  expect_input_error([&] { write_synthetic_flight(folder / "a", options); },
+                     {"a: exists and holds results", "--overwrite"});
   options.overwrite = true;
   options.duration_s = 0.2;
   write_synthetic_flight(folder / "a", options);
   EXPECT_EQ(open_asl(folder / "a").frames.size(), 4u);
   fs::create_directories(folder / "home/precious");
   expect_input_error([&] { write_synthetic_flight(folder / "home", options); },
-                     {"home", "no ASL folder"});
+                     {"home", "something else than results: precious"});
   EXPECT_TRUE(fs::exists(folder / "home/precious"));
+}
+
+TEST(Synthetic, ACacheIsRepairedAlsoIfItWasChanged) {
+  const TempFolder folder;
+  SyntheticOptions options = small_flight();
+  options.duration_s = 0.1;
+  write_synthetic_flight(folder / "a", options);
+  const auto drawn = contents(folder / "a");
+  write_file_atomically(folder / "a/mav0/imu0/data.csv", "damaged");
+  options.overwrite = true;
+  expect_input_error([&] { write_synthetic_flight(folder / "a", options); }, {"imu0/data.csv"});
+  options.repair = true;
+  write_synthetic_flight(folder / "a", options);
+  EXPECT_TRUE(contents(folder / "a") == drawn);
 }
 
 TEST(Synthetic, NothingIsLeftOfAFailure) {

@@ -63,11 +63,11 @@ inline void expect_input_error(const std::function<void()>& run,
   ADD_FAILURE() << "no InputError was thrown";
 }
 
-/// Every file below a folder with its bytes.
+/// Every file below a folder with its bytes, but for the record of what leviosim wrote.
 inline std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.is_regular_file())
+    if (entry.is_regular_file() && entry.path().filename() != ".leviosim-files")
       files[std::filesystem::relative(entry.path(), folder).string()] =
           read_text_file(entry.path());
   return files;

@@ -60,6 +60,7 @@ void SweepFolder::check_entry(const Request& request, const std::string& name) c
                                 "folder",
                                 name));
   };
+  if (!base::status_of(path_ / name)) return;  // of another process, and gone by now
   std::error_code error;
   if (fs::equivalent(path_ / name, request.cache, error)) return;
   if (!is_regular(path_ / name)) foreign();
