@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds everything and runs every test; what CI calls. Exit status 0 only if all is well.
+# Builds everything, runs every test, and checks the pages and their figures; what CI calls. Exit
+# status 0 only if all is well.
 #   tools/test.sh           release build (GCC), reproducibility over compilers, all tests
 #                           and 20 s of each fuzz target
 #   tools/test.sh --fast    without the other compilers and fuzz targets
@@ -33,6 +34,10 @@ status=0
 if [[ $reproducible == yes ]]; then
   tools/check_reproducible.sh --quick || status=1
   tools/fuzz.sh --seconds 20 || status=1
+fi
+tools/check_pages.sh || status=1
+if [[ $preset == release ]]; then
+  tools/figures.sh --check || status=1
 fi
 # Last, so that its summary is what stands at the end of the log.
 ctest --preset "$preset" --parallel 2 || status=1
