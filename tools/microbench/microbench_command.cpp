@@ -7,6 +7,7 @@
 
 #include "platform_models/loader.h"
 #include "tools/cli/outputs.h"
+#include "tools/cli/terminal.h"
 #include "tools/microbench/board_kernels.h"
 #include "tools/microbench/report.h"
 #include "tools/microbench/unit_benches.h"
