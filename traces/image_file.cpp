@@ -93,6 +93,7 @@ class Jpeg {
     int colours = 0;
     demand(
         tjDecompressHeader3(decoder_.get(), bytes_, size_, &width, &height, &sampling, &colours));
+    if (width < 1 || height < 1) refuse_damaged("JPEG", "the file says no size");
     const int channels = colours == TJCS_GRAY                           ? 1
                          : colours == TJCS_CMYK || colours == TJCS_YCCK ? 4
                                                                         : 3;
