@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and runs the benchmarks whose figures the README shows. Further options go to them, e.g.
+# Builds and runs the benchmarks (tests/bench/README.md has their figures). Further options go to them, e.g.
 # tools/bench.sh --benchmark_filter=Kernel
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

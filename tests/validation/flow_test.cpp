@@ -134,7 +134,7 @@ void expect_figure(const FlowOfFlight& flight, const std::string& platform, Flow
 }
 
 // Published are 500 frames/s, 7.21 and 25 mW; why the rate is so much higher here says
-// workload/flow/README.md.
+// workload/flow/VALIDATION.md.
 TEST(ValidationFlow, OnGap8) {
   const auto flight =
       run_on("gap8", {"cluster.clock=50MHz", "controller.clock=50MHz", "supply.voltage=1.0V"});

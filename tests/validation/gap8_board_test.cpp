@@ -32,7 +32,7 @@ TEST(ValidationGap8Board, MeanErrorOfTheCyclesIsWithinTwelvePercent) {
 /// Speed-ups that miss 0.5, and how far they are off at most. On the board a call of these kernels
 /// takes 400 to 700 cycles more on eight cores than an eighth of its time on one; the platform's
 /// fork and barrier account for 80, conflicts of streams on the banks of L1, which are not
-/// modelled, for 20 to 150 (tools/README.md).
+/// modelled, for 20 to 150 (sim/VALIDATION.md).
 struct Shortfall {
   const char* group;
   const char* name;

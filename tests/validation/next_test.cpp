@@ -1,5 +1,5 @@
 // What the profile `next` promises on real frames: accuracy, and that it fits GAP9. Rendered
-// flights take too long for tests; workload/README.md has them, and next_robustness_test.cpp the
+// flights take too long for tests; workload/ACCURACY.md has them, and next_robustness_test.cpp the
 // standstill.
 #include <gtest/gtest.h>
 

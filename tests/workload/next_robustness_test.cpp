@@ -1,5 +1,5 @@
 // What `next` makes of flights on which something goes wrong: it says when it is lost, finds back,
-// and never reports what is no number. The table in workload/README.md is made of these flights.
+// and never reports what is no number. The table in workload/ACCURACY.md is made of these flights.
 #include <gtest/gtest.h>
 
 #include <algorithm>

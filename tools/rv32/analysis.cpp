@@ -9,7 +9,7 @@ constexpr std::size_t kLongestPrologue = 64;
 
 bool is_scene(const std::string& name) { return name.rfind("scene: ", 0) == 0; }
 
-/// Cycles that the pipeline waits besides (platform_models/README.md); a divisor in the library's
+/// Cycles that the pipeline waits besides (platform_models/FORMAT.md); a divisor in the library's
 /// long divisions is the upper half of a normalised word, so it has 16 leading zeros.
 std::uint64_t stall_of(const Instruction& in) {
   switch (in.kind) {

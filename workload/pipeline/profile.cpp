@@ -31,7 +31,7 @@ AnchorOptions levio_anchor() {
 /// not all that is wrong with a sample (scale factors, vibration, the trapezoidal rule). Whole
 /// pixels have an error of 0.3 px, the descriptors' choice of corners adds to it. A low resolution
 /// needs a long base line: more keyframes, farther apart. The rest are the defaults of the options.
-/// workload/README.md says how these were found.
+/// workload/ACCURACY.md says how these were found.
 void make_next(Profile& p) {
   p.guided.enabled = true;
   p.keyframe_parallax = 0.06f;
