@@ -2,7 +2,11 @@
 // front of an earlier publication leaves behind.
 #include "tools/sweep/sweep_store.h"
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
+
+#include <map>
+#include <optional>
 
 #include "tests/traces/test_folder.h"
 
@@ -12,17 +16,33 @@ namespace {
 using traces::testing::expect_input_error;
 using traces::testing::TempFolder;
 
-/// A plan with one parameter, its values in MHz.
-std::vector<SweepPoint> plan_of(const std::vector<int>& clocks) {
-  std::vector<SweepPoint> points;
-  for (const int clock : clocks) {
-    SweepPoint point;
-    point.number = static_cast<int>(points.size()) + 1;
-    point.parameters = {{"clock", fmt::format("{}MHz", clock), static_cast<double>(clock), "MHz"}};
-    point.key = fmt::format("key of {}", clock);
-    points.push_back(point);
+/// A plan with one parameter, its values in MHz. The points live as long as the test program.
+const SweepPoints& plan_of(const std::vector<int>& clocks) {
+  struct Plan {
+    traces::testing::AslFolder data;
+    SweepInputs inputs{".", ProgressLine::Style::None};
+    SweepPlan plan;
+    std::optional<Expansion> expansion;
+  };
+  static std::map<std::vector<int>, Plan> plans;
+  const auto [entry, is_new] = plans.try_emplace(clocks);
+  Plan& plan = entry->second;
+  if (is_new) {
+    plan.plan = parse_plan(
+        "plan.yaml",
+        fmt::format("base: {{ data: {}, platform: gap9, size: 32x24 }}\n"
+                    "points: {{ grid: {{ platform.cluster.clock: [{}] }} }}\n",
+                    plan.data.root().string(), fmt::join(clocks, ", ")),
+        plan.inputs);
+    plan.expansion.emplace(expand(plan.plan, plan.inputs));
   }
-  return points;
+  return plan.expansion->points;
+}
+
+void publish(SweepStore& store, const TempFolder& folder) {
+  base::OutputFile csv(
+      {.option = "--out", .path = (folder / kSweepCsv).string(), .replace = true, .inputs = {}});
+  EXPECT_FALSE(store.publish(csv).has_value());
 }
 
 PointResult result_of(double latency_ms, double l1_bytes = 1000) {
@@ -44,7 +64,7 @@ TEST(SweepStore, TheSamePlanGoesOnWhereItWas) {
   SweepStore again(folder.path(), "plan", plan_of({100, 200}));
   EXPECT_EQ(again.finished(), std::set<int>{2});
   EXPECT_EQ(again.planned(), 2);
-  EXPECT_EQ(again.settings_of(1), "clock=100MHz");
+  EXPECT_EQ(again.settings_of(1), "platform.cluster.clock=100MHz");
 }
 
 TEST(SweepStore, APlanOfTheSameSizeWithOtherValuesIsAnother) {
@@ -56,7 +76,7 @@ TEST(SweepStore, APlanOfTheSameSizeWithOtherValuesIsAnother) {
                        {"sweep.sqlite", "another plan"});
   SweepStore kept(folder.path());
   EXPECT_EQ(kept.planned(), 2);
-  EXPECT_EQ(kept.settings_of(2), "clock=200MHz");
+  EXPECT_EQ(kept.settings_of(2), "platform.cluster.clock=200MHz");
 }
 
 TEST(SweepStore, OfTwoResultsOfAPointTheFirstStays) {
@@ -116,11 +136,11 @@ TEST(SweepStore, TheFrontIsThatOfTheLastPublication) {
   const TempFolder folder;
   SweepStore store(folder.path(), "plan", plan_of({100, 200, 300}));
   store.put(1, result_of(5, 1000));
-  store.publish();
+  publish(store, folder);
   EXPECT_EQ(store.front(), std::set<int>{1});
   store.put(2, result_of(4, 900));   // better in all
   store.put(3, result_of(3, 2000));  // faster, but larger
-  store.publish();
+  publish(store, folder);
   EXPECT_EQ(store.front(), (std::set<int>{2, 3}));
 }
 

@@ -68,7 +68,7 @@ TEST_P(TraceBombs, AreRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, TraceBombs, ::testing::ValuesIn(kTraceBombs),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& row) { return std::string(row.param.name); });
 
 class TraceLimitsOfPrograms : public ::testing::Test {
  protected:
@@ -99,7 +99,7 @@ TEST_F(TraceLimitsOfPrograms, AreRaisedByMaxMemory) {
     EXPECT_EQ(result.status, 0) << result.err;
   }
   write("plan.yaml", "base: {trace: large.trace}\naxes: {cores: [1]}\n");
-  for (const std::string& wrong : {"2", "x", "-1GiB", "nan GiB", "1kB", "2TiB", "3 cores"})
+  for (const std::string wrong : {"2", "x", "-1GiB", "nan GiB", "1kB", "2TiB", "3 cores"})
     expect_refused(program({"trace", "info", path("large.trace"), "--max-memory", wrong}),
                    {"--max-memory '" + wrong + "'", "GiB"});
 }
