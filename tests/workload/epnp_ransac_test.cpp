@@ -113,6 +113,17 @@ TEST(EpnpRansac, FindsNoPoseWithoutEnoughMatchesOrWithoutAnyStructure) {
   EXPECT_FALSE(estimate(line).ok);
 }
 
+TEST(EpnpRansac, APoseThatFewerThanASampleAgreeWithIsNone) {
+  Random random(12);
+  PnpOptions options;
+  options.sample = 8;
+  for (int trial = 0; trial < 10; ++trial) {
+    const Scene chance = make_scene(random, {.points = 10, .outliers = 1.0});
+    const PnpResult<P> result = estimate(chance, options);
+    EXPECT_FALSE(result.ok) << result.inliers << " of 10 matches without a pose";
+  }
+}
+
 TEST(EpnpRansac, TheSeedDecidesTheSamples) {
   Random random(6);
   const Scene scene = make_scene(random, {.points = 60, .noise_px = 0.5});

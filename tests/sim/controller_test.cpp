@@ -1,0 +1,43 @@
+// The fabric controller's transfers from memory outside of the chip, and its clock edges.
+#include "sim/chip/controller.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/chip/chip.h"
+#include "tests/sim/chip_test_config.h"
+
+namespace leviosim::sim {
+namespace {
+
+/// Cycles of a stage at 100 MHz, with external memory of 1 GB/s, 1 µs and bursts of 64 bytes.
+Cycles cycles_of(std::vector<work::Step> steps) {
+  ChipConfig config = test_chip();
+  config.controller.clock = Hertz(100'000'000);
+  config.controller.external = {1e-6, 1e9, Bytes(64)};
+  Chip chip(config, 8);
+  JobTiming timing;
+  const work::Job job{{{"stage", std::move(steps), {}}}};
+  const auto body = [&]() -> Process { timing = co_await chip.controller().run(job); };
+  chip.kernel().spawn("test", body());
+  chip.kernel().run();
+  return timing.stages[0].cycles;
+}
+
+work::Transfer external(std::int64_t bytes) {
+  return {work::Direction::ExternalToL2, Bytes(bytes)};
+}
+
+TEST(Controller, ATransferFromExternalMemoryTakesABurstAtLeast) {
+  EXPECT_EQ(cycles_of({external(10'000)}), Cycles(100 + 1000));
+  EXPECT_EQ(cycles_of({external(640)}), Cycles(100 + 64));
+  EXPECT_EQ(cycles_of({external(64)}), Cycles(100 + 7));  // 6.4, up to the next edge
+  EXPECT_EQ(cycles_of({external(1)}), Cycles(100 + 7));
+  EXPECT_EQ(cycles_of({external(640), external(640)}), Cycles(2 * 164));
+}
+
+TEST(Controller, TransfersInsideTheChipAreNotFar) {
+  EXPECT_EQ(cycles_of({work::Transfer{work::Direction::L2ToL1, Bytes(10'000)}}), Cycles(0));
+}
+
+}  // namespace
+}  // namespace leviosim::sim
