@@ -26,7 +26,7 @@ struct ProgramResult {
 /// What a program may use before the system ends it; 0: as much as it likes.
 struct ProgramLimits {
   std::uint64_t cpu_seconds = 0;
-  std::uint64_t memory_bytes = 0;  ///< of its address space
+  std::uint64_t data_bytes = 0;  ///< private memory that it can write to
 };
 
 /// A running program with its output in files of `folder`.
@@ -50,16 +50,16 @@ class Program {
     posix_spawn_file_actions_destroy(&files);
     EXPECT_EQ(error, 0) << program;
     limit(RLIMIT_CPU, limits.cpu_seconds);
-    limit(RLIMIT_AS, limits.memory_bytes);
+    limit(RLIMIT_DATA, limits.data_bytes);
   }
 
   void send(int signal) const { ::kill(pid_, signal); }
   bool running() {
-    if (pid_ > 0 && !ended_) ended_ = ::wait4(pid_, &wait_status_, WNOHANG, &usage_) == pid_;
+    if (pid_ > 0 && !ended_) ended_ = ::waitpid(pid_, &wait_status_, WNOHANG) == pid_;
     return !ended_;
   }
   ProgramResult wait() {
-    if (!ended_) ::wait4(pid_, &wait_status_, 0, &usage_);
+    if (!ended_) ::waitpid(pid_, &wait_status_, 0);
     ended_ = true;
     ProgramResult result;
     result.status =
@@ -68,8 +68,6 @@ class Program {
     result.err = traces::read_text_file(err_);
     return result;
   }
-  /// Of the ended program.
-  const rusage& usage() const { return usage_; }
 
  private:
   void limit(__rlimit_resource resource, std::uint64_t most) const {
@@ -82,7 +80,6 @@ class Program {
   std::filesystem::path err_;
   pid_t pid_ = -1;
   int wait_status_ = 0;
-  rusage usage_{};
   bool ended_ = false;
 };
 
