@@ -28,12 +28,11 @@ const SweepPoints& plan_of(const std::vector<int>& clocks) {
   const auto [entry, is_new] = plans.try_emplace(clocks);
   Plan& plan = entry->second;
   if (is_new) {
-    plan.plan = parse_plan(
-        "plan.yaml",
-        fmt::format("base: {{ data: {}, platform: gap9, size: 32x24 }}\n"
-                    "points: {{ grid: {{ platform.cluster.clock: [{}] }} }}\n",
-                    plan.data.root().string(), fmt::join(clocks, ", ")),
-        plan.inputs);
+    plan.plan = parse_plan("plan.yaml",
+                           fmt::format("base: {{ data: {}, platform: gap9, size: 32x24 }}\n"
+                                       "points: {{ grid: {{ platform.cluster.clock: [{}] }} }}\n",
+                                       plan.data.root().string(), fmt::join(clocks, ", ")),
+                           plan.inputs);
     plan.expansion.emplace(expand(plan.plan, plan.inputs));
   }
   return plan.expansion->points;
