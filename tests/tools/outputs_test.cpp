@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <thread>
 
-#include "sim/base/output_record.h"
 #include "tests/support/scratch.h"
 #include "tests/tools/run_program.h"
 
@@ -54,18 +53,19 @@ class Outputs : public ::testing::Test {
     words.push_back(force);
     expect_kept(words, parts);
   }
-  /// A run into `out` that stands still after it has claimed the folder.
+  /// A run into `out` that stands still between its first file and its last.
   std::unique_ptr<Program> stopped_run(const std::string& out, bool force = false) const {
     const std::string hidden = "." + out + ".leviosim";
     for (int trial = 0; trial < 50; ++trial) {
       auto run = std::make_unique<Program>(
           log_.path(),
           run_words(out, force ? std::vector<std::string>{"--force"} : std::vector<std::string>{}));
-      while (run->running() && !fs::exists(folder_ / hidden / base::kRecordName)) {
+      while (run->running() && !fs::exists(folder_ / hidden / "manifest.json")) {
       }
       run->send(SIGSTOP);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      if (run->running() && fs::exists(folder_ / hidden)) return run;
+      const std::string journal = read_text(folder_ / hidden / ".leviosim-files");
+      if (run->running() && journal.starts_with("leviosim journal")) return run;
       run->send(SIGCONT);
       run->wait();
       if (!force) fs::remove_all(folder_ / out);
