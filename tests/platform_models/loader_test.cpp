@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"not valid YAML"}},
         BadEdit{"second_document",
                 "\nl2:\n",
-                "\n---\nl2:  # here\n",
+                "\n---  # here\nl2:\n",
                 "# here",
                 {"second document", "expected one"}}),
     [](const auto& test) { return std::string(test.param.name); });
@@ -255,8 +255,8 @@ TEST(Loader, UnknownPlatformListsTheKnownOnes) {
 
 TEST(Loader, UnreadableFileIsNamed) {
   expect_parts(fault_of([] { load_platform("/no/such/file.yaml"); }),
-               {"/no/such/file.yaml", "cannot be read"});
-  expect_parts(fault_of([] { load_platform("/"); }), {"/: cannot be read"});
+               {"/no/such/file.yaml", "cannot be opened as a platform file"});
+  expect_parts(fault_of([] { load_platform("/"); }), {"/: cannot be opened as a platform file"});
 }
 
 TEST(Loader, LoadsFilesByPath) {
