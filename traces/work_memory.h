@@ -9,7 +9,7 @@
 
 namespace leviosim::traces {
 
-/// By default for a whole trace. Recordings of a flight at 160x120 pixels take 2 to 20 MiB.
+/// By default for a whole trace. The recording of a flight at 160x120 pixels takes 4 to 8 MiB.
 inline constexpr Bytes kTraceMemory{std::int64_t{256} << 20};
 /// The frames of a trace are read one after the other; all together take no more than so many times
 /// the ceiling, which is hours of a flight. Bounds the time that a trace takes, however small.

@@ -28,11 +28,11 @@ work::Transfer external(std::int64_t bytes) {
 }
 
 TEST(Controller, ATransferFromExternalMemoryTakesABurstAtLeast) {
-  EXPECT_EQ(cycles_of({external(10'000)}), Cycles(100 + 1000));
-  EXPECT_EQ(cycles_of({external(640)}), Cycles(100 + 64));
-  EXPECT_EQ(cycles_of({external(64)}), Cycles(100 + 7));  // 6.4, up to the next edge
+  EXPECT_EQ(cycles_of({external(9'995)}), Cycles(100 + 1000));  // 999.5, up to the next edge
+  EXPECT_EQ(cycles_of({external(635)}), Cycles(100 + 64));
+  EXPECT_EQ(cycles_of({external(64)}), Cycles(100 + 7));  // 6.4
   EXPECT_EQ(cycles_of({external(1)}), Cycles(100 + 7));
-  EXPECT_EQ(cycles_of({external(640), external(640)}), Cycles(2 * 164));
+  EXPECT_EQ(cycles_of({external(635), external(635)}), Cycles(2 * 100 + 127));
 }
 
 TEST(Controller, TransfersInsideTheChipAreNotFar) {

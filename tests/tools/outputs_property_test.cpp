@@ -57,7 +57,7 @@ struct Inputs {
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
   std::vector<OutputCommand> commands() const {
-    const Words batch{"--data",    flight,  "--relative", "0.001",       "--seed", "1",
+    const Words batch{"--data",    flight,  "--relative", "0.0001",       "--seed", "1",
                       "--profile", "levio", "--cache",    path("cache"), "--quiet"};
     const auto with = [](Words words, const Words& more) {
       words.insert(words.end(), more.begin(), more.end());
@@ -88,8 +88,8 @@ struct Inputs {
         {"feasibility", with({"platforms", "feasibility", "gap9", "--frames", "0:2"}, data),
          "--out", "out.csv"},
         {"microbench", {"microbench"}, "--out", "out.csv"},
-        {"eval_json", {"eval", truth, truth, "--relative", "0.001"}, "--json", "out.json"},
-        {"eval_plot", {"eval", truth, truth, "--relative", "0.001"}, "--plot", "out.svg"}};
+        {"eval_json", {"eval", truth, truth, "--relative", "0.0001"}, "--json", "out.json"},
+        {"eval_plot", {"eval", truth, truth, "--relative", "0.0001"}, "--plot", "out.svg"}};
   }
 };
 

@@ -109,9 +109,9 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   expect_done({"replay", path("r" + out), "--out", path("p" + out)}, "p" + out);
   expect_done({"trace", "info", path("r" + out) + "/work.trace"}, "r" + out);
   const std::string est = path(out) + "/trajectory.tum";
-  expect_done({"eval", est, flight(), "--json", path("json" + kHostile), "--plot",
-               path("svg" + kHostile), "--relative", "0.1"},
-              "json" + kHostile);
+  expect_done({"eval", est, flight(), "--json", path("json" + kHostile + ".json"), "--plot",
+               path("svg" + kHostile + ".svg"), "--relative", "0.1"},
+              "json" + kHostile + ".json");
   expect_done({"ablate", "--data", flight(), "--size", "32x24", "--seed", "1", "--relative", "0.1",
                "--cache", path("cache" + kHostile), "--out", path("a" + out)},
               "a" + out);

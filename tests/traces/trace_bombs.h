@@ -2,6 +2,7 @@
 // which a trace says how many there are.
 #pragma once
 
+#include "sim/work/kernel_calls.h"
 #include "tests/traces/trace_parts.h"
 
 namespace leviosim::traces::testing {
@@ -114,11 +115,15 @@ inline const TraceBomb kTraceBombs[] = {
      }},
     {"CallsOfKernels", "calls of kernels",
      [](TraceParts whole) {
-       whole.cores = 1000;
-       whole.names = list(1, text("hamming"));
-       whole.kernels = {text(kOneSeries) + text("") + times(2 * kMillion, bytes({1, 0, 0, 0, 0}))};
-       return trace_of_frame(whole, kOneSeries,
-                             frame(list(1, stage(list(2'000, bytes({1, 0, 0}))))));
+       whole.cores = 10;
+       whole.names = bytes({work::kKernelCount});
+       std::string calls = bytes({work::kKernelCount});
+       for (std::size_t k = 0; k < work::kKernelCount; ++k) {
+         whole.names += text(work::kKernels[k].name);
+         calls += bytes({k, 0, 0, 0});
+       }
+       whole.kernels = {text(kOneSeries) + text("") + times(300'000, calls)};
+       return trace_of_frame(whole, kOneSeries, frame(list(1, stage(list(30'000, bytes({1, 0, 0}))))));
      }},
     {"Content", "the content of the section",
      [](TraceParts whole) {
