@@ -58,7 +58,7 @@ Setup folder_with(const std::string& name, const std::string& contents) {
 }
 
 Words run(const Words& more, const std::string& data = "@D") {
-  Words words{"run", "--platform", "gap9", "--data", data};
+  Words words{"run", "--quiet", "--platform", "gap9", "--data", data};
   words.insert(words.end(), more.begin(), more.end());
   const auto by_default = [&](const char* option, const char* value) {
     if (std::find(words.begin(), words.end(), option) == words.end())
@@ -354,7 +354,7 @@ std::vector<Row> files() {
       {"EvalHuge",
        eval("@F/f"),
        {"f"},
-       file("f", "5.0 1e308 0 0 0 0 0 1\n5.1 -1e308 0 0 0 0 0 1\n")},
+       file("f", "5.0 1e308 0 0 0 0 0 1\n5.1 0 0 0 0 0 0 1\n5.2 -1e308 0 0 0 0 0 1\n")},
       {"EvalNoOverlap",
        eval("@F/f"),
        {"f"},

@@ -82,10 +82,21 @@ std::string figures_text(const traces::TrajectoryPair& pair, const EvalRequest& 
                                         {"protocol", protocol_json(request)}}));
 }
 
+/// @throws InputError that names the file
+Accuracy measured(const traces::TrajectoryPair& pair, EvalRequest& request,
+                  const EvalOptions& options) {
+  try {
+    return measure(pair, request);
+  } catch (const traces::NotComparable& error) {
+    throw InputError(
+        fmt::format("{} against {}: {}", options.estimate, options.truth, error.what()));
+  }
+}
+
 void run(const CLI::App& command, const EvalOptions& options) {
   EvalRequest request = make_eval_request(command, options);
   const traces::TrajectoryPair pair = read_pair(options.estimate, options.truth, request.read);
-  const Accuracy accuracy = measure(pair, request);
+  const Accuracy accuracy = measured(pair, request, options);
   publish({{request.json, figures_text(pair, request, accuracy), "figures"},
            {request.plot, trajectory_plot(pair, accuracy.evaluation), "plot"}},
           report(pair, request, accuracy));
