@@ -52,9 +52,9 @@ class SweepPoints {
 
 struct Expansion {
   SweepPoints points;
-  std::size_t asked = 0;         ///< points of the plan, repetitions included
-  std::size_t impossible = 0;    ///< points that were left out, if the plan says skip
-  std::string first_impossible;  ///< why the first was
+  std::size_t asked = 0;           ///< points of the plan, repetitions included
+  std::size_t impossible = 0;      ///< points that were left out, if the plan says skip
+  std::string first_impossible{};  ///< why the first was
 };
 
 /// @param plan  outlives the points
