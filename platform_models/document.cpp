@@ -290,7 +290,8 @@ Provenance Reader::read_provenance(const std::vector<YamlEntry>& entries, const 
   return provenance;
 }
 
-/// "SDK-1, RTL-2 (hw_facts 3.1)": what stands before the parenthesis must be listed.
+/// "SDK-1, RTL-2 (FACTS.md#floating-point-units)": what stands before the parenthesis must be
+/// listed.
 void Reader::check_source(const std::string& source, const Place& place) const {
   std::string_view keys = std::string_view(source).substr(0, source.find('('));
   for (;;) {

@@ -8,7 +8,7 @@ namespace leviosim::sim {
 namespace {
 
 /// What the cluster awaits from L2 takes its time on the clock of the SoC, which is the
-/// controller's (hw_facts 5): in cycles of a faster cluster it takes longer.
+/// controller's (FACTS.md#l2-and-interconnect): in cycles of a faster cluster it takes longer.
 ChipConfig in_cluster_cycles(ChipConfig chip) {
   ClusterConfig& cluster = chip.cluster;
   const double ratio = static_cast<double>(cluster.clock.count()) /

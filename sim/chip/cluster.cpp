@@ -90,7 +90,8 @@ Task<> Cluster::step(const work::TransferWait& wait, Account& account) {
   account.transfer += workers_ * cycles_since(begin, kernel_.now());
 }
 
-/// A core sleeps on the wait instruction even if the event is there already (hw_facts 7).
+/// A core sleeps on the wait instruction even if the event is there already
+/// (FACTS.md#synchronisation).
 Task<> Cluster::until_arrived(Time arrival) {
   if (arrival > kernel_.now()) co_await kernel_.at(arrival);
   co_await kernel_.delay(cycles(config_.dma.completion));

@@ -120,8 +120,9 @@ struct ClusterConfig {
   Accelerators accelerators{};
 };
 
-/// Memory outside of the chip, which the controller copies from and to L2 (hw_facts 6.2). A
-/// transfer takes `latency` and the time of its bytes, of which at least `burst` move.
+/// Memory outside of the chip, which the controller copies from and to L2
+/// (FACTS.md#external-memory). A transfer takes `latency` and the time of its bytes, of which at
+/// least `burst` move.
 struct ExternalMemoryConfig {
   double latency_seconds = 0;
   double bytes_per_second = 0;  ///< 0: there is none

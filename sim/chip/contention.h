@@ -2,18 +2,18 @@
 // running segments changes (design section 4).
 //
 // A core's rate is the share of each cycle in which it progresses as if it were alone: 1 without
-// contention. A shared unit serves requests in turn (round robin by request, hw_facts 3.2: four
-// cores dividing in single and four in half precision take 4·14 + 4·10 cycles a round), so when its
-// demand exceeds its capacity, the requesters that are held back get equal request rates and the
-// others all they ask for. How long a request occupies its unit is the mean over the operations of
-// the segment that use this kind of unit. Refills of the shared instruction cache are served so,
-// too.
+// contention. A shared unit serves requests in turn (round robin by request,
+// FACTS.md#calibration-table: four cores dividing in single and four in half precision take 4·14 +
+// 4·10 cycles a round), so when its demand exceeds its capacity, the requesters that are held back
+// get equal request rates and the others all they ask for. How long a request occupies its unit is
+// the mean over the operations of the segment that use this kind of unit. Refills of the shared
+// instruction cache are served so, too.
 //
 // Banks add a small delay to each access instead: with requesters j making p_j accesses per cycle
-// on B interleaved banks, an access waits Σ p_j / (2B) cycles (hw_facts 4.1). That is how code
-// waits for the shared instruction cache, and scattered accesses for L1. Streams walk from bank to
-// bank all at the same pace: one that meets another waits once and is out of its way for good, so
-// streams wait only for scattered accesses and for the DMA.
+// on B interleaved banks, an access waits Σ p_j / (2B) cycles (FACTS.md#l1-memory). That is how
+// code waits for the shared instruction cache, and scattered accesses for L1. Streams walk from
+// bank to bank all at the same pace: one that meets another waits once and is out of its way for
+// good, so streams wait only for scattered accesses and for the DMA.
 //
 // Left out: transients of a few cycles until requesters have interleaved.
 #pragma once

@@ -1,5 +1,5 @@
 // What fetching code costs: private instruction caches in front of one that the cores of a cluster
-// share, in front of L2 (hw_facts 4.2).
+// share, in front of L2 (FACTS.md#instruction-caches).
 //
 // Work says how far apart it reuses its code (sim/work/code_reuse.h). Both levels replace lines at
 // random (a shift register in the hardware), so a line survives each miss of its cache with

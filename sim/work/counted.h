@@ -1,7 +1,7 @@
 // Counted scalars: thin wrappers around float, double and 32-bit integers whose operators also
 // count. The value computed is bit-identical to the plain type's (the library is compiled with
 // -ffp-contract=off); only the *count* of a product that is at once added knows about the fused
-// multiply-add of the target, whose compilers contract a*b+c by default (hw_facts 2.1).
+// multiply-add of the target, whose compilers contract a*b+c by default (FACTS.md#instruction-set).
 //
 // A comparison gives a Cond. It becomes a counted branch when the program decides on it (if, while,
 // ?:, &&, ||): false means that the branch around the guarded code is taken.

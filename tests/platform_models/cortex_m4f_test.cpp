@@ -5,7 +5,7 @@
 namespace leviosim::platform {
 namespace {
 
-// hw_facts 9.1, 9.2.
+// FACTS.md#other-chips, FACTS.md#cortex-m4f.
 TEST(CortexM4f, OneCoreDoesAllTheWork) {
   const sim::ChipConfig chip = load_platform("cortex-m4f");
   EXPECT_EQ(chip.cluster.clock.count(), 168'000'000);
@@ -17,7 +17,7 @@ TEST(CortexM4f, OneCoreDoesAllTheWork) {
     EXPECT_EQ(chip.cluster.core[info.op].unit, sim::Unit::Core) << info.name;
 }
 
-// hw_facts 9.2: 130 to 290 mW at 168 MHz.
+// FACTS.md#cortex-m4f: 130 to 290 mW at 168 MHz.
 TEST(CortexM4f, EnergyIsThatOfItsSupplyCurrent) {
   const sim::ChipConfig chip = load_platform("cortex-m4f");
   const double clock = static_cast<double>(chip.controller.clock.count());

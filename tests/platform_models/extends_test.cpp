@@ -83,7 +83,7 @@ TEST(Extends, IsWrittenAsOneFile) {
   EXPECT_EQ(numbers_of(again.config), numbers_of(other.config));
 }
 
-// hw_facts 8.1: the two systems that were measured.
+// FACTS.md#operating-points: the two systems that were measured.
 TEST(OperatingPointsOfGap9, AreThoseOfTheMeasuredSystems) {
   EXPECT_EQ(numbers_of(load_platform("gap9-370mhz")), numbers_of(load_platform("gap9")));
   EXPECT_EQ(numbers_of(load_platform("gap9-240mhz")),

@@ -5,7 +5,7 @@
 namespace leviosim::platform {
 namespace {
 
-// hw_facts 8.1, 9.1.
+// FACTS.md#operating-points, FACTS.md#other-chips.
 TEST(Gap8, StructureOfTheChip) {
   const sim::ChipConfig chip = load_platform("gap8");
   EXPECT_EQ(chip.name, "GAP8");
@@ -39,7 +39,8 @@ TEST(Gap8, EveryUncertainNumberHasARangeThatCanBeRun) {
   }
 }
 
-// One task was measured on both chips (hw_facts 8.3): 79 mW at 175 MHz, 20.5 mW at 240 MHz.
+// One task was measured on both chips (FACTS.md#published-power): 79 mW at 175 MHz, 20.5 mW at 240
+// MHz.
 TEST(Gap8, EnergiesAreThoseOfGap9TimesTheRatioOfAMeasuredTask) {
   const sim::EnergyConfig gap8 = load_platform("gap8").energy.value;
   const sim::EnergyConfig gap9 = load_platform("gap9").energy.value;

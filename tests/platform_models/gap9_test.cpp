@@ -50,7 +50,7 @@ TEST(Gap9, StructureOfTheChip) {
   EXPECT_EQ(chip.l2.size.count(), 0x190000);
 }
 
-// hw_facts 10.3: cycles of single instructions measured on the core's RTL.
+// FACTS.md#core-measurements: cycles of single instructions measured on the core's RTL.
 TEST(Gap9, InstructionsCostWhatTheRtlMeasures) {
   const sim::CoreConfig core = ideal_core();
   EXPECT_EQ(cycles(division_by(0x9876), core), 19);
@@ -75,7 +75,8 @@ TEST(Gap9, InstructionOverheadSparesLibraryRoutines) {
   EXPECT_EQ(cycles(once(Op::IntAlu), core), 1.5);
 }
 
-// hw_facts 3.2: one core of the vendor's calibration table, without its noise of 0.02.
+// FACTS.md#calibration-table: one core of the vendor's calibration table, without its noise of
+// 0.02.
 TEST(Gap9, FloatingPointCostsWhatTheCalibrationMeasures) {
   const sim::CoreConfig core = ideal_core();
   for (const Op op : {Op::F32Add, Op::F32Mul, Op::F32Fma, Op::F32Sign, Op::F32Convert}) {
@@ -106,7 +107,7 @@ TEST(Gap9, ControllerDiffersOnlyInItsDivider) {
   }
 }
 
-// hw_facts 7 and 6.1.
+// FACTS.md#synchronisation and FACTS.md#cluster-dma.
 TEST(Gap9, ForksAndTransfersAreWithinTheirBounds) {
   const sim::ClusterConfig cluster = load_platform("gap9").cluster;
   EXPECT_EQ(cluster.events.fork_master + cluster.events.fork_worker + cluster.events.barrier, 80);
@@ -116,7 +117,7 @@ TEST(Gap9, ForksAndTransfersAreWithinTheirBounds) {
   EXPECT_NEAR(image, 2450, 10);
 }
 
-// The bounds of the sum are those that the fact sheet derives; the parts share them.
+// The bounds of the sum are those that FACTS.md derives; the parts share them.
 TEST(Gap9, RangesOfAForkAddUpToItsBounds) {
   double low = 0;
   double high = 0;

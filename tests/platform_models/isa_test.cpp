@@ -67,7 +67,7 @@ TEST(Isa, SetsOfAFamilyShareWhatTheyDoNotChange) {
   }
 }
 
-// hw_facts 9.2.
+// FACTS.md#cortex-m4f.
 TEST(Isa, Thumb2CostsWhatItsReferenceSays) {
   const sim::CoreConfig core = core_of("thumb2_fp");
   for (const Op op : {Op::IntAlu, Op::IntMul, Op::IntMac, Op::BranchNotTaken})

@@ -95,28 +95,28 @@ INSTANTIATE_TEST_SUITE_P(
                 "  workers:",
                 {"cluster.workers", "missing key 'unit'"}},
         BadEdit{"missing_source",
-                "source: \"SDK-1 (hw_facts 4.1)\", confidence: high",
+                "source: \"SDK-1 (FACTS.md#l1-memory)\", confidence: high",
                 "confidence: high",
                 "    banks:",
                 {"cluster.l1.banks", "missing key 'source'"}},
         BadEdit{"missing_confidence",
-                "source: \"SDK-1 (hw_facts 4.1)\", confidence: high",
-                "source: \"SDK-1 (hw_facts 4.1)\"",
+                "source: \"SDK-1 (FACTS.md#l1-memory)\", confidence: high",
+                "source: \"SDK-1 (FACTS.md#l1-memory)\"",
                 "    banks:",
                 {"cluster.l1.banks", "missing key 'confidence'"}},
         BadEdit{"empty_source",
-                "source: \"SDK-1 (hw_facts 4.1)\"",
+                "source: \"SDK-1 (FACTS.md#l1-memory)\"",
                 "source: \"\"",
                 "    banks:",
                 {"cluster.l1.banks.source", "is empty"}},
         BadEdit{"unlisted_source",
-                "source: \"SDK-1 (hw_facts 4.1)\"",
+                "source: \"SDK-1 (FACTS.md#l1-memory)\"",
                 "source: \"SDK-1, SDK9 (x)\"",
                 "    banks:",
                 {"cluster.l1.banks.source", "'SDK9'", "not listed", "'SDK-9'"}},
         BadEdit{"unknown_confidence",
-                "source: \"SDK-1 (hw_facts 4.1)\", confidence: high",
-                "source: \"SDK-1 (hw_facts 4.1)\", confidence: hihg",
+                "source: \"SDK-1 (FACTS.md#l1-memory)\", confidence: high",
+                "source: \"SDK-1 (FACTS.md#l1-memory)\", confidence: hihg",
                 "    banks:",
                 {"cluster.l1.banks.confidence", "'hihg'", "high, medium, low, assumed", "'high'"}},
         BadEdit{"wrong_unit",
@@ -282,7 +282,7 @@ TEST(Loader, KeepsSourcesRangesAndNotes) {
     if (p.path != "cluster.dma.programming") continue;
     EXPECT_EQ(p.value, "25");
     EXPECT_EQ(p.unit, "cycles");
-    EXPECT_EQ(p.source, "DOC-3, derived (hw_facts 6.1)");
+    EXPECT_EQ(p.source, "DOC-3, derived (FACTS.md#cluster-dma)");
     EXPECT_EQ(p.confidence, "medium");
     ASSERT_TRUE(p.range);
     EXPECT_EQ(p.range->low, 10);

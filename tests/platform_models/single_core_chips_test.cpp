@@ -36,7 +36,7 @@ double cycles_of(const char* chip, work::Op op) {
   return sim::price(counts, load_platform(chip).cluster.core).cycles();
 }
 
-// hw_facts 9.3: 16 cycles; dual issue makes nothing slower.
+// FACTS.md#cortex-m7: 16 cycles; dual issue makes nothing slower.
 TEST(CortexM7, IssuesTwoInstructionsPerCycle) {
   EXPECT_EQ(cycles_of("cortex-m7", work::Op::F32Div), 16);
   for (const work::Op op : {work::Op::IntAlu, work::Op::IntMinMax, work::Op::Popcount,
@@ -49,7 +49,7 @@ TEST(CortexM7, IssuesTwoInstructionsPerCycle) {
             cycles_of("cortex-m4f", work::Op::F64Add));
 }
 
-// hw_facts 9.3: 310 mW at 216 MHz; 146 to 163 mW at 280 MHz.
+// FACTS.md#cortex-m7: 310 mW at 216 MHz; 146 to 163 mW at 280 MHz.
 TEST(CortexM7, EnergyIsThatOfMeasuredPower) {
   const sim::ChipConfig f7 = load_platform("cortex-m7");
   EXPECT_NEAR(f7.energy.value.soc.cycle.count() * 216e6, 0.310, 0.002);
@@ -58,7 +58,7 @@ TEST(CortexM7, EnergyIsThatOfMeasuredPower) {
   EXPECT_NEAR(h7.energy.high.soc.cycle.count() * 280e6, 0.163, 0.001);
 }
 
-// hw_facts 9.4: throughput and latency of the VFP11; 0.54 W idle, 0.7 to 1 W busy.
+// FACTS.md#arm1176: throughput and latency of the VFP11; 0.54 W idle, 0.7 to 1 W busy.
 TEST(Arm1176, FloatingPointLiesBetweenThroughputAndLatency) {
   for (const work::Op op : {work::Op::F32Add, work::Op::F32Mul, work::Op::F32Fma}) {
     EXPECT_GT(cycles_of("arm1176", op), 1);

@@ -21,7 +21,8 @@ inline CoreConfig unit_cost_core() {
   return core;
 }
 
-/// Nine cores on four floating-point units and one divider of 14 cycles, as in hw_facts 3.
+/// Nine cores on four floating-point units and one divider of 14 cycles, as in
+/// FACTS.md#floating-point-units.
 inline ClusterConfig test_cluster() {
   ClusterConfig c;
   c.clock = Hertz(370'000'000);

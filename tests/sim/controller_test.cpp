@@ -28,11 +28,12 @@ work::Transfer external(std::int64_t bytes) {
 }
 
 TEST(Controller, ATransferFromExternalMemoryTakesABurstAtLeast) {
-  EXPECT_EQ(cycles_of({external(9'995)}), Cycles(100 + 1000));  // 999.5, up to the next edge
-  EXPECT_EQ(cycles_of({external(635)}), Cycles(100 + 64));
-  EXPECT_EQ(cycles_of({external(64)}), Cycles(100 + 7));  // 6.4
+  // A byte takes a tenth of a cycle; stages end on the next clock edge.
+  EXPECT_EQ(cycles_of({external(10'004)}), Cycles(100 + 1001));
+  EXPECT_EQ(cycles_of({external(644)}), Cycles(100 + 65));
+  EXPECT_EQ(cycles_of({external(64)}), Cycles(100 + 7));
   EXPECT_EQ(cycles_of({external(1)}), Cycles(100 + 7));
-  EXPECT_EQ(cycles_of({external(635), external(635)}), Cycles(2 * 100 + 127));
+  EXPECT_EQ(cycles_of({external(644), external(644)}), Cycles(200 + 129));
 }
 
 TEST(Controller, TransfersInsideTheChipAreNotFar) {

@@ -1,5 +1,5 @@
 // Cores that share units, against closed formulas and the vendor's calibration table
-// (hw_facts 3.2).
+// (FACTS.md#calibration-table).
 #include "sim/chip/team.h"
 
 #include <gtest/gtest.h>

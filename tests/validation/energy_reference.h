@@ -8,11 +8,11 @@
 namespace leviosim::validation {
 
 /// Viola-Jones detection on the cluster's cores, 240 MHz, 0.65 V, whole chip [mW]. Bompani et al.,
-/// pest detection on GAP9, 2024 (hw_facts 8.3). Measured.
+/// pest detection on GAP9, 2024 (FACTS.md#published-power). Measured.
 inline constexpr double kViolaJones_mW = 20.5;
 
 /// MLPerf Tiny v1.0, whole chip with its regulator, mlcommons/tiny_results_v1.0 commit c7761cf
-/// (hw_facts 8.2). Measured: energy of an inference times inferences per second.
+/// (FACTS.md#measured-power). Measured: energy of an inference times inferences per second.
 struct MlperfTask {
   std::string_view name;
   double mw_at_240;  ///< MHz, 0.65 V
@@ -26,15 +26,17 @@ inline constexpr std::array kMlperf{
 };
 
 /// P = a V² f + s V through the two points of a task: the range of a over the tasks
-/// [mW / (V² MHz)] and of s V at 0.65 V [mW] (hw_facts 8.2). Derived.
+/// [mW / (V² MHz)] and of s V at 0.65 V [mW] (FACTS.md#measured-power). Derived.
 inline constexpr double kLeastA = 0.157;
 inline constexpr double kMostA = 0.262;
 inline constexpr double kLeastStatic_mW = 2.4;
 inline constexpr double kMostStatic_mW = 3.4;
 
-/// LEVIO, 370 MHz: the paper says less than this, without a measurement (hw_facts 8.3) [mW].
+/// LEVIO, 370 MHz: the paper says less than this, without a measurement (FACTS.md#published-power)
+/// [mW].
 inline constexpr double kLevioClaim_mW = 100;
-/// What the fact sheet expects of its front end with the optimiser running (hw_facts 8.4) [mW].
+/// What FACTS.md expects of its front end with the optimiser running (FACTS.md#energy-per-event)
+/// [mW].
 inline constexpr double kLevioExpectedLow_mW = 45;
 inline constexpr double kLevioExpectedHigh_mW = 65;
 

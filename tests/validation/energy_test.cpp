@@ -86,8 +86,9 @@ TEST(EnergyValidation, BusyCoresTakeWhatWasMeasuredForViolaJones) {
   RecordProperty("total_mW", fmt::format("{:.2f} ({:.2f} to {:.2f})", total,
                                          mw(energy.total().low(), load.activity.time),
                                          mw(energy.total().high(), load.activity.time)));
-  // hw_facts 8.4 counts 13 mW for the cluster and leaves 7.5 mW for controller, L2, instruction
-  // caches and regulator; the model puts 4.4 mW there, and says itself how little it knows of them.
+  // FACTS.md#energy-per-event counts 13 mW for the cluster and leaves 7.5 mW for controller, L2,
+  // instruction caches and regulator; the model puts 4.4 mW there, and says itself how little it
+  // knows of them.
   EXPECT_NEAR(cluster, 13, 0.5);
   EXPECT_NEAR(total - cluster, 4.4, 0.3);
   EXPECT_LT(mw(energy.total().low(), load.activity.time), kViolaJones_mW);

@@ -1,5 +1,5 @@
-// Kernels measured on a GAP8 board (hw_facts 10.2) against the gap8 platform, of which nothing was
-// fitted to them.
+// Kernels measured on a GAP8 board (FACTS.md#gap8-kernels) against the gap8 platform, of which
+// nothing was fitted to them.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -12,7 +12,7 @@
 
 namespace leviosim::vio::test {
 
-/// The camera of the modelled pipeline (levio_parameters, "Input").
+/// The camera of the modelled pipeline (PARAMETERS.md#input).
 inline constexpr PinholeCamera kCamera{114.66f, 114.32f, 77.80f, 62.09f};
 
 struct SceneOptions {

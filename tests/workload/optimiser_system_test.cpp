@@ -153,7 +153,7 @@ TEST(NormalEquations, ReducedSystemIsPositiveDefinite) {
   }
 }
 
-/// The mistake that the parameter sheet warns of would show.
+/// The mistake that PARAMETERS.md warns of would show.
 TEST(NormalEquations, InertialTermOfTheWrongSignIsNotPositiveDefinite) {
   Scene scene;
   const MatrixXd visual = Linearised(scene, 1e-4f, true, {true, false, true}).matrix();

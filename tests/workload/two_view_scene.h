@@ -42,7 +42,7 @@ class HostRandom {
   std::uint64_t state_;
 };
 
-/// The camera of the EuRoC images after decimation (levio_parameters, "Input").
+/// The camera of the EuRoC images after decimation (PARAMETERS.md#input).
 inline constexpr PinholeCamera kCamera{114.66f, 114.32f, 77.80f, 62.09f};
 inline constexpr double kWidth = 160;
 inline constexpr double kHeight = 120;

@@ -229,7 +229,7 @@ TEST(VisionExtractor, GivesTheSameBitsOnEveryHost) {
 }
 
 TEST(VisionExtractor, FindsAbout360FeaturesInRecordedFrames) {
-  // Released embedded code on MH_01: about 360 on average.
+  // Released embedded code on MH_01 (PARAMETERS.md#counts-per-stage): about 360 on average.
   const std::vector<cv::Mat> frames = recorded_frames(0, 300, 6);
   if (frames.empty()) GTEST_SKIP() << kNoRecordedData;
   double sum = 0;

@@ -26,7 +26,7 @@ TextTable empty_table() {
                     {"reference"},
                     {"simulated"},
                     {"error %"},
-                    {"source (section of hw_facts)", Align::Left}});
+                    {"source", Align::Left}});
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // The camera matrix as the modelled library has it: a 3×3 constant of the program, which lies in L2
 // and is multiplied as a whole; the cluster reads its nine elements from there each time
-// (levio_parameters: "matrix constants of the camera live in L2 and are read from there by the
-// cluster"). A controller has it in its own memory.
+// (PARAMETERS.md#memory).
+// A controller has it in its own memory.
 #pragma once
 
 #include <array>

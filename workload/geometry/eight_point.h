@@ -1,5 +1,5 @@
 // The 8-point algorithm for the essential matrix (paper section III, "8-point RANSAC"; order of
-// operations from levio_parameters, "Pose estimation"), and the Sampson error that scores it.
+// operations from PARAMETERS.md#eight-point-algorithm), and the Sampson error that scores it.
 //
 // Convention: x_bᵀ E x_a = 0 for a point seen at x_a by camera a (the reference, the previous
 // keyframe) and at x_b by camera b (the current frame), so E = [t]× R with T_b_a = (R, t).

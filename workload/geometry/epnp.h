@@ -6,7 +6,7 @@
 // in the null space of a matrix M of the measurements; the coefficients β of the null vectors
 // follow from the known distances between the control points.
 //
-// Order of operations and numbers: levio_parameters, "Pose estimation". In particular the null
+// Order of operations and numbers: PARAMETERS.md#epnp. In particular the null
 // space comes from the *square* of MᵀM, whose condition in single precision limits the accuracy.
 #pragma once
 

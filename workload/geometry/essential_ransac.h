@@ -1,5 +1,5 @@
 // RANSAC for the essential matrix of two views (paper section III, "8-point RANSAC"; iterations,
-// threshold and the parallel form from levio_parameters, "Pose estimation").
+// threshold and the parallel form from PARAMETERS.md#eight-point-algorithm).
 //
 // In batches of 8: the master draws the samples, the team computes one hypothesis per sample, the
 // team scores them over all matches, the master keeps the best. The number of iterations is fixed:

@@ -1,5 +1,5 @@
 // Pose of the camera from matches between landmarks and pixels: EPnP inside RANSAC (paper section
-// III, "EPnP RANSAC"; parameters and parallel form from levio_parameters, "Pose estimation").
+// III, "EPnP RANSAC"; parameters and parallel form from PARAMETERS.md#epnp).
 //
 // In batches of 8 iterations the master draws the samples serially, the team solves one hypothesis
 // per sample, and the master counts the inliers of all hypotheses serially and keeps the best.

@@ -1,5 +1,5 @@
 // Random numbers and RANSAC samples in counted scalars: a 32-bit linear feedback shift register and
-// a partial Fisher-Yates shuffle (levio_parameters, "Pose estimation").
+// a partial Fisher-Yates shuffle (PARAMETERS.md#sampling).
 //
 // The register is a Galois LFSR over x^32 + x^22 + x^2 + x + 1, a primitive polynomial, so it
 // visits all 2^32 - 1 non-zero states before it repeats. It advances one step per number.

@@ -1,4 +1,4 @@
-// The relative pose of two views from their essential matrix (levio_parameters, "Pose estimation"):
+// The relative pose of two views from their essential matrix (PARAMETERS.md#pose-recovery):
 // of the four poses that an essential matrix admits, the one that puts most matches in front of
 // both cameras, decided by triangulating them. One fork per pose; the cores share the matches.
 //

@@ -1,5 +1,5 @@
 // Triangulation of one point from two views: linear (DLT), the smallest eigenvector of the 4x4
-// matrix AᵀA by inverse power iteration (levio_parameters, "Pose estimation"), and the test that a
+// matrix AᵀA by inverse power iteration (PARAMETERS.md#triangulation), and the test that a
 // triangulated point must pass to become a landmark.
 //
 // Left out: any refinement of the linear solution, and scaling of A. The point comes out in the

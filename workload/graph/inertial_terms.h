@@ -1,6 +1,6 @@
 // The inertial part of the optimiser and the anchor: added to the reduced normal equations with the
 // same sign as the visual part, H += Jᵀ J and b -= Jᵀ r, so that the system stays positive definite
-// (levio_parameters, "Costs that are easy to overlook").
+// (PARAMETERS.md#defects-of-the-release).
 //
 // Residuals of an interval (inertial/residual.h) are whitened with the Cholesky factor of their
 // covariance, which holds the noise of gyro and accelerometer and the uncertainty of gravity

@@ -1,7 +1,7 @@
 // Sliding-window bundle adjustment with pre-integrated IMU (paper section III.C, eqs 5 and 6): one
 // call is one Levenberg-Marquardt iteration on a snapshot of the pose graph, on one core whose
 // local memory holds the snapshot (the fabric controller and L2). The paper runs three per frame,
-// about 5.5 Mcycles each at a full window (levio_parameters).
+// about 5.5 Mcycles each at a full window (PARAMETERS.md#optimiser).
 //
 // An iteration linearises all residuals, eliminates the landmarks, solves the damped reduced
 // system, and keeps the step if the cost falls. A rejected step is followed by a stronger damping;

@@ -1,5 +1,5 @@
 // The pose graph as it lies in L2: the most recent keyframes, the landmarks with their descriptors,
-// and the observations that link them (paper section IV.B; levio_parameters, "Memory"). The front
+// and the observations that link them (paper section IV.B; PARAMETERS.md#memory). The front
 // end changes it, the optimiser takes snapshots of it and publishes results (window.h).
 //
 // Sizes for 8 keyframes, 1000 landmarks, 2400 observations: landmarks 12 B point + 32 B descriptor

@@ -15,7 +15,7 @@
 
 namespace leviosim::vio {
 
-/// For EuRoC's images of 160x120 (levio_parameters); the odometry fits them to its images.
+/// For EuRoC's images of 160x120 (PARAMETERS.md#input); the odometry fits them to its images.
 struct ReprojectionOptions {
   static constexpr float kImageWidth = 160;
 

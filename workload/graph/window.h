@@ -8,10 +8,10 @@
 // replaces the covariance of each inertial interval by its Cholesky factor, with which the
 // interval's residual is whitened.
 //
-// Uncertain gravity (standard deviation σ in each component, levio_parameters: 1 m/s²) is taken as
-// an error of the interval's velocity and position: it adds σ² dt² to the variance of velocity,
-// σ² dt⁴/4 to that of position, and σ² dt³/2 between the two, because one and the same error enters
-// both. That the intervals of a window share it is left out.
+// Uncertain gravity (standard deviation σ in each component, PARAMETERS.md#pre-integration: 1 m/s²)
+// is taken as an error of the interval's velocity and position: it adds σ² dt² to the variance of
+// velocity, σ² dt⁴/4 to that of position, and σ² dt³/2 between the two, because one and the same
+// error enters both. That the intervals of a window share it is left out.
 #pragma once
 
 #include "workload/graph/pose_graph.h"

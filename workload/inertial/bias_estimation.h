@@ -1,6 +1,5 @@
 // Biases of the IMU, estimated apart from the poses: once per window, poses and velocities held
-// fixed, one linear least-squares step for three unknowns per sensor (levio_parameters: "biases are
-// estimated separately per window").
+// fixed, one linear least-squares step for three unknowns per sensor (PARAMETERS.md#optimiser).
 //
 // Gyro: the rotation residuals of the window's intervals, weighted with the variance of each.
 // Accelerometer: the velocity residuals, weighted with their variance and the uncertainty of

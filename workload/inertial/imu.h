@@ -2,7 +2,7 @@
 //
 // Frames: the *camera* frame is the body. Gyro and accelerometer samples arrive rotated into it;
 // the lever arm between the two sensors is left out, as in the paper's embedded pipeline
-// (levio_parameters, "Input").
+// (PARAMETERS.md#input).
 #pragma once
 
 #include "workload/inertial/record.h"
@@ -29,7 +29,7 @@ ImuSample<P> load_imu_sample(const Span& batch, int i) {
 }
 
 /// Noise as the paper's pipeline uses it, tuned far above what the sensor specifies
-/// (levio_parameters, "Inertial and optimisation").
+/// (PARAMETERS.md#pre-integration).
 struct ImuNoise {
   float gyro = 0.02f;        ///< density, rad/s/√Hz
   float accel = 0.1f;        ///< density, m/s²/√Hz
@@ -51,7 +51,7 @@ struct ImuDoubt {
   float accel = 1.5f;          ///< m/s²/√Hz
 };
 
-/// Magnitude of gravity, m/s² (levio_parameters).
+/// Magnitude of gravity, m/s² (PARAMETERS.md#pre-integration).
 inline constexpr float kGravity = 9.81f;
 
 template <class P>

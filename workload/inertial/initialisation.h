@@ -1,5 +1,5 @@
 // Gravity and gyro bias from the IMU alone: at the start from the first samples, and again whenever
-// the vehicle stands still (levio_parameters, "Inertial and optimisation").
+// the vehicle stands still (PARAMETERS.md#standstill).
 //
 // Standing still: the readings of the last second scatter little. The thresholds lie between what
 // EuRoC shows of a vehicle on the ground (gyro 0.004 to 0.04 rad/s, accelerometer 0.06 to 0.45

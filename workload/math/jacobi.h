@@ -1,6 +1,6 @@
 // Eigenvalues and eigenvectors of small symmetric matrices by the classical Jacobi method: every
 // rotation annihilates the largest off-diagonal element, which is searched for first. Each rotation
-// takes one arc tangent, one cosine and one sine (levio_parameters, "Pose estimation").
+// takes one arc tangent, one cosine and one sine (PARAMETERS.md#linear-algebra).
 //
 // Left out: cheaper rotations without trigonometry, and cyclic order, which needs no search.
 #pragma once
@@ -13,8 +13,8 @@
 namespace leviosim::vio {
 
 /// In what precision the two new diagonal elements of a rotation are computed. `Double` is what a
-/// double literal in a single-precision expression costs (levio_parameters, "Costs that are easy to
-/// overlook"): products and sums in an emulation library on FP32-only cores.
+/// double literal in a single-precision expression costs (PARAMETERS.md#double-precision):
+/// products and sums in an emulation library on FP32-only cores.
 enum class DiagonalPrecision { Single, Double };
 
 namespace jacobi {

@@ -62,8 +62,8 @@ ImuNoise FrontEnd<P>::noise_of(const ImuInput& sample) const {
   return noise;
 }
 
-/// Re-estimates gravity and the gyro bias if the vehicle has stood still (levio_parameters,
-/// "Inertial and optimisation"). The attitude is the last keyframe's, turned as the gyro says.
+/// Re-estimates gravity and the gyro bias if the vehicle has stood still
+/// (PARAMETERS.md#standstill). The attitude is the last keyframe's, turned as the gyro says.
 /// @param seconds  that a batch of samples lasts
 template <class P>
 void FrontEnd<P>::detect_stillness(const Preintegration<P>& interval, float seconds) {

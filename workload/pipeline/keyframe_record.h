@@ -1,4 +1,4 @@
-// The last keyframe as it lies in L2 between frames (levio_parameters, "Memory"): its features, the
+// The last keyframe as it lies in L2 between frames (PARAMETERS.md#memory): its features, the
 // landmark that each of them shows, the motion since then as the IMU saw it, and the buffer that
 // the camera writes the next image to.
 #pragma once

@@ -15,9 +15,9 @@ struct Reservation {
   }
 };
 
-/// To hundredths of a pixel, as the release states the camera of its optimiser (levio_parameters,
-/// "Input"); the other stages take the calibration as it is. Not by a function of the C library,
-/// which the target's program (tools/rv32) does not have.
+/// To hundredths of a pixel, as the release states the camera of its optimiser
+/// (PARAMETERS.md#input); the other stages take the calibration as it is. Not by a function of the
+/// C library, which the target's program (tools/rv32) does not have.
 float in_hundredths(float pixels) {
   return static_cast<float>(static_cast<int>(static_cast<double>(pixels) * 100 + 0.5) / 100.0);
 }

@@ -1,8 +1,9 @@
 // 5×5 binomial blur of a whole image into a second buffer, before descriptors compare its pixels.
 //
-// As in the released embedded code the separable kernel (1 4 6 4 1) ⊗ (1 4 6 4 1) is applied as 25
-// taps whose weights add up to 256; the sum is divided by 256, rounding down. Where the window
-// leaves the image, the nearest pixel of the image stands in (replicated border).
+// As in the released embedded code (PARAMETERS.md#feature-extraction) the separable kernel (1 4 6 4
+// 1) ⊗ (1 4 6 4 1) is applied as 25 taps whose weights add up to 256; the sum is divided by 256,
+// rounding down. Where the window leaves the image, the nearest pixel of the image stands in
+// (replicated border).
 #pragma once
 
 #include <array>

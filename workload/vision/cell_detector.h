@@ -1,6 +1,6 @@
 // Corners of one cell of the detection grid: every pixel is tested with FAST, corners are scored by
-// Harris, and the cell keeps its best few in an array whose weakest element is replaced (released
-// embedded code). The cells spread the features over the image.
+// Harris, and the cell keeps its best few in an array whose weakest element is replaced
+// (PARAMETERS.md#feature-extraction). The cells spread the features over the image.
 #pragma once
 
 #include "workload/vision/extractor.h"

@@ -1,9 +1,9 @@
 // Rotated binary descriptor of a feature (Calonder et al. 2010, BRIEF; Rublee et al. 2011, ORB):
 // 256 comparisons of pairs of blurred pixels, the pairs turned into the orientation of the feature.
 //
-// As in the released embedded code: each point is rotated with sine and cosine in 8-bit fixed
-// point, its coordinates are scaled back and clipped to ±15. The pattern itself is ours
-// (pair_pattern.h).
+// As in the released embedded code (PARAMETERS.md#feature-extraction): each point is rotated with
+// sine and cosine in 8-bit fixed point, its coordinates are scaled back and clipped to ±15. The
+// pattern itself is ours (pair_pattern.h).
 #pragma once
 
 #include "workload/vision/features.h"

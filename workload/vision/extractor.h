@@ -1,5 +1,5 @@
 // Feature extraction, one stage of the cluster: FAST corners ranked by Harris response in cells,
-// blur, orientation and descriptor (paper section III, "ORB"; released embedded code).
+// blur, orientation and descriptor (paper section III, "ORB"; PARAMETERS.md#feature-extraction).
 //
 // Three team forks, each sharing its items among the cores in equal contiguous shares: "detect"
 // (cells), "blur" (rows), "describe" (features). Between the first two the master compacts the
@@ -12,7 +12,7 @@
 
 namespace leviosim::vio {
 
-/// Defaults: released embedded code.
+/// Defaults: PARAMETERS.md#feature-extraction.
 struct ExtractorOptions {
   int border = 16;              ///< px left out on every side; at least 15, the descriptor's reach
   int cell = 8;                 ///< side of a square cell, px

@@ -2,9 +2,10 @@
 // brighter, or all darker, than the centre by more than a threshold (Rosten and Drummond 2006;
 // paper section III, "ORB").
 //
-// As in the released embedded code, every pixel is tested without early exit: 16 differences, then
-// the run lengths of "brighter" and "darker", continued 8 steps past the wrap. Left out:
-// non-maximum suppression and the FAST score (corners are ranked by harris.h).
+// As in the released embedded code (PARAMETERS.md#feature-extraction), every pixel is tested
+// without early exit: 16 differences, then the run lengths of "brighter" and "darker", continued 8
+// steps past the wrap. Left out: non-maximum suppression and the FAST score (corners are ranked by
+// harris.h).
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // What the vision front end works on and hands over: images, and lists of features as structures of
 // spans.
 //
-// Sizes (released embedded code): a keypoint is 4 bytes (two u16 pixel coordinates), a descriptor
+// Sizes (PARAMETERS.md#memory): a keypoint is 4 bytes (two u16 pixel coordinates), a descriptor
 // 32 bytes (256 bits).
 #pragma once
 

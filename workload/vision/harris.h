@@ -1,10 +1,10 @@
 // Harris corner response (Harris and Stephens 1988), computed on FAST corners only (paper section
 // III, "ORB").
 //
-// As in the released embedded code: 3×3 Sobel gradients of the raw image in a 7×7 window, int32
-// sums shifted right by 11, response a·b − c² − (a + b)²/25 in whole numbers. Nothing overflows:
-// gx² + gy² of one pixel is at most 1020² + 510², so a + b ≤ 49 · 1 300 500 / 2^11 = 31 115 and its
-// square stays below 2^31.
+// As in the released embedded code (PARAMETERS.md#feature-extraction): 3×3 Sobel gradients of the
+// raw image in a 7×7 window, int32 sums shifted right by 11, response a·b − c² − (a + b)²/25 in
+// whole numbers. Nothing overflows: gx² + gy² of one pixel is at most 1020² + 510², so a + b ≤ 49 ·
+// 1 300 500 / 2^11 = 31 115 and its square stays below 2^31.
 #pragma once
 
 #include "sim/work/policy.h"

@@ -4,7 +4,7 @@
 // Search: every current feature takes the reference descriptor with the smallest Hamming distance
 // below a limit, the first of equals. Two-way filter: a match is dropped if another match claims
 // the same reference feature with an equal or better distance, so two equal claims are both dropped
-// (released embedded code). Each core appends to a slice of its own; the master closes the gaps.
+// (PARAMETERS.md#matching). Each core appends to a slice of its own; the master closes the gaps.
 // Left out: which landmarks are too old to count, which the pipeline decides afterwards.
 #pragma once
 
@@ -36,7 +36,7 @@ MatchList<P> alloc_matches(work::Arena& arena, int capacity, std::string_view na
 }
 
 struct MatcherOptions {
-  int max_distance = 35;  ///< bits; a match is strictly closer (released embedded code)
+  int max_distance = 35;  ///< bits; a match is strictly closer (PARAMETERS.md#matching)
 };
 
 /// Number of bits in which two descriptors differ.

@@ -2,8 +2,8 @@
 // of mass of the grey levels in a disc of radius 15 around it (Rosin 1999; Rublee et al. 2011,
 // ORB).
 //
-// As in the released embedded code: moments of the blurred image in whole numbers, one atan2, sine
-// and cosine in 8-bit fixed point.
+// As in the released embedded code (PARAMETERS.md#feature-extraction): moments of the blurred image
+// in whole numbers, one atan2, sine and cosine in 8-bit fixed point.
 #pragma once
 
 #include <array>
