@@ -2,6 +2,8 @@
 // which a trace says how many there are.
 #pragma once
 
+#include <ostream>
+
 #include "sim/work/kernel_calls.h"
 #include "tests/traces/trace_parts.h"
 
@@ -12,6 +14,8 @@ struct TraceBomb {
   const char* refusal;  ///< part of it
   /// @param whole  with the platform that commands load before they read frames
   std::string (*file)(TraceParts whole);
+
+  friend void PrintTo(const TraceBomb& bomb, std::ostream* out) { *out << bomb.name; }
 };
 
 /// With one section of one frame.
@@ -123,7 +127,8 @@ inline const TraceBomb kTraceBombs[] = {
          calls += bytes({k, 0, 0, 0});
        }
        whole.kernels = {text(kOneSeries) + text("") + times(300'000, calls)};
-       return trace_of_frame(whole, kOneSeries, frame(list(1, stage(list(30'000, bytes({1, 0, 0}))))));
+       return trace_of_frame(whole, kOneSeries,
+                             frame(list(1, stage(list(30'000, bytes({1, 0, 0}))))));
      }},
     {"Content", "the content of the section",
      [](TraceParts whole) {
