@@ -35,7 +35,7 @@ class Terminal : public ::testing::Test {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     traces::write_synthetic_flight(folder_ / ("flight" + kHostile),
-                                   {.duration_s = 1, .texel_m = 0.05});
+                                   {.duration_s = 1.5, .texel_m = 0.05});
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
@@ -110,14 +110,15 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   expect_done({"trace", "info", path("r" + out) + "/work.trace"}, "r" + out);
   const std::string est = path(out) + "/trajectory.tum";
   expect_done({"eval", est, flight(), "--json", path("json" + kHostile + ".json"), "--plot",
-               path("svg" + kHostile + ".svg"), "--relative", "0.1"},
+               path("svg" + kHostile + ".svg"), "--relative", "0.0001"},
               "json" + kHostile + ".json");
-  expect_done({"ablate", "--data", "name=" + flight(), "--size", "32x24", "--seed", "1",
-               "--relative", "0.1", "--cache", path("cache" + kHostile), "--out", path("a" + out)},
-              "a" + out);
+  expect_done(
+      {"ablate", "--data", "name=" + flight(), "--size", "32x24", "--seed", "1", "--relative",
+       "0.0001", "--cache", path("cache" + kHostile), "--out", path("a" + out)},
+      "a" + out);
   expect_done(
       {"explore", "--data", "name=" + flight(), "--size", "32x24", "--seed", "1", "--points", "1",
-       "--relative", "0.1", "--cache", path("cache" + kHostile), "--out", path("e" + out)},
+       "--relative", "0.0001", "--cache", path("cache" + kHostile), "--out", path("e" + out)},
       "e" + out);
   expect_done(
       {"tune", "--data", flight(), "--size", "32x24", "--clock", "300", "--fps", "10", "--ate",
