@@ -260,6 +260,23 @@ TEST_F(Inputs, StampsThatDoNotFit) {
   expect_run_refused(data, {"cam0/data.csv line 7, column 1", "9e18"});
 }
 
+/// Eleven years between the last two frames, which IMU and truth seem to cover. The first
+/// picture cannot be read, so that a run that gets so far says something else.
+TEST_F(Inputs, FlightsThatAreLongerThanSimulatedTimeAreFoundBeforeTheFirstFrame) {
+  const AslFolder data;
+  constexpr const char* kLast = "350000005000000000";
+  data.set_line("cam0/data.csv", 7, fmt::format("{},5250000000.png", kLast));
+  data.replace("imu0/sensor.yaml", "rate_hz: 200", "rate_hz: 0.001");
+  std::string samples = "#timestamp\n";
+  for (std::int64_t t_ns = 4'950'000'000; t_ns < 350'003'000'000'000'000; t_ns += 2'990'000'000'000)
+    samples += fmt::format("{},0,0,0,0,0,9.8\n", t_ns);
+  traces::write_file_atomically(data.mav0("imu0/data.csv"), samples);
+  traces::write_file_atomically(data.image(0), "no picture");
+  expect_refusal({"run", "--platform", "gap9", "--data", data.root().string(), "--size", "32x24",
+                  "--out", path("out")},
+                 {"is outside the simulated range"});
+}
+
 /// The first picture cannot be read, so that a run that gets so far says something else.
 TEST_F(Inputs, TruthThatDoesNotOverlapIsFoundBeforeTheFirstFrame) {
   const AslFolder data;

@@ -70,6 +70,9 @@ Simulation::Simulation(const RunRequest& request, JobSource& source, ProgressCal
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(source.frames())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
       book_(source.empty_stages(), request.platform.config) {
+  // A flight that is too long for the chip's timebase is refused before its first frame.
+  if (source.frames() > 0)
+    chip_.timebase().from_nanoseconds(source.arrival_ns(source.frames() - 1));
   if (request.camera) {
     result_.camera.emplace();
     result_.camera->deadline = request.camera->deadline;
