@@ -4,8 +4,9 @@
 #   tools/compare_programs.sh OLD NEW [--data DIR] [--frames A:B]
 # OLD and NEW are programs, --data is an ASL folder [the synthetic flight only], --frames a part of it
 # for all commands but the first two [0:60]. Exit status 1 if a file differs or a command fails.
-# Compared: statistics, trajectories, tables, work traces. Not compared: manifests, which hold the
-# command line and times, platform.yaml, pictures, and databases (their tables are compared).
+# Compared: statistics, trajectories, tables, flights, and replays of work traces. Not compared:
+# manifests and work traces themselves, which name the program that wrote them, platform.yaml,
+# plots, and databases (their tables are compared).
 set -euo pipefail
 
 usage="usage: tools/compare_programs.sh OLD NEW [--data DIR] [--frames A:B]"
@@ -89,7 +90,7 @@ all new "$new" &
 wait -n && wait -n || exit 1
 
 mapfile -t files < <(cd "$results/old" && find . -type f \
-  \( -name '*.json' -o -name '*.csv' -o -name '*.tum' -o -name '*.trace' -o -name '*.md' -o -name '*.png' \
+  \( -name '*.json' -o -name '*.csv' -o -name '*.tum' -o -name '*.md' -o -name '*.png' \
      -o -name sensor.yaml \) ! -name manifest.json ! -path '*-cache/*' | sort)
 status=0
 for file in "${files[@]}"; do

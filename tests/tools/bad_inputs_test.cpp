@@ -310,7 +310,7 @@ std::vector<Row> texts() {
        on_platform(),
        {"p.yaml", "clutser"},
        file("p.yaml",
-            "name: mine\nextends: gap9\nclutser: { workers: { value: 4, unit: cores } }\n")});
+            "name: mine\ndescription: mine\nextends: gap9\nclutser: { workers: { value: 4, unit: cores } }\n")});
   rows.push_back({"ExtendsItself", on_platform(), {"p.yaml"}, file("p.yaml", "extends: p.yaml\n")});
   rows.push_back({"PlatformIsFolder", on_platform(), {"p.yaml"}, folder_with("p.yaml/x", "")});
   rows.push_back({"PlanIsDevice", {"sweep", "/dev/zero", "--out", "@F/out"}, {"/dev/zero"}});

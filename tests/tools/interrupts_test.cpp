@@ -158,7 +158,7 @@ TEST_F(Interrupts, CountWhereTheCallerIgnoresThemAndWhateverTheWork) {
   Program program(folder_, {"calibrate", "--data", path("FLIGHT")});
   std::signal(SIGINT, before);
   while (program.running() &&
-         traces::read_text_file(folder_ / "stderr.txt").find("frame 4/20") == std::string::npos)
+         traces::read_text_file(folder_ / "stderr.txt").find("frame 12/60") == std::string::npos)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   program.send(SIGINT);
   const ProgramResult result = program.wait();
