@@ -67,7 +67,7 @@ commands() { # commands LEVIOSIM DATA FRAMES
     --cache tune-cache --quiet --out tune
   plan run/work.trace >plan.yaml
   step sweep "$leviosim" sweep plan.yaml --cache sweep-cache --quiet --out sweep
-  step ablate "$leviosim" ablate --data "$data" "${part[@]}" --seeds 1 --cache ablate-cache --quiet --out ablate
+  step ablate "$leviosim" ablate --data "$data" "${part[@]}" --seed 1 --relative 0.05 --cache ablate-cache --quiet --out ablate
   step eval "$leviosim" eval run/trajectory.tum "$data" --json eval.json
   step flow "$leviosim" flow --platform gap8 -p cluster.clock=50MHz -p controller.clock=50MHz \
     -p supply.voltage=1.0V --data "$data" "${part[@]}" --quiet --out flow
