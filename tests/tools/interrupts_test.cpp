@@ -66,7 +66,7 @@ class Interrupts : public ::testing::Test {
     folder_ = fs::temp_directory_path() / fmt::format("leviosim-{}-interrupts", ::getpid());
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "work");
-    traces::write_synthetic_flight(folder_ / "FLIGHT", {.duration_s = 1, .texel_m = 0.05});
+    traces::write_synthetic_flight(folder_ / "FLIGHT", {.duration_s = 3, .texel_m = 0.01});
     const ProgramResult recorded =
         run_program(folder_, {"run", "--platform", "gap9", "--data", path("FLIGHT"), "--record",
                               "--out", path("recorded")});
@@ -138,7 +138,9 @@ TEST_F(Interrupts, EndEveryCommandSoonAndLeaveNothingBehind) {
             << command.what << " leaves " << entry.path();
       fs::remove_all(folder_ / "work");
       fs::create_directory(folder_ / "work");
-      if (!stopped.in_time) continue;
+      // A process that had done all and was about to vanish takes no signal any more.
+      const bool was_over = stopped.status == 0 && stopped.seconds < 0.5;
+      if (!stopped.in_time || was_over) continue;
       ++stopped_at_work;
       longest = std::max(longest, stopped.seconds);
       EXPECT_EQ(stopped.status, 128 + signal)
@@ -156,7 +158,7 @@ TEST_F(Interrupts, CountWhereTheCallerIgnoresThemAndWhateverTheWork) {
   Program program(folder_, {"calibrate", "--data", path("FLIGHT")});
   std::signal(SIGINT, before);
   while (program.running() &&
-         traces::read_text_file(folder_ / "stderr.txt").find("frame 20/20") == std::string::npos)
+         traces::read_text_file(folder_ / "stderr.txt").find("frame 60/60") == std::string::npos)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   program.send(SIGINT);
   const ProgramResult result = program.wait();

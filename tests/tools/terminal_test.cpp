@@ -110,14 +110,15 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   expect_done({"trace", "info", path("r" + out) + "/work.trace"}, "r" + out);
   const std::string est = path(out) + "/trajectory.tum";
   expect_done({"eval", est, flight(), "--json", path("json" + kHostile), "--plot",
-               path("svg" + kHostile), "--relative", "0.1"},
+               path("svg" + kHostile + ".svg"), "--relative", "0.1"},
               "json" + kHostile);
-  expect_done({"ablate", "--data", flight(), "--size", "32x24", "--seed", "1", "--relative", "0.1",
-               "--cache", path("cache" + kHostile), "--out", path("a" + out)},
+  expect_done({"ablate", "--data", "n=" + flight(), "--size", "32x24", "--seed", "1", "--relative",
+               "0.1", "--cache", path("cache" + kHostile), "--out", path("a" + out)},
               "a" + out);
-  expect_done({"explore", "--data", flight(), "--size", "32x24", "--seed", "1", "--points", "1",
-               "--relative", "0.1", "--cache", path("cache" + kHostile), "--out", path("e" + out)},
-              "e" + out);
+  expect_done(
+      {"explore", "--data", "n=" + flight(), "--size", "32x24", "--seed", "1", "--points", "1",
+       "--relative", "0.1", "--cache", path("cache" + kHostile), "--out", path("e" + out)},
+      "e" + out);
   expect_done(
       {"tune", "--data", flight(), "--size", "32x24", "--clock", "300", "--fps", "10", "--ate",
        "1000", "--miss-rate", "1", "--cache", path("cache" + kHostile), "--out", path("t" + out)},

@@ -4,6 +4,8 @@
 #include <map>
 #include <tuple>
 
+#include "sim/base/interruption.h"
+
 namespace leviosim::tools {
 namespace {
 
@@ -53,6 +55,7 @@ ExplorationRuns exploration_runs(const BatchPlan& plan,
   ExplorationRuns all;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const std::string& profile : plan.profiles) {
+      throw_if_interrupted();
       const std::vector<vio::Assignment> set = effective(points[i], profile);
       for (const Sequence& sequence : plan.sequences)
         for (const std::uint32_t seed : plan.seeds) {
