@@ -37,7 +37,7 @@ points:
   - grid:
       platform.cluster.fpu.units: [1, 2, 4]
       platform.cluster.l1.banks: [8, 16]
-      platform.cluster.l2.load_latency: [8, 12, 16]
+      platform.cluster.dma.programming: [10, 20, 30]
 YAML
 
 names=(run sweep tune synth ablate)

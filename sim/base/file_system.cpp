@@ -76,7 +76,7 @@ std::optional<FileState> state_of_file(const fs::path& path) {
   return state;
 }
 
-std::optional<std::string> read_file(const fs::path& path, std::uint64_t most) {
+std::optional<std::string> try_read_file(const fs::path& path, std::uint64_t most) {
   std::uint64_t size = 0;
   const Descriptor file = open_regular(path, size);
   if (!file || size > most) return std::nullopt;

@@ -52,7 +52,7 @@ FileState state_of_bytes(std::string_view bytes);
 std::optional<FileState> state_of_file(const std::filesystem::path& path);
 
 /// @returns nothing if it is not there, no regular file, larger than `most` or cannot be read
-std::optional<std::string> read_file(const std::filesystem::path& path, std::uint64_t most);
+std::optional<std::string> try_read_file(const std::filesystem::path& path, std::uint64_t most);
 
 /// Writes all bytes. @returns 0, or the error
 int write_all(int descriptor, std::string_view bytes);

@@ -132,7 +132,7 @@ std::optional<OutputRecord> OutputRecord::read(const fs::path& folder) {
   const fs::path file = folder / kRecordName;
   if (!status_of(file)) return std::nullopt;
   if (::access(file.c_str(), R_OK) != 0 && errno == EACCES) return std::nullopt;  // another user's
-  const std::optional<std::string> text = read_file(file, kLargestRecord);
+  const std::optional<std::string> text = try_read_file(file, kLargestRecord);
   if (!text) throw InputError(fmt::format("{}: cannot be read as a record", file.string()));
   return parse(*text, file.string());
 }

@@ -34,7 +34,7 @@ fs::path RunCache::file_of(const std::string& key) const {
 }
 
 std::optional<std::string> RunCache::find_text(const std::string& key) const {
-  const std::optional<std::string> bytes = base::read_file(file_of(key), kLargestFile);
+  const std::optional<std::string> bytes = base::try_read_file(file_of(key), kLargestFile);
   if (!bytes) return std::nullopt;
   const std::size_t end = bytes->find('\n');
   if (end == std::string::npos) return std::nullopt;
