@@ -83,6 +83,7 @@ TEST(Nearest, NothingAlikeGivesNoSuggestion) {
   EXPECT_EQ(did_you_mean("zzzz", {"workers"}), "");
   EXPECT_EQ(did_you_mean("worker", {"workers"}), "; did you mean 'workers'?");
   EXPECT_EQ(nearest("x", {}), "");
+  EXPECT_EQ(nearest("clock", {"clock_a", "clock_b"}), "clock_a") << "of two as near the first";
   EXPECT_EQ(nearest(std::string(100000, 'q'), {"workers"}), "");
 }
 

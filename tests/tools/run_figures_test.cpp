@@ -70,5 +70,18 @@ TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
   EXPECT_EQ(stage.account.serial, 1000);
 }
 
+TEST(RunFigures, TheBookAddsUpTransfers) {
+  StageBook book({}, platform::load_platform("gap9"));
+  const work::Transfer in{work::Direction::L2ToL1, Bytes(100)};
+  const work::Transfer far{work::Direction::ExternalToL2, Bytes(7)};
+  for (int k = 0; k < 3; ++k) book.add_work({{{"matching", {in, far, in}, {}}}});
+  ASSERT_EQ(book.stages().size(), 1u);
+  const StageResult& stage = book.stages().front();
+  EXPECT_EQ(stage.calls, 3);
+  EXPECT_EQ(stage.transfers.transfers, 6);
+  EXPECT_EQ(stage.transfers.bytes, Bytes(600));
+  EXPECT_EQ(stage.transfers.external, Bytes(21));
+}
+
 }  // namespace
 }  // namespace leviosim::tools

@@ -218,6 +218,8 @@ TEST(AslReader, QuaternionNorm) {
   folder.set_line(kTruth, 3, row(1.0009));
   EXPECT_EQ(open_asl(folder.root()).ground_truth[1].T_world_body.linear(),
             Eigen::Matrix3d::Identity());
+  folder.set_line(kTruth, 3, row(0.9989));
+  expect_broken(folder, {std::string(kTruth) + " line 3", "norm 0.998900"});
   folder.set_line(kTruth, 3, row(1.0011));
   expect_broken(folder, {std::string(kTruth) + " line 3", "norm 1.001100"});
 }

@@ -72,6 +72,24 @@ TEST(RecordedMotion, MeetsTheMotionBetweenItsSamples) {
   EXPECT_LT(errors.angular_velocity, 1e-5);
 }
 
+TEST(RecordedMotion, TurnsOnThroughHalfATurn) {
+  // There the quaternion of a rotation matrix changes its sign.
+  std::vector<GroundTruthPose> poses;
+  for (int i = 0; i < 800; ++i) {
+    GroundTruthPose pose;
+    pose.t_ns = kOriginNs + i * kPeriodNs;
+    pose.T_world_body.linear() =
+        Eigen::AngleAxisd(2 * seconds(pose.t_ns), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    poses.push_back(pose);
+  }
+  const RecordedMotion motion(poses, kOriginNs);
+  for (int i = 40; i < 760; ++i) {
+    const Eigen::Vector3d turning =
+        motion.at(seconds(poses[0].t_ns + i * kPeriodNs)).angular_velocity;
+    EXPECT_LT((turning - Eigen::Vector3d(0, 0, 2)).norm(), 1e-4) << i;
+  }
+}
+
 TEST(RecordedMotion, MeetsEveryRecordedPose) {
   const std::vector<GroundTruthPose> poses = recorded(HandHeldFlight(3), 1e-6);
   const RecordedMotion motion(poses, kOriginNs);
