@@ -29,6 +29,7 @@ struct Row {
   Words message;  ///< parts of it
   Setup setup = {};
 };
+void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
 
 Setup file(const std::string& name, const std::string& contents) {
   return [=](const fs::path& folder, const AslFolder&) {
