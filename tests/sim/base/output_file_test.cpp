@@ -4,6 +4,7 @@
 
 #include "sim/base/held_record.h"
 #include "sim/error.h"
+#include "tests/sim/base/output_claims.h"
 #include "tests/support/scratch.h"
 
 namespace leviosim::base {
@@ -21,13 +22,7 @@ OutputRequest request(const fs::path& path, bool replace = false) {
 }
 
 void expect_refused(const OutputRequest& wanted, const std::vector<std::string>& parts) {
-  try {
-    const OutputFile out(wanted);
-    ADD_FAILURE() << wanted.path << " was not refused";
-  } catch (const InputError& error) {
-    for (const std::string& part : parts)
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
+  expect_claim_refused<OutputFile>(wanted, parts);
 }
 
 std::optional<std::string> write(const OutputRequest& wanted, const std::string& text) {

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "sim/error.h"
+#include "tests/sim/base/output_claims.h"
 #include "tests/support/scratch.h"
 
 namespace leviosim::base {
@@ -25,13 +26,7 @@ OutputRequest request(const fs::path& path, bool replace = false) {
 }
 
 void expect_refused(const OutputRequest& wanted, const std::vector<std::string>& parts) {
-  try {
-    const OutputFolder out(wanted);
-    ADD_FAILURE() << wanted.path << " was not refused";
-  } catch (const InputError& error) {
-    for (const std::string& part : parts)
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
+  expect_claim_refused<OutputFolder>(wanted, parts);
 }
 
 void write_results(const fs::path& path, const std::string& text, bool replace = false) {
