@@ -11,8 +11,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "sim/check.h"
-#include "sim/error.h"
+#include "sim/base/check.h"
+#include "sim/base/error.h"
 
 namespace leviosim::base {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cerrno>
 
+#include "sim/base/error.h"
 #include "sim/base/held_record.h"
-#include "sim/error.h"
 
 namespace leviosim::base {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 
 namespace leviosim::base {
 namespace {

@@ -8,7 +8,7 @@
 #include <charconv>
 #include <set>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 
 namespace leviosim::base {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 
 namespace leviosim::base {
 

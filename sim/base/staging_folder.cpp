@@ -4,8 +4,8 @@
 
 #include <cerrno>
 
+#include "sim/base/error.h"
 #include "sim/base/output_folder.h"
-#include "sim/error.h"
 
 namespace leviosim::base {
 namespace {

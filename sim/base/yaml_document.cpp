@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 
 namespace leviosim::base {
 namespace {

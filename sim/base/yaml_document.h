@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 
 namespace leviosim::base {
 

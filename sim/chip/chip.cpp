@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/kernel/time_limit.h"
+#include "sim/events/time_limit.h"
 
 namespace leviosim::sim {
 namespace {

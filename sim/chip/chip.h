@@ -5,7 +5,7 @@
 
 #include "sim/chip/cluster.h"
 #include "sim/chip/controller.h"
-#include "sim/kernel/sync.h"
+#include "sim/events/sync.h"
 
 namespace leviosim::sim {
 

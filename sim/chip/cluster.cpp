@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/check.h"
-#include "sim/error.h"
-#include "sim/kernel/time_limit.h"
+#include "sim/base/check.h"
+#include "sim/base/error.h"
+#include "sim/events/time_limit.h"
 
 namespace leviosim::sim {
 namespace {

@@ -12,7 +12,7 @@
 #include "sim/chip/dma.h"
 #include "sim/chip/team.h"
 #include "sim/chip/timing.h"
-#include "sim/kernel/channel.h"
+#include "sim/events/channel.h"
 #include "sim/work/program.h"
 
 namespace leviosim::sim {

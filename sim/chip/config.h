@@ -9,8 +9,8 @@
 #include <array>
 #include <string>
 
+#include "sim/base/units.h"
 #include "sim/energy/config.h"
-#include "sim/units.h"
 #include "sim/work/kernel_calls.h"
 #include "sim/work/op.h"
 

@@ -5,8 +5,8 @@
 #include "sim/chip/config.h"
 #include "sim/chip/instruction_cache.h"
 #include "sim/chip/timing.h"
-#include "sim/kernel/kernel.h"
-#include "sim/kernel/task.h"
+#include "sim/events/kernel.h"
+#include "sim/events/task.h"
 #include "sim/work/program.h"
 
 namespace leviosim::sim {

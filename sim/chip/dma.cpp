@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/check.h"
-#include "sim/kernel/time_limit.h"
+#include "sim/base/check.h"
+#include "sim/events/time_limit.h"
 
 namespace leviosim::sim {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "sim/chip/config.h"
 #include "sim/chip/team.h"
-#include "sim/kernel/kernel.h"
-#include "sim/kernel/task.h"
+#include "sim/events/kernel.h"
+#include "sim/events/task.h"
 #include "sim/work/program.h"
 
 namespace leviosim::sim {

@@ -10,10 +10,10 @@
 #include "sim/chip/accelerator.h"
 #include "sim/chip/contention.h"
 #include "sim/chip/cost.h"
-#include "sim/kernel/kernel.h"
-#include "sim/kernel/sync.h"
-#include "sim/kernel/task.h"
-#include "sim/kernel/timer.h"
+#include "sim/events/kernel.h"
+#include "sim/events/sync.h"
+#include "sim/events/task.h"
+#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 

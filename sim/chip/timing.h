@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/chip/cost.h"
-#include "sim/kernel/timebase.h"
+#include "sim/events/timebase.h"
 
 namespace leviosim::sim {
 

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "sim/units.h"
+#include "sim/base/units.h"
 #include "sim/work/kernel_calls.h"
 
 namespace leviosim::sim {

@@ -1,6 +1,6 @@
 #include "sim/energy/model.h"
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 
 namespace leviosim::sim {
 namespace {

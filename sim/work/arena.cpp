@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/check.h"
-#include "sim/error.h"
+#include "sim/base/check.h"
+#include "sim/base/error.h"
 
 namespace leviosim::work {
 namespace {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/units.h"
+#include "sim/base/units.h"
 #include "sim/work/memory.h"
 
 namespace leviosim::work {

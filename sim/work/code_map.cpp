@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 
 namespace leviosim::work {
 

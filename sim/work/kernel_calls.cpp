@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 
 namespace leviosim::work {
 namespace {

@@ -1,6 +1,6 @@
 #include "sim/work/machine.h"
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 
 namespace leviosim::work {
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 #include "sim/work/counted.h"
 
 namespace leviosim::work {

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "sim/units.h"
+#include "sim/base/units.h"
 #include "sim/work/arena.h"
 #include "sim/work/kernel_calls.h"
 

@@ -6,11 +6,11 @@
 #include <deque>
 #include <vector>
 
-#include "sim/kernel/channel.h"
-#include "sim/kernel/kernel.h"
-#include "sim/kernel/sync.h"
-#include "sim/kernel/task.h"
-#include "sim/kernel/timer.h"
+#include "sim/events/channel.h"
+#include "sim/events/kernel.h"
+#include "sim/events/sync.h"
+#include "sim/events/task.h"
+#include "sim/events/timer.h"
 #include "tests/bench/event_kernel_networks.h"
 
 namespace leviosim::bench::own {

@@ -13,12 +13,12 @@
 #include <optional>
 #include <vector>
 
-#include "platform_models/compiled_code.h"
-#include "platform_models/loader.h"
+#include "platform_models/loader/compiled_code.h"
+#include "platform_models/loader/loader.h"
+#include "sim/soc/job_timer.h"
 #include "tests/bench/cpu_time.h"
-#include "tools/run/feed.h"
-#include "tools/run/job_timer.h"
-#include "traces/synthetic.h"
+#include "tools/app/run/feed.h"
+#include "traces/synthesis/synthetic.h"
 
 namespace leviosim {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/soc/job_source.h"
 #include "sim/work/machine.h"
-#include "tools/run/job_source.h"
 
 namespace leviosim::example {
 

@@ -3,11 +3,11 @@
 
 #include <numeric>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
+#include "sim/soc/simulation.h"
 #include "tests/examples/exposure.h"
 #include "tests/support/paths.h"
-#include "tools/run/simulation.h"
-#include "tools/run/tables.h"
+#include "tools/app/report/tables.h"
 
 namespace leviosim::example {
 namespace {

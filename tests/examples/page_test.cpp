@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/csv.h"
 #include "tests/support/paths.h"
-#include "traces/csv.h"
 
 namespace leviosim::example {
 namespace {

@@ -1,6 +1,6 @@
 // The tables of an ASL folder: frames (first byte 'f'), ground truth ('g'), IMU samples.
 #include "tests/fuzz/fuzz_target.h"
-#include "traces/asl_reader.h"
+#include "traces/datasets/asl_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

@@ -1,10 +1,10 @@
 // Trajectories in all formats, and their comparison: an estimate, kBetweenParts, the truth, and if
 // there is a third part, times of KITTI poses.
-#include "traces/evaluation.h"
+#include "traces/trajectories/evaluation.h"
 
 #include "tests/fuzz/fuzz_target.h"
-#include "traces/relative_error.h"
-#include "traces/trajectory_file.h"
+#include "traces/trajectories/relative_error.h"
+#include "traces/trajectories/trajectory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

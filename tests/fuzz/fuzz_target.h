@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 
 namespace leviosim::fuzz {
 

@@ -33,7 +33,7 @@ points:
   - random: { number: 20, seed: 3, over: { platform.cluster.clock: {from: 100MHz, to: 370MHz} } }
   - latin_hypercube: { number: 8, over: { platform.cluster.fpu.units: {from: 1, to: 4}, size: [160x120] } }
 END
-sed 's|data: .*|data: flight|' tools/sweep/examples/means.yaml >"$folder/sweep_plan/means"
+sed 's|data: .*|data: flight|' tools/app/study/sweep/examples/means.yaml >"$folder/sweep_plan/means"
 cat >"$folder/sensor_yaml/camera" <<'END'
 csensor_type: camera
 comment: VI-Sensor cam0 (MT9M034)

@@ -1,5 +1,5 @@
 // Overrides of platform parameters (-p), one a line.
-#include "platform_models/platform_file.h"
+#include "platform_models/loader/platform_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

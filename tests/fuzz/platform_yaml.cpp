@@ -1,5 +1,5 @@
 // Platform files, and what is written for one that loads.
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
 #include "tests/fuzz/fuzz_target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/traces/trace_parts.h"
 #include "tests/traces/work_trace_example.h"

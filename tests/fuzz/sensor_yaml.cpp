@@ -1,5 +1,5 @@
 // sensor.yaml of a camera (first byte 'c') and of an IMU.
-#include "traces/sensor_yaml.h"
+#include "traces/datasets/sensor_yaml.h"
 
 #include "tests/fuzz/fuzz_target.h"
 

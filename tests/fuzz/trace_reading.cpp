@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
 #include "sim/chip/chip.h"
-#include "sim/kernel/process.h"
-#include "traces/work_frames.h"
+#include "sim/events/process.h"
+#include "traces/work_traces/work_frames.h"
 
 namespace leviosim::fuzz {
 namespace {

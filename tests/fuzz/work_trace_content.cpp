@@ -2,7 +2,7 @@
 // sections, with kBetweenParts between them. Without sections of kernels it is of version 1.
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/trace_reading.h"
-#include "traces/section_file.h"
+#include "traces/work_traces/section_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "platform_models/builtin.h"
-#include "platform_models/loader.h"
-#include "platform_models/schema.h"
-#include "sim/error.h"
+#include "platform_models/loader/builtin.h"
+#include "platform_models/loader/loader.h"
+#include "platform_models/loader/schema.h"
+#include "sim/base/error.h"
 
 namespace leviosim::platform {
 

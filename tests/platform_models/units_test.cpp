@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "platform_models/dimension.h"
-#include "platform_models/nearest.h"
-#include "platform_models/schema.h"
-#include "platform_models/value.h"
-#include "sim/error.h"
+#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
+#include "platform_models/loader/value.h"
+#include "sim/base/error.h"
+#include "sim/base/nearest.h"
 
 namespace leviosim::platform {
 namespace {

@@ -1,5 +1,5 @@
 // Changed platforms: the same as files and -p would give, and calibrations that say what they are.
-#include "platform_models/variants.h"
+#include "platform_models/loader/variants.h"
 
 #include "tests/platform_models/platform_test.h"
 #include "tests/traces/test_folder.h"

@@ -1,6 +1,6 @@
 // Whether a chip with other parameters can be: asked of one that changes, as of one that is
 // resolved.
-#include "platform_models/varying_chip.h"
+#include "platform_models/loader/varying_chip.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <random>
 
-#include "platform_models/loader.h"
-#include "platform_models/platform_file.h"
-#include "sim/error.h"
+#include "platform_models/loader/loader.h"
+#include "platform_models/loader/platform_file.h"
+#include "sim/base/error.h"
 
 namespace leviosim::platform {
 namespace {

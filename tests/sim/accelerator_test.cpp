@@ -5,7 +5,7 @@
 
 #include "sim/chip/chip.h"
 #include "sim/energy/model.h"
-#include "sim/kernel/process.h"
+#include "sim/events/process.h"
 #include "tests/sim/chip_test_config.h"
 #include "tests/sim/energy_test_config.h"
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/base/error.h"
 #include "sim/chip/chip.h"
-#include "sim/error.h"
 #include "tests/sim/chip_test_config.h"
 
 namespace leviosim::sim {

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "sim/kernel/channel.h"
-#include "sim/kernel/kernel.h"
-#include "sim/kernel/sync.h"
-#include "sim/kernel/timer.h"
+#include "sim/events/channel.h"
+#include "sim/events/kernel.h"
+#include "sim/events/sync.h"
+#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 namespace {

@@ -1,5 +1,5 @@
 // Life of processes: names of the blocked, exceptions, and that nothing is leaked.
-#include "sim/kernel/process.h"
+#include "sim/events/process.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "sim/error.h"
-#include "sim/kernel/channel.h"
-#include "sim/kernel/kernel.h"
-#include "sim/kernel/sync.h"
-#include "sim/kernel/task.h"
-#include "sim/kernel/timer.h"
+#include "sim/base/error.h"
+#include "sim/events/channel.h"
+#include "sim/events/kernel.h"
+#include "sim/events/sync.h"
+#include "sim/events/task.h"
+#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 namespace {

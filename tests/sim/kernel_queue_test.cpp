@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/kernel/event_queue.h"
+#include "sim/events/event_queue.h"
 
 namespace leviosim::sim {
 namespace {

@@ -1,5 +1,5 @@
 // Event, Barrier, Semaphore, Channel: who continues, when, and in which order.
-#include "sim/kernel/sync.h"
+#include "sim/events/sync.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/kernel/channel.h"
+#include "sim/events/channel.h"
 
 namespace leviosim::sim {
 namespace {

@@ -1,5 +1,5 @@
 // Processes composed of sub-coroutines: values, exceptions, time, depth.
-#include "sim/kernel/task.h"
+#include "sim/events/task.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/kernel/kernel.h"
+#include "sim/events/kernel.h"
 
 namespace leviosim::sim {
 namespace {

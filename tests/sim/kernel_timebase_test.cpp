@@ -1,11 +1,11 @@
 // The time base: conversions are exact, and what cannot be exact is refused with the reason.
-#include "sim/kernel/timebase.h"
+#include "sim/events/timebase.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 
 namespace leviosim::sim {
 namespace {

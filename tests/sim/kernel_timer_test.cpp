@@ -1,12 +1,12 @@
 // Timers: armed again, cancelled, and used as the ends of segments that share a resource.
-#include "sim/kernel/timer.h"
+#include "sim/events/timer.h"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <vector>
 
-#include "sim/kernel/task.h"
+#include "sim/events/task.h"
 
 namespace leviosim::sim {
 namespace {

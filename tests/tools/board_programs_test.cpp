@@ -1,5 +1,5 @@
 // The board's kernels compute what they are meant to, with the same bits under both policies.
-#include "tools/microbench/board_programs.h"
+#include "tools/app/validation/microbench/board_programs.h"
 
 #include <gtest/gtest.h>
 

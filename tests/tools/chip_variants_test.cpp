@@ -3,10 +3,10 @@
 // time in the right direction, or is refused with the reason.
 #include <gtest/gtest.h>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
+#include "sim/soc/job_timer.h"
 #include "sim/work/machine.h"
 #include "tests/traces/test_folder.h"
-#include "tools/run/job_timer.h"
 
 namespace leviosim::tools {
 namespace {

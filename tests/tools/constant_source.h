@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "sim/soc/job_source.h"
+#include "sim/soc/simulation.h"
 #include "tests/sim/chip_test_config.h"
-#include "tools/run/job_source.h"
-#include "tools/run/simulation.h"
 
 namespace leviosim::tools::testing {
 

@@ -1,11 +1,11 @@
-#include "tools/run/digest.h"
+#include "tools/app/run/digest.h"
 
 #include <gtest/gtest.h>
 
+#include "sim/base/atomic_file.h"
+#include "sim/base/csv.h"
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
-#include "traces/atomic_file.h"
-#include "traces/csv.h"
+#include "traces/datasets/asl_reader.h"
 
 namespace leviosim::tools {
 namespace {

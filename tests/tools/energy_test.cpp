@@ -1,5 +1,5 @@
 // Energy of a run: every joule once, per frame, over time, at other points, and in the files.
-#include "tools/run/energy.h"
+#include "tools/app/result/energy.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 
 #include "tests/sim/energy_test_config.h"
 #include "tests/tools/example_run.h"
-#include "tools/run/energy_tables.h"
-#include "tools/run/run_folder.h"
-#include "tools/run/statistics.h"
-#include "tools/run/tables.h"
+#include "tools/app/report/energy_tables.h"
+#include "tools/app/report/statistics.h"
+#include "tools/app/report/tables.h"
+#include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {
 namespace {

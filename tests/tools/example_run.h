@@ -2,7 +2,7 @@
 // statistics and files read it.
 #pragma once
 
-#include "tools/run/run_result.h"
+#include "tools/app/result/run_result.h"
 
 namespace leviosim::tools::testing {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "tests/tools/well_formed.h"
-#include "tools/plot/axes.h"
-#include "tools/plot/colour_scale.h"
-#include "tools/plot/svg.h"
+#include "tools/app/report/plot/axes.h"
+#include "tools/app/report/plot/colour_scale.h"
+#include "tools/app/report/plot/svg.h"
 
 namespace leviosim::tools::plot {
 namespace {

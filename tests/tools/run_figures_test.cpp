@@ -1,12 +1,12 @@
 // Figures that are easily taken one for the other: percentiles, longest calls and sums.
 #include <gtest/gtest.h>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
+#include "sim/soc/stage_book.h"
 #include "tests/tools/example_run.h"
-#include "tools/run/camera_figures.h"
-#include "tools/run/stage_book.h"
-#include "tools/run/statistics.h"
-#include "tools/run/summary.h"
+#include "tools/app/report/statistics.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
 namespace {

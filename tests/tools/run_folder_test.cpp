@@ -1,4 +1,4 @@
-#include "tools/run/run_folder.h"
+#include "tools/app/run/run_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <set>
 #include <sstream>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
+#include "sim/base/csv.h"
 #include "tests/tools/example_run.h"
 #include "tests/traces/test_folder.h"
-#include "traces/csv.h"
 
 namespace leviosim::tools {
 namespace {

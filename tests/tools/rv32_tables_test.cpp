@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/csv.h"
 #include "sim/work/op.h"
 #include "tests/support/paths.h"
-#include "traces/csv.h"
 
 namespace leviosim::tools {
 namespace {

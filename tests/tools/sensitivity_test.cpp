@@ -1,14 +1,14 @@
 // Sweeps over tiny jobs whose times are closed formulas.
-#include "tools/sensitivity/sensitivity.h"
+#include "tools/app/study/sensitivity/sensitivity.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "platform_models/loader.h"
-#include "tools/run/summary.h"
-#include "tools/sensitivity/sensitivity_report.h"
+#include "platform_models/loader/loader.h"
+#include "tools/app/result/summary.h"
+#include "tools/app/study/sensitivity/sensitivity_report.h"
 
 namespace leviosim::tools {
 namespace {

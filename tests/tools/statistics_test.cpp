@@ -1,11 +1,11 @@
-#include "tools/run/statistics.h"
+#include "tools/app/report/statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "tests/tools/example_run.h"
-#include "tools/run/summary.h"
+#include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
 namespace {

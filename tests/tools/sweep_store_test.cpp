@@ -1,6 +1,6 @@
 // The store of a sweep alone: which plan it takes for its own, what a merge accepts, and what the
 // front of an earlier publication leaves behind.
-#include "tools/sweep/sweep_store.h"
+#include "tools/app/study/sweep/sweep_store.h"
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>

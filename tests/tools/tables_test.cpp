@@ -1,4 +1,4 @@
-#include "tools/run/tables.h"
+#include "tools/app/report/tables.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "tests/tools/example_run.h"
-#include "tools/run/summary.h"
-#include "tools/run/text_table.h"
+#include "tools/app/report/text_table.h"
+#include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,12 +1,12 @@
 // Closed-form alignment against known transforms and against a search for something better.
-#include "traces/alignment.h"
+#include "traces/trajectories/alignment.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/traces/test_folder.h"
-#include "traces/rng.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,5 +1,5 @@
 // open_asl: what a valid folder yields, and one test for each way a folder can be broken.
-#include "traces/asl_reader.h"
+#include "traces/datasets/asl_reader.h"
 
 #include <gtest/gtest.h>
 

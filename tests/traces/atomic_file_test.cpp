@@ -1,4 +1,4 @@
-#include "traces/atomic_file.h"
+#include "sim/base/atomic_file.h"
 
 #include <gtest/gtest.h>
 

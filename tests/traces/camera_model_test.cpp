@@ -1,11 +1,11 @@
-#include "traces/camera_model.h"
+#include "traces/datasets/camera_model.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/calib3d.hpp>
 
 #include "tests/traces/test_folder.h"
-#include "traces/euroc_models.h"
+#include "traces/datasets/euroc_models.h"
 
 namespace leviosim::traces {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
-#include "traces/evaluation.h"
-#include "traces/relative_error.h"
-#include "traces/rng.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/synthesis/rng.h"
+#include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/relative_error.h"
 
 namespace leviosim::traces {
 namespace {

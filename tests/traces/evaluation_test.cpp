@@ -1,12 +1,12 @@
-#include "traces/evaluation.h"
+#include "traces/trajectories/evaluation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
-#include "traces/rng.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,4 +1,4 @@
-#include "traces/frame_range.h"
+#include "traces/datasets/frame_range.h"
 
 #include <gtest/gtest.h>
 

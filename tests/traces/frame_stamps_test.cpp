@@ -1,4 +1,4 @@
-#include "traces/frame_stamps.h"
+#include "traces/datasets/frame_stamps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "traces/illumination.h"
+#include "traces/synthesis/illumination.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Pictures: the pixels that OpenCV reads, and an error as text for everything else.
-#include "traces/image_file.h"
+#include "traces/datasets/image_file.h"
 
 #include <gtest/gtest.h>
 #include <spng.h>

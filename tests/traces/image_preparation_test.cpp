@@ -1,12 +1,12 @@
 // Prepared images: which pixels they come from, and that they need no second preparation. What the
 // pixels must be is held by image_source_test.cpp.
-#include "traces/image_preparation.h"
+#include "traces/datasets/image_preparation.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/euroc_models.h"
-#include "traces/rng.h"
+#include "traces/datasets/euroc_models.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,5 +1,5 @@
 // Reading, undistorting and decimating, against OpenCV and the published numbers.
-#include "traces/image_source.h"
+#include "traces/datasets/image_source.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
-#include "traces/euroc_models.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/datasets/euroc_models.h"
 
 namespace leviosim::traces {
 namespace {

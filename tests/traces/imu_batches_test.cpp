@@ -1,9 +1,9 @@
-#include "traces/imu_batches.h"
+#include "traces/datasets/imu_batches.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
+#include "traces/datasets/asl_reader.h"
 
 namespace leviosim::traces {
 namespace {

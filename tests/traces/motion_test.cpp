@@ -1,11 +1,11 @@
-#include "traces/motion.h"
+#include "traces/synthesis/motion.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "traces/euroc_models.h"
-#include "traces/world.h"
+#include "traces/datasets/euroc_models.h"
+#include "traces/synthesis/world.h"
 
 namespace leviosim::traces {
 namespace {

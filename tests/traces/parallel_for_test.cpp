@@ -1,4 +1,4 @@
-#include "traces/parallel_for.h"
+#include "sim/base/parallel_for.h"
 
 #include <gtest/gtest.h>
 

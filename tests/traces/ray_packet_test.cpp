@@ -1,10 +1,10 @@
 // What a packet of rays meets is what each ray meets alone, and boxes project into their bounds.
-#include "traces/ray_packet.h"
+#include "traces/synthesis/ray_packet.h"
 
 #include <gtest/gtest.h>
 
-#include "traces/rng.h"
-#include "traces/screen_bounds.h"
+#include "traces/synthesis/rng.h"
+#include "traces/synthesis/screen_bounds.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,5 +1,5 @@
 // The motion behind sampled poses against the motion that was sampled.
-#include "traces/recorded_motion.h"
+#include "traces/synthesis/recorded_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 
 #include "tests/traces/imu_integration.h"
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
-#include "traces/rng.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

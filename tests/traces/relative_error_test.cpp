@@ -1,9 +1,9 @@
-#include "traces/relative_error.h"
+#include "traces/trajectories/relative_error.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
+#include "traces/datasets/asl_reader.h"
 
 namespace leviosim::traces {
 namespace {

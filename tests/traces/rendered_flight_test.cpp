@@ -1,6 +1,6 @@
 // Flights along recorded motion: what is copied, what is drawn, and that both kinds of images give
 // a pipeline the same. The recorded motion is that of AslFolder, with its camera of 32x24 pixels.
-#include "traces/rendered_flight.h"
+#include "traces/synthesis/rendered_flight.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <stdexcept>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
-#include "traces/hall.h"
-#include "traces/image_source.h"
-#include "traces/imu_batches.h"
-#include "traces/rng.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/datasets/image_source.h"
+#include "traces/datasets/imu_batches.h"
+#include "traces/synthesis/hall.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,13 +1,13 @@
 // Pictures against the camera model: what project() says must be where render() draws it.
-#include "traces/renderer.h"
+#include "traces/synthesis/renderer.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "traces/euroc_models.h"
-#include "traces/rng.h"
+#include "traces/datasets/euroc_models.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

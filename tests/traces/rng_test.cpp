@@ -1,4 +1,4 @@
-#include "traces/rng.h"
+#include "traces/synthesis/rng.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // sensor.yaml: exact round trip, and the message for each kind of fault.
-#include "traces/sensor_yaml.h"
+#include "traces/datasets/sensor_yaml.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/euroc_models.h"
+#include "traces/datasets/euroc_models.h"
 
 namespace leviosim::traces {
 namespace {

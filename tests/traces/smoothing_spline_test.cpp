@@ -1,10 +1,10 @@
-#include "traces/smoothing_spline.h"
+#include "traces/synthesis/smoothing_spline.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "traces/rng.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
+#include "traces/datasets/asl_reader.h"
 
 namespace leviosim::traces {
 namespace {

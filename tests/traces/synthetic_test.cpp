@@ -1,5 +1,5 @@
 // The synthetic flight as a folder: complete, reproducible, readable, and rich in corners.
-#include "traces/synthetic.h"
+#include "traces/synthesis/synthetic.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "tests/traces/test_folder.h"
-#include "traces/asl_reader.h"
-#include "traces/image_source.h"
-#include "traces/imu_batches.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/datasets/image_source.h"
+#include "traces/datasets/imu_batches.h"
 
 namespace leviosim::traces {
 namespace {

@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/error.h"
+#include "sim/base/atomic_file.h"
+#include "sim/base/csv.h"
+#include "sim/base/error.h"
 #include "tests/support/paths.h"
-#include "traces/asl_writer.h"
-#include "traces/atomic_file.h"
-#include "traces/csv.h"
+#include "traces/datasets/asl_writer.h"
 
 namespace leviosim::traces::testing {
 

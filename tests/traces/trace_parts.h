@@ -1,14 +1,14 @@
-// Work traces written byte by byte (traces/work_trace.md), with checksums that are right: what no
-// recording gives. Tests of what the reader refuses make them, small files that stand for much
-// among them.
+// Work traces written byte by byte (traces/work_traces/FORMAT.md), with checksums that are right:
+// what no recording gives. Tests of what the reader refuses make them, small files that stand for
+// much among them.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "traces/byte_stream.h"
-#include "traces/section_file.h"
-#include "traces/work_columns.h"
+#include "traces/work_traces/byte_stream.h"
+#include "traces/work_traces/section_file.h"
+#include "traces/work_traces/work_columns.h"
 
 namespace leviosim::traces::testing {
 

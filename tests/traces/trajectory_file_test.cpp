@@ -1,9 +1,9 @@
-#include "traces/trajectory_file.h"
+#include "traces/trajectories/trajectory_file.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/kitti.h"
+#include "traces/trajectories/kitti.h"
 
 namespace leviosim::traces {
 namespace {

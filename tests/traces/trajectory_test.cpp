@@ -1,9 +1,9 @@
-#include "traces/trajectory.h"
+#include "traces/trajectories/trajectory.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/rng.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,12 +1,12 @@
 // Series of counts come back as they were, whatever they are, and dependent counters cost nothing.
-#include "traces/work_columns.h"
+#include "traces/work_traces/work_columns.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "sim/error.h"
-#include "traces/rng.h"
+#include "sim/base/error.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

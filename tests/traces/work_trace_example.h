@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "traces/work_frames.h"
-#include "traces/work_trace.h"
+#include "traces/work_traces/work_frames.h"
+#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::traces::testing {
 

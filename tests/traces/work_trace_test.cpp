@@ -1,10 +1,10 @@
 // A work trace gives back what was recorded, and everything else is refused.
-#include "traces/work_trace.h"
+#include "traces/work_traces/work_trace.h"
 #include "tests/support/paths.h"
 
 #include "tests/traces/test_folder.h"
 #include "tests/traces/work_trace_example.h"
-#include "traces/rng.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

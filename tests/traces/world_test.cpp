@@ -1,8 +1,8 @@
-#include "traces/world.h"
+#include "traces/synthesis/world.h"
 
 #include <gtest/gtest.h>
 
-#include "traces/rng.h"
+#include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {

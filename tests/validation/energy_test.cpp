@@ -7,13 +7,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
 #include "sim/chip/chip.h"
 #include "sim/energy/model.h"
+#include "sim/soc/simulation.h"
 #include "tests/validation/energy_reference.h"
-#include "tools/run/energy.h"
-#include "tools/run/simulation.h"
-#include "traces/synthetic.h"
+#include "tools/app/result/energy.h"
+#include "traces/synthesis/synthetic.h"
 
 namespace leviosim::validation {
 namespace {

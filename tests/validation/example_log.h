@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/tools/example_run.h"
-#include "tools/validate/paper_stages.h"
+#include "tools/app/validation/paper_stages.h"
 
 namespace leviosim::tools::testing {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
+#include "sim/soc/simulation.h"
 #include "tests/traces/test_folder.h"
-#include "tools/flow/flow_source.h"
-#include "tools/flow/published.h"
-#include "tools/run/simulation.h"
+#include "tools/app/flow/flow_source.h"
+#include "tools/app/flow/published.h"
 
 namespace leviosim::tools {
 namespace {

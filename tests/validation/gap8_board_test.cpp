@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "platform_models/loader.h"
-#include "tools/microbench/board_kernels.h"
-#include "tools/microbench/report.h"
+#include "platform_models/loader/loader.h"
+#include "tools/app/validation/microbench/board_kernels.h"
+#include "tools/app/validation/microbench/report.h"
 
 namespace leviosim::tools {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
-#include "tools/run/run_request.h"
-#include "tools/run/summary.h"
+#include "tools/app/result/summary.h"
+#include "tools/app/run/run_request.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,10 +1,10 @@
 // The paper's tables against a run over real frames, with the tolerances and guards of paper.csv.
 #include <gtest/gtest.h>
 
-#include "platform_models/loader.h"
+#include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
-#include "tools/run/run_request.h"
-#include "tools/validate/validation.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,11 +1,11 @@
 // From frames to the figures that are compared: which frames an average is over, and how.
-#include "tools/validate/quantities.h"
+#include "tools/app/validation/quantities.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
 #include "tests/validation/example_log.h"
-#include "tools/validate/validation_report.h"
+#include "tools/app/validation/validation_report.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,5 +1,5 @@
 // Published figures as data: what the file may say, how errors are judged, how it is kept current.
-#include "tools/validate/references.h"
+#include "tools/app/validation/references.h"
 
 #include "tests/traces/test_folder.h"
 

@@ -1,9 +1,9 @@
-#include "workload/pipeline/back_end.h"
+#include "workload/vio/back_end.h"
 
 #include <gtest/gtest.h>
 
 #include "optimiser_scene.h"
-#include "workload/pipeline/profile.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::vio::test {
 namespace {

@@ -87,7 +87,8 @@ TEST(EssentialRansac, ExactMatchesAreAllInliersOfAnEssentialMatrixLikeOpenCvs) {
 TEST(EssentialRansac, OutliersAreLeftOut) {
   int kept_outliers = 0, outliers = 0, kept = 0, good = 0;
   for (std::uint64_t seed = 100; seed < 105; ++seed) {
-    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 120, .outliers = 0.3, .rounded = true});
+    const TwoViewScene scene =
+        make_two_view_scene(seed, {.matches = 120, .outliers = 0.3, .rounded = true});
     const Outcome outcome = run<Native>(scene, {});
     ASSERT_TRUE(outcome.ok);
     EXPECT_EQ(marked(outcome), outcome.inliers);
@@ -102,7 +103,8 @@ TEST(EssentialRansac, OutliersAreLeftOut) {
 }
 
 TEST(EssentialRansac, ResultDoesNotDependOnTheNumberOfCores) {
-  const TwoViewScene scene = make_two_view_scene(5, {.matches = 77, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene =
+      make_two_view_scene(5, {.matches = 77, .outliers = 0.3, .rounded = true});
   const Outcome eight = run<Native>(scene, brief(), {.cores = 8});
   ASSERT_TRUE(eight.ok);
   EXPECT_EQ(run<Native>(scene, brief(), {.cores = 1}), eight);
@@ -111,13 +113,15 @@ TEST(EssentialRansac, ResultDoesNotDependOnTheNumberOfCores) {
 
 TEST(EssentialRansac, CountingComputesTheSameBits) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 61, .outliers = 0.3, .rounded = true});
+    const TwoViewScene scene =
+        make_two_view_scene(seed, {.matches = 61, .outliers = 0.3, .rounded = true});
     EXPECT_EQ(run<Counting>(scene, brief()), run<Native>(scene, brief()));
   }
 }
 
 TEST(EssentialRansac, MoreIterationsNeverFindFewerInliers) {
-  const TwoViewScene scene = make_two_view_scene(5, {.matches = 100, .outliers = 0.4, .rounded = true});
+  const TwoViewScene scene =
+      make_two_view_scene(5, {.matches = 100, .outliers = 0.4, .rounded = true});
   int before = 0;
   for (int iterations : {8, 24, 96, 384}) {
     EssentialOptions options;
@@ -129,7 +133,8 @@ TEST(EssentialRansac, MoreIterationsNeverFindFewerInliers) {
 }
 
 TEST(EssentialRansac, BatchSizeChangesOnlyWhenTheMasterDecides) {
-  const TwoViewScene scene = make_two_view_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene =
+      make_two_view_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
   EssentialOptions options = brief();
   const Outcome expected = run<Native>(scene, options);
   for (int batch : {1, 5, 64, 100}) {
@@ -139,7 +144,8 @@ TEST(EssentialRansac, BatchSizeChangesOnlyWhenTheMasterDecides) {
 }
 
 TEST(EssentialRansac, SeedChangesTheSamples) {
-  const TwoViewScene scene = make_two_view_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene =
+      make_two_view_scene(5, {.matches = 50, .outliers = 0.3, .rounded = true});
   EssentialOptions options = brief();
   const Outcome first = run<Native>(scene, options);
   options.seed = 77;
@@ -198,7 +204,8 @@ TEST(EssentialRansac, EveryBatchForksForHypothesesAndForScores) {
 }
 
 TEST(EssentialRansac, PackedMemoryStraddlesWordsButGivesTheSameResult) {
-  const TwoViewScene scene = make_two_view_scene(5, {.matches = 51, .outliers = 0.3, .rounded = true});
+  const TwoViewScene scene =
+      make_two_view_scene(5, {.matches = 51, .outliers = 0.3, .rounded = true});
   const Outcome packed = run<Counting>(scene, brief(), {.alignment = 1, .record = true});
   const Outcome aligned = run<Counting>(scene, brief(), {.alignment = 4, .record = true});
   EXPECT_EQ(packed, aligned);

@@ -6,7 +6,7 @@
 
 #include "tests/workload/preintegration_motion.h"
 #include "tests/workload/vision_runs.h"
-#include "workload/pipeline/front_end.h"
+#include "workload/vio/front_end.h"
 
 namespace leviosim::vio::test {
 

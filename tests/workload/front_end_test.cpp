@@ -1,5 +1,5 @@
 // The front end alone: one frame after the other, its graph open to view.
-#include "workload/pipeline/front_end.h"
+#include "workload/vio/front_end.h"
 
 #include <gtest/gtest.h>
 

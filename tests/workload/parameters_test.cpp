@@ -1,5 +1,5 @@
 // Parameters by name: each reaches a field of its own, with a default within its range.
-#include "workload/pipeline/parameters.h"
+#include "workload/vio/parameters.h"
 
 #include <gtest/gtest.h>
 

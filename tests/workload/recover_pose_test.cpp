@@ -22,8 +22,8 @@ std::vector<typename P::Byte> to_mask(const std::vector<int>& inliers) {
 }
 
 template <class P>
-TwoViewPose<P> run(const TwoViewScene& scene, const Eigen::Matrix3d& E, const std::vector<int>& inliers,
-                   int cores = 8) {
+TwoViewPose<P> run(const TwoViewScene& scene, const Eigen::Matrix3d& E,
+                   const std::vector<int>& inliers, int cores = 8) {
   const MatchStorage<P> matches(scene);
   const std::vector<typename P::Byte> mask = to_mask<P>(inliers);
   work::Machine machine({.cores = cores});
@@ -106,7 +106,8 @@ TEST(RecoverPose, LeavesOutWhatTheMaskLeavesOut) {
 }
 
 TEST(RecoverPose, ResultDoesNotDependOnTheNumberOfCores) {
-  const TwoViewScene scene = make_two_view_scene(3, {.matches = 41, .outliers = 0.2, .rounded = true});
+  const TwoViewScene scene =
+      make_two_view_scene(3, {.matches = 41, .outliers = 0.2, .rounded = true});
   const auto eight = run<Native>(scene, scene.essential(), {}, 8);
   for (int cores : {1, 3}) {
     const auto other = run<Native>(scene, scene.essential(), {}, cores);
@@ -118,7 +119,8 @@ TEST(RecoverPose, ResultDoesNotDependOnTheNumberOfCores) {
 
 TEST(RecoverPose, CountingComputesTheSameBits) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 41, .outliers = 0.2, .rounded = true});
+    const TwoViewScene scene =
+        make_two_view_scene(seed, {.matches = 41, .outliers = 0.2, .rounded = true});
     const auto native = run<Native>(scene, scene.essential(), {});
     const auto counted = run<Counting>(scene, scene.essential(), {});
     EXPECT_EQ(native.in_front, counted.in_front);
@@ -130,7 +132,8 @@ TEST(RecoverPose, CountingComputesTheSameBits) {
 TEST(RecoverPose, RansacAndRecoveryFindTheMotionAmongOutliers) {
   std::vector<double> rotation_errors, direction_errors;
   for (std::uint64_t seed = 0; seed < 11; ++seed) {
-    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 150, .outliers = 0.3, .rounded = true});
+    const TwoViewScene scene =
+        make_two_view_scene(seed, {.matches = 150, .outliers = 0.3, .rounded = true});
     const MatchStorage<Native> matches(scene);
     std::vector<std::uint8_t> mask(150);
     work::Machine machine({});
@@ -164,7 +167,8 @@ TEST(RecoverPose, DegenerateInputGivesFinitePoses) {
   for (auto& x : scene.seen_a) x = scene.seen_a[0];
   for (auto& x : scene.seen_b) x = scene.seen_b[0];
   expect_finite(scene, cross_matrix({0, 1, 0}));  // all matches identical
-  const auto empty = run<Native>(make_two_view_scene(1, {.matches = 0}), cross_matrix({1, 0, 0}), {});
+  const auto empty =
+      run<Native>(make_two_view_scene(1, {.matches = 0}), cross_matrix({1, 0, 0}), {});
   EXPECT_FALSE(empty.ok);
 }
 

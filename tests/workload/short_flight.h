@@ -11,15 +11,15 @@
 #include <memory>
 #include <vector>
 
-#include "traces/camera_model.h"
-#include "traces/euroc_models.h"
-#include "traces/evaluation.h"
-#include "traces/image_preparation.h"
-#include "traces/imu_synthesis.h"
-#include "traces/motion.h"
-#include "traces/renderer.h"
-#include "traces/world.h"
-#include "workload/pipeline/odometry.h"
+#include "traces/datasets/camera_model.h"
+#include "traces/datasets/euroc_models.h"
+#include "traces/datasets/image_preparation.h"
+#include "traces/synthesis/imu_synthesis.h"
+#include "traces/synthesis/motion.h"
+#include "traces/synthesis/renderer.h"
+#include "traces/synthesis/world.h"
+#include "traces/trajectories/evaluation.h"
+#include "workload/vio/odometry.h"
 
 namespace leviosim::vio::test {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 #include "tests/workload/vision_runs.h"
 #include "workload/vision/strip_extractor.h"
 

@@ -7,10 +7,10 @@
 #include <iostream>
 #include <vector>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 #include "tests/workload/optimiser_scene.h"
 #include "tests/workload/two_view_scene.h"
-#include "tools/run/feed.h"
+#include "tools/app/run/feed.h"
 
 namespace leviosim::rv32 {
 namespace {

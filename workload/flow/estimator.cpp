@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 #include "workload/flow/block_matching.h"
 #include "workload/flow/vote.h"
 #include "workload/vision/slices.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 #include "workload/geometry/random.h"
 
 namespace leviosim::vio {

@@ -1,6 +1,6 @@
 #include "workload/geometry/pnp_ransac.h"
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 #include "workload/geometry/camera_matrix.h"
 #include "workload/geometry/random.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 #include "sim/work/machine.h"
 #include "workload/inertial/preintegration.h"
 

@@ -1,5 +1,5 @@
-// Small vectors and rotation matrices as *register values*: their components are plain scalars of the
-// policy, so reading them counts no load, but products of two matrices load and store. Anything
+// Small vectors and rotation matrices as *register values*: their components are plain scalars of
+// the policy, so reading them counts no load, but products of two matrices load and store. Anything
 // larger than a 3×3 lives in memory (matrix.h).
 #pragma once
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "sim/check.h"
-#include "sim/error.h"
+#include "sim/base/check.h"
+#include "sim/base/error.h"
 #include "workload/vision/extraction_steps.h"
 
 namespace leviosim::vio {

@@ -1,6 +1,6 @@
 #include "workload/vision/guided_matcher.h"
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 
 namespace leviosim::vio {
 namespace {

@@ -1,6 +1,6 @@
 #include "workload/vision/matcher.h"
 
-#include "sim/check.h"
+#include "sim/base/check.h"
 #include "workload/vision/slices.h"
 
 namespace leviosim::vio {

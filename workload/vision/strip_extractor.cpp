@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/check.h"
-#include "sim/error.h"
+#include "sim/base/check.h"
+#include "sim/base/error.h"
 #include "workload/vision/extraction_steps.h"
 #include "workload/vision/strips.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/error.h"
 #include "sim/base/output_request.h"
-#include "sim/error.h"
 
 namespace leviosim::base {
 

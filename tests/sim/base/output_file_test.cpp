@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/base/error.h"
 #include "sim/base/held_record.h"
-#include "sim/error.h"
 #include "tests/sim/base/output_claims.h"
 #include "tests/support/scratch.h"
 

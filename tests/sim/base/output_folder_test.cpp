@@ -7,7 +7,7 @@
 #include <csignal>
 #include <functional>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 #include "tests/sim/base/output_claims.h"
 #include "tests/support/scratch.h"
 

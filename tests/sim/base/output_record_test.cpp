@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/error.h"
+#include "sim/base/error.h"
 #include "tests/support/scratch.h"
 
 namespace leviosim::base {

@@ -1,0 +1,95 @@
+#include "platform_models/loader/compiled_code.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "platform_models/loader/builtin.h"
+#include "sim/base/error.h"
+
+namespace leviosim::platform {
+namespace {
+
+constexpr double kLineBytes = 16;
+constexpr std::string_view kHeader = "function,after,lines,visits,refetches";
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = line.find(',', begin);
+    cells.push_back(line.substr(begin, end - begin));
+    if (end == std::string_view::npos) return cells;
+    begin = end + 1;
+  }
+}
+
+/// Lines of code as bytes.
+std::uint32_t bytes_in(std::string_view cell, const std::string& where) {
+  const std::string text(cell);
+  char* end = nullptr;
+  const double lines = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(lines >= 0 && lines < 1e6))
+    throw InputError(
+        fmt::format("{}: \"{}\": expected a number of 16-byte lines, 0 or more", where, text));
+  return static_cast<std::uint32_t>(std::lround(lines * kLineBytes));
+}
+
+class Reader {
+ public:
+  explicit Reader(std::string file) : file_(std::move(file)) {}
+
+  void read(std::string_view line) {
+    ++line_;
+    if (line.empty() || line.front() == '#') return;
+    const std::string where = fmt::format("{}:{}", file_, line_);
+    if (header_)
+      add(split(line), where);
+    else if (line != kHeader)
+      throw InputError(fmt::format("{}: expected the header {}", where, kHeader));
+    header_ = true;
+  }
+  work::CodeMap take() { return std::move(map_); }
+
+ private:
+  void add(const std::vector<std::string_view>& cells, const std::string& where) {
+    if (cells.size() != 5 || cells[0].empty())
+      throw InputError(fmt::format("{}: expected a row of {}", where, kHeader));
+    if (!seen_.insert({cells[0], cells[1]}).second)
+      throw InputError(
+          fmt::format("{}: {} after \"{}\" is there twice", where, cells[0], cells[1]));
+    map_.add(cells[0], cells[1], bytes_in(cells[2], where), bytes_in(cells[4], where));
+  }
+
+  std::string file_;
+  work::CodeMap map_;
+  std::set<std::pair<std::string_view, std::string_view>> seen_;
+  bool header_ = false;
+  int line_ = 0;
+};
+
+}  // namespace
+
+work::CodeMap code_map_from(const std::string& file, std::string_view text) {
+  Reader reader(file);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    reader.read(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return reader.take();
+}
+
+const work::CodeMap& compiled_code() {
+  static const work::CodeMap map = [] {
+    const BuiltinFile& file = builtin_code().front();
+    return code_map_from(std::string(file.name) + ".csv", file.text);
+  }();
+  return map;
+}
+
+}  // namespace leviosim::platform

@@ -1,0 +1,110 @@
+#include "platform_models/loader/platform_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "platform_models/loader/builtin.h"
+#include "platform_models/loader/configure.h"
+#include "platform_models/loader/instruction_set.h"
+#include "platform_models/loader/override.h"
+#include "platform_models/loader/rules.h"
+#include "platform_models/loader/value.h"
+#include "sim/base/check.h"
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "sim/base/nearest.h"
+
+namespace leviosim::platform {
+namespace {
+
+[[noreturn]] void unknown_platform(const std::string& name) {
+  const std::vector<std::string> names = platform_names();
+  throw InputError(
+      fmt::format("unknown platform '{}'{} (built in: {}; a file is given by a path that contains "
+                  "'/' or ends in .yaml)",
+                  name, did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
+/// Without the sources of rows that others replaced.
+std::vector<std::pair<std::string, std::string>> cited_only(
+    const std::map<std::string, std::string>& sources, const std::vector<Parameter>& parameters) {
+  std::vector<std::pair<std::string, std::string>> kept;
+  for (const auto& source : sources)
+    if (std::any_of(parameters.begin(), parameters.end(), [&](const Parameter& parameter) {
+          return parameter.source.find(source.first) != std::string::npos;
+        }))
+      kept.emplace_back(source);
+  return kept;
+}
+
+}  // namespace
+
+PlatformFile PlatformFile::named(const std::string& name_or_path) {
+  if (is_path(name_or_path))
+    return {name_or_path, base::read_file(name_or_path, base::InputKind::platform)};
+  for (const BuiltinFile& platform : builtin_platforms())
+    if (platform.name == name_or_path)
+      return {fmt::format("{}.yaml", platform.name), std::string(platform.text)};
+  unknown_platform(name_or_path);
+}
+
+const Document& PlatformFile::document(const std::optional<BaseOverride>& base) {
+  const std::string key = base ? base->base : std::string();
+  const auto known = documents_.find(key);
+  if (known != documents_.end()) return known->second;
+  return documents_.emplace(key, read_document(schema_, file_, text_, base)).first->second;
+}
+
+ResolvedPlatform PlatformFile::resolve(const std::vector<std::string>& overrides) {
+  const Document& read = document(split_overrides(overrides).base);
+  const Settings settings = settings_with(overrides);
+  ResolvedPlatform platform;
+  platform.config = configure(schema_, read.name, settings);
+  check_rules(schema_, settings, platform.config);
+  platform.name = read.name;
+  platform.description = read.description;
+  for (const auto& setting : settings)
+    if (setting) platform.parameters.push_back(setting->parameter);
+  std::map<std::string, std::string> sources = read.sources;
+  if (!overrides.empty()) sources[kOverrideKey] = kOverrideMeaning;
+  platform.sources = cited_only(sources, platform.parameters);
+  return platform;
+}
+
+Settings PlatformFile::settings_with(const std::vector<std::string>& overrides) {
+  const SplitOverrides split = split_overrides(overrides);
+  Settings settings = document(split.base).settings;
+  for (const std::string& override : split.parameters) apply_override(schema_, settings, override);
+  return settings;
+}
+
+const Parameter* PlatformFile::find(const std::string& path) {
+  const std::size_t index = schema_.find(path);
+  if (index == Schema::kNone) return nullptr;
+  const std::optional<Setting>& setting = document({}).settings[index];
+  return setting ? &setting->parameter : nullptr;
+}
+
+std::vector<CanonicalLine> canonical_lines(const Schema& schema, const ResolvedPlatform& platform) {
+  std::vector<CanonicalLine> lines{{"", fmt::format("chip {}\n", platform.name)}};
+  for (const Parameter& parameter : platform.parameters) {
+    const std::size_t index = schema.find(parameter.path);
+    check(index != Schema::kNone, "a resolved parameter is not in the schema");
+    const Field& field = schema.fields()[index];
+    const Setting setting =
+        read_value(field, parameter.value, parameter.unit, Place{parameter.path});
+    std::string text = fmt::format("{} {}", parameter.path, number_text(setting.base));
+    if (field.set_band && parameter.range) {
+      const double factor = field.dimension->find(parameter.unit)->factor;
+      text += fmt::format(" {} {}", number_text(parameter.range->low * factor),
+                          number_text(parameter.range->high * factor));
+    }
+    lines.push_back({parameter.path, text + '\n'});
+  }
+  return lines;
+}
+
+}  // namespace leviosim::platform

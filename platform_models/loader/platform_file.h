@@ -1,0 +1,54 @@
+// A platform file that is read once and resolved with many sets of overrides: sweeps ask for
+// thousands of variants of one chip.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "platform_models/loader/document.h"
+#include "platform_models/loader/loader.h"
+#include "platform_models/loader/schema.h"
+
+namespace leviosim::platform {
+
+class PlatformFile {
+ public:
+  /// @param name_or_path  as resolve_platform() takes it
+  static PlatformFile named(const std::string& name_or_path);
+  /// @param file  its name for messages
+  PlatformFile(std::string file, std::string text)
+      : file_(std::move(file)), text_(std::move(text)) {}
+
+  /// @throws InputError as resolve_platform() does
+  ResolvedPlatform resolve(const std::vector<std::string>& overrides);
+
+  /// The parameters with overrides, before the rules between them are checked.
+  Settings settings_with(const std::vector<std::string>& overrides);
+
+  /// The same parameter by its path; nullptr if the file does not give it.
+  const Parameter* find(const std::string& path);
+
+  const Schema& schema() const { return schema_; }
+
+ private:
+  /// As read with the instruction set that an override names, "" for the file's own.
+  const Document& document(const std::optional<BaseOverride>& base);
+
+  std::string file_;
+  std::string text_;
+  Schema schema_;
+  std::map<std::string, Document> documents_;
+};
+
+struct CanonicalLine {
+  std::string path;  ///< of the parameter; empty in the first line, the name of the chip
+  std::string text;  ///< "cluster.clock 240000000\n"
+};
+
+/// What the chip is, whatever its file looks like: a line per parameter in base units. Ends of a
+/// range count where the chip depends on them (Field::set_band). Platforms of the same lines time
+/// and price work alike.
+std::vector<CanonicalLine> canonical_lines(const Schema& schema, const ResolvedPlatform& platform);
+
+}  // namespace leviosim::platform

@@ -1,0 +1,99 @@
+#include "platform_models/loader/supply_rules.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+#include "platform_models/loader/energy_fields.h"
+#include "platform_models/loader/rules.h"
+#include "sim/base/error.h"
+#include "sim/energy/operating_point.h"
+
+namespace leviosim::platform {
+namespace {
+
+std::string megahertz(Hertz clock) {
+  return fmt::format("{:g} MHz", static_cast<double>(clock.count()) * 1e-6);
+}
+
+std::string volts(Volts voltage) { return fmt::format("{:g} V", voltage.count()); }
+
+class SupplyRules {
+ public:
+  SupplyRules(const Schema& schema, const Settings& settings, const sim::SupplyConfig& supply)
+      : schema_(schema), settings_(settings), supply_(supply) {}
+
+  void all_or_none() const {
+    const Setting* given = nullptr;
+    const Field* missing = nullptr;
+    for (std::size_t i = 0; i < schema_.fields().size(); ++i) {
+      const Field& field = schema_.fields()[i];
+      if (!is_about_energy(field)) continue;
+      if (settings_[i])
+        given = &*settings_[i];
+      else if (missing == nullptr)
+        missing = &field;
+    }
+    if (given != nullptr && missing != nullptr)
+      throw InputError(
+          fmt::format("{}, but {} is missing ({}): expected the sections supply and energy in "
+                      "full, or neither",
+                      state(*given), missing->path, missing->description));
+  }
+
+  void points_in_order() const {
+    if (supply_.lowest.voltage > supply_.highest.voltage)
+      contradict("supply.lowest.voltage", "supply.highest.voltage", "no more than that");
+    if (supply_.lowest.clock > supply_.highest.clock)
+      contradict("supply.lowest.clock", "supply.highest.clock", "no more than that");
+  }
+
+  void voltage_exists() const {
+    if (sim::can_supply(supply_, supply_.voltage)) return;
+    throw InputError(fmt::format("{}: expected {} to {} in steps of {}", of("supply.voltage"),
+                                 volts(supply_.lowest.voltage), volts(supply_.highest.voltage),
+                                 volts(supply_.step)));
+  }
+
+  void reaches(std::string_view path, Hertz clock) const {
+    const Hertz limit = sim::highest_clock(supply_, supply_.voltage);
+    if (clock <= limit) return;
+    const auto voltage = sim::lowest_voltage(supply_, clock);
+    contradict(path, "supply.voltage",
+               fmt::format("at most {}; {}", megahertz(limit),
+                           voltage ? fmt::format("{} needs supply.voltage={}", megahertz(clock),
+                                                 volts(*voltage))
+                                   : fmt::format("no voltage allows more than {}",
+                                                 megahertz(supply_.highest.clock))));
+  }
+
+ private:
+  std::string of(std::string_view path) const { return state(*settings_[schema_.find(path)]); }
+
+  [[noreturn]] void contradict(std::string_view a, std::string_view b,
+                               std::string_view expected) const {
+    throw InputError(fmt::format("{}, but {}: expected {}", of(a), of(b), expected));
+  }
+
+  const Schema& schema_;
+  const Settings& settings_;
+  const sim::SupplyConfig& supply_;
+};
+
+}  // namespace
+
+void check_energy_is_whole(const Schema& schema, const Settings& settings) {
+  SupplyRules(schema, settings, {}).all_or_none();
+}
+
+void check_supply(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip) {
+  if (!settings[schema.find("supply.voltage")]) return;
+  const SupplyRules rules(schema, settings, chip.supply);
+  rules.points_in_order();
+  rules.voltage_exists();
+  rules.reaches("cluster.clock", chip.cluster.clock);
+  rules.reaches("controller.clock", chip.controller.clock);
+}
+
+}  // namespace leviosim::platform

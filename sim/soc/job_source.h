@@ -1,0 +1,56 @@
+// Where the work of a run comes from: the workload that computes it now (live_source.h), or a trace
+// of an earlier run (replay/trace_source.h). The simulation asks for it in the order of simulated
+// time, so a live source sees the data that a chip of that speed would have seen.
+//
+//   take_up(frame)      the front end begins a frame; an optimisation may begin with it
+//   process_frame()     what the front end does with it
+//   optimise()          the iterations of that optimisation, maybe during later frames
+//   publish()           it has ended: what it found is visible to frames taken up from now on
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/work/program.h"
+#include "tools/app/result/run_result.h"
+
+namespace leviosim::tools {
+
+/// A frame is taken up.
+struct FrameStart {
+  int frame = 0;              ///< number in the run, from 0
+  std::int64_t start_ns = 0;  ///< simulated time
+  bool optimiser_busy = false;
+  /// The frame with which the optimisation began whose result was published last; -1: none yet.
+  int seen = -1;
+};
+
+class JobSource {
+ public:
+  virtual ~JobSource() = default;
+
+  virtual int frames() const = 0;
+  /// Time stamp of the camera.
+  virtual std::int64_t time_ns(int frame) const = 0;
+  /// When the camera delivers it: simulated time since the first.
+  virtual std::int64_t arrival_ns(int frame) const { return time_ns(frame) - time_ns(0); }
+
+  /// Numbers rise; frames that the camera dropped are left out.
+  /// @returns whether an optimisation begins; never while the optimiser is busy
+  virtual bool take_up(const FrameStart& start) = 0;
+  /// Of the frame taken up. Its work is valid until the next frame is; `result` lacks times.
+  virtual const work::Job& process_frame(FrameResult& result) = 0;
+
+  /// How many iterations the optimisation that began last has.
+  virtual int iterations() const = 0;
+  /// The next of them. Valid until the one after.
+  virtual const work::Job& optimise() = 0;
+  virtual void publish() = 0;
+
+  /// Names and units of the stages.
+  virtual std::vector<StageResult> empty_stages() const = 0;
+  /// Fills in what does not depend on timing, from frames that have been processed.
+  virtual void describe(RunResult& result) const = 0;
+};
+
+}  // namespace leviosim::tools

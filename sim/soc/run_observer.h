@@ -1,0 +1,40 @@
+// Looks on while a run happens: sees every job that a chip was given, with the frame it belongs to
+// and how long it took, in the order in which the jobs ended in simulated time. What an observer
+// needs to re-time the run elsewhere is in the jobs; native runs have none.
+//
+// The observer cannot change anything. References are valid during the call; a copied job stays
+// valid as long as the program or, in a replay, as the trace: the names in it are literals of the
+// workload, or the trace's.
+#pragma once
+
+#include "tools/app/result/run_result.h"
+
+namespace leviosim::tools {
+
+/// A frame has passed the front end.
+struct FrontEndJob {
+  int frame = 0;                    ///< number in the run, from 0
+  bool optimisation_begun = false;  ///< its start took the snapshot of an optimisation
+  const FrameResult& result;
+  const work::Job& job;
+  const sim::JobTiming& parallel;  ///< on the run's cores
+  const sim::JobTiming& single;    ///< on one core
+};
+
+/// The controller has finished an iteration of an optimisation.
+struct OptimiserJob {
+  int frame = 0;      ///< number of the frame at whose start the snapshot was taken
+  int iteration = 0;  ///< from 0
+  bool last = false;  ///< what the iterations found is published now
+  const work::Job& job;
+  const sim::JobTiming& timing;
+};
+
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void on_front_end(const FrontEndJob&) {}
+  virtual void on_optimiser(const OptimiserJob&) {}
+};
+
+}  // namespace leviosim::tools

@@ -1,0 +1,61 @@
+#include "sim/soc/stage_book.h"
+
+#include <algorithm>
+
+#include "sim/chip/accelerator.h"
+
+namespace leviosim::tools {
+
+StageResult& StageBook::find(std::string_view name) {
+  const auto it = std::find_if(stages_.begin(), stages_.end(),
+                               [&](const StageResult& s) { return s.name == name; });
+  if (it != stages_.end()) return *it;
+  StageResult stage;
+  stage.name = name;
+  return stages_.emplace_back(std::move(stage));
+}
+
+void StageBook::add_work(const work::Job& job) {
+  for (const work::StageRun& run : job.stages) {
+    StageResult& stage = find(run.stage);
+    ++stage.calls;
+    add_pieces(run, stage);
+    stage.transfers += work::transferred_by(run);
+    stage.memory.single = std::max(stage.memory.single, run.memory.single);
+    if (run.memory.parallel > stage.memory.parallel) {
+      stage.memory.parallel = run.memory.parallel;
+      stage.memory.blocks = run.memory.blocks;
+    }
+  }
+}
+
+void StageBook::add_pieces(const work::StageRun& run, StageResult& stage) const {
+  const sim::Accelerators& accelerators = stage.on_controller ? controller_ : cluster_;
+  if (!sim::has_accelerators(accelerators)) {
+    stage.counts += work::counts_of(run);
+    return;
+  }
+  work::Piece piece = work::pieces_of(run);
+  stage.counts += sim::left_to_core(piece, accelerators);
+  std::erase_if(piece.kernels, [&](const work::KernelWork& calls) {
+    return accelerators[work::index(calls.kernel)].units == 0;
+  });
+  work::Piece sum({}, std::move(stage.served));
+  sum += work::Piece({}, std::move(piece.kernels));
+  stage.served = std::move(sum.kernels);
+}
+
+void StageBook::add_parallel(const sim::JobTiming& timing) {
+  for (const sim::StageTiming& run : timing.stages) {
+    StageResult& stage = find(run.stage);
+    stage.parallel += run.cycles;
+    stage.worst_parallel = std::max(stage.worst_parallel, run.cycles);
+    stage.account += run.account;
+  }
+}
+
+void StageBook::add_single(const sim::JobTiming& timing) {
+  for (const sim::StageTiming& run : timing.stages) find(run.stage).single += run.cycles;
+}
+
+}  // namespace leviosim::tools

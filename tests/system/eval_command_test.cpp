@@ -1,0 +1,249 @@
+// `leviosim eval` as users meet it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/support/run_program.h"
+#include "tests/tools/well_formed.h"
+#include "tools/app/evaluation/eval_options.h"
+#include "tools/app/report/statistic_list.h"
+#include "traces/synthesis/synthetic.h"
+#include "traces/trajectories/trajectory.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::expect_refused;
+using testing::ProgramResult;
+using testing::run_program;
+using traces::read_text_file;
+using traces::Trajectory;
+using traces::write_file_atomically;
+using traces::testing::TempFolder;
+
+/// A spiral of 10 s and about 12 m, 20 poses a second; `error` bends it. [m]
+Trajectory spiral(double error, std::int64_t start_ns = 5'000'000'000) {
+  Trajectory trajectory;
+  for (std::int64_t i = 0; i <= 200; ++i) {
+    const double s = 0.05 * static_cast<double>(i);
+    trajectory.push_back(
+        {start_ns + i * 50'000'000, Eigen::Translation3d(std::cos(s) + error * s, std::sin(s),
+                                                         0.6 * s + error * std::sin(2 * s)) *
+                                        Eigen::AngleAxisd(s, Eigen::Vector3d::UnitZ())});
+  }
+  return trajectory;
+}
+
+class EvalCommand : public ::testing::Test {
+ protected:
+  EvalCommand() {
+    traces::write_tum(folder_ / "est.tum", spiral(0.02));
+    traces::write_tum(folder_ / "gt.tum", spiral(0));
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  ProgramResult eval(std::vector<std::string> further) {
+    std::vector<std::string> words{"eval", path("est.tum"), path("gt.tum")};
+    words.insert(words.end(), further.begin(), further.end());
+    return run_program(folder_.path(), words);
+  }
+  void expect_files_refused(const std::string& est, const std::string& gt,
+                            const std::vector<std::string>& parts) {
+    expect_refused(run_program(folder_.path(), {"eval", path(est), path(gt)}), parts);
+  }
+
+  TempFolder folder_;
+};
+
+void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in:\n" << text;
+}
+
+/// The statistics of a file by their names.
+std::map<std::string, Json> statistics_in(const fs::path& file) {
+  std::map<std::string, Json> values;
+  const Json document = Json::parse(read_text_file(file));
+  for (const Json& entry : document.at("statistics"))
+    values[entry.at("name").get<std::string>()] = entry;
+  return values;
+}
+
+TEST_F(EvalCommand, PrintsFiguresWithTheirProtocol) {
+  const ProgramResult result = eval({"--relative", "2", "--relative", "5"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  expect_parts(
+      result.out,
+      {"est.tum (TUM, 201 poses)", "gt.tum (TUM, 201 poses)", "ATE: 0.0",
+       "\n     SE3-aligned, 201 of 201 poses matched with interpolated truth (a sample "
+       "within 10 ms), completion 100.0 % (10.00 s of truth, longest gap 0.05 s), 11.66 m "
+       "of path\n",
+       "   2 m     166", "   5 m     115",
+       "\n  from every matched pose to the first that is the length farther along the true "
+       "path; SE3-aligned, 201 of 201"});
+}
+
+TEST_F(EvalCommand, SaysWhichLengthsAreTooLong) {
+  expect_parts(eval({}).out, {"no relative errors over 40 m: too long for 11.66 m of path"});
+  const std::string out = eval({"--relative", "50", "--relative", "3", "--relative", "12"}).out;
+  expect_parts(out, {"no relative errors over 12 m, 50 m: too long", "   3 m"});
+}
+
+TEST_F(EvalCommand, TakesOtherProtocols) {
+  expect_parts(eval({"--align", "none"}).out, {"not aligned, 201 of"});
+  expect_parts(eval({"--align", "posyaw"}).out, {"PosYaw-aligned"});
+  expect_parts(eval({"--align", "sim3"}).out, {"Sim3-aligned", "scale of the estimate: times "});
+  expect_parts(eval({"--max-dt", "0.002s"}).out, {"a sample within 2 ms"});
+  expect_parts(eval({"--max-dt", "3"}).out, {"a sample within 3 ms"});
+  expect_parts(eval({"--expected", "402"}).out, {"completion 50.0 % (402 expected poses)"});
+}
+
+TEST_F(EvalCommand, WritesTheFiguresItPrints) {
+  const ProgramResult result =
+      eval({"--relative", "2", "--relative", "99", "--json", path("e.json")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  std::map<std::string, Json> found = statistics_in(folder_ / "e.json");
+  const auto value = [&](const char* name) { return found.at(name).at("value").get<double>(); };
+  expect_parts(result.out,
+               {fmt::format("ATE: {:.3f} m RMSE", value("accuracy.ate.rmse")),
+                fmt::format("rotation {:.2f}° RMSE", value("accuracy.rotation.rmse")),
+                fmt::format("{:.3f}", value("accuracy.relative.2m.translation.rmse")),
+                found.at("accuracy.ate.rmse").at("protocol").get<std::string>(),
+                found.at("accuracy.relative.2m.count").at("protocol").get<std::string>()});
+  EXPECT_EQ(value("accuracy.relative.2m.count"), 166);
+  EXPECT_EQ(value("accuracy.matched"), 201);
+  EXPECT_EQ(value("accuracy.longest_gap"), 0.05);
+  EXPECT_EQ(value("accuracy.relative.99m.count"), 0);
+  EXPECT_TRUE(found.at("accuracy.relative.99m.translation.mean").at("value").is_null());
+  const Json document = Json::parse(read_text_file(folder_ / "e.json"));
+  EXPECT_EQ(document.at("protocol").at("alignment"), "SE3");
+  EXPECT_EQ(document.at("protocol").at("max_dt_ms"), 10);
+  EXPECT_EQ(document.at("estimate").at("format"), "TUM");
+}
+
+TEST_F(EvalCommand, DrawsTheSamePictureAgain) {
+  for (const char* name : {"a.svg", "b.svg"}) EXPECT_EQ(eval({"--plot", path(name)}).status, 0);
+  const std::string picture = read_text_file(folder_ / "a.svg");
+  EXPECT_EQ(picture, read_text_file(folder_ / "b.svg"));
+  EXPECT_EQ(testing::xml_fault(picture), "");
+  expect_parts(picture, {"x [m]", "y [m]", "z [m]", "[deg]", "ground truth", ">start<",
+                         "SE3-aligned, 201 of 201", "time since the first matched pose [s]"});
+}
+
+TEST_F(EvalCommand, NamesOfFilesMayHoldAnything) {
+  const fs::path odd = folder_ / "a <b> & \"c\" \xff.tum";
+  fs::copy_file(folder_ / "est.tum", odd);
+  const ProgramResult result = run_program(
+      folder_.path(),
+      {"eval", odd.string(), path("gt.tum"), "--plot", path("o.svg"), "--json", path("o.json")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const std::string picture = read_text_file(folder_ / "o.svg");
+  EXPECT_EQ(testing::xml_fault(picture), "");
+  expect_parts(picture, {"a &lt;b&gt; &amp; &quot;c&quot; \xEF\xBF\xBD.tum"});
+  EXPECT_NO_THROW(Json::parse(read_text_file(folder_ / "o.json")));
+}
+
+TEST_F(EvalCommand, KittiFilesNeedNoTimes) {
+  write_file_atomically(folder_ / "k.txt",
+                        "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n"
+                        "1 0 0 1 0 1 0 1 0 0 1 0\n1 0 0 1 0 1 0 1 0 0 1 1\n");
+  write_file_atomically(folder_ / "times.txt", "0\n0.1\n0.2\n0.3\n");
+  const std::vector<std::string> words{"eval", path("k.txt"), path("k.txt"), "--relative", "1"};
+  ProgramResult result = run_program(folder_.path(), words);
+  EXPECT_EQ(result.status, 0) << result.err;
+  expect_parts(result.out,
+               {"(KITTI, 4 poses)", "4 of 4 poses matched by number", "   1 m       3"});
+  std::vector<std::string> timed = words;
+  timed.insert(timed.end(), {"--times", path("times.txt"), "--plot", path("k.svg")});
+  result = run_program(folder_.path(), timed);
+  EXPECT_EQ(result.status, 0) << result.err;
+  expect_parts(result.out, {"(0.30 s of truth, longest gap 0.10 s)"});
+  EXPECT_EQ(testing::xml_fault(read_text_file(folder_ / "k.svg")), "");
+}
+
+TEST_F(EvalCommand, RefusesFiles) {
+  expect_files_refused("none.tum", "gt.tum", {"none.tum", "no such file"});
+  write_file_atomically(folder_ / "nan.tum", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n");
+  expect_files_refused("nan.tum", "gt.tum", {"nan.tum line 2, column 3 (ty)", "'nan'"});
+  write_file_atomically(folder_ / "empty.tum", "");
+  expect_files_refused("est.tum", "empty.tum", {"empty.tum", "no row"});
+  write_file_atomically(folder_ / "five", "1 2 3 4 5\n");
+  expect_files_refused("five", "gt.tum", {"five line 1", "5 columns", "8 (TUM)"});
+  traces::write_tum(folder_ / "later.tum", spiral(0, 90'000'000'000));
+  expect_files_refused("est.tum", "later.tum", {"none of the 201 estimated poses", "10 ms"});
+  fs::create_directory(folder_ / "folder");
+  expect_files_refused("folder", "gt.tum", {"folder", "trajectory.tum"});
+  write_file_atomically(folder_ / "huge.tum",
+                        "6 1e200 0 0 0 0 0 1\n7 0 1e250 0 0 0 0 1\n8 0 0 0 0 0 0 1\n");
+  expect_files_refused("huge.tum", "gt.tum", {"too large"});
+}
+
+TEST_F(EvalCommand, RefusesOptions) {
+  expect_refused(run_program(folder_.path(), {"eval"}), {"EST is missing"});
+  expect_refused(run_program(folder_.path(), {"eval", path("est.tum")}), {"GT is missing"});
+  expect_refused(eval({"third"}), {"unexpected argument 'third'"});
+  expect_refused(eval({"--alig", "se3"}), {"did you mean '--align'?"});
+  expect_refused(eval({"--align", "se4"}), {"'se4'", "none, se3, sim3, posyaw"});
+  expect_refused(eval({"--format", "rosbag"}), {"'rosbag'", "tum, euroc, kitti"});
+  for (const char* length : {"0", "-1", "far", "nan", "inf"})
+    expect_refused(eval({"--relative", length}), {std::string("--relative '") + length + "'"});
+  for (const char* time : {"-1ms", "soon", "ms", "2h", "1e300s", "nan"})
+    expect_refused(eval({"--max-dt", time}), {std::string("--max-dt '") + time + "'", "10ms"});
+  expect_refused(eval({"--expected", "0"}), {"--expected '0'"});
+  expect_refused(eval({"--expected", "7"}), {"--expected 7", "201 poses that were matched"});
+  expect_refused(eval({"--times", path("gt.tum")}), {"KITTI"});
+}
+
+TEST_F(EvalCommand, ReplacesFilesOnlyIfForced) {
+  write_file_atomically(folder_ / "mine.svg", "mine");
+  expect_refused(eval({"--plot", path("mine.svg"), "--force"}), {"--plot", "exists"});
+  expect_refused(eval({"--json", path("mine.svg"), "--force"}), {"--json", "exists"});
+  expect_refused(eval({"--plot", path("picture.png")}), {"--plot", ".svg"});
+  expect_refused(eval({"--plot", path("none/a.svg")}), {"no folder"});
+  expect_refused(eval({"--plot", path("a.svg"), "--json", path("a.svg")}), {"--plot too"});
+  EXPECT_EQ(read_text_file(folder_ / "mine.svg"), "mine");
+  ASSERT_EQ(eval({"--plot", path("own.svg")}).status, 0);
+  expect_refused(eval({"--plot", path("own.svg")}), {"--plot", "exists", "--force"});
+  EXPECT_EQ(eval({"--plot", path("own.svg"), "--force"}).status, 0);
+}
+
+/// The figures of a run and of its folder are the same, up to the nine decimals of its trajectory.
+TEST_F(EvalCommand, AgreesWithTheRunThatMadeTheTrajectory) {
+  traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 3, .texel_m = 0.01});
+  const ProgramResult ran =
+      run_program(folder_.path(), {"run", "--native", "--quiet", "--data", path("flight"),
+                                   "--frames", "0:55", "--out", path("run")});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const ProgramResult result = run_program(
+      folder_.path(),
+      {"eval", path("run"), path("flight"), "--expected", "55", "--json", path("e.json")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto ate = [](const std::string& text) {
+    const auto begin = text.find("ATE: ");
+    return text.substr(begin, text.find("of path\n", begin) - begin);
+  };
+  EXPECT_EQ(ate(result.out), ate(ran.out));
+  const auto of_run = statistics_in(folder_ / "run/stats.json");
+  const auto of_eval = statistics_in(folder_ / "e.json");
+  int compared = 0;
+  for (const auto& [name, entry] : of_run) {
+    if (name.rfind("accuracy.", 0) != 0) continue;
+    ++compared;
+    EXPECT_NEAR(entry.at("value").get<double>(), of_eval.at(name).at("value").get<double>(), 1e-5)
+        << name;
+    EXPECT_EQ(entry.at("protocol"), of_eval.at(name).at("protocol"));
+  }
+  EXPECT_EQ(compared, 8);
+}
+
+TEST(EvalOptions, TolerancesHaveUnits) {
+  EXPECT_EQ(parse_tolerance("--max-dt", "10ms"), 10'000'000);
+  EXPECT_EQ(parse_tolerance("--max-dt", "0.01s"), 10'000'000);
+  EXPECT_EQ(parse_tolerance("--max-dt", "2.5"), 2'500'000);
+  EXPECT_EQ(parse_tolerance("--max-dt", "0"), 0);
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,107 @@
+// run --record, replay and trace as users meet them.
+#include <gtest/gtest.h>
+
+#include "tests/support/run_program.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::expect_refused;
+using testing::ProgramResult;
+using testing::run_program;
+using traces::testing::TempFolder;
+
+class ReplayCommand : public ::testing::Test {
+ protected:
+  ProgramResult program(const std::vector<std::string>& words) {
+    return run_program(folder_.path(), words);
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void record() {
+    traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
+    const ProgramResult result = program({"run", "--platform", "gap9", "--data", path("flight"),
+                                          "--out", path("run"), "--record", "--quiet"});
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(ReplayCommand, LeavesTheFolderOfTheRun) {
+  record();
+  const ProgramResult result =
+      program({"replay", path("run"), "--platform", "gap9", "--out", path("again"), "--quiet"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("computes the same"), std::string::npos) << result.out;
+  auto before = traces::testing::contents(folder_ / "run");
+  auto after = traces::testing::contents(folder_ / "again");
+  EXPECT_EQ(before.erase("work.trace"), 1u);
+  EXPECT_EQ(after.erase("replay.csv"), 1u);
+  EXPECT_NE(before["manifest.json"], after["manifest.json"]);
+  EXPECT_NE(after["manifest.json"].find("trace_sha256"), std::string::npos);
+  before.erase("manifest.json");
+  after.erase("manifest.json");
+  EXPECT_EQ(before, after);
+}
+
+TEST_F(ReplayCommand, TakesThePlatformOfTheRecordingByDefault) {
+  record();
+  ASSERT_EQ(program({"replay", path("run/work.trace"), "--out", path("again"), "--quiet"}).status,
+            0);
+  EXPECT_EQ(traces::read_text_file(folder_ / "run/stats.json"),
+            traces::read_text_file(folder_ / "again/stats.json"));
+  ASSERT_EQ(program({"replay", path("run"), "-p", "isa.instruction_overhead=1.5", "--out",
+                     path("slower"), "--quiet"})
+                .status,
+            0);
+  EXPECT_NE(traces::read_text_file(folder_ / "run/stages.csv"),
+            traces::read_text_file(folder_ / "slower/stages.csv"));
+}
+
+TEST_F(ReplayCommand, TraceShowsAndChecks) {
+  record();
+  const ProgramResult info = program({"trace", "info", path("run/work.trace")});
+  EXPECT_EQ(info.status, 0) << info.err;
+  for (const char* part : {"20 frames", "8 cores", "gap9", "feature extraction", "kB per frame"})
+    EXPECT_NE(info.out.find(part), std::string::npos) << part << " is not in:\n" << info.out;
+  const ProgramResult check = program({"trace", "check", path("run/work.trace")});
+  EXPECT_EQ(check.status, 0) << check.err;
+  EXPECT_NE(check.out.find("20 frames"), std::string::npos) << check.out;
+
+  std::string bytes = traces::read_text_file(folder_ / "run/work.trace");
+  bytes.resize(bytes.size() / 2);
+  traces::write_file_atomically(folder_ / "cut.trace", bytes);
+  for (const char* action : {"info", "check"})
+    expect_refused(program({"trace", action, path("cut.trace")}), {"cut.trace", "truncated"});
+  expect_refused(program({"replay", path("cut.trace"), "--out", path("none")}),
+                 {"cut.trace", "truncated"});
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
+}
+
+TEST_F(ReplayCommand, RefusesWhatIsMissing) {
+  expect_refused(program({"trace"}), {"ACTION is missing", "info or check"});
+  expect_refused(program({"trace", "chek", "x"}), {"'chek'", "did you mean 'check'"});
+  expect_refused(program({"trace", "info", path("nowhere")}), {"nowhere"});
+  expect_refused(program({"replay"}), {"TRACE is missing"});
+  expect_refused(program({"replay", "x"}), {"--out is missing"});
+  expect_refused(program({"replay", folder_.path().string(), "--out", path("o")}),
+                 {"holds no work.trace", "--record"});
+  expect_refused(program({"run", "--native", "--record", "--data", "x", "--out", path("o")}),
+                 {"--native", "--record"});
+}
+
+TEST_F(ReplayCommand, RefusesWhatTheRecordingCannotShow) {
+  record();
+  expect_refused(program({"replay", path("run"), "--cores", "4", "--out", path("o"), "--quiet"}),
+                 {"8 cores", "--cores 8", "record again"});
+  expect_refused(program({"replay", path("run"), "--cores", "40", "--out", path("o")}),
+                 {"--cores '40'"});
+  expect_refused(program({"replay", path("run"), "-p", "workload.window=4", "--out", path("o")}),
+                 {"workload.window=4", "recorded work"});
+  EXPECT_FALSE(fs::exists(folder_ / "o"));
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,110 @@
+// validate, calibrate and sensitivity as users meet them.
+#include <gtest/gtest.h>
+
+#include "platform_models/loader/loader.h"
+#include "tests/support/run_program.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ProgramResult;
+using testing::run_program;
+using traces::testing::TempFolder;
+
+class StudyCommands : public ::testing::Test {
+ protected:
+  void expect_refusal(const std::vector<std::string>& words,
+                      const std::vector<std::string>& parts) {
+    testing::expect_refused(run_program(folder_.path(), words), parts);
+  }
+  /// Besides what the program printed.
+  std::vector<std::string> files_left() const {
+    std::vector<std::string> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path()))
+      if (entry.path().extension() != ".txt") names.push_back(entry.path().filename().string());
+    return names;
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  TempFolder folder_;
+};
+
+TEST_F(StudyCommands, RefuseBadInputBeforeTheRun) {
+  for (const char* command : {"validate", "calibrate", "sensitivity"}) {
+    expect_refusal({command, "--data", path("nowhere"), "--quiet"}, {"nowhere"});
+    expect_refusal({command, "--platfrom", "gap9"}, {"did you mean '--platform'"});
+    expect_refusal({command, "--platform", "gap99"}, {"gap99", "did you mean 'gap9'"});
+    expect_refusal({command, "--frames", "9:3", "--data", path("nowhere")}, {"'9:3'"});
+    expect_refusal({command, "--cores", "0", "--data", path("nowhere")}, {"--cores '0'"});
+    expect_refusal({command, "-p", "cluster.fpus=2", "--data", path("nowhere")}, {"cluster.fpus"});
+  }
+  EXPECT_TRUE(files_left().empty());
+}
+
+TEST_F(StudyCommands, RefuseConstantsThatMustNotBeFitted) {
+  expect_refusal({"calibrate", "--constants", "cluster.fpu.units", "--data", path("x")},
+                 {"--constants", "cluster.fpu.units"});
+  expect_refusal({"calibrate", "-p", "isa.instruction_overhead=1.2", "--data", path("x")},
+                 {"isa.instruction_overhead", "no range"});
+}
+
+TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
+  traces::write_file_atomically(folder_ / "mine.yaml", "mine");
+  fs::create_directory(folder_ / "folder");
+  traces::write_file_atomically(folder_ / "folder/thesis.tex", "mine");
+  expect_refusal({"calibrate", "--data", "x", "--out", path("mine.yaml")},
+                 {"exists", "not a file that leviosim wrote"});
+  expect_refusal({"calibrate", "--data", "x", "--out", path("mine.csv")}, {"ends in .yaml"});
+  expect_refusal({"sensitivity", "--data", "x", "--out", path("mine.yaml"), "--force"}, {"exists"});
+  expect_refusal({"sensitivity", "--data", "x", "--out", path("folder")}, {"is a folder"});
+  expect_refusal({"sensitivity", "--data", "x", "--out", path("none/a.csv")}, {"no folder"});
+  expect_refusal({"validate", "--data", "x", "--out", path("folder"), "--force"},
+                 {"something else than results"});
+  EXPECT_EQ(traces::read_text_file(folder_ / "mine.yaml"), "mine");
+  EXPECT_TRUE(fs::exists(folder_ / "folder/thesis.tex"));
+}
+
+/// One flight for everything that runs to its end.
+TEST_F(StudyCommands, RunOnASyntheticFlight) {
+  const TempFolder& work = folder_;
+  traces::write_synthetic_flight(work / "flight", {.duration_s = 3, .texel_m = 0.01});
+  const std::vector<std::string> data{"--data", path("flight"), "--quiet"};
+  const auto words = [&](std::vector<std::string> all) {
+    all.insert(all.end(), data.begin(), data.end());
+    return all;
+  };
+
+  const ProgramResult validated =
+      run_program(work.path(), words({"validate", "--out", path("validated")}));
+  EXPECT_EQ(validated.status, 0) << validated.err;
+  EXPECT_NE(validated.out.find("EPnP RANSAC"), std::string::npos);
+  EXPECT_NE(validated.out.find("references within their tolerance"), std::string::npos);
+  for (const char* name : {"validation.csv", "validation.json", "paper.csv", "manifest.json"})
+    EXPECT_TRUE(fs::exists(work / "validated" / name)) << name;
+
+  const ProgramResult swept = run_program(
+      work.path(), words({"sensitivity", "--frames", "0:8", "--out", path("sweep.csv")}));
+  EXPECT_EQ(swept.status, 0) << swept.err;
+  EXPECT_NE(swept.out.find("isa.instruction_overhead"), std::string::npos);
+  EXPECT_TRUE(fs::exists(work / "sweep.csv"));
+
+  const ProgramResult fitted =
+      run_program(work.path(), words({"calibrate", "--out", path("fitted.yaml")}));
+  EXPECT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_NE(fitted.out.find("left out"), std::string::npos);
+  bool calibrated = false;
+  for (const platform::Parameter& p : platform::resolve_platform(path("fitted.yaml")).parameters)
+    calibrated =
+        calibrated || (p.path == "isa.instruction_overhead" && p.confidence == "calibrated");
+  EXPECT_TRUE(calibrated);
+
+  // Three frames never come to EPnP: nothing is fitted and nothing written.
+  expect_refusal(words({"calibrate", "--frames", "0:3", "--out", path("never.yaml")}),
+                 {"no frame of the run came to"});
+  EXPECT_FALSE(fs::exists(work / "never.yaml"));
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,238 @@
+// leviosim sweep as users meet it: killed, resumed, in shares, merged, by Slurm's and GNU
+// parallel's scripts, always with the same bytes.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <set>
+#include <thread>
+
+#include "tests/support/paths.h"
+#include "tests/support/run_program.h"
+#include "tools/app/run/replay.h"
+#include "tools/app/study/sweep/sweep_store.h"
+#include "traces/synthesis/rng.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Program;
+using testing::ProgramResult;
+using testing::run_program;
+
+/// A folder with one second of flight, its trace on gap9, and a plan of nine points over it.
+class SweepCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::temp_directory_path() / fmt::format("leviosim-{}-sweep", ::getpid());
+    fs::create_directories(folder_);
+    traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 1, .texel_m = 0.05});
+    const ProgramResult recorded =
+        run_program(folder_, {"run", "--platform", "gap9", "--data", path("flight"), "--record",
+                              "--out", path("recorded"), "--quiet"});
+    ASSERT_EQ(recorded.status, 0) << recorded.err;
+    traces::write_file_atomically(folder_ / "plan.yaml",
+                                  "base: { trace: recorded }\n"
+                                  "points:\n"
+                                  "  - grid:\n"
+                                  "      platform.cluster.clock: [200, 370]\n"
+                                  "      platform.cluster.fpu.units: [1, 4]\n"
+                                  "      platform.cluster.dma.bytes_per_cycle: [4, 8]\n"
+                                  "  - list:\n"
+                                  "      - { platform.cluster.l1.size: 64KiB }\n");
+    const ProgramResult whole = sweep({"--out", path("whole")}, "whole");
+    ASSERT_EQ(whole.status, 0) << whole.err;
+    whole_out_ = whole.out;
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+
+  static std::string path(const std::string& name) { return (folder_ / name).string(); }
+  /// With a cache of its own by this name.
+  static std::vector<std::string> words(std::vector<std::string> more, const std::string& cache) {
+    std::vector<std::string> all{"sweep", path("plan.yaml"), "--quiet", "--cache",
+                                 path("cache-" + cache)};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  static ProgramResult sweep(std::vector<std::string> more, const std::string& cache) {
+    return run_program(folder_, words(std::move(more), cache));
+  }
+  static std::string csv(const std::string& folder) {
+    return traces::read_text_file(folder_ / folder / kSweepCsv);
+  }
+  static int shell(const std::string& script) {
+    const std::string line = fmt::format("cd '{}' && LEVIOSIM='{}' {} >shell.txt 2>&1", path(""),
+                                         leviosim::tests::program_path(), script);
+    const int status = std::system(line.c_str());  // NOLINT: the command is the test's own
+    return WEXITSTATUS(status);
+  }
+  static std::string example(const std::string& name) {
+    return fmt::format("'{}/tools/sweep/examples/{}'", leviosim::tests::source_folder().string(),
+                       name);
+  }
+
+  static fs::path folder_;
+  static std::string whole_out_;
+};
+fs::path SweepCommand::folder_;
+std::string SweepCommand::whole_out_;
+
+TEST_F(SweepCommand, GivesTheFiguresOfReplaysAndRunsNothingTwice) {
+  const std::string text = csv("whole");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 9);
+  EXPECT_NE(text.find("\n9,failed,"), std::string::npos);
+  EXPECT_NE(text.find("L1"), std::string::npos);
+  EXPECT_NE(whole_out_.find("9 computed"), std::string::npos) << whole_out_;
+  EXPECT_NE(whole_out_.find("Pareto front"), std::string::npos);
+
+  const traces::WorkTrace trace(folder_ / "recorded" / "work.trace");
+  RunRequest request;
+  request.platform = recorded_platform(
+      trace, {"cluster.clock=200MHz", "cluster.fpu.units=1", "cluster.dma.bytes_per_cycle=8"});
+  const Replay there = replay(trace, request, [](const Progress&) {});
+  double sum_ns = 0;
+  for (const FrameResult& f : there.run.frames)
+    sum_ns += static_cast<double>(f.end_ns - f.arrival_ns);
+  {
+    SweepStore store(folder_ / "whole");
+    EXPECT_GT(store.front().size(), 0u);
+    ASSERT_EQ(
+        store.settings_of(2).find("platform.cluster.clock=200MHz platform.cluster.fpu.units=1"),
+        0u);
+    EXPECT_DOUBLE_EQ(store.outcomes().at(1).objectives[0].value(),
+                     sum_ns * 1e-6 / static_cast<double>(there.run.frames.size()));
+  }
+  const ProgramResult again = sweep({"--out", path("whole")}, "empty");
+  EXPECT_NE(again.out.find("0 computed"), std::string::npos) << again.out;
+  EXPECT_NE(again.out.find("9 done before"), std::string::npos);
+  const ProgramResult elsewhere = sweep({"--out", path("elsewhere")}, "whole");
+  EXPECT_NE(elsewhere.out.find("8 found in the cache"), std::string::npos) << elsewhere.out;
+  EXPECT_EQ(csv("elsewhere"), csv("whole"));  // what failed is tried again
+}
+
+TEST_F(SweepCommand, GoesOnAfterBeingKilledAtAnyMoment) {
+  traces::Rng rng(11);
+  for (int trial = 0; trial < 3; ++trial) {
+    const std::string name = fmt::format("killed-{}", trial);
+    for (int kill = 0; kill < 2; ++kill) {
+      Program program(folder_, words({"--out", path(name), "--jobs", "2"}, name));
+      std::this_thread::sleep_for(std::chrono::milliseconds(60 + rng.below(200)));
+      program.send(SIGKILL);
+      program.wait();
+    }
+    const ProgramResult rest = sweep({"--out", path(name)}, name);
+    ASSERT_EQ(rest.status, 0) << rest.err;
+    EXPECT_EQ(csv(name), csv("whole"));
+  }
+}
+
+TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
+  for (const char* share : {"1/3", "2/3", "3/3"})
+    ASSERT_EQ(
+        sweep({"--out", path(fmt::format("share-{:.1}", share)), "--shard", share}, "s").status, 0);
+  EXPECT_NE(csv("share-1"), csv("whole"));
+  const ProgramResult merged =
+      run_program(folder_, {"sweep", "--merge", path("merged"), path("share-3"), path("share-1"),
+                            path("share-2"), path("share-1")});
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(csv("merged"), csv("whole"));
+  for (const char* point : {"9", "2"})
+    ASSERT_EQ(sweep({"--out", path("singly"), "--point", point}, "s").status, 0);
+  EXPECT_EQ(SweepStore(folder_ / "singly").finished(), (std::set<int>{2, 9}));
+
+  traces::write_file_atomically(folder_ / "other.yaml",
+                                "base: { trace: recorded }\n"
+                                "points: { grid: { platform.cluster.clock: [200] } }\n");
+  ASSERT_EQ(run_program(folder_, {"sweep", path("other.yaml"), "--out", path("other"), "--quiet",
+                                  "--cache", path("cache-other")})
+                .status,
+            0);
+  testing::expect_refused(
+      run_program(folder_, {"sweep", "--merge", path("mixed"), path("whole"), path("other")}),
+      {"other", "another plan"});
+  testing::expect_refused(sweep({"--out", path("other")}, "other"), {"another plan", "--force"});
+  testing::expect_refused(
+      run_program(folder_, {"sweep", "--merge", path("mixed"), path("nowhere")}),
+      {"nowhere", "sweep.sqlite"});
+}
+
+TEST_F(SweepCommand, ListsItsPointsAndRefusesWhatItCannotDo) {
+  const ProgramResult list = sweep({"--list"}, "list");
+  EXPECT_EQ(std::count(list.out.begin(), list.out.end(), '\n'), 9);
+  EXPECT_EQ(list.out.find("1\tplatform.cluster.clock=200MHz"), 0u) << list.out;
+
+  testing::expect_refused(sweep({"--out", path("x"), "--shard", "4/3"}, "x"), {"--shard '4'"});
+  testing::expect_refused(sweep({"--out", path("x"), "--point", "10"}, "x"), {"--point '10'"});
+  testing::expect_refused(sweep({"--out", path("flight")}, "x"), {"something else"});
+  testing::expect_refused(sweep({}, "x"), {"--out"});
+  traces::write_file_atomically(folder_ / "bad.yaml",
+                                "base: { trace: recorded }\n"
+                                "points: { grid: { workload.window: [4] } }\n");
+  testing::expect_refused(run_program(folder_, {"sweep", path("bad.yaml"), "--out", path("x")}),
+                          {"bad.yaml:2", "workload.window", "recorded work", "data"});
+  EXPECT_FALSE(fs::exists(folder_ / "x"));
+}
+
+TEST_F(SweepCommand, ListsAMillionPointsInLittleMemory) {
+  traces::write_file_atomically(
+      folder_ / "million.yaml",
+      "base: { trace: recorded }\n"
+      "points: { random: { number: 1000000, over: {\n"
+      "  platform.cluster.clock: { from: 100, to: 370 },\n"
+      "  platform.cluster.l1.size: { from: 100KiB, to: 128KiB },\n"
+      "  platform.cluster.dma.bytes_per_cycle: { from: 1, to: 16, scale: log } } } }\n");
+  // Address space is what can be bounded; the program and its libraries take some 150 MB of it.
+  const std::string limited =
+      fmt::format("bash -c \"ulimit -v 400000; exec '{}' sweep million.yaml --list\" | tail -n 1",
+                  leviosim::tests::program_path());
+  ASSERT_EQ(std::system(fmt::format("cd '{}' && {} >last.txt", path(""), limited).c_str()),
+            0);  // NOLINT: the command is the test's own
+  const std::string last = traces::read_text_file(folder_ / "last.txt");
+  EXPECT_EQ(last.find("9"), 0u) << last;  // of 7 digits' millions, a few are drawn twice
+  EXPECT_NE(last.find("\tplatform.cluster.clock="), std::string::npos) << last;
+}
+
+TEST_F(SweepCommand, LivePointsHaveTheAccuracyOfTheirRun) {
+  traces::write_file_atomically(folder_ / "live.yaml",
+                                "base: { data: flight, platform: gap9, frames: '0:6' }\n"
+                                "points: { grid: { workload.window: [4, 6] } }\n");
+  const ProgramResult live =
+      run_program(folder_, {"sweep", path("live.yaml"), "--out", path("live"), "--quiet", "--cache",
+                            path("cache-live")});
+  ASSERT_EQ(live.status, 0) << live.err;
+  RunRequest request;
+  request.data = path("flight");
+  request.platform = platform::resolve_platform("gap9");
+  request.frames = traces::FrameRange{0, 6};
+  request.workload = {{vio::find_parameter("workload.window"), 4}};
+  const RunResult run = simulate(request, [](const Progress&) {});
+  SweepStore store(folder_ / "live");
+  ASSERT_TRUE(run.ate);
+  EXPECT_EQ(store.outcomes().at(0).objectives[3], run.ate->translation.rmse);
+}
+
+TEST_F(SweepCommand, SlurmArraysMakeOneRun) {
+  for (int task = 1; task <= 2; ++task)
+    ASSERT_EQ(
+        shell(fmt::format("SLURM_ARRAY_TASK_ID={} SLURM_ARRAY_TASK_COUNT=2 {} plan.yaml slurm",
+                          task, example("slurm_array.sh"))),
+        0)
+        << traces::read_text_file(folder_ / "shell.txt");
+  ASSERT_EQ(shell(fmt::format("'{}' sweep --merge slurm/all slurm/shard-1 slurm/shard-2",
+                              leviosim::tests::program_path())),
+            0);
+  EXPECT_EQ(csv("slurm/all"), csv("whole"));
+}
+
+TEST_F(SweepCommand, GnuParallelMakesOneRun) {
+  if (std::system("parallel --version 2>/dev/null | grep -q GNU") != 0)  // NOLINT: as above
+    GTEST_SKIP() << "GNU parallel is not installed";
+  ASSERT_EQ(shell(example("gnu_parallel.sh") + " plan.yaml parallel 3"), 0)
+      << traces::read_text_file(folder_ / "shell.txt");
+  EXPECT_EQ(csv("parallel/all"), csv("whole"));
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,341 @@
+// `leviosim tune`: what it asks for, what it chooses, and the command as users meet it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "sim/energy/operating_point.h"
+#include "tests/support/run_program.h"
+#include "tests/tools/well_formed.h"
+#include "tools/app/study/batch/batch_options.h"
+#include "tools/app/study/batch/run_key.h"
+#include "tools/app/study/tune/tune_plot.h"
+#include "tools/app/study/tune/tune_report.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::expect_refused;
+using testing::ProgramResult;
+using testing::run_program;
+using traces::read_text_file;
+using traces::testing::AslFolder;
+using traces::testing::contents;
+using traces::testing::expect_input_error;
+using traces::testing::TempFolder;
+
+constexpr std::int64_t kMega = 1'000'000;
+
+std::vector<std::int64_t> megahertz(const std::vector<Hertz>& clocks) {
+  std::vector<std::int64_t> all;
+  for (const Hertz clock : clocks) all.push_back(clock.count() / kMega);
+  return all;
+}
+
+TEST(TuneOptions, ClocksAreRangesAndLists) {
+  using Clocks = std::vector<std::int64_t>;
+  EXPECT_EQ(megahertz(parse_clocks("100:130:10")), (Clocks{100, 110, 120, 130}));
+  EXPECT_EQ(megahertz(parse_clocks("100:125:10")), (Clocks{100, 110, 120}));
+  EXPECT_EQ(megahertz(parse_clocks("240")), (Clocks{240}));
+  EXPECT_EQ(megahertz(parse_clocks("370,100:120:20")), (Clocks{100, 120, 370}));
+  EXPECT_EQ(parse_clocks("12.5"), (std::vector<Hertz>{Hertz(12'500'000)}));
+  for (const char* text : {"", "0", "-5", "fast", "100:200", "100:200:", "100:200:0", "1:2:3:4",
+                           "100:200:-10", "nan", "1e300"})
+    expect_input_error([&] { parse_clocks(text); }, {"--clock", "expected"});
+  expect_input_error([] { parse_clocks("200:100:10"); }, {"200:100:10", "range is empty"});
+  expect_input_error([] { parse_clocks("100,100"); }, {"every value once"});
+  expect_input_error([] { parse_clocks("1:100:0.000001"); }, {"no more than 10000"});
+}
+
+TEST(TuneOptions, SeedsAreAList) {
+  EXPECT_EQ(parse_seed_list("3,1"), (std::vector<std::uint32_t>{3, 1}));
+  for (const char* text : {"", "-1", "1,", "one", "1,1"})
+    expect_input_error([&] { parse_seed_list(text); }, {"--seed", "expected"});
+}
+
+TEST(TuneOptions, RatesAreAbove0) {
+  EXPECT_EQ(parse_rates("20,10,7.5"), (std::vector<double>{7.5, 10, 20}));
+  for (const char* text : {"", "0", "-1", "10,", "ten"})
+    expect_input_error([&] { parse_rates(text); }, {"--fps", "above 0"});
+  expect_input_error([] { parse_rates("10,10"); }, {"--fps '10,10'", "every value once"});
+}
+
+TEST(TuneOptions, AClockComesWithTheLowestVoltageThatAllowsIt) {
+  const sim::ChipConfig gap9 = platform::resolve_platform("gap9").config;
+  const auto at = [&](std::int64_t mhz) { return setting_for(gap9, "gap9", Hertz(mhz * kMega)); };
+  EXPECT_DOUBLE_EQ(at(100).voltage->count(), 0.65);
+  EXPECT_DOUBLE_EQ(at(240).voltage->count(), 0.65);
+  EXPECT_DOUBLE_EQ(at(241).voltage->count(), 0.70);
+  EXPECT_DOUBLE_EQ(at(370).voltage->count(), 0.80);
+  for (const std::int64_t mhz : {100, 250, 330, 370}) {
+    // A platform of this setting is one that leviosim takes.
+    const sim::ChipConfig chip = platform::resolve_platform("gap9", at(mhz).overrides).config;
+    EXPECT_EQ(chip.cluster.clock, Hertz(mhz * kMega));
+    EXPECT_EQ(chip.controller.clock, Hertz(mhz * kMega));
+    EXPECT_LE(chip.cluster.clock, sim::highest_clock(chip.supply, chip.supply.voltage));
+  }
+  expect_input_error([&] { at(371); }, {"371 MHz", "gap9", "370 MHz", "0.8 V"});
+
+  sim::ChipConfig uneven = gap9;
+  uneven.controller.clock = Hertz(185 * kMega);
+  EXPECT_EQ(setting_for(uneven, "uneven", Hertz(100 * kMega)).overrides[1],
+            "controller.clock=50MHz");
+  sim::ChipConfig without_supply = gap9;
+  without_supply.supply = {};
+  EXPECT_FALSE(setting_for(without_supply, "x", Hertz(900 * kMega)).voltage);
+}
+
+/// Points by rate, then clock, of which some are enough.
+struct Example {
+  TunePlan plan;
+  std::vector<TunePoint> points;
+
+  Example() {
+    plan.options.platform = "gap9";
+    plan.options.data = "my flight";
+    plan.request.platform.name = "gap9";
+    plan.sequence.folder = "flights/my flight/";
+    plan.fps = {10, 20};
+    plan.seeds = {1};
+    plan.miss_rate = 0.05;
+    plan.ate_m = 0.2;
+    for (const std::int64_t mhz : {100, 200, 300})
+      plan.clocks.push_back({Hertz(mhz * kMega), Volts(0.65), {"supply.voltage=0.65V"}});
+    add(0, 100, 0.5);
+    add(5, 0, 0.19);
+    add(0, 6, 0.1);
+    add(100, 0, {});
+    add(0, 0, 0.3);
+    add(1, 2, 0.2);
+  }
+  void add(std::int64_t dropped, std::int64_t late, std::optional<double> ate) {
+    RunOutcome outcome;
+    outcome.ate_m = ate;
+    outcome.path_m = 5;
+    outcome.failure = ate ? "" : "the pose, once, is no number";
+    outcome.completion = 0.01 * static_cast<double>(100 - dropped);
+    LoopOutcome loop{};
+    loop.camera.arrived = 100;
+    loop.camera.processed = 100 - dropped;
+    loop.camera.dropped = dropped;
+    loop.camera.late = late;
+    loop.camera.latency = {10'000'000, 20'000'000, 30'000'000, 40'000'000};
+    loop.power_w = Banded{0.0125, 0.01, 0.015};
+    loop.frame_j = Banded{0.0005, 0.0004, 0.0006};
+    outcome.loop = loop;
+    const std::size_t i = points.size();
+    points.push_back({plan.fps[i / 3], plan.clocks[i % 3], {outcome}});
+  }
+};
+
+TEST(Tuning, ChoosesTheLowestClockThatIsEnough) {
+  const Example example;
+  const std::vector<Choice> all = choices(example.plan, example.points);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].lowest, &example.points[1]);
+  ASSERT_EQ(all[0].higher_failing.size(), 1u);  // 6 % late
+  EXPECT_EQ(all[0].higher_failing[0], &example.points[2]);
+  EXPECT_EQ(all[1].lowest, &example.points[5]);  // exactly at the limit
+  EXPECT_EQ(chosen(all), &example.points[1]);
+
+  Example equal;
+  equal.points[4].outcomes[0].ate_m = 0.1;
+  EXPECT_EQ(chosen(choices(equal.plan, equal.points)), &equal.points[4]);
+  equal.plan.ate_m = 0.05;
+  EXPECT_EQ(chosen(choices(equal.plan, equal.points)), nullptr);
+  EXPECT_NE(choice_text(equal.plan, choices(equal.plan, equal.points)).find("no point is enough"),
+            std::string::npos);
+}
+
+TEST(Tuning, FiguresAreMediansOverTheSeeds) {
+  const Example example;
+  TunePoint point = example.points[0];  // 100 % missed, 0.5 m
+  point.outcomes.push_back(example.points[1].outcomes[0]);
+  point.outcomes.push_back(example.points[2].outcomes[0]);
+  EXPECT_DOUBLE_EQ(point.miss_rate(), 0.06);
+  EXPECT_DOUBLE_EQ(point.drop_rate(), 0);
+  EXPECT_DOUBLE_EQ(point.completion(), 0.95);
+  EXPECT_EQ(point.ate().median, 0.19);
+  EXPECT_EQ(point.ate().high, 0.5);
+  EXPECT_DOUBLE_EQ(point.median(&LoopOutcome::power_w)->low, 0.01);
+  point.outcomes[0].ate_m = 5.1;  // more than was flown
+  EXPECT_EQ(point.ate().median, 0.19);
+  EXPECT_FALSE(point.ate().high);
+  point.outcomes[1].ate_m.reset();
+  EXPECT_FALSE(point.ate().median);
+  for (RunOutcome& outcome : point.outcomes) outcome.loop->power_w.reset();
+  EXPECT_FALSE(point.median(&LoopOutcome::power_w));
+}
+
+TEST(Tuning, SaysWhatItFound) {
+  const Example example;
+  const std::vector<Choice> all = choices(example.plan, example.points);
+  const std::string text = choice_text(example.plan, all);
+  for (const char* part :
+       {"at most 5 % missed", "10 frames/s: 200 MHz, 0.65 V: 5.0 % missed, ATE 0.190 m, 12.5 mW",
+        "but not at 1 of 1 higher clocks: 300 (6.0 %, 0.100)", "the lowest of all: 200 MHz",
+        "leviosim run --platform gap9 -p supply.voltage=0.65V --data 'my flight' --camera-fps 10 "
+        "--deadline drop\n"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
+  EXPECT_NE(tune_table(example.plan, example.points).find("diverged"), std::string::npos);
+  const std::string csv = tune_csv(example.plan, example.points);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
+  const auto columns = [](const std::string& line) {
+    return std::count(line.begin(), line.end(), ',');
+  };
+  std::istringstream lines(csv);
+  std::string header;
+  std::getline(lines, header);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_EQ(columns(line), columns(header)) << line;
+  const std::string picture = tune_plot(example.plan, example.points, all);
+  EXPECT_EQ(testing::xml_fault(picture), "");
+  for (const char* part : {"absolute trajectory error [m]", "mean power [mW]", "my flight"})
+    EXPECT_NE(picture.find(part), std::string::npos) << part;
+}
+
+TEST(RunOutcome, KeepsAllOfAClosedLoop) {
+  const Example example;
+  const RunOutcome& outcome = example.points[1].outcomes[0];
+  const std::optional<RunOutcome> read = parse_outcome(to_text(outcome));
+  ASSERT_TRUE(read && read->loop);
+  EXPECT_EQ(to_text(*read), to_text(outcome));
+  EXPECT_EQ(read->loop->camera.latency.p99_ns, 30'000'000);
+  EXPECT_EQ(read->loop->power_w->high, 0.015);
+}
+
+TEST(RunKey, OfALoopDependsOnChipAndCamera) {
+  RunRequest request;
+  request.platform = platform::resolve_platform("gap9");
+  const Measure how;
+  std::vector<std::string> keys;
+  const auto add = [&] { keys.push_back(run_key(request, "inputs", how)); };
+  add();
+  request.camera = CameraRequest{{}, Deadline::Drop};
+  add();
+  request.camera->fps = 20;
+  add();
+  request.camera->deadline = Deadline::Queue;
+  add();
+  request.cores = 4;
+  add();
+  request.platform = platform::resolve_platform("gap9", {"supply.voltage=0.8V"});
+  add();
+  request.platform = platform::resolve_platform("gap9", {"cluster.clock=369MHz"});
+  add();
+  request.native = true;
+  add();
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+TEST(BatchProgress, SaysHowLongItTakes) {
+  EXPECT_EQ(batch_progress({12, 2, 32}, 50), "run 12/32, 2 of them done before, 1:40 min left");
+  EXPECT_EQ(batch_progress({2, 2, 32}, 50), "run 2/32, 2 of them done before");
+  EXPECT_EQ(batch_progress({32, 2, 32}, 50), "run 32/32, 2 of them done before");
+}
+
+/// A folder of 6 frames without features: fast, and good enough for messages and files.
+class TuneCommand : public ::testing::Test {
+ protected:
+  std::vector<std::string> words(std::vector<std::string> further) const {
+    std::vector<std::string> all{"tune",      "--data",  data_.root().string(),
+                                 "--size",    "32x24",   "--out",
+                                 path("out"), "--cache", path("runs")};
+    all.insert(all.end(), further.begin(), further.end());
+    return all;
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void expect_refusal(const std::vector<std::string>& further,
+                      const std::vector<std::string>& parts) {
+    expect_refused(run_program(folder_.path(), words(further)), parts);
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    EXPECT_FALSE(fs::exists(folder_ / "runs"));
+  }
+
+  AslFolder data_;
+  TempFolder folder_;
+};
+
+TEST_F(TuneCommand, RefusesWhatCannotBe) {
+  expect_refusal({}, {"--clock is missing", "100:370:10"});
+  expect_refusal({"--clock", "100:400:10"}, {"400 MHz", "no voltage of GAP9", "370 MHz"});
+  expect_refusal({"--clock", "100", "--fps", "10,30"}, {"30 frames/s", "recorded at 20 frames/s"});
+  expect_refusal({"--clock", "100", "--deadline", "dorp"}, {"'dorp'", "did you mean 'drop'"});
+  expect_refusal({"--clock", "100", "--miss-rate", "5"}, {"--miss-rate '5'", "0.05 for 5 %"});
+  expect_refusal({"--clock", "100", "-p", "cluster.clock=100MHz"}, {"--clock", "leave it out"});
+}
+
+TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
+  const std::vector<std::string> typed =
+      words({"--clock", "2:6:2", "--fps", "10,20", "--ate", "1000", "--miss-rate", "0.6", "-p",
+             "workload.window=6", "--seed", "2,1"});
+  const ProgramResult first = run_program(folder_.path(), typed);
+  ASSERT_EQ(first.status, 0) << first.err;
+  for (const char* part : {"12 closed loops", "the lowest of all: ", "confirmed", "results: "})
+    EXPECT_NE(first.out.find(part), std::string::npos) << part << " is not in:\n" << first.out;
+  auto files = contents(folder_ / "out");
+  for (const char* name : {"runs.csv", "tune.svg", "manifest.json", "chosen/frames.csv"})
+    EXPECT_TRUE(files.count(name)) << name;
+  EXPECT_EQ(testing::xml_fault(files["tune.svg"]), "");
+
+  // What is printed runs the chosen point.
+  const Json manifest = Json::parse(files["manifest.json"]);
+  std::istringstream command(manifest.at("chosen").get<std::string>());
+  std::vector<std::string> run;
+  for (std::string word; command >> word;) run.push_back(word);
+  run.erase(run.begin());
+  run.insert(run.end(), {"--out", path("run"), "--quiet"});
+  EXPECT_EQ(run_program(folder_.path(), run).status, 0);
+  for (const char* name : {"frames.csv", "stats.json", "trajectory.tum", "platform.yaml"})
+    EXPECT_EQ(read_text_file(folder_ / "run" / name), files[std::string("chosen/") + name]) << name;
+
+  // One of the loops is lost: the others are found, and everything is as before.
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "runs"))
+    if (entry.is_regular_file()) {
+      fs::remove(entry.path());
+      break;
+    }
+  std::vector<std::string> again = typed;
+  again.insert(again.end(), {"--force", "--jobs", "1"});
+  const ProgramResult second = run_program(folder_.path(), again);
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_EQ(second.out, first.out);
+  EXPECT_NE(second.err.find("run 12/12, 11 of them done before"), std::string::npos) << second.err;
+  auto files_again = contents(folder_ / "out");
+  for (const char* name : {"manifest.json", "chosen/manifest.json"}) {  // command line, host time
+    files.erase(name);
+    files_again.erase(name);
+  }
+  EXPECT_EQ(files_again, files);
+}
+
+TEST_F(TuneCommand, RunsRefuseContradictoryLoops) {
+  const auto refused = [&](std::vector<std::string> further,
+                           const std::vector<std::string>& parts) {
+    std::vector<std::string> all{"run",   "--data",   data_.root().string(), "--size", "32x24",
+                                 "--out", path("out")};
+    all.insert(all.end(), further.begin(), further.end());
+    expect_refused(run_program(folder_.path(), all), parts);
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  };
+  refused({"--native", "--deadline", "drop"}, {"--native", "leave out --deadline"});
+  refused({"--platform", "gap9", "--camera-fps", "30"},
+          {"30 frames/s", "recorded at 20 frames/s", "at most 20"});
+  refused({"--platform", "gap9", "--deadline", "drop", "--record"}, {"--record", "open loops"});
+}
+
+TEST(RunOptions, AskForALoopByRateOrDeadline) {
+  EXPECT_FALSE(parse_camera("", ""));
+  EXPECT_EQ(parse_camera("12.5", "")->fps, 12.5);
+  EXPECT_EQ(parse_camera("12.5", "")->deadline, Deadline::Drop);
+  EXPECT_FALSE(parse_camera("", "queue")->fps);
+  EXPECT_EQ(parse_camera("", "queue")->deadline, Deadline::Queue);
+  for (const char* fps : {"0", "-1", "fast", "nan"})
+    expect_input_error([&] { parse_camera(fps, ""); }, {"--camera-fps", "above 0"});
+  expect_input_error([] { parse_camera("", "late"); }, {"--deadline 'late'", "drop or queue"});
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,113 @@
+// Parameters of the workload on the command line.
+#include "tools/app/run/workload_overrides.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/run_program.h"
+#include "tools/app/report/statistic_list.h"
+#include "tools/app/run/run_request.h"
+
+namespace leviosim::tools {
+namespace {
+
+using testing::expect_refused;
+using testing::ProgramResult;
+using testing::run_program;
+using traces::testing::AslFolder;
+using traces::testing::expect_input_error;
+using traces::testing::TempFolder;
+
+double value_of_one(const std::string& text) {
+  return parse_workload_overrides({text}).at(0).value;
+}
+
+TEST(WorkloadOverrides, AreToldFromThoseOfTheChip) {
+  const SplitOverrides split =
+      split_overrides({"cluster.workers=4", " workload.window=6", "workloads=1"});
+  EXPECT_EQ(split.chip, (std::vector<std::string>{"cluster.workers=4", "workloads=1"}));
+  EXPECT_EQ(split.workload, (std::vector<std::string>{" workload.window=6"}));
+}
+
+TEST(WorkloadOverrides, AreRead) {
+  EXPECT_EQ(value_of_one("workload.window=6"), 6);
+  EXPECT_EQ(value_of_one("workload.window = 6 keyframes"), 6);
+  EXPECT_EQ(value_of_one("workload.reprojection_noise=1.5px"), 1.5);
+  EXPECT_EQ(value_of_one("workload.imu_noise.gyro=2e-3"), 2e-3);
+  EXPECT_EQ(value_of_one("workload.gravity_updates=off"), 0);
+  EXPECT_EQ(value_of_one("workload.gravity_updates=on"), 1);
+}
+
+TEST(WorkloadOverrides, RefuseFaults) {
+  const auto refuse = [](const std::string& text, std::initializer_list<std::string> parts) {
+    expect_input_error([&] { parse_workload_overrides({text}); }, parts);
+  };
+  refuse("workload.window", {"-p workload.window", "path=value"});
+  refuse("workload.widnow=6", {"'workload.widnow'", "did you mean 'workload.window'?"});
+  refuse("workload.window=1", {"'1'", "a whole number of keyframes from 2 to 32"});
+  refuse("workload.window=6.5", {"'6.5'", "whole number"});
+  refuse("workload.window=6 px", {"'6 px'"});
+  refuse("workload.window=", {"''"});
+  refuse("workload.window=nan", {"'nan'"});
+  refuse("workload.keyframe_parallax=0", {"from 0.001 to 1"});
+  refuse("workload.gravity_updates=1", {"'1'", "off or on"});
+  expect_input_error(
+      [] {
+        parse_workload_overrides({"workload.window=6", "workload.window=7"});
+      },
+      {"already given"});
+}
+
+TEST(WorkloadOverrides, RefuseContradictions) {
+  const auto refuse = [](const std::string& profile, const std::vector<std::string>& overrides,
+                         std::initializer_list<std::string> parts) {
+    RunRequest request;
+    request.profile = profile;
+    request.workload = parse_workload_overrides(overrides);
+    expect_input_error([&] { profile_of(request); }, parts);
+  };
+  refuse("next", {"workload.joint=off", "workload.subpixel_steps=16"},
+         {"workload.subpixel_steps", "workload.joint=on"});
+  refuse("levio", {"workload.subpixel_steps=4"}, {"workload.subpixel_steps=1"});
+  refuse("levio-no-imu", {"workload.joint=on"}, {"without IMU"});
+  RunRequest both;
+  both.profile = "next";
+  both.workload = parse_workload_overrides({"workload.joint=off", "workload.subpixel_steps=1"});
+  EXPECT_NO_THROW(profile_of(both));
+}
+
+TEST(WorkloadOverrides, ReachTheRunAndItsManifest) {
+  const AslFolder data;
+  const TempFolder folder;
+  const auto run = [&](const std::string& out, std::vector<std::string> further) {
+    std::vector<std::string> words{"run",    "--native", "--data", data.root().string(),
+                                   "--size", "32x24",    "--out",  (folder / out).string(),
+                                   "--quiet"};
+    words.insert(words.end(), further.begin(), further.end());
+    return run_program(folder.path(), words);
+  };
+  const ProgramResult set = run("set", {"-p", "workload.window=6"});
+  EXPECT_EQ(set.status, 0) << set.err;
+  EXPECT_NE(set.out.find(", workload.window=6\n"), std::string::npos) << set.out;
+  EXPECT_EQ(run("plain", {}).status, 0);
+  const auto manifest = [&](const std::string& out) {
+    return Json::parse(traces::read_text_file(folder / (out + "/manifest.json")));
+  };
+  EXPECT_EQ(manifest("set").at("workload"), Json::array({"workload.window=6"}));
+  EXPECT_FALSE(manifest("plain").contains("workload"));
+  expect_refused(run("bad", {"-p", "workload.windows=6"}), {"did you mean 'workload.window'?"});
+  expect_refused(run("bad", {"-p", "cluster.workers=6"}), {"leave out --set cluster.workers=6"});
+}
+
+TEST(WorkloadCommand, ListsProfilesAndParameters) {
+  const TempFolder folder;
+  const ProgramResult result = run_program(folder.path(), {"workload"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const std::string& name : vio::profile_names())
+    EXPECT_NE(result.out.find("  " + name + ": "), std::string::npos) << name;
+  for (const vio::Parameter& p : vio::parameters())
+    EXPECT_NE(result.out.find(std::string(p.name)), std::string::npos) << p.name;
+  expect_refused(run_program(folder.path(), {"workload", "--profile", "levoi"}), {"levoi"});
+}
+
+}  // namespace
+}  // namespace leviosim::tools

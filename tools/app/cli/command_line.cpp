@@ -1,0 +1,124 @@
+#include "tools/app/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+
+#include "sim/base/csv.h"
+#include "sim/base/error.h"
+#include "sim/base/nearest.h"
+#include "tools/app/cli/terminal.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Command>& commands) {
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.push_back(command.app->get_name());
+  return names;
+}
+
+std::vector<std::string> options_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// Options stand before their values, so the first unknown option is the fault; else the first
+/// word.
+const std::string& first_fault(const Words& unknown) {
+  const auto option = std::find_if(unknown.begin(), unknown.end(),
+                                   [](const std::string& word) { return word.rfind('-', 0) == 0; });
+  return option == unknown.end() ? unknown.front() : *option;
+}
+
+[[noreturn]] void fail_unknown(const std::string& where, const std::string& word,
+                               const std::vector<std::string>& options) {
+  if (word.rfind('-', 0) != 0)
+    throw InputError(fmt::format("{}unexpected argument '{}'", where, word));
+  const std::string name = word.substr(0, word.find('='));
+  throw InputError(
+      fmt::format("{}unknown option '{}'{}", where, name, platform::did_you_mean(name, options)));
+}
+
+/// CLI11 takes the next word for the value of "--out=", and an empty word for no value.
+void refuse_empty_values(const Words& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool is_option = words[i].rfind("--", 0) == 0;
+    if (is_option && words[i].find('=') == words[i].size() - 1)
+      throw InputError(
+          fmt::format("{}: is empty; expected a value", words[i].substr(0, words[i].size() - 1)));
+    if (!words[i].empty()) continue;
+    const bool has_name = i > 0 && words[i - 1].rfind('-', 0) == 0;
+    throw InputError(
+        fmt::format("{}: is empty; expected a value", has_name ? words[i - 1] : "argument ''"));
+  }
+}
+
+[[noreturn]] void fail_without_command(const std::vector<Command>& commands, const Words& unknown,
+                                       const CLI::App& app) {
+  const std::vector<std::string> names = names_of(commands);
+  if (unknown.empty())
+    throw InputError(fmt::format("expected a command: {}", fmt::join(names, ", ")));
+  const std::string& word = unknown.front();
+  if (word.rfind('-', 0) == 0) fail_unknown("", word, options_of(app));
+  throw InputError(
+      fmt::format("unknown command '{}'{}", word, platform::did_you_mean(word, names)));
+}
+
+}  // namespace
+
+int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& words) {
+  refuse_empty_values(words);
+  // Unknown words are collected instead of refused, so that they can be answered with a suggestion.
+  app.allow_extras();
+  for (const Command& command : commands) command.app->allow_extras();
+  try {
+    app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front
+  } catch (const CLI::Success& help_or_version) {
+    std::ostringstream text;
+    const int status = app.exit(help_or_version, text, text);
+    print_result_text(text.str());
+    return status;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what());
+  }
+  for (const Command& command : commands) {
+    if (!app.got_subcommand(command.app)) continue;
+    const Words unknown = command.app->remaining();
+    if (!unknown.empty())
+      fail_unknown(command.app->get_name() + ": ", first_fault(unknown), options_of(*command.app));
+    command.run();
+    return 0;
+  }
+  fail_without_command(commands, app.remaining(), app);
+}
+
+std::int64_t parse_whole(const std::string& option, const std::string& text, std::int64_t min,
+                         std::int64_t max) {
+  std::int64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || value < min || value > max)
+    throw InputError(
+        fmt::format("{} '{}': expected a whole number from {} to {}", option, text, min, max));
+  return value;
+}
+
+double parse_positive(const std::string& option, const std::string& text) {
+  double value = 0;
+  if (!traces::parse_number(text, value) || !(value > 0))
+    throw InputError(fmt::format("{} '{}': expected a number above 0", option, text));
+  return value;
+}
+
+void require(const CLI::App& command, const std::string& option, const std::string& expected) {
+  if (command.count(option) == 0)
+    throw InputError(
+        fmt::format("{}: {} is missing; expected {}", command.get_name(), option, expected));
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,63 @@
+#include "tools/app/cli/outputs.h"
+
+#include <fmt/core.h>
+
+#include "sim/base/error.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/terminal.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// What went wrong in doing it, if something did.
+std::optional<std::string> fault_of(const std::function<std::optional<std::string>()>& put) {
+  try {
+    return put();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+void publish(base::OutputFolder& out, const std::string& report, const std::function<void()>& write,
+             const std::string& label) {
+  bool is_written = false;
+  const std::optional<std::string> fault = fault_of([&] {
+    write();
+    throw_if_interrupted();
+    std::optional<std::string> elsewhere = out.commit();
+    is_written = true;
+    return elsewhere;
+  });
+  print_result("{}", report);
+  if (is_written) print_result("{}: {}\n", label, printable(out.shown_path()));
+  if (fault) throw InputError(*fault);
+}
+
+std::optional<base::OutputFile> claimed_file(const base::OutputRequest& request) {
+  if (request.path.empty()) return std::nullopt;
+  return std::optional<base::OutputFile>(std::in_place, request);
+}
+
+void publish(std::initializer_list<FileOutput> files, const std::string& report) {
+  std::string lines;
+  std::optional<std::string> first_fault;
+  throw_if_interrupted();
+  for (const FileOutput& output : files) {
+    if (!output.file) continue;
+    bool is_written = false;
+    const std::optional<std::string> fault = fault_of([&] {
+      std::optional<std::string> elsewhere = output.file->publish(output.bytes);
+      is_written = true;
+      return elsewhere;
+    });
+    if (is_written && !output.label.empty())
+      lines += fmt::format("{}: {}\n", output.label, printable(output.file->shown_path()));
+    if (fault && !first_fault) first_fault = fault;
+  }
+  print_result("{}{}", report, lines);
+  if (first_fault) throw InputError(*first_fault);
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,21 @@
+// What identifies this build in manifests and caches.
+#pragma once
+
+#include <string_view>
+
+namespace leviosim::tools {
+
+/// Of the project, "0.1.0".
+std::string_view version();
+
+/// The git commit that was checked out when the build was configured; empty outside a repository.
+std::string_view revision();
+
+/// Digest of the sources that make the synthetic flight: another digest, another flight.
+std::string_view flight_version();
+
+/// Digest of the sources that decide the results of runs and replays: finished ones of another
+/// digest are not found again.
+std::string_view results_version();
+
+}  // namespace leviosim::tools

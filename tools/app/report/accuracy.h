@@ -1,0 +1,29 @@
+// Accuracy as text and as statistics. Every command that reports it does so through these, so that
+// a figure looks the same everywhere and never goes without its protocol.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/app/report/statistic_list.h"
+#include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/relative_error.h"
+
+namespace leviosim::tools {
+
+/// "ATE: … m RMSE (…), rotation …° RMSE", and the protocol in a second line.
+std::string ate_text(const traces::Evaluation& evaluation);
+
+/// A row per length that has sub-trajectories, with the protocol below, and a line that names the
+/// lengths that are too long for the path. Empty for no lengths.
+std::string relative_text(const traces::Evaluation& evaluation,
+                          const std::vector<traces::RelativeErrors>& errors);
+
+/// "accuracy.ate.rmse" and so on.
+void add_ate(StatisticList& list, const traces::Evaluation& evaluation);
+
+/// "accuracy.relative.40m.translation.mean" and so on; null where a length has no sub-trajectory.
+void add_relative(StatisticList& list, const traces::Evaluation& evaluation,
+                  const traces::RelativeErrors& errors);
+
+}  // namespace leviosim::tools

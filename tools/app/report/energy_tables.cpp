@@ -1,0 +1,145 @@
+#include "tools/app/report/energy_tables.h"
+
+#include <fmt/core.h>
+
+#include <optional>
+#include <vector>
+
+#include "tools/app/report/text_table.h"
+#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+using sim::Estimate;
+
+constexpr auto kLeft = TextTable::Align::Left;
+constexpr const char* kNothing = "–";
+
+double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }
+
+/// "12.34" and "9.87–15.43".
+template <class T>
+void add_figure(std::vector<std::string>& cells, const std::optional<Estimate<T>>& figure,
+                double unit) {
+  if (!figure) {
+    cells.insert(cells.end(), {kNothing, kNothing});
+    return;
+  }
+  cells.push_back(fmt::format("{:.2f}", figure->value.count() / unit));
+  cells.push_back(
+      fmt::format("{:.2f}–{:.2f}", figure->low().count() / unit, figure->high().count() / unit));
+}
+
+template <class T>
+std::string in_words(const std::optional<Estimate<T>>& figure, double unit, const char* name) {
+  if (!figure) return kNothing;
+  return fmt::format("{:.2f} {} ({:.2f}–{:.2f})", figure->value.count() / unit, name,
+                     figure->low().count() / unit, figure->high().count() / unit);
+}
+
+std::string name_of(const EnergyRow& row) { return row.on_controller ? row.name + " ¹" : row.name; }
+
+bool any_on_controller(const RunEnergy& energy) {
+  for (const EnergyRow& row : energy.rows)
+    if (row.on_controller) return true;
+  return false;
+}
+
+std::string totals(const RunEnergy& energy) {
+  const double rate = static_cast<double>(energy.frames) / energy.time.count();
+  const auto per_frame = energy.per_frame();
+  const bool small = per_frame && per_frame->value < Joules(1e-4);
+  std::string text = fmt::format(
+      "per frame {}; mean power at {:.1f} frames/s {}\nwhile the front end runs {}",
+      in_words(per_frame, small ? 1e-6 : 1e-3, small ? "uJ" : "mJ"), energy.frames > 0 ? rate : 0.0,
+      in_words(energy.mean_power(), 1e-3, "mW"), in_words(energy.power_of_front_end(), 1e-3, "mW"));
+  if (any_on_controller(energy))
+    text += fmt::format("; while the optimiser runs, it adds {}",
+                        in_words(energy.power_of_controller(), 1e-3, "mW"));
+  return text + '\n';
+}
+
+/// Milliseconds that the front end takes for a frame, on average.
+double front_end_ms(const RunResult& run, Hertz cluster_clock) {
+  Cycles cycles;
+  for (const FrameResult& frame : run.frames) cycles += frame.cycles;
+  return milliseconds(static_cast<double>(cycles.count()), cluster_clock) /
+         static_cast<double>(run.frames.size());
+}
+
+}  // namespace
+
+std::string energy_table(const RunResult& run) {
+  const std::optional<RunEnergy> energy = energy_of(run);
+  if (!energy) return {};
+  TextTable table(
+      {{"stage", kLeft}, {"call", kLeft}, {"uJ of a call"}, {"band"}, {"mW"}, {"band"}});
+  for (const EnergyRow& row : energy->rows) {
+    std::vector<std::string> cells{name_of(row), row.unit};
+    add_figure(cells, row.per_call(), 1e-6);
+    add_figure(cells, row.power(), 1e-3);
+    table.add(std::move(cells));
+  }
+  return fmt::format("energy at {:g} V, cluster {:g} MHz, controller {:g} MHz\n",
+                     run.chip.supply.voltage.count(), megahertz(run.cluster_clock),
+                     megahertz(run.controller_clock)) +
+         table.str() +
+         (any_on_controller(*energy) ? "¹ what the controller adds; the rest of the chip is in the "
+                                       "rows of the cluster\n"
+                                     : "") +
+         "band: where the figure lies if the energies of the platform are within their ranges\n" +
+         totals(*energy);
+}
+
+std::string power_table(const RunResult& run) {
+  const std::optional<RunEnergy> energy = energy_of(run);
+  if (!energy) return {};
+  std::vector<TextTable::Column> columns{{"stage", kLeft}};
+  for (const sim::DomainInfo& info : sim::kDomains) columns.push_back({std::string(info.name)});
+  columns.push_back({"total"});
+  TextTable table(std::move(columns));
+  const auto add = [&](std::string name, const sim::DomainEnergies& energies, Seconds time) {
+    std::vector<std::string> cells{std::move(name)};
+    const auto cell = [&](const Estimate<Joules>& e) {
+      return time > Seconds(0) ? fmt::format("{:.2f}", (e.value / time).count() * 1e3) : kNothing;
+    };
+    for (const sim::DomainInfo& info : sim::kDomains) cells.push_back(cell(energies[info.domain]));
+    cells.push_back(cell(energies.total()));
+    table.add(std::move(cells));
+  };
+  for (const EnergyRow& row : energy->rows) add(name_of(row), row.energy, row.time);
+  add("all the time", energy->total(), energy->time);
+  return "where the power goes while a stage runs [mW]\n" + table.str();
+}
+
+std::string operating_point_table(const RunResult& run) {
+  if (!energy_of(run) || run.camera || run.frames.empty()) return {};
+  TextTable table({{"supply", kLeft},
+                   {"clock"},
+                   {"front end ms"},
+                   {"mJ of a frame"},
+                   {"band"},
+                   {"frames/s"},
+                   {"mean mW"},
+                   {"band"}});
+  const sim::SupplyConfig& supply = run.chip.supply;
+  for (const sim::OperatingPoint& point : {supply.lowest, supply.highest}) {
+    const std::optional<RunEnergy> energy = energy_at(run, point);
+    const Hertz faster = std::max(run.cluster_clock, run.controller_clock);
+    const double slower = megahertz(faster) / megahertz(point.clock);
+    std::vector<std::string> cells{
+        fmt::format("{:g} V", point.voltage.count()),
+        fmt::format("{:g} MHz", megahertz(point.clock)),
+        fmt::format("{:.2f}", front_end_ms(run, run.cluster_clock) * slower)};
+    add_figure(cells, energy->per_frame(), 1e-3);
+    cells.push_back(
+        fmt::format("{:.1f}", static_cast<double>(energy->frames) / energy->time.count()));
+    add_figure(cells, energy->mean_power(), 1e-3);
+    table.add(std::move(cells));
+  }
+  return "the same cycles at the ends of the supply\n" + table.str();
+}
+
+}  // namespace leviosim::tools

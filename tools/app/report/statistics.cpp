@@ -1,0 +1,258 @@
+#include "tools/app/report/statistics.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "tools/app/report/accuracy.h"
+#include "tools/app/report/statistic_list.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+void add_run(StatisticList& list, const RunResult& run) {
+  list.add("run.profile", "text", "profile of the workload", run.profile);
+  list.add("run.image_width", "px", "width of the image that the workload gets", run.image_width);
+  list.add("run.image_height", "px", "height of that image", run.image_height);
+  list.add("run.frame_period", "ns", "between two camera frames", run.frame_period_ns);
+  if (!run.timed) return;
+  list.add("run.cores", "1", "cores N of the parallel execution", run.cores);
+  list.add("run.cluster_clock", "Hz", "clock of the cluster", run.cluster_clock.count());
+  list.add("run.controller_clock", "Hz", "clock of the fabric controller",
+           run.controller_clock.count());
+  list.add("run.l1_size", "byte", "size of L1", run.l1_size.count());
+  list.add("run.l2_size", "byte", "size of L2", run.l2_size.count());
+}
+
+void add_cycles(StatisticList& list, const std::string& path, const RunResult& run,
+                const StageResult& stage) {
+  const std::optional<double> parallel = mean(stage.parallel, stage.calls);
+  const Hertz clock = clock_of(run, stage);
+  list.add(path + "cycles.single.sum", "cycles", "on one core", stage.single.count());
+  list.add(path + "cycles.single.mean", "cycles", "of a call on one core",
+           value_of(mean(stage.single, stage.calls)));
+  list.add(path + "cycles.parallel.sum", "cycles", "on N cores", stage.parallel.count());
+  list.add(path + "cycles.parallel.mean", "cycles", "of a call on N cores", value_of(parallel));
+  list.add(path + "cycles.parallel.worst", "cycles", "longest call on N cores",
+           stage.worst_parallel.count());
+  list.add(path + "speedup", "1", "one core over N cores", value_of(speedup(stage)));
+  list.add(path + "time.parallel.mean", "ms", "of a call on N cores",
+           parallel ? Json(milliseconds(*parallel, clock)) : Json(nullptr));
+}
+
+void add_account(StatisticList& list, const std::string& path, const RunResult& run,
+                 const StageResult& stage) {
+  list.add(path + "account.total", "core-cycles", "of the team on N cores", stage.account.total());
+  for (const AccountPart& part : account_parts(run))
+    list.add(fmt::format("{}account.{}", path, part.key), "core-cycles", part.description,
+             part.of(stage.account));
+}
+
+/// Of chips with accelerators only.
+void add_served(StatisticList& list, const std::string& path, const StageResult& stage) {
+  for (const work::KernelWork& calls : stage.served) {
+    const work::KernelInfo& info = work::kKernels[work::index(calls.kernel)];
+    const std::string kernel = fmt::format("{}served.{}.", path, info.name);
+    list.add(kernel + "calls", "1",
+             fmt::format("calls that an accelerator served: {}", info.description), calls.calls);
+    list.add(kernel + "items", "1", fmt::format("their size, each item a {}", info.item),
+             calls.items);
+  }
+}
+
+void add_blocks(StatisticList& list, const std::string& path,
+                const std::vector<work::Block>& blocks) {
+  for (const BlockGroup& group : grouped(blocks))
+    list.add(fmt::format("{}block.{}", path, key_of(group.name)), "byte",
+             fmt::format("block \"{}\" alive at the peak, {} of them", group.name, group.copies),
+             group.bytes.count());
+}
+
+/// Where code is reused tells which caches hold it.
+void add_code(StatisticList& list, const std::string& path, const StageResult& stage) {
+  for (std::size_t k = 0; k < work::kReuseClassEnds.size(); ++k)
+    if (stage.counts.code[k] > 0)
+      list.add(fmt::format("{}code.reuse_{}", path, work::kReuseClassEnds[k]), "byte",
+               "code fetched again at a reuse distance of up to so many bytes",
+               stage.counts.code[k]);
+  list.add(path + "code.first", "byte", "code fetched for the first time, or after 64 KiB of other",
+           stage.counts.code[work::kNeverFetched]);
+}
+
+void add_stage(StatisticList& list, const RunResult& run, const StageResult& stage) {
+  const std::string path = fmt::format("stages.{}.", key_of(stage.name));
+  list.add(path + "calls", "1", fmt::format("executions, one per {}", stage.unit), stage.calls);
+  list.add(path + "runs_on", "text", "cluster or fabric controller",
+           stage.on_controller ? "controller" : "cluster");
+  add_cycles(list, path, run, stage);
+  add_account(list, path, run, stage);
+  add_served(list, path, stage);
+  for (const work::OpInfo& op : work::kOps)
+    list.add(fmt::format("{}ops.{}", path, op.name), "1", op.description, stage.counts[op.op]);
+  add_code(list, path, stage);
+  list.add(path + "memory.single", "byte", "peak in its memory on one core",
+           stage.memory.single.count());
+  list.add(path + "memory.parallel", "byte", "peak in its memory on N cores",
+           stage.memory.parallel.count());
+  add_blocks(list, path + "memory.", stage.memory.blocks);
+}
+
+void add_frames(StatisticList& list, const RunResult& run) {
+  list.add("frames.count", "1", "frames processed", run.frames.size());
+  const auto count = [&](const auto& condition) {
+    return std::count_if(run.frames.begin(), run.frames.end(), condition);
+  };
+  for (const PoseSource source : {PoseSource::First, PoseSource::Epnp, PoseSource::EightPoint,
+                                  PoseSource::Kept, PoseSource::Predicted, PoseSource::Tracked})
+    list.add(fmt::format("frames.source.{}", key_of(source)), "1", "frames by source of the pose",
+             count([&](const FrameResult& f) { return f.source == source; }));
+  list.add("frames.keyframes", "1", "frames that became keyframes",
+           count([](const FrameResult& f) { return f.keyframe; }));
+  struct Field {
+    const char* name;
+    int FrameResult::*of;
+  };
+  for (const Field& field :
+       {Field{"features", &FrameResult::features},
+        Field{"world_matches", &FrameResult::world_matches},
+        Field{"frame_matches", &FrameResult::frame_matches},
+        Field{"inliers", &FrameResult::inliers}, Field{"landmarks", &FrameResult::landmarks}}) {
+    std::int64_t sum = 0;
+    for (const FrameResult& frame : run.frames) sum += frame.*field.of;
+    list.add(fmt::format("frames.{}.sum", field.name), "1", "summed over the frames", sum);
+  }
+}
+
+void add_latencies(StatisticList& list, const RunResult& run) {
+  const Waiting waiting = frames_that_waited(run);
+  list.add("frames.waited", "1", "frames that found the front end busy", waiting.frames);
+  list.add("frames.longest_wait", "ns", "of a frame for the front end", waiting.longest_ns);
+  for (const Scenario& scenario : scenarios(run)) {
+    const std::string path = fmt::format("latency.{}.", scenario.key);
+    list.add(path + "frames", "1", fmt::format("frames of the kind \"{}\"", scenario.name),
+             scenario.frames);
+    list.add(path + "mean", "ns", "from the camera's frame to its pose",
+             value_of(scenario.mean_latency_ns()));
+    list.add(path + "worst", "ns", "longest from the camera's frame to its pose",
+             scenario.worst_latency_ns);
+    list.add(path + "over_period", "1", "frames whose latency exceeds the frame period",
+             scenario.over_period);
+    list.add(path + "cycles.single.mean", "cycles", "of the front end on one core",
+             value_of(mean(scenario.single, scenario.frames)));
+    list.add(path + "cycles.parallel.mean", "cycles", "of the front end on N cores",
+             value_of(mean(scenario.parallel, scenario.frames)));
+  }
+}
+
+/// Of closed loops only.
+void add_camera(StatisticList& list, const RunResult& run) {
+  const std::optional<CameraFigures> figures = camera_figures(run);
+  if (!figures) return;
+  list.add("camera.rate", "1/s", "frames that the camera delivers", run.camera->fps);
+  list.add("camera.deadline", "text", "what becomes of frames that find the front end busy",
+           info_of(run.camera->deadline).name);
+  list.add("camera.arrived", "1", "frames that the camera delivered", figures->arrived);
+  list.add("camera.processed", "1", "of these, frames that the front end took", figures->processed);
+  list.add("camera.dropped", "1", "of these, frames that were lost", figures->dropped);
+  list.add("camera.late", "1", "processed frames whose latency exceeds the frame period",
+           figures->late);
+  list.add("camera.missed", "1", "frames that were dropped or late", figures->missed());
+  list.add("camera.dropped_share", "1", "dropped frames over arrived ones",
+           figures->share_of(figures->dropped));
+  list.add("camera.missed_share", "1", "dropped or late frames over arrived ones",
+           figures->share_of(figures->missed()));
+  list.add("camera.most_found", "1", "most frames that one found in the camera's two buffers",
+           figures->most_found);
+  const CameraFigures::Latencies& latency = figures->latency;
+  list.add("latency.all.p50", "ns", "median from the camera's frame to its pose", latency.p50_ns);
+  list.add("latency.all.p95", "ns", "that 95 % of the processed frames do not exceed",
+           latency.p95_ns);
+  list.add("latency.all.p99", "ns", "that 99 % of the processed frames do not exceed",
+           latency.p99_ns);
+  list.add("latency.all.worst", "ns", "longest from the camera's frame to its pose",
+           latency.max_ns);
+}
+
+void add_l2(StatisticList& list, const RunResult& run) {
+  for (const L2Row& row : run.l2) {
+    const std::string path = fmt::format("memory.l2.{}.", key_of(row.name));
+    list.add(path + "bytes", "byte", "occupation of L2", row.bytes.count());
+    add_blocks(list, path, row.blocks);
+  }
+}
+
+/// A figure and the ends of its band.
+template <class T>
+void add_banded(StatisticList& list, const std::string& name, std::string_view unit,
+                std::string_view description, const std::optional<sim::Estimate<T>>& figure,
+                double scale) {
+  const auto value = [&](auto of) { return figure ? Json(of(*figure).count() * scale) : Json(); };
+  using E = sim::Estimate<T>;
+  list.add(name, unit, description, value([](const E& e) { return e.value; }));
+  list.add(name + ".low", unit, fmt::format("{}: low end", description),
+           value([](const E& e) { return e.low(); }));
+  list.add(name + ".high", unit, fmt::format("{}: high end", description),
+           value([](const E& e) { return e.high(); }));
+}
+
+void add_energy_row(StatisticList& list, const EnergyRow& row) {
+  const std::string path = fmt::format("energy.{}.", key_of(row.name));
+  add_banded(list, path + "call", "uJ", fmt::format("energy per {}", row.unit), row.per_call(),
+             1e6);
+  add_banded(list, path + "power", "mW", "mean power while it runs", row.power(), 1e3);
+  for (const sim::DomainInfo& info : sim::kDomains)
+    add_banded(list, fmt::format("{}domain.{}", path, info.name), "mJ", info.description,
+               std::optional(row.energy[info.domain]), 1e3);
+}
+
+void add_energy(StatisticList& list, const RunResult& run) {
+  const std::optional<RunEnergy> energy = energy_of(run);
+  if (!energy) return;
+  list.add("run.voltage", "V", "supply of the chip", run.chip.supply.voltage.count());
+  for (const EnergyRow& row : energy->rows) add_energy_row(list, row);
+  add_banded(list, "energy.total", "mJ", "of the whole run", std::optional(energy->total().total()),
+             1e3);
+  add_banded(list, "energy.frame", "mJ", "per frame, idle time included", energy->per_frame(), 1e3);
+  add_banded(list, "energy.mean_power", "mW", "over the whole run", energy->mean_power(), 1e3);
+  add_banded(list, "energy.front_end_power", "mW", "while the cluster works",
+             energy->power_of_front_end(), 1e3);
+  add_banded(list, "energy.controller_power", "mW", "that the controller adds while it works",
+             energy->power_of_controller(), 1e3);
+}
+
+void add_accuracy(StatisticList& list, const RunResult& run) {
+  list.add("trajectory.poses", "1", "poses of the trajectory", run.trajectory.size());
+  list.add("trajectory.length", "m", "of the estimated path", rounded(path_length(run.trajectory)));
+  if (run.ate) add_ate(list, *run.ate);
+}
+
+}  // namespace
+
+Json statistics(const RunResult& run) {
+  StatisticList list;
+  add_run(list, run);
+  if (run.timed)
+    for (const StageResult& stage : run.stages) add_stage(list, run, stage);
+  add_frames(list, run);
+  if (run.timed) {
+    add_latencies(list, run);
+    add_camera(list, run);
+    add_l2(list, run);
+    add_energy(list, run);
+    list.add("optimiser.published", "1", "results that reached the front end",
+             run.optimiser_published);
+    list.add("optimiser.late", "1", "frames at whose start the controller was still busy",
+             run.optimiser_late);
+  }
+  add_accuracy(list, run);
+  return statistics_document(list.take());
+}
+
+std::string statistics_text(const RunResult& run) {
+  return statistics_document_text(statistics(run));
+}
+
+}  // namespace leviosim::tools

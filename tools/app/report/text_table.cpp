@@ -1,0 +1,100 @@
+#include "tools/app/report/text_table.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/base/check.h"
+#include "sim/base/printable_text.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr std::string_view kGap = "  ";
+
+std::string blanks(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
+
+}  // namespace
+
+int display_width(std::string_view text) {
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; };
+  return static_cast<int>(text.size()) -
+         static_cast<int>(std::count_if(text.begin(), text.end(), continues));
+}
+
+TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {
+  for (Column& column : columns_) column.title = printable(column.title);
+}
+
+void TextTable::add(std::vector<std::string> cells) {
+  check_equal(cells.size(), columns_.size(), "cells in a table row");
+  for (std::string& cell : cells) cell = printable(cell);
+  rows_.push_back(std::move(cells));
+}
+
+std::string TextTable::line(const std::vector<std::string>& cells,
+                            const std::vector<int>& widths) const {
+  std::string text;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const std::string padding = blanks(widths[c] - display_width(cells[c]));
+    if (c > 0) text += kGap;
+    text += columns_[c].align == Align::Left ? cells[c] + padding : padding + cells[c];
+  }
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text + '\n';
+}
+
+std::string TextTable::markdown() const {
+  const auto row = [](const std::vector<std::string>& cells) {
+    std::string text = "|";
+    for (const std::string& cell : cells) text += ' ' + cell + " |";
+    return text + '\n';
+  };
+  std::vector<std::string> titles;
+  std::vector<std::string> rules;
+  for (const Column& column : columns_) {
+    titles.push_back(column.title);
+    rules.emplace_back(column.align == Align::Left ? "---" : "---:");
+  }
+  std::string text = row(titles) + row(rules);
+  for (const auto& cells : rows_) text += row(cells);
+  return text;
+}
+
+std::string TextTable::str() const {
+  std::vector<std::string> titles;
+  std::vector<int> widths;
+  int total = 0;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    titles.push_back(columns_[c].title);
+    int width = display_width(columns_[c].title);
+    for (const auto& row : rows_) width = std::max(width, display_width(row[c]));
+    widths.push_back(width);
+    total += width + (c > 0 ? display_width(kGap) : 0);
+  }
+  std::string text = line(titles, widths);
+  for (int i = 0; i < total; ++i) text += "─";
+  text += '\n';
+  for (const auto& row : rows_) text += line(row, widths);
+  return text;
+}
+
+std::string wrap(const std::vector<std::string>& items, std::string_view separator, int indent,
+                 int width) {
+  std::string text;
+  int used = indent;
+  for (const std::string& item : items) {
+    const bool first = text.empty();
+    const int needed = display_width(item) + (first ? 0 : display_width(separator));
+    if (!first && used + needed > width) {
+      text += '\n' + blanks(indent);
+      used = indent + display_width(item);
+    } else {
+      if (!first) text += separator;
+      used += needed;
+    }
+    text += item;
+  }
+  return text;
+}
+
+}  // namespace leviosim::tools

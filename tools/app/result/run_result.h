@@ -1,0 +1,93 @@
+// Everything that a run produced, before it becomes tables and files. Plain data: the simulation
+// (simulation.h) fills it in, reporters (tables.h, run_folder.h) read it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/base/units.h"
+#include "sim/chip/config.h"
+#include "sim/chip/timing.h"
+#include "sim/soc/camera.h"
+#include "sim/work/program.h"
+#include "sim/work/transfers.h"
+#include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/trajectory.h"
+#include "workload/vio/odometry.h"
+
+namespace leviosim::tools {
+
+/// One stage of the workload over the whole run.
+struct StageResult {
+  std::string name;
+  std::string unit = "call";   ///< what one call is: "frame", "sample", "iteration", …
+  bool on_controller = false;  ///< runs on the fabric controller, one core whatever N is
+  std::int64_t calls = 0;
+  Cycles single;                         ///< one core, summed over the calls
+  Cycles parallel;                       ///< N cores, summed over the calls
+  Cycles worst_parallel;                 ///< longest call on N cores
+  sim::Account account;                  ///< of the N-core execution, core-cycles
+  work::Counts counts;                   ///< operations executed by cores
+  std::vector<work::KernelWork> served;  ///< calls that accelerators served
+  work::MemoryPeak memory;  ///< highest peak over the calls, of L1 (L2 for the controller)
+  std::vector<work::Block> persistent;  ///< filled in for the controller's L2 only
+  work::Transferred transfers;          ///< between L1 and L2
+};
+
+using vio::PoseSource;
+
+struct FrameResult {
+  int index = 0;          ///< in the data set
+  std::int64_t t_ns = 0;  ///< camera timestamp
+  PoseSource source = PoseSource::First;
+  bool keyframe = false;
+  int features = 0;
+  int world_matches = 0;
+  int frame_matches = 0;
+  int inliers = 0;
+  int landmarks = 0;            ///< alive after the frame
+  std::int64_t arrival_ns = 0;  ///< simulated time since the first frame
+  std::int64_t start_ns = 0;    ///< front end begins (≥ arrival)
+  std::int64_t end_ns = 0;      ///< pose available
+  Cycles cycles;                ///< front end on N cores
+  Cycles single_cycles;         ///< front end on one core
+  traces::StampedPose pose;
+};
+
+/// One row of the L2 part of the memory table.
+struct L2Row {
+  std::string name;  ///< "last keyframe", "pose graph", "optimiser"
+  Bytes bytes;
+  std::vector<work::Block> blocks;
+};
+
+struct RunResult {
+  std::string profile;
+  bool timed = true;  ///< false for --native: no cycles, no latencies
+  int cores = 8;
+  Hertz cluster_clock;
+  Hertz controller_clock;
+  Bytes l1_size;
+  Bytes l2_size;
+  std::int64_t frame_period_ns = 0;  ///< of the camera
+  int image_width = 0;
+  int image_height = 0;
+  std::vector<StageResult> stages;     ///< in the order of the workload
+  std::vector<FrameResult> frames;     ///< that the front end processed
+  std::optional<CameraRecord> camera;  ///< of a closed loop
+  std::vector<L2Row> l2;
+  std::int64_t optimiser_published = 0;  ///< results that reached the front end
+  std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
+  std::vector<traces::StampedPose> trajectory;
+  int poses_left_out = 0;                 ///< of the trajectory, since they are no numbers
+  std::optional<traces::Evaluation> ate;  ///< where ground truth exists and all poses are numbers
+  std::string
+      not_comparable;       ///< why the trajectory could not be evaluated; see why_incomparable()
+  double host_seconds = 0;  ///< wall time; not part of anything that must be reproducible
+  sim::ChipConfig chip{};   ///< that the run was timed on; unused if not timed
+};
+
+}  // namespace leviosim::tools

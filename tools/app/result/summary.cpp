@@ -1,0 +1,174 @@
+#include "tools/app/result/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/chip/accelerator.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// In the order of PoseSource.
+constexpr std::array<std::string_view, 6> kSourceKeys{"first", "epnp",      "eight_point",
+                                                      "kept",  "predicted", "tracked"};
+static_assert(static_cast<std::size_t>(PoseSource::Tracked) + 1 == kSourceKeys.size());
+
+enum Kind : std::size_t { kEpnp = 0, kEightPoint = 2, kTracked = 4, kOther = 6 };
+
+/// By the means that found the pose; the number after it is that of the kind with keyframe. EPnP
+/// has run for predicted poses, too.
+std::size_t scenario_of(const FrameResult& frame) {
+  const std::size_t keyframe = frame.keyframe ? 1 : 0;
+  switch (frame.source) {
+    case PoseSource::Epnp:
+    case PoseSource::Predicted:
+      return kEpnp + keyframe;
+    case PoseSource::EightPoint:
+      return kEightPoint + keyframe;
+    case PoseSource::Tracked:
+      return kTracked + keyframe;
+    default:
+      return kOther;
+  }
+}
+
+std::vector<Scenario> empty_scenarios() {
+  constexpr std::array<std::array<std::string_view, 2>, kOther + 1> names{{
+      {"EPnP", "epnp"},
+      {"EPnP, keyframe", "epnp_keyframe"},
+      {"8-point", "eight_point"},
+      {"8-point, keyframe", "eight_point_keyframe"},
+      {"tracked", "tracked"},
+      {"tracked, keyframe", "tracked_keyframe"},
+      {"other (first, pose kept)", "other"},
+  }};
+  std::vector<Scenario> all;
+  for (const auto& [name, key] : names) {
+    Scenario scenario;
+    scenario.name = name;
+    scenario.key = key;
+    all.push_back(scenario);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string key_of(std::string_view name) {
+  std::string key;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (letter)
+      key += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    else if (!key.empty() && key.back() != '_')
+      key += '_';
+  }
+  while (!key.empty() && key.back() == '_') key.pop_back();
+  return key;
+}
+
+std::string_view key_of(PoseSource source) { return kSourceKeys[static_cast<std::size_t>(source)]; }
+
+std::optional<PoseSource> source_named(std::string_view key) {
+  const auto found = std::find(kSourceKeys.begin(), kSourceKeys.end(), key);
+  if (found == kSourceKeys.end()) return std::nullopt;
+  return static_cast<PoseSource>(found - kSourceKeys.begin());
+}
+
+std::optional<double> mean(Cycles sum, std::int64_t calls) {
+  if (calls == 0) return std::nullopt;
+  return static_cast<double>(sum.count()) / static_cast<double>(calls);
+}
+
+std::optional<double> speedup(const StageResult& stage) {
+  if (stage.calls == 0 || stage.parallel.count() == 0) return std::nullopt;
+  return static_cast<double>(stage.single.count()) / static_cast<double>(stage.parallel.count());
+}
+
+Hertz clock_of(const RunResult& run, const StageResult& stage) {
+  return stage.on_controller ? run.controller_clock : run.cluster_clock;
+}
+
+double milliseconds(double cycles, Hertz clock) {
+  return cycles * 1e3 / static_cast<double>(clock.count());
+}
+
+std::size_t expected_poses(const RunResult& run) {
+  return run.camera ? run.camera->deliveries.size() : run.frames.size();
+}
+
+std::string why_incomparable(const RunResult& run) {
+  if (!run.not_comparable.empty() || run.poses_left_out == 0) return run.not_comparable;
+  return fmt::format("{} poses are no numbers", run.poses_left_out);
+}
+
+std::optional<double> Scenario::mean_latency_ns() const {
+  if (frames == 0) return std::nullopt;
+  return static_cast<double>(latency_ns) / static_cast<double>(frames);
+}
+
+std::vector<Scenario> scenarios(const RunResult& run) {
+  std::vector<Scenario> all = empty_scenarios();
+  for (const FrameResult& frame : run.frames) {
+    Scenario& scenario = all[scenario_of(frame)];
+    const std::int64_t latency_ns = frame.end_ns - frame.arrival_ns;
+    ++scenario.frames;
+    scenario.latency_ns += latency_ns;
+    scenario.worst_latency_ns = std::max(scenario.worst_latency_ns, latency_ns);
+    if (latency_ns > run.frame_period_ns) ++scenario.over_period;
+    scenario.single += frame.single_cycles;
+    scenario.parallel += frame.cycles;
+  }
+  // Profiles that do not track have no such frames.
+  if (all[kTracked].frames + all[kTracked + 1].frames == 0)
+    all.erase(all.begin() + kTracked, all.begin() + kOther);
+  return all;
+}
+
+Waiting frames_that_waited(const RunResult& run) {
+  Waiting waiting;
+  for (const FrameResult& frame : run.frames) {
+    const std::int64_t wait_ns = frame.start_ns - frame.arrival_ns;
+    if (wait_ns > 0) ++waiting.frames;
+    waiting.longest_ns = std::max(waiting.longest_ns, wait_ns);
+  }
+  return waiting;
+}
+
+std::vector<AccountPart> account_parts(const RunResult& run) {
+  std::vector<AccountPart> parts(kAccountParts.begin(), kAccountParts.end());
+  if (run.timed && sim::has_accelerators(run.chip.cluster.accelerators))
+    parts.insert(parts.end(), kAcceleratorParts.begin(), kAcceleratorParts.end());
+  else if (run.timed && sim::has_accelerators(run.chip.controller.accelerators))
+    parts.push_back(kAcceleratorParts[0]);
+  return parts;
+}
+
+std::vector<BlockGroup> grouped(const std::vector<work::Block>& blocks) {
+  std::vector<BlockGroup> groups;
+  for (const work::Block& block : blocks) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const BlockGroup& g) { return g.name == block.name; });
+    if (group == groups.end()) group = groups.insert(group, BlockGroup{block.name, 0, Bytes(0)});
+    ++group->copies;
+    group->bytes += block.size;
+  }
+  return groups;
+}
+
+double percent_of_nominal(Bytes used, Bytes size) {
+  const double nominal = static_cast<double>(size.count()) / 1024.0 * 1000.0;
+  return nominal > 0 ? 100.0 * static_cast<double>(used.count()) / nominal : 0;
+}
+
+double path_length(const std::vector<traces::StampedPose>& trajectory) {
+  double length = 0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    length +=
+        (trajectory[i].T_world_body.translation() - trajectory[i - 1].T_world_body.translation())
+            .norm();
+  return length;
+}
+
+}  // namespace leviosim::tools

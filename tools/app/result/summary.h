@@ -1,0 +1,124 @@
+// Figures that are derived from a run when it is read out: means, speed-ups, latencies of the kinds
+// of frame, shares of core-cycles, occupation. Tables, statistics and CSV files share them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/app/result/run_result.h"
+
+namespace leviosim::tools {
+
+/// "EPnP RANSAC" → "epnp_ransac", for names in files.
+std::string key_of(std::string_view name);
+std::string_view key_of(PoseSource source);
+/// The inverse of it; absent for other words.
+std::optional<PoseSource> source_named(std::string_view key);
+
+/// Absent if there were no calls.
+std::optional<double> mean(Cycles sum, std::int64_t calls);
+/// One core over N cores; absent if there were no calls.
+std::optional<double> speedup(const StageResult& stage);
+/// Of the domain that the stage runs in.
+Hertz clock_of(const RunResult& run, const StageResult& stage);
+double milliseconds(double cycles, Hertz clock);
+
+/// That a trajectory without gaps would have: of the frames that the camera delivered.
+std::size_t expected_poses(const RunResult& run);
+/// Why the run has no error that could be compared with another's; empty if it may have one.
+std::string why_incomparable(const RunResult& run);
+
+/// Frames of one kind and how long they took.
+struct Scenario {
+  std::string_view name;  ///< for people
+  std::string_view key;   ///< in files
+  std::int64_t frames = 0;
+  std::int64_t latency_ns = 0;  ///< from the camera's frame to its pose, summed
+  std::int64_t worst_latency_ns = 0;
+  std::int64_t over_period = 0;  ///< frames whose latency exceeds the frame period
+  Cycles single;                 ///< front end on one core, summed
+  Cycles parallel;               ///< front end on N cores, summed
+
+  std::optional<double> mean_latency_ns() const;
+};
+
+/// EPnP and 8-point, without and with keyframe; the same of frames whose pose was tracked, if there
+/// are any; and last the rest (the first frame, and poses that were kept): every frame is in one of
+/// them.
+std::vector<Scenario> scenarios(const RunResult& run);
+
+/// Frames that found the front end busy.
+struct Waiting {
+  std::int64_t frames = 0;
+  std::int64_t longest_ns = 0;
+};
+Waiting frames_that_waited(const RunResult& run);
+
+/// One part of an account. All parts together are its total.
+struct AccountPart {
+  std::string_view key;
+  std::string_view description;
+  double (*of)(const sim::Account&);
+};
+inline constexpr std::array kAccountParts{
+    AccountPart{"issue", "issuing instructions of parallel work",
+                [](const sim::Account& a) { return a.useful.issue; }},
+    AccountPart{"load_use", "waiting for loaded values",
+                [](const sim::Account& a) { return a.useful.load_use; }},
+    AccountPart{"control", "pipeline refills after branches, calls and loop entries",
+                [](const sim::Account& a) { return a.useful.control; }},
+    AccountPart{"memory", "L2 latency and straddling words",
+                [](const sim::Account& a) { return a.useful.memory; }},
+    AccountPart{"arithmetic", "latency of integer divisions and floating-point operations",
+                [](const sim::Account& a) { return a.useful.arithmetic; }},
+    AccountPart{"fpu", "waiting for a shared floating-point unit",
+                [](const sim::Account& a) { return a.fpu; }},
+    AccountPart{"divider", "waiting for the shared divider",
+                [](const sim::Account& a) { return a.divider; }},
+    AccountPart{"banks", "waiting for L1 banks", [](const sim::Account& a) { return a.banks; }},
+    AccountPart{"fetch", "waiting for code that the private instruction cache lacks",
+                [](const sim::Account& a) { return a.useful.fetch; }},
+    AccountPart{"fetch_contention", "more of that, since other cores fetch as well",
+                [](const sim::Account& a) { return a.fetch; }},
+    AccountPart{"imbalance", "waiting at the end of forks for the slowest core",
+                [](const sim::Account& a) { return a.imbalance; }},
+    AccountPart{"synchronisation", "forking, waking up, barriers",
+                [](const sim::Account& a) { return a.synchronisation; }},
+    AccountPart{"transfer", "waiting for the DMA",
+                [](const sim::Account& a) { return a.transfer; }},
+    AccountPart{"serial", "all cores, while the master works alone",
+                [](const sim::Account& a) { return a.serial; }},
+    AccountPart{"rounding", "ends of shares moved to the next clock edge",
+                [](const sim::Account& a) { return a.rounding; }},
+};
+
+/// Those that there are on chips with accelerators only.
+inline constexpr std::array kAcceleratorParts{
+    AccountPart{"accelerator", "waiting for accelerators while they serve the core",
+                [](const sim::Account& a) { return a.useful.accelerator; }},
+    AccountPart{"accelerator_contention", "waiting for accelerators while they serve others",
+                [](const sim::Account& a) { return a.accelerator; }},
+};
+/// All parts that a run has.
+std::vector<AccountPart> account_parts(const RunResult& run);
+
+/// Blocks of one name, e.g. the scratch of the cores.
+struct BlockGroup {
+  std::string_view name;
+  int copies = 0;
+  Bytes bytes;  ///< of all copies
+};
+/// In the order of first appearance.
+std::vector<BlockGroup> grouped(const std::vector<work::Block>& blocks);
+
+/// Share of a memory in per cent, by the convention of the LEVIO paper: kilobytes of 1000 bytes, of
+/// the memory's nominal size (128 kB for 131 072 bytes).
+double percent_of_nominal(Bytes used, Bytes size);
+
+/// Length of the estimated path [m].
+double path_length(const std::vector<traces::StampedPose>& trajectory);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,86 @@
+#include "tools/app/run/flight_cache.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "sim/base/error.h"
+#include "sim/base/output_record.h"
+#include "tools/app/cli/cache_folder.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/version.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Excludes other processes from acquire() to the end of its life. The file stays; it is empty.
+class FileLock {
+ public:
+  explicit FileLock(const fs::path& file)
+      : descriptor_(::open(file.c_str(), O_CREAT | O_RDWR | O_NOFOLLOW | O_CLOEXEC, 0644)) {
+    if (descriptor_ < 0) throw InputError(fmt::format("{}: cannot be written", file.string()));
+  }
+  ~FileLock() { ::close(descriptor_); }
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+  void acquire() {
+    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      throw_if_interrupted();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// Whether all files of the flight are there as they were drawn.
+bool is_whole(const fs::path& folder) {
+  const std::optional<base::OutputRecord> record = base::OutputRecord::read(folder);
+  return record && !record->paths().empty() && record->is_complete(folder);
+}
+
+}  // namespace
+
+fs::path flight_folder() {
+  return cache_folder() / fmt::format("synthetic-{}-{:g}s-{}", kFlightSeed, kFlightSeconds,
+                                      flight_version().substr(0, 12));
+}
+
+void write_flight(const fs::path& folder, const traces::SyntheticOptions& options,
+                  ProgressLine::Style progress) {
+  ProgressLine line(progress);
+  traces::write_synthetic_flight(folder, options, [&](std::size_t done, std::size_t total) {
+    throw_if_interrupted();
+    line.show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total),
+              [&] { return fmt::format("synthetic flight: image {}/{}", done, total); });
+  });
+}
+
+fs::path cached_flight(ProgressLine::Style progress) {
+  const fs::path folder = flight_folder();
+  std::error_code error;
+  fs::create_directories(folder.parent_path(), error);
+  if (error)
+    throw InputError(
+        fmt::format("{}: cannot be created: {}", folder.parent_path().string(), error.message()));
+  cache_folder();  // refuses it if it is not the user's
+  FileLock lock(folder.string() + ".lock");
+  lock.acquire();
+  if (is_whole(folder)) return folder;
+  traces::SyntheticOptions options;
+  options.seed = kFlightSeed;
+  options.duration_s = kFlightSeconds;
+  options.repair = true;
+  write_flight(folder, options, progress);
+  return folder;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,151 @@
+#include "tools/app/run/live_source.h"
+
+#include <cmath>
+#include <utility>
+
+#include "platform_models/loader/compiled_code.h"
+#include "sim/base/error.h"
+#include "sim/chip/accelerator.h"
+#include "tools/app/result/summary.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/trajectories/evaluation.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::vector<std::int64_t> stamps_of(const Feed& feed) {
+  std::vector<std::int64_t> stamps_ns;
+  for (int i = 0; i < feed.size(); ++i) stamps_ns.push_back(feed.time_ns(i));
+  return stamps_ns;
+}
+
+/// Room for a native run at any resolution; untouched pages cost nothing.
+constexpr Bytes kUnlimited{std::int64_t{1} << 30};
+
+/// Only an accelerator, of this chip or of one that replays the run, asks for calls of kernels.
+bool follows_kernels(const RunRequest& request) {
+  return request.recording || sim::has_accelerators(request.platform.config);
+}
+
+work::MachineConfig cluster_machine(const RunRequest& request, const vio::Profile& profile) {
+  return {.cores = request.cores,
+          .memory = "L1",
+          .capacity = request.native ? kUnlimited : request.platform.config.cluster.l1.size,
+          .alignment = profile.l1_alignment,
+          .record = !request.native,
+          .kernels = follows_kernels(request),
+          .code = &platform::compiled_code()};
+}
+
+work::MachineConfig controller_machine(const RunRequest& request) {
+  Bytes l2 = request.platform.config.l2.size;
+  if (request.camera) l2 -= second_buffer(request.image_size.width, request.image_size.height);
+  return {.cores = 1,
+          .memory = "L2",
+          .capacity = request.native ? kUnlimited : l2,
+          .alignment = 4,
+          .record = !request.native,
+          .kernels = follows_kernels(request),
+          .code = &platform::compiled_code()};
+}
+
+/// The pose that the workload reports for the camera, of the body and in double precision.
+traces::StampedPose body_pose(const vio::FrameReport& report, const traces::CameraModel& camera,
+                              std::int64_t t_ns) {
+  Eigen::Matrix3d R;
+  Eigen::Vector3d p;
+  for (int r = 0; r < 3; ++r) {
+    p[r] = static_cast<double>(report.p_world_camera[static_cast<std::size_t>(r)]);
+    for (int c = 0; c < 3; ++c)
+      R(r, c) = static_cast<double>(report.R_world_camera[static_cast<std::size_t>(3 * r + c)]);
+  }
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  // Single-precision products drift from orthogonality; the quaternion of a pose must not.
+  T_world_camera.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  T_world_camera.translation() = p;
+  return {t_ns, T_world_camera * camera.T_body_camera.inverse()};
+}
+
+}  // namespace
+
+LiveSource::LiveSource(const RunRequest& request)
+    : profile_(profile_of(request)),
+      evaluate_(request.evaluate),
+      feed_(request),
+      cluster_(cluster_machine(request, profile_)),
+      controller_(controller_machine(request)),
+      odometry_(vio::make_odometry(!request.native, profile_, feed_.rig(), cluster_, controller_)) {
+  if (evaluate_) traces::require_truth_at(feed_.data(), stamps_of(feed_));
+}
+
+bool LiveSource::take_up(const FrameStart& start) {
+  frame_ = start.frame;
+  return !start.optimiser_busy && odometry_->begin_optimisation();
+}
+
+const work::Job& LiveSource::process_frame(FrameResult& result) {
+  const vio::FrameReport report = odometry_->process_frame(feed_.frame(frame_));
+  front_end_job_ = cluster_.take_job();
+  result.index = frame_;
+  result.t_ns = feed_.time_ns(frame_);
+  result.source = report.source;
+  result.keyframe = report.keyframe;
+  result.features = report.features;
+  result.world_matches = report.world_matches;
+  result.frame_matches = report.frame_matches;
+  result.inliers = report.inliers;
+  result.landmarks = report.landmarks;
+  result.pose = body_pose(report, feed_.data().camera, result.t_ns);
+  return front_end_job_;
+}
+
+const work::Job& LiveSource::optimise() {
+  odometry_->optimise();
+  optimiser_job_ = controller_.take_job();
+  return optimiser_job_;
+}
+
+void LiveSource::publish() {
+  odometry_->publish();
+  controller_.take_job();
+}
+
+std::vector<StageResult> LiveSource::empty_stages() const {
+  std::vector<StageResult> stages;
+  for (const vio::StageName& name : vio::stage_names(profile_)) {
+    StageResult stage;
+    stage.name = name.name;
+    stage.unit = name.per;
+    stage.on_controller = name.on_controller;
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
+void LiveSource::describe(RunResult& result) const {
+  result.profile = profile_.name;
+  result.frame_period_ns = std::llround(1e9 / feed_.rate_hz());
+  if (result.camera) result.camera->fps = feed_.rate_hz();
+  result.image_width = feed_.rig().width;
+  result.image_height = feed_.rig().height;
+  for (const auto& [name, arena] : {std::pair<const char*, const work::Arena&>{
+                                        "last keyframe", odometry_->last_keyframe_memory()},
+                                    {"pose graph", odometry_->pose_graph_memory()}})
+    result.l2.push_back({name, arena.used(), arena.live()});
+  if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= 3 &&
+      why_incomparable(result).empty())
+    evaluate(result);
+}
+
+/// A run that has diverged, or dropped the frames that the truth covers, is still a run.
+void LiveSource::evaluate(RunResult& result) const {
+  try {
+    result.ate =
+        traces::evaluate(result.trajectory, traces::to_trajectory(feed_.data().ground_truth),
+                         {.expected_poses = expected_poses(result)});
+  } catch (const InputError& failure) {
+    result.not_comparable = failure.what();
+  }
+}
+
+}  // namespace leviosim::tools

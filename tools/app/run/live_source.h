@@ -1,0 +1,41 @@
+// The workload over a data set, computing as the simulation asks for its work.
+#pragma once
+
+#include <memory>
+
+#include "sim/soc/job_source.h"
+#include "tools/app/run/feed.h"
+
+namespace leviosim::tools {
+
+class LiveSource : public JobSource {
+ public:
+  /// @param request  outlives the source
+  explicit LiveSource(const RunRequest& request);
+
+  int frames() const override { return feed_.size(); }
+  std::int64_t time_ns(int frame) const override { return feed_.time_ns(frame); }
+  std::int64_t arrival_ns(int frame) const override { return feed_.arrival_ns(frame); }
+  bool take_up(const FrameStart& start) override;
+  const work::Job& process_frame(FrameResult& result) override;
+  int iterations() const override { return profile_.optimiser_iterations; }
+  const work::Job& optimise() override;
+  void publish() override;
+  std::vector<StageResult> empty_stages() const override;
+  void describe(RunResult& result) const override;
+
+ private:
+  void evaluate(RunResult& result) const;
+
+  vio::Profile profile_;
+  bool evaluate_;
+  Feed feed_;
+  work::Machine cluster_;
+  work::Machine controller_;
+  std::unique_ptr<vio::Odometry> odometry_;
+  int frame_ = 0;  ///< taken up last
+  work::Job front_end_job_;
+  work::Job optimiser_job_;
+};
+
+}  // namespace leviosim::tools

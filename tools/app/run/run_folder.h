@@ -1,0 +1,43 @@
+// The files that a run leaves behind. Same inputs, same bytes, except the member "host" of
+// manifest.json.
+//
+//   manifest.json    what the run was made from (manifest.h)
+//   platform.yaml    the resolved platform, overrides included; loads as a platform file
+//   stats.json       every statistic with name, unit and description (statistics.h)
+//   stages.csv       a row per stage: calls, cycles, account, operations
+//   frames.csv       a row per frame
+//   memory.csv       a row per peak, and per block alive at it
+//   energy.csv       a row per stage, quantity and domain of the chip, with its band
+//   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
+//   work.trace       with --record: all work (traces/work_traces/work_trace.h), for leviosim replay
+//   replay.csv       of a replay: how each frame was taken up, in the recording and now
+//
+// A native run has no platform.yaml, stages.csv, memory.csv and energy.csv, and no timing columns.
+// A platform without energy figures leaves no energy.csv.
+#pragma once
+
+#include <string>
+
+#include "sim/base/output_folder.h"
+#include "tools/app/result/run_result.h"
+#include "tools/app/run/manifest.h"
+
+namespace leviosim::tools {
+
+inline constexpr const char* kWorkTraceFile = "work.trace";
+inline constexpr const char* kReplayFile = "replay.csv";
+
+/// Writes into a folder that the caller has claimed.
+/// @param platform_yaml  unused for a native run
+/// @param below          folder in it, "chosen/"
+/// @throws InputError if a file cannot be written
+void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manifest& manifest,
+                      const std::string& platform_yaml, const std::string& below = {});
+
+/// The texts of the CSV files; the units stand in the column names.
+std::string stages_csv(const RunResult& run);
+std::string frames_csv(const RunResult& run);
+std::string memory_csv(const RunResult& run);
+std::string energy_csv(const RunResult& run);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,147 @@
+#include "tools/app/run/run_options.h"
+
+#include <fmt/core.h>
+
+#include <limits>
+
+#include "sim/base/error.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/run/workload_overrides.h"
+#include "workload/vio/profile.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr std::int64_t kLargestSide = 16384;
+
+/// A native run has no chip, so options about one are a misunderstanding.
+void refuse_chip_options(const CLI::App& command, const RunOptions& options) {
+  const auto refuse = [](const std::string& option) {
+    throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
+  };
+  for (const char* option : {"--platform", "--cores", "--record", "--camera-fps", "--deadline"})
+    if (command.count(option) > 0) refuse(option);
+  for (const std::string& text : split_overrides(options.overrides).chip) refuse("--set " + text);
+}
+
+void add_text(CLI::App& command, const char* name, std::string& value, const char* type,
+              const std::string& help) {
+  command.add_option(name, value, help)->type_name(type);
+}
+
+void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
+  add_text(command, "--data", options.data, "DIR|synthetic",
+           "ASL/EuRoC folder, or the synthetic flight" + by_default);
+  add_text(command, "--frames", options.frames, "A:B", "frames, B exclusive [all]");
+  add_text(command, "--profile", options.profile, "NAME", "of the workload [levio]");
+  add_text(command, "--seed", options.seed, "N", "of the workload's random draws [1]");
+  command.add_flag("--quiet", options.quiet, "no progress");
+  command.get_option("--set")->description(
+      "parameter of the chip, or of the workload: workload.… (leviosim workload); repeatable");
+}
+
+/// What does not depend on the chip.
+RunRequest make_workload_request(const RunOptions& options) {
+  RunRequest request;
+  request.native = options.native;
+  request.seed = static_cast<std::uint32_t>(
+      parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
+  request.profile = options.profile;
+  vio::profile_named(options.profile, request.seed);  // refuses unknown names
+  request.workload = parse_workload_overrides(split_overrides(options.overrides).workload);
+  request.image_size = parse_size(options.size);
+  if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
+  return request;
+}
+
+void resolve_chip(const RunOptions& options, RunRequest& request) {
+  request.platform =
+      platform::resolve_platform(options.platform, split_overrides(options.overrides).chip);
+  request.cores = cores_of(options, request.platform.config.cluster);
+}
+
+}  // namespace
+
+void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
+  add_text(command, "--platform", options.platform, "NAME|FILE",
+           "chip: a name (leviosim platforms) or a file" + by_default);
+  command.add_option("-p,--set", options.overrides, "parameter of the chip; repeatable")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_text(command, "--cores", options.cores, "N", "worker cores [the chip's]");
+}
+
+void add_out_options(CLI::App& command, RunOptions& options) {
+  add_text(command, "--out", options.out, "DIR", "folder for the results; must be new or empty");
+  command.add_flag("--force", options.force, "replace the results of an earlier run");
+}
+
+int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster) {
+  if (options.cores.empty()) return cluster.workers;
+  return static_cast<int>(parse_whole("--cores", options.cores, 1, cluster.max_workers));
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  add_chip_options(command, options, "");
+  command.add_flag("--native", options.native, "no chip, no timing: the golden model");
+  add_workload_options(command, options, "");
+  add_text(command, "--size", options.size, "WxH", "image size [160x120]");
+  add_text(command, "--camera-fps", options.camera_fps, "F",
+           "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
+  add_text(command, "--deadline", options.deadline, "drop|queue",
+           "closed loop: what becomes of a frame that finds the front end busy [drop]");
+  command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
+  add_out_options(command, options);
+}
+
+void add_chip_run_options(CLI::App& command, RunOptions& options) {
+  options.platform = "gap9";
+  options.data = "synthetic";
+  add_chip_options(command, options, " [gap9]");
+  add_workload_options(command, options, " [synthetic]");
+}
+
+std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline) {
+  if (fps.empty() && deadline.empty()) return std::nullopt;
+  CameraRequest camera;
+  if (!fps.empty()) camera.fps = parse_positive("--camera-fps", fps);
+  if (!deadline.empty()) camera.deadline = parse_deadline(deadline);
+  return camera;
+}
+
+traces::ImageSize parse_size(const std::string& text) {
+  const auto x = text.find('x');
+  if (x == std::string::npos)
+    throw InputError(fmt::format("--size '{}': expected WxH, e.g. 160x120", text));
+  const auto side = [](const std::string& digits) {
+    return static_cast<int>(parse_whole("--size", digits, 1, kLargestSide));
+  };
+  return {side(text.substr(0, x)), side(text.substr(x + 1))};
+}
+
+RunRequest make_request(const CLI::App& command, const RunOptions& options) {
+  require(command, "--data", "an ASL folder or 'synthetic'");
+  require(command, "--out", "a folder for the results");
+  RunRequest request = make_workload_request(options);
+  if (options.native) {
+    refuse_chip_options(command, options);
+  } else {
+    require(command, "--platform", "the name of a chip or a platform file, or --native");
+    resolve_chip(options, request);
+    request.camera = parse_camera(options.camera_fps, options.deadline);
+    if (request.camera && options.record)
+      throw InputError(
+          "run: --record is for open loops, whose trace holds the work of every frame; with "
+          "--camera-fps or --deadline, frames are dropped as the chip's speed has it");
+  }
+  return request;
+}
+
+RunRequest make_chip_request(const RunOptions& options) {
+  RunRequest request = make_workload_request(options);
+  resolve_chip(options, request);
+  return request;
+}
+
+}  // namespace leviosim::tools

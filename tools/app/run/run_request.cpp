@@ -1,0 +1,25 @@
+#include "tools/app/run/run_request.h"
+
+#include "sim/base/error.h"
+
+namespace leviosim::tools {
+
+void check_together(const vio::Profile& profile) {
+  if (profile.extractor.subpixel_steps > 1 && !profile.optimiser.joint)
+    throw InputError(
+        "workload.subpixel_steps is above 1 and workload.joint is off: only the joint optimiser's "
+        "camera has steps between pixels; expected workload.subpixel_steps=1 or workload.joint=on");
+  if (profile.optimiser.joint && !profile.use_imu)
+    throw InputError(
+        "workload.joint is on, but the profile works without IMU: expected workload.joint=off, or "
+        "a profile with IMU");
+}
+
+vio::Profile profile_of(const RunRequest& request) {
+  vio::Profile profile = vio::profile_named(request.profile, request.seed);
+  vio::set_parameters(request.workload, profile);
+  check_together(profile);
+  return profile;
+}
+
+}  // namespace leviosim::tools

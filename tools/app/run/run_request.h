@@ -1,0 +1,57 @@
+// What the user asked `leviosim run` to do, after the command line has been checked.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform_models/loader/loader.h"
+#include "sim/soc/camera.h"
+#include "sim/soc/run_observer.h"
+#include "tools/app/result/run_result.h"
+#include "traces/datasets/frame_range.h"
+#include "traces/datasets/image_source.h"
+#include "workload/vio/parameters.h"
+
+namespace leviosim::tools {
+
+struct WorkRecording;
+
+struct RunRequest {
+  std::string data;  ///< ASL folder (the synthetic flight has been made)
+  std::string profile = "levio";
+  std::optional<traces::FrameRange> frames;
+  traces::ImageSize image_size{160, 120};
+  bool native = false;  ///< no timing, any resolution
+  int cores = 8;
+  std::uint32_t seed = 1;                 ///< of the workload's random draws
+  std::vector<vio::Assignment> workload;  ///< parameters that differ from the profile's
+  platform::ResolvedPlatform platform;    ///< unused if native
+  /// The closed loop. Without, every recorded frame is delivered and waits until it is processed.
+  std::optional<CameraRequest> camera;
+  /// Whether the trajectory is compared with the truth. What diverged cannot be, and is refused.
+  bool evaluate = true;
+  RunObserver* observer = nullptr;     ///< sees every job; unused if native
+  WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
+};
+
+/// What must hold between parameters of the workload, whatever each may be on its own.
+/// @throws InputError if they contradict each other
+void check_together(const vio::Profile& profile);
+
+/// The profile with the parameters that were set. @throws InputError as check_together() does
+vio::Profile profile_of(const RunRequest& request);
+
+/// Called after every frame.
+struct Progress {
+  int done = 0;
+  int total = 0;
+  std::int64_t simulated_ns = 0;
+};
+using ProgressCallback = std::function<void(const Progress&)>;
+
+/// Runs the workload over the data. @throws InputError for data or requests that cannot be run.
+RunResult simulate(const RunRequest& request, const ProgressCallback& progress);
+
+}  // namespace leviosim::tools

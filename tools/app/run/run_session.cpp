@@ -1,0 +1,108 @@
+#include "tools/app/run/run_session.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "sim/base/error.h"
+#include "sim/base/printable_text.h"
+#include "sim/energy/model.h"
+#include "sim/soc/simulation.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/run/flight_cache.h"
+#include "tools/app/run/workload_overrides.h"
+#include "traces/datasets/asl_reader.h"
+
+namespace leviosim::tools {
+
+namespace fs = std::filesystem;
+
+base::OutputRequest out_request(const RunOptions& options) {
+  base::OutputRequest request{.option = "--out", .path = options.out, .replace = options.force};
+  request.inputs = data_inputs(options.data);
+  request.inputs.emplace_back(options.platform);
+  return request;
+}
+
+std::vector<fs::path> data_inputs(const std::string& data) {
+  const fs::path folder = data == "synthetic" ? flight_folder() : fs::path(data);
+  return {folder, folder / "mav0"};
+}
+
+std::uint64_t expected_bytes(const RunRequest& request, bool record) {
+  constexpr std::uint64_t kLineOfList = 44;  // two stamps
+  constexpr std::uint64_t kRowOfFrame = 512;
+  constexpr std::uint64_t kWorkOfFrame = 16 << 10;  // of large images with many features
+  std::error_code error;
+  const fs::path folder = fs::path(request.data);
+  const std::uintmax_t list = fs::file_size(
+      (fs::exists(folder / "mav0", error) ? folder / "mav0" : folder) / "cam0/data.csv", error);
+  std::uint64_t frames = error ? 0 : list / kLineOfList;
+  if (request.frames) frames = std::min<std::uint64_t>(frames, request.frames->end);
+  return frames * (kRowOfFrame + (record ? kWorkOfFrame : 0));
+}
+
+std::string data_folder(const RunOptions& options, ProgressLine::Style progress) {
+  return options.data == "synthetic" ? cached_flight(progress).string() : options.data;
+}
+
+namespace {
+
+ProgressCallback shown_on(ProgressLine& line) {
+  return [&line](const Progress& p) {
+    throw_if_interrupted();
+    line.show(p.done, p.total,
+              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
+  };
+}
+
+}  // namespace
+
+RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style) {
+  ProgressLine line(style);
+  return simulate(request, shown_on(line));
+}
+
+RunResult simulate_with_progress(const RunRequest& request, JobSource& source,
+                                 ProgressLine::Style style) {
+  ProgressLine line(style);
+  RunResult result = Simulation(request, source, shown_on(line)).run();
+  result.host_seconds = line.host_seconds();
+  return result;
+}
+
+Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words) {
+  Manifest manifest;
+  manifest.command_line = words;
+  manifest.seed = request.seed;
+  manifest.platform = options.platform;
+  manifest.overrides = split_overrides(options.overrides).chip;
+  for (const vio::Assignment& a : request.workload) manifest.workload.push_back(a.text());
+  manifest.data = request.data;
+  if (request.frames) manifest.first_frame = request.frames->begin;
+  manifest.inputs = digest_inputs(traces::open_asl(request.data, {.frames = request.frames}));
+  return manifest;
+}
+
+std::string heading(const RunOptions& options, const RunResult& run) {
+  const std::size_t frames = run.camera ? run.camera->deliveries.size() : run.frames.size();
+  std::string text = fmt::format("leviosim {}: {} on {}, {} of {}, {}x{}", version(), run.profile,
+                                 run.timed ? printable(options.platform) : "the host",
+                                 frames == 1 ? "1 frame" : fmt::format("{} frames", frames),
+                                 printable(options.data), run.image_width, run.image_height);
+  for (const std::string& set : split_overrides(options.overrides).workload)
+    text += ", " + printable(set);
+  const auto mhz = [](Hertz f) { return static_cast<double>(f.count()) * 1e-6; };
+  if (run.timed)
+    text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,
+                        mhz(run.cluster_clock), mhz(run.controller_clock));
+  if (run.timed && sim::knows_energy(run.chip))
+    text += fmt::format(", {:g} V", run.chip.supply.voltage.count());
+  if (run.camera)
+    text += fmt::format(", camera at {:g} frames/s ({})", run.camera->fps,
+                        info_of(run.camera->deadline).name);
+  return text + "\n\n";
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,41 @@
+// What every command that runs the workload does around the run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "sim/base/output_request.h"
+#include "sim/soc/job_source.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/cli/progress_line.h"
+#include "tools/app/run/manifest.h"
+#include "tools/app/run/run_options.h"
+
+namespace leviosim::tools {
+
+/// What --out and --force ask for; what the run reads stays as it is.
+base::OutputRequest out_request(const RunOptions& options);
+
+/// What --data stands for: the folder, and the one in it that may be a link.
+std::vector<std::filesystem::path> data_inputs(const std::string& data);
+
+/// About what a run with all frames will write, rather more. [bytes]
+std::uint64_t expected_bytes(const RunRequest& request, bool record);
+
+/// The folder that --data names; makes the synthetic flight if it is asked for and not there yet.
+std::string data_folder(const RunOptions& options, ProgressLine::Style progress);
+
+/// @throws Interrupted between two frames if the user asked to stop
+RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style);
+
+/// The same with the work of another workload than LEVIO, on the chip of the request.
+RunResult simulate_with_progress(const RunRequest& request, JobSource& source,
+                                 ProgressLine::Style style);
+
+Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words);
+
+/// "leviosim 0.1.0: levio on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, …"
+std::string heading(const RunOptions& options, const RunResult& run);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,94 @@
+#include "tools/app/run/trace_source.h"
+
+#include <fmt/core.h>
+
+#include "sim/base/check.h"
+#include "sim/base/error.h"
+#include "tools/app/result/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+PoseSource source_of(const traces::WorkFrame& frame, const traces::WorkTrace& trace, int number) {
+  if (const auto source = source_named(frame.source)) return *source;
+  throw InputError(
+      fmt::format("{}: frame {} has its pose from '{}', which this leviosim does not know",
+                  trace.name(), number, frame.source));
+}
+
+}  // namespace
+
+TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool kernels)
+    : trace_(trace), l1_(l1), l2_(l2), reader_(trace, kernels) {}
+
+bool TraceSource::take_up(const FrameStart& start) {
+  for (; number_ < start.frame; ++number_)
+    check(reader_.next(frame_), "a trace has as many frames as it has time stamps");
+  const std::int64_t arrival_ns = time_ns(start.frame) - time_ns(0);
+  const bool begun = frame_.optimised && !start.optimiser_busy;
+  comparisons_.push_back(
+      {start.frame,
+       {frame_.start_ns - arrival_ns, frame_.optimiser_busy, frame_.optimised, frame_.seen},
+       {start.start_ns - arrival_ns, start.optimiser_busy, begun, start.seen}});
+  if (begun) {
+    std::swap(iterations_, frame_.iterations);
+    next_iteration_ = 0;
+  }
+  return begun;
+}
+
+const work::Job& TraceSource::process_frame(FrameResult& result) {
+  result.index = frame_.index;
+  result.t_ns = frame_.t_ns;
+  result.source = source_of(frame_, trace_, number_);
+  result.keyframe = frame_.keyframe;
+  result.features = frame_.features;
+  result.world_matches = frame_.world_matches;
+  result.frame_matches = frame_.frame_matches;
+  result.inliers = frame_.inliers;
+  result.landmarks = frame_.landmarks;
+  result.pose = {frame_.t_ns, frame_.T_world_body};
+  check_fits(frame_.front_end, "L1", l1_);
+  return frame_.front_end;
+}
+
+const work::Job& TraceSource::optimise() {
+  const work::Job& job = iterations_.at(next_iteration_++);
+  check_fits(job, "L2", l2_);
+  return job;
+}
+
+void TraceSource::check_fits(const work::Job& job, const char* memory, Bytes size) const {
+  for (const work::StageRun& stage : job.stages)
+    if (stage.memory.parallel > size)
+      throw InputError(fmt::format(
+          "{}: frame {}, {}: the recorded work occupies {} bytes of {}, which has {}: {} bytes are "
+          "missing",
+          trace_.name(), number_, stage.stage, stage.memory.parallel.count(), memory, size.count(),
+          (stage.memory.parallel - size).count()));
+}
+
+std::vector<StageResult> TraceSource::empty_stages() const {
+  std::vector<StageResult> stages;
+  for (const traces::WorkTraceInfo::Stage& recorded : trace_.info().stages) {
+    StageResult stage;
+    stage.name = recorded.name;
+    stage.unit = recorded.unit;
+    stage.on_controller = recorded.on_controller;
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
+void TraceSource::describe(RunResult& result) const {
+  const traces::WorkTraceInfo& info = trace_.info();
+  result.profile = info.profile;
+  result.frame_period_ns = info.frame_period_ns;
+  result.image_width = info.image_width;
+  result.image_height = info.image_height;
+  for (const traces::WorkTraceInfo::Memory& memory : info.l2)
+    result.l2.push_back({memory.name, memory.bytes, memory.blocks});
+  result.ate = info.ate;
+}
+
+}  // namespace leviosim::tools

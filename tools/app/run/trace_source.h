@@ -1,0 +1,73 @@
+// A source of recorded work: what `leviosim replay` runs on. It computes nothing, so where the chip
+// at hand is faster or slower than that of the recording, the work stays what it was. What the
+// algorithm would have seen otherwise is noted frame by frame:
+//
+//   - another result of the optimiser, or none, when the frame was taken up;
+//   - an optimisation that would not have begun, since the optimiser is still busy: it is left out;
+//   - an optimisation that would have begun, but was not recorded: it is missing.
+//
+// A frame that had to wait is noted too. With a queue, that alone changes nothing that is computed.
+#pragma once
+
+#include "sim/soc/job_source.h"
+#include "traces/work_traces/work_frames.h"
+
+namespace leviosim::tools {
+
+/// How a frame was taken up, in the recording and now.
+struct FrameComparison {
+  struct Start {
+    std::int64_t waited_ns = 0;  ///< since the camera delivered it
+    bool optimiser_busy = false;
+    bool optimised = false;  ///< an optimisation began
+    int seen = -1;           ///< as FrameStart::seen
+  };
+  int frame = 0;
+  Start recorded;
+  Start replayed;
+
+  bool sees_another_result() const { return recorded.seen != replayed.seen; }
+  bool optimiser_differs() const { return recorded.optimiser_busy != replayed.optimiser_busy; }
+  /// Without regard to earlier frames.
+  bool computes_the_same() const { return !sees_another_result() && !optimiser_differs(); }
+};
+
+class TraceSource : public JobSource {
+ public:
+  /// @param trace  outlives the source and all names in what it gives
+  /// @param l1,l2    sizes of the memories that the work has to fit in
+  /// @param kernels  whether calls of kernels are needed: by chips with accelerators
+  TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool kernels = false);
+
+  int frames() const override { return trace_.frames(); }
+  std::int64_t time_ns(int frame) const override {
+    return trace_.info().stamps_ns[static_cast<std::size_t>(frame)];
+  }
+  bool take_up(const FrameStart& start) override;
+  /// @throws InputError naming the stage if it does not fit in L1
+  const work::Job& process_frame(FrameResult& result) override;
+  int iterations() const override { return static_cast<int>(iterations_.size()); }
+  /// @throws InputError naming the stage if it does not fit in L2
+  const work::Job& optimise() override;
+  void publish() override {}
+  std::vector<StageResult> empty_stages() const override;
+  void describe(RunResult& result) const override;
+
+  /// Of the frames so far.
+  const std::vector<FrameComparison>& comparisons() const { return comparisons_; }
+
+ private:
+  void check_fits(const work::Job& job, const char* memory, Bytes size) const;
+
+  const traces::WorkTrace& trace_;
+  Bytes l1_;
+  Bytes l2_;
+  traces::WorkFrames reader_;
+  traces::WorkFrame frame_;
+  int number_ = -1;                    ///< of the frame
+  std::vector<work::Job> iterations_;  ///< of the optimisation that began last
+  std::size_t next_iteration_ = 0;
+  std::vector<FrameComparison> comparisons_;
+};
+
+}  // namespace leviosim::tools

@@ -1,0 +1,136 @@
+#include "tools/app/study/ablate/ablation.h"
+
+#include <algorithm>
+
+namespace leviosim::tools {
+namespace {
+
+using Figure = PaperAccuracy::Figure;
+
+bool same(const traces::ImageSize& a, const traces::ImageSize& b) {
+  return a.width == b.width && a.height == b.height;
+}
+
+std::optional<AblationRow::Paper> paper_value(const std::vector<PaperAccuracy>& paper,
+                                              const AblationRow& row, Figure figure) {
+  std::optional<AblationRow::Paper> found;
+  for (const PaperAccuracy& p : paper) {
+    if (p.sequence != row.sequence || p.profile != row.profile || p.chosen_by != Figure::ate ||
+        p.figure != figure)
+      continue;
+    if (same(p.size, row.size)) return AblationRow::Paper{p.value, p.size};
+    if (!found || p.size.width > found->size.width) found = {p.value, p.size};
+  }
+  return found;
+}
+
+bool belongs_to(const BatchRun& run, const std::string& sequence, const traces::ImageSize& size,
+                const std::string& profile) {
+  return run.sequence->name == sequence && run.request.profile == profile &&
+         same(run.request.image_size, size);
+}
+
+/// The mean of a figure over rows; none if one of them has none.
+template <class Get>
+std::optional<double> mean_over(const std::vector<const AblationRow*>& rows, Get get) {
+  double sum = 0;
+  for (const AblationRow* row : rows) {
+    const std::optional<double> value = get(*row);
+    if (!value) return std::nullopt;
+    sum += *value;
+  }
+  return sum / static_cast<double>(rows.size());
+}
+
+std::optional<AblationRow::Paper> mean_paper(const std::vector<const AblationRow*>& rows,
+                                             std::optional<AblationRow::Paper> AblationRow::*of) {
+  const std::optional<double> mean = mean_over(rows, [of](const AblationRow& r) {
+    return r.*of ? std::optional((r.*of)->value) : std::nullopt;
+  });
+  if (!mean) return std::nullopt;
+  return AblationRow::Paper{*mean, (rows.front()->*of)->size};
+}
+
+AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSize& size,
+                     const std::string& profile) {
+  AblationRow mean;
+  mean.size = size;
+  mean.profile = profile;
+  std::vector<const AblationRow*> rows;
+  for (const AblationRow& row : all) {
+    if (row.profile != profile || !same(row.size, size)) continue;
+    rows.push_back(&row);
+    mean.ate.runs += row.ate.runs;
+    mean.ate.failed += row.ate.failed;
+    mean.relative.runs += row.relative.runs;
+  }
+  mean.ate.median = mean_over(rows, [](const AblationRow& r) { return r.ate.median; });
+  mean.relative.median = mean_over(rows, [](const AblationRow& r) { return r.relative.median; });
+  // A sequence that is too short for relative errors has none to average, which is no failure.
+  if (std::any_of(rows.begin(), rows.end(),
+                  [](const AblationRow* row) { return row->relative.runs == 0; }))
+    mean.relative.runs = 0;
+  mean.paper_ate = mean_paper(rows, &AblationRow::paper_ate);
+  mean.paper_relative = mean_paper(rows, &AblationRow::paper_relative);
+  return mean;
+}
+
+}  // namespace
+
+std::vector<BatchRun> ablation_runs(const BatchPlan& plan) {
+  std::vector<BatchRun> runs;
+  for (const std::string& name : sequence_names(plan))
+    for (const traces::ImageSize& size : plan.sizes)
+      for (const std::string& profile : plan.profiles)
+        for (const Sequence& sequence : plan.sequences)
+          for (const std::uint32_t seed : plan.seeds)
+            if (sequence.name == name)
+              runs.push_back(make_run(plan, sequence, profile, size, seed));
+  return runs;
+}
+
+AblationRow row_of(const std::string& sequence, const traces::ImageSize& size,
+                   const std::string& profile, const std::vector<BatchRun>& runs,
+                   const std::vector<RunOutcome>& outcomes) {
+  AblationRow row{sequence, size, profile, {}, {}, {}, {}, {}, {}};
+  std::vector<std::optional<double>> ate;
+  std::vector<std::optional<double>> relative;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!belongs_to(runs[i], sequence, size, profile)) continue;
+    const RunOutcome& o = outcomes[i];
+    ate.push_back(o.ate_m);
+    const bool failed = !o.failure.empty();
+    if (failed || o.relative_percent) relative.push_back(o.relative_percent);
+    if (failed) continue;
+    row.least_completion = std::min(row.least_completion.value_or(o.completion), o.completion);
+    if (std::find(row.protocols.begin(), row.protocols.end(), o.protocol) == row.protocols.end())
+      row.protocols.push_back(o.protocol);
+  }
+  row.ate = spread_of(ate);
+  row.relative = spread_of(relative);
+  return row;
+}
+
+std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<BatchRun>& runs,
+                                       const std::vector<RunOutcome>& outcomes,
+                                       const std::vector<PaperAccuracy>& paper) {
+  const std::vector<std::string> sequences = sequence_names(plan);
+  std::vector<AblationRow> rows;
+  for (const std::string& sequence : sequences)
+    for (const traces::ImageSize& size : plan.sizes)
+      for (const std::string& profile : plan.profiles) {
+        AblationRow row = row_of(sequence, size, profile, runs, outcomes);
+        row.paper_ate = paper_value(paper, row, Figure::ate);
+        if (plan.measure.length_m == kPaperLengthM)
+          row.paper_relative = paper_value(paper, row, Figure::relative);
+        rows.push_back(std::move(row));
+      }
+  if (sequences.size() < 2) return rows;
+  const std::vector<AblationRow> single = rows;
+  for (const traces::ImageSize& size : plan.sizes)
+    for (const std::string& profile : plan.profiles)
+      rows.push_back(mean_row(single, size, profile));
+  return rows;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,213 @@
+#include "tools/app/study/batch/batch_options.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "sim/base/error.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/run/flight_cache.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/run/workload_overrides.h"
+#include "tools/app/study/batch/run_key.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr std::int64_t kMostJobs = 1024;
+
+void add_list(CLI::App& command, const char* name, std::vector<std::string>& values,
+              const char* type, const char* help, bool split) {
+  CLI::Option* option =
+      command.add_option(name, values, help)->type_name(type)->take_all()->allow_extra_args(false);
+  if (split) option->delimiter(',');
+}
+
+/// The same input twice would only look like more runs.
+template <class T>
+std::vector<T> without_repetitions(const std::string& option, std::vector<T> values,
+                                   const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (std::find(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(i), words[i]) !=
+        words.begin() + static_cast<std::ptrdiff_t>(i))
+      throw InputError(fmt::format("{} '{}': is given twice", option, words[i]));
+  return values;
+}
+
+std::vector<std::uint32_t> parse_seeds(const std::vector<std::string>& words) {
+  std::vector<std::uint32_t> seeds;
+  for (const std::string& word : words)
+    seeds.push_back(static_cast<std::uint32_t>(
+        parse_whole("--seed", word, 0, std::numeric_limits<std::uint32_t>::max())));
+  return without_repetitions("--seed", seeds, words);
+}
+
+std::vector<traces::ImageSize> parse_sizes(const std::vector<std::string>& words) {
+  std::vector<traces::ImageSize> sizes;
+  for (const std::string& word : words) sizes.push_back(parse_size(word));
+  return without_repetitions("--size", sizes, words);
+}
+
+std::vector<std::string> known_profiles(const std::vector<std::string>& words) {
+  for (const std::string& word : words) vio::profile_named(word, 1);
+  return without_repetitions("--profile", words, words);
+}
+
+std::vector<vio::Assignment> workload_of(const std::vector<std::string>& overrides) {
+  const SplitOverrides split = split_overrides(overrides);
+  if (!split.chip.empty())
+    throw InputError(
+        fmt::format("-p {}: runs here are native, without a chip; expected a parameter of the "
+                    "workload, such as workload.window=6 (leviosim workload lists them)",
+                    split.chip.front()));
+  return parse_workload_overrides(split.workload);
+}
+
+/// Digests of what is read are kept with the folder's name for the messages.
+std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan,
+                               ProgressLine::Style style) {
+  std::vector<Sequence> sequences;
+  for (const std::string& word : words.data) {
+    throw_if_interrupted();
+    NamedFolder named = parse_named_folder(word);
+    if (named.folder == "synthetic") named.folder = cached_flight(style).string();
+    sequences.push_back(open_sequence(named, plan.frames, plan.sizes));
+    for (std::size_t i = 0; i + 1 < sequences.size(); ++i)
+      if (sequences[i].inputs == sequences.back().inputs)
+        throw InputError(
+            fmt::format("--data {}: holds the same flight as {}", word, sequences[i].folder));
+  }
+  return sequences;
+}
+
+}  // namespace
+
+void add_batch_options(CLI::App& command, BatchWords& words) {
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command.add_option(name, value, help)->type_name(type);
+  };
+  add_list(command, "--data", words.data, "[NAME=]DIR",
+           "ASL/EuRoC folder of a sequence; repeatable. Folders of one name are pooled", false);
+  add_list(command, "--profile", words.profiles, "NAME,...",
+           "of the workload [levio,levio-no-imu,levio-no-imu-no-epnp]", true);
+  add_list(command, "--size", words.sizes, "WxH,...", "image sizes [160x120]", true);
+  add_list(command, "--seed", words.seeds, "N,...", "of the workload's random draws [1,2,3]", true);
+  add_list(command, "-p,--set", words.overrides, "PATH=VALUE",
+           "parameter of the workload in every run (leviosim workload); repeatable", false);
+  add("--frames", words.frames, "A:B", "frames, B exclusive [all]");
+  add("--align", words.align, "KIND", "se3, sim3, posyaw or none [se3]");
+  add("--relative", words.relative, "M", "length of sub-trajectories in metres [40]");
+  add("--jobs", words.jobs, "N", "runs at a time [cores of the host]");
+  add("--cache", words.cache, "DIR", "where finished runs are kept and found again [user's cache]");
+  add("--out", words.out, "DIR", "folder for the results; must be new or empty");
+  command.add_flag("--force", words.force, "replace the results of an earlier batch");
+  command.add_flag("--quiet", words.quiet, "no progress");
+}
+
+BatchPlan make_plan(const CLI::App& command, const BatchWords& words) {
+  require(command, "--data", "an ASL folder; repeatable");
+  require(command, "--out", "a folder for the results");
+  BatchPlan plan;
+  plan.profiles = known_profiles(words.profiles);
+  plan.sizes = parse_sizes(words.sizes);
+  plan.seeds = parse_seeds(words.seeds);
+  plan.workload = workload_of(words.overrides);
+  if (!words.frames.empty()) plan.frames = traces::parse_frame_range(words.frames);
+  plan.measure = {traces::parse_alignment(words.align),
+                  parse_positive("--relative", words.relative)};
+  plan.cache = words.cache.empty() ? default_run_cache().string() : words.cache;
+  plan.threads = parse_jobs(words.jobs);
+  base::OutputRequest wanted{.option = "--out", .path = words.out, .replace = words.force};
+  for (const std::string& word : words.data)
+    for (const std::filesystem::path& input : data_inputs(parse_named_folder(word).folder))
+      wanted.inputs.push_back(input);
+  plan.out = std::make_shared<base::OutputFolder>(std::move(wanted));
+  plan.sequences = open_all(words, plan, ProgressLine::style_of_stderr(words.quiet));
+  return plan;
+}
+
+BatchRun make_run(const BatchPlan& plan, const Sequence& sequence, const std::string& profile,
+                  const traces::ImageSize& size, std::uint32_t seed) {
+  BatchRun run{&sequence, {}};
+  run.request.data = sequence.folder;
+  run.request.profile = profile;
+  run.request.frames = plan.frames;
+  run.request.image_size = size;
+  run.request.native = true;
+  run.request.seed = seed;
+  run.request.workload = plan.workload;
+  return run;
+}
+
+std::string batch_progress(const BatchProgress& progress, double host_seconds) {
+  std::string text = fmt::format("run {}/{}, {} of them done before", progress.done, progress.total,
+                                 progress.found);
+  const std::size_t computed = progress.done - progress.found;
+  const std::size_t left = progress.total - progress.done;
+  if (computed == 0 || left == 0) return text;
+  const auto seconds = static_cast<std::int64_t>(host_seconds * static_cast<double>(left) /
+                                                 static_cast<double>(computed));
+  return text + fmt::format(", {}:{:02} min left", seconds / 60, seconds % 60);
+}
+
+std::vector<RunOutcome> run_with_progress(const std::vector<BatchRun>& runs,
+                                          const BatchOptions& options, ProgressLine::Style style) {
+  ProgressLine line(style);
+  return run_batch(runs, options, [&](const BatchProgress& p) {
+    line.show(static_cast<std::int64_t>(p.done), static_cast<std::int64_t>(p.total),
+              [&] { return batch_progress(p, line.host_seconds()); });
+  });
+}
+
+std::vector<RunOutcome> run_with_progress(const BatchPlan& plan, const std::vector<BatchRun>& runs,
+                                          ProgressLine::Style style) {
+  return run_with_progress(runs, {plan.measure, RunCache(plan.cache), plan.threads}, style);
+}
+
+unsigned parse_jobs(const std::string& text) {
+  return text.empty() ? 0 : static_cast<unsigned>(parse_whole("--jobs", text, 1, kMostJobs));
+}
+
+std::vector<std::string> sequence_names(const BatchPlan& plan) {
+  std::vector<std::string> names;
+  for (const Sequence& s : plan.sequences)
+    if (std::find(names.begin(), names.end(), s.name) == names.end()) names.push_back(s.name);
+  return names;
+}
+
+Json batch_manifest(const BatchPlan& plan, const Words& command_line) {
+  Json document;
+  document["format"] = "leviosim batch manifest";
+  document["version"] = 1;
+  document["program"]["version"] = version();
+  document["program"]["revision"] = revision();
+  document["program"]["estimator"] = results_version();
+  document["command_line"] = command_line;
+  document["profiles"] = plan.profiles;
+  for (const traces::ImageSize& size : plan.sizes) document["sizes"].push_back(size_text(size));
+  document["seeds"] = plan.seeds;
+  document["workload"] = Json::array();
+  for (const vio::Assignment& a : plan.workload) document["workload"].push_back(a.text());
+  document["measure"] = measure_text(plan.measure);
+  for (const Sequence& s : plan.sequences)
+    document["sequences"].push_back({{"name", s.name},
+                                     {"folder", s.folder},
+                                     {"frames", s.frames},
+                                     {"path_m", rounded(s.path_m)},
+                                     {"inputs_sha256", s.inputs}});
+  return document;
+}
+
+std::string measure_text(const Measure& how) {
+  return fmt::format("{}-aligned RMSE; mean translation error of sub-trajectories of {:g} m",
+                     name_of(how.alignment), how.length_m);
+}
+
+std::string size_text(const traces::ImageSize& size) {
+  return fmt::format("{}x{}", size.width, size.height);
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,83 @@
+// What the commands that make many runs have in common: options, the runs, the manifest.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/base/output_folder.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/cli/progress_line.h"
+#include "tools/app/report/statistic_list.h"
+#include "tools/app/study/batch/run_batch.h"
+
+namespace leviosim::tools {
+
+/// As typed.
+struct BatchWords {
+  std::vector<std::string> data;
+  std::vector<std::string> profiles{"levio", "levio-no-imu", "levio-no-imu-no-epnp"};
+  std::vector<std::string> sizes{"160x120"};
+  std::vector<std::string> seeds{"1", "2", "3"};
+  std::vector<std::string> overrides;
+  std::string frames;
+  std::string align = "se3";
+  std::string relative = "40";
+  std::string jobs;
+  std::string cache;
+  std::string out;
+  bool force = false;
+  bool quiet = false;
+};
+
+/// Checked, and the sequences opened.
+struct BatchPlan {
+  std::vector<Sequence> sequences;
+  std::vector<std::string> profiles;
+  std::vector<traces::ImageSize> sizes;
+  std::vector<std::uint32_t> seeds;
+  std::vector<vio::Assignment> workload;  ///< of every run
+  std::optional<traces::FrameRange> frames;
+  Measure measure;
+  std::shared_ptr<base::OutputFolder> out;  ///< for the results
+  std::string cache;                        ///< folder
+  unsigned threads = 0;                     ///< 0: as many as the host has
+};
+
+void add_batch_options(CLI::App& command, BatchWords& words);
+
+/// @throws InputError naming the option
+BatchPlan make_plan(const CLI::App& command, const BatchWords& words);
+
+/// A run of the plan, with its parameters; the sequence must outlive it.
+BatchRun make_run(const BatchPlan& plan, const Sequence& sequence, const std::string& profile,
+                  const traces::ImageSize& size, std::uint32_t seed);
+
+/// run_batch() with progress on stderr. @throws InputError, Interrupted
+std::vector<RunOutcome> run_with_progress(const std::vector<BatchRun>& runs,
+                                          const BatchOptions& options, ProgressLine::Style style);
+/// The same with the options of the plan.
+std::vector<RunOutcome> run_with_progress(const BatchPlan& plan, const std::vector<BatchRun>& runs,
+                                          ProgressLine::Style style);
+
+/// "run 12/124, 3 of them done before, 2:10 min left": as long as those that were computed took on
+/// average.
+std::string batch_progress(const BatchProgress& progress, double host_seconds);
+
+/// The number that --jobs names, 0 for what is not given. @throws InputError
+unsigned parse_jobs(const std::string& text);
+
+/// Names of the sequences, each once, in the order in which they were given.
+std::vector<std::string> sequence_names(const BatchPlan& plan);
+
+/// The content of manifest.json. Nothing in it depends on the host or on what was found again.
+Json batch_manifest(const BatchPlan& plan, const Words& command_line);
+
+/// "SE3-aligned, relative errors over 40 m, …": how the errors of the plan are formed.
+std::string measure_text(const Measure& how);
+
+/// "752x480".
+std::string size_text(const traces::ImageSize& size);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,72 @@
+#include "tools/app/study/batch/run_cache.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "sim/base/error.h"
+#include "sim/base/new_file.h"
+#include "sim/base/sha256.h"
+#include "tools/app/cli/cache_folder.h"
+
+namespace leviosim::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kLargestFile = 64 << 20;
+
+/// The first line of a file, by which it is known to be what was stored under the key.
+std::string header_of(const std::string& key, const std::string& text) {
+  return fmt::format("leviosim cache 1 {} {}\n", key, base::sha256_of(text));
+}
+
+}  // namespace
+
+fs::path default_run_cache() { return cache_folder() / "runs"; }
+
+/// Folders of a few files each, also after a million runs.
+fs::path RunCache::file_of(const std::string& key) const {
+  return folder_ / key.substr(0, 2) / (key + ".json");
+}
+
+std::optional<std::string> RunCache::find_text(const std::string& key) const {
+  const std::optional<std::string> bytes = base::try_read_file(file_of(key), kLargestFile);
+  if (!bytes) return std::nullopt;
+  const std::size_t end = bytes->find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  std::string text = bytes->substr(end + 1);
+  if (bytes->compare(0, end + 1, header_of(key, text)) != 0) return std::nullopt;
+  return text;
+}
+
+void RunCache::store_text(const std::string& key, const std::string& text) const {
+  const fs::path file = file_of(key);
+  const auto fail = [&](int error) {
+    throw InputError(fmt::format("{}: cannot be written: {}", file.string(), base::reason(error)));
+  };
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error) fail(error.value());
+  base::NewFile fresh(file.parent_path() / fmt::format(".{}.{}", key, ::getpid()));
+  if (const int fault = fresh.write(header_of(key, text) + text)) fail(fault);
+  int fault = fresh.place(file);
+  if (fault == EEXIST && !find_text(key)) {  // damaged, or of another key
+    ::unlink(file.c_str());
+    fault = fresh.place(file);
+  }
+  if (fault != 0 && fault != EEXIST) fail(fault);  // another process was faster
+}
+
+std::optional<RunOutcome> RunCache::find(const std::string& key) const {
+  const std::optional<std::string> text = find_text(key);
+  return text ? parse_outcome(*text) : std::nullopt;
+}
+
+void RunCache::store(const std::string& key, const RunOutcome& outcome) const {
+  store_text(key, to_text(outcome));
+}
+
+}  // namespace leviosim::tools

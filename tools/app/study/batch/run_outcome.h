@@ -1,0 +1,65 @@
+// What is kept of one run of a batch: how far its trajectory lies from the truth, and of a closed
+// loop on a chip what became of its frames and what it took. Small, and the same whether it has
+// just been computed or was found in the cache.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "tools/app/result/camera_figures.h"
+#include "traces/trajectories/alignment.h"
+#include "traces/trajectories/trajectory.h"
+
+namespace leviosim::tools {
+
+/// How trajectories are compared with the truth.
+struct Measure {
+  traces::Alignment alignment = traces::Alignment::se3;
+  double length_m = 40;  ///< of the sub-trajectories of relative errors
+};
+
+/// A figure with its band.
+struct Banded {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+/// Of a closed loop on a chip.
+struct LoopOutcome {
+  CameraFigures camera;
+  std::optional<Banded> power_w;  ///< mean over all of the time; none if the chip has no energies
+  std::optional<Banded> frame_j;  ///< per processed frame, idle time included
+};
+
+struct RunOutcome {
+  std::string failure;          ///< why there are no errors; empty if there are
+  std::optional<double> ate_m;  ///< RMSE
+  std::optional<double>
+      relative_percent;  ///< mean translation error; none if the path is too short
+  std::size_t sub_trajectories = 0;
+  std::size_t frames = 0;  ///< that the estimate ought to have
+  std::size_t matched = 0;
+  double completion = 0;
+  double path_m = 0;     ///< of the truth
+  std::string protocol;  ///< traces::Evaluation::protocol
+  std::optional<LoopOutcome> loop;
+};
+
+/// @param expected  poses that a complete estimate has
+/// @throws InputError for data that cannot be compared at all; an estimate that cannot is a failure
+RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory& truth,
+                   const Measure& how, std::size_t expected);
+/// Of an estimate that is complete.
+RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory& truth,
+                   const Measure& how);
+/// All of a run, which was not evaluated.
+RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, const Measure& how);
+
+/// As JSON with every bit of the numbers.
+std::string to_text(const RunOutcome& outcome);
+/// Nothing for what to_text() never wrote, such as a file that was cut off.
+std::optional<RunOutcome> parse_outcome(std::string_view text);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,24 @@
+// What an exploration found, as text, CSV and JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/app/study/batch/runs_csv.h"
+#include "tools/app/study/explore/exploration.h"
+
+namespace leviosim::tools {
+
+/// Per profile: as it is, the point of least absolute error, and that of least relative error.
+std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
+std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
+
+/// A row per point, profile and sequence, with the value of every dimension; empty where it has no
+/// effect on the profile.
+std::string points_csv(const std::vector<Dimension>& dimensions,
+                       const std::vector<ExploredPoint>& explored);
+
+/// Point and dimensions of every run, for runs_csv().
+LeadingColumns point_columns(const std::vector<Dimension>& dimensions, const ExplorationRuns& runs);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,144 @@
+#include "tools/app/study/feasibility/feasibility.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/chip/accelerator.h"
+#include "sim/soc/simulation.h"
+#include "tools/app/result/energy.h"
+#include "tools/app/run/recording_source.h"
+#include "tools/app/run/replay.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// What the work is recorded on. It only decides where scratch lies in L1.
+constexpr const char* kRecordedOn = "gap9";
+/// Between two frames: no chip of this class is busy for so long.
+constexpr std::int64_t kLeisurelyNs = 20'000'000'000;
+constexpr Bytes kUnlimited{std::int64_t{1} << 40};
+
+/// Recorded frames that arrive at another pace, in memories that hold everything.
+class PacedSource : public TraceSource {
+ public:
+  PacedSource(const traces::WorkTrace& work, const sim::ChipConfig& chip, std::int64_t period_ns)
+      : TraceSource(work, kUnlimited, kUnlimited, sim::has_accelerators(chip)),
+        period_ns_(period_ns) {}
+
+  std::int64_t arrival_ns(int frame) const override { return frame * period_ns_; }
+  void describe(RunResult& result) const override {
+    TraceSource::describe(result);
+    result.frame_period_ns = period_ns_;
+  }
+
+ private:
+  std::int64_t period_ns_;
+};
+
+RunResult paced(const traces::WorkTrace& work, const RunRequest& request, std::int64_t period_ns) {
+  PacedSource source(work, request.platform.config, period_ns);
+  return Simulation(request, source, [](const Progress&) {}).run();
+}
+
+/// The block at which blocks, one after the other, exceed the memory.
+std::string first_beyond(const std::vector<work::Block>& blocks, Bytes size, Bytes& used) {
+  for (const work::Block& block : blocks) {
+    used += block.size;
+    if (used > size) return std::string(block.name);
+  }
+  return {};
+}
+
+MemoryVerdict verdict_of_l1(const RunResult& run) {
+  MemoryVerdict verdict{run.chip.cluster.l1.size, {}, {}};
+  for (const StageResult& stage : run.stages) {
+    if (stage.on_controller || stage.memory.parallel <= verdict.occupied) continue;
+    verdict.occupied = stage.memory.parallel;
+    Bytes used;
+    verdict.block = first_beyond(stage.memory.blocks, verdict.size, used);
+  }
+  return verdict;
+}
+
+MemoryVerdict verdict_of_l2(const RunResult& run) {
+  MemoryVerdict verdict{run.chip.l2.size, {}, {}};
+  for (const L2Row& row : run.l2) {
+    Bytes used = verdict.occupied;
+    verdict.occupied += row.bytes;
+    if (verdict.block.empty()) verdict.block = first_beyond(row.blocks, verdict.size, used);
+  }
+  return verdict;
+}
+
+double ms_of(double cycles, Hertz clock) {
+  return cycles * 1e3 / static_cast<double>(clock.count());
+}
+
+void add_times(const RunResult& run, Feasibility& found) {
+  const auto frames = static_cast<double>(run.frames.size());
+  for (const FrameResult& frame : run.frames) {
+    const double ms = ms_of(static_cast<double>(frame.cycles.count()), run.cluster_clock);
+    found.front_end_ms += ms / frames;
+    found.worst_ms = std::max(found.worst_ms, ms);
+  }
+  for (const StageResult& stage : run.stages)
+    if (stage.calls > 0)
+      found.stages.push_back({stage.name, static_cast<double>(stage.parallel.count()) * 1e-3 /
+                                              static_cast<double>(stage.calls)});
+  for (const StageResult& stage : run.stages)
+    if (stage.on_controller)
+      found.optimiser_ms +=
+          ms_of(static_cast<double>(stage.parallel.count()), run.controller_clock) / frames;
+}
+
+}  // namespace
+
+double Feasibility::frame_ms() const {
+  return shares_core ? front_end_ms + optimiser_ms : std::max(front_end_ms, optimiser_ms);
+}
+
+const traces::WorkTrace& FeasibilityStudy::work_among(int cores) {
+  std::unique_ptr<traces::WorkTrace>& work = work_[cores];
+  if (work) return *work;
+  std::vector<std::string> overrides;
+  if (cores > platform::load_platform(kRecordedOn).cluster.max_workers)
+    overrides.push_back(fmt::format("cluster.max_workers={}", cores));
+  RunRequest request = request_;
+  request.platform = platform::resolve_platform(kRecordedOn, overrides);
+  request.cores = cores;
+  WorkRecording recording(cores);
+  request.recording = &recording;
+  simulate(request, progress_);
+  work = std::make_unique<traces::WorkTrace>("recorded work",
+                                             recording.writer.finish(std::move(recording.info)));
+  return *work;
+}
+
+Feasibility FeasibilityStudy::on(const std::string& name,
+                                 const platform::ResolvedPlatform& platform, int cores) {
+  const traces::WorkTrace& work = work_among(cores);
+  RunRequest request;
+  request.platform = platform;
+  request.cores = cores;
+  check_cores(work, request);
+  Feasibility found;
+  found.platform = name;
+  found.cores = cores;
+  found.clock = platform.config.cluster.clock;
+  found.shares_core = platform.config.controller.shares_core;
+  const RunResult leisurely = paced(work, request, kLeisurelyNs);
+  add_times(leisurely, found);
+  found.l1 = verdict_of_l1(leisurely);
+  found.l2 = verdict_of_l2(leisurely);
+  const auto needed_ns = static_cast<std::int64_t>(std::ceil(found.frame_ms() * 1e6));
+  const std::int64_t period_ns = std::max(work.info().frame_period_ns, needed_ns);
+  if (const auto energy = energy_of(paced(work, request, period_ns))) {
+    found.energy_per_frame = energy->per_frame();
+    found.power = energy->mean_power();
+  }
+  return found;
+}
+
+}  // namespace leviosim::tools

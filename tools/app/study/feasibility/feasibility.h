@@ -1,0 +1,77 @@
+// Whether a workload is feasible on a chip: how long its frames take, what they cost, and whether
+// it fits. The work is computed once, recorded, and timed on every chip (replay/trace_source.h), so
+// all chips do the same work: what each frame and each optimisation of the recording did, whatever
+// the chip's speed would have changed. Memories have room for everything while it is timed; what
+// would not have fitted is part of the verdict.
+//
+// Left out: what a chip with less memory would store or copy elsewhere.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/energy/estimate.h"
+#include "tools/app/run/run_request.h"
+#include "traces/work_traces/work_trace.h"
+
+namespace leviosim::tools {
+
+/// The peak of a memory.
+struct MemoryVerdict {
+  Bytes size;
+  Bytes occupied;
+  std::string block;  ///< the first that does not fit, in the order of allocation; empty if all do
+  bool fits() const { return occupied <= size; }
+};
+
+/// A stage of the workload on a chip.
+struct StageTime {
+  std::string name;
+  double kilocycles = 0;  ///< of a call, mean
+};
+
+struct Feasibility {
+  std::string platform;  ///< as asked for
+  int cores = 0;
+  Hertz clock;  ///< of the cluster
+  MemoryVerdict l1;
+  MemoryVerdict l2;
+  double front_end_ms = 0;  ///< of a frame, mean; on a chip that has nothing else to do
+  double worst_ms = 0;
+  double optimiser_ms = 0;        ///< per frame
+  std::vector<StageTime> stages;  ///< that were called
+  bool shares_core = false;       ///< front end and optimiser take turns
+  /// At the rate at which the chip keeps up, or at that of the camera if that is lower; absent if
+  /// the platform has no energy figures.
+  std::optional<sim::Estimate<Joules>> energy_per_frame;
+  std::optional<sim::Estimate<Watts>> power;
+
+  bool fits() const { return l1.fits() && l2.fits(); }
+  /// That the chip needs for a frame in the long run: two processors work at the same time.
+  double frame_ms() const;
+  double frames_per_second() const { return 1e3 / frame_ms(); }
+};
+
+/// Work of one workload over one flight, computed when it is first asked for and then kept, for
+/// each number of cores that it is divided among.
+class FeasibilityStudy {
+ public:
+  /// @param request  what to compute; its platform and cores are not used
+  FeasibilityStudy(RunRequest request, ProgressCallback progress)
+      : request_(std::move(request)), progress_(std::move(progress)) {}
+
+  /// @throws InputError for more cores than the platform serves
+  Feasibility on(const std::string& name, const platform::ResolvedPlatform& platform, int cores);
+
+ private:
+  const traces::WorkTrace& work_among(int cores);
+
+  RunRequest request_;
+  ProgressCallback progress_;
+  std::map<int, std::unique_ptr<traces::WorkTrace>> work_;
+};
+
+}  // namespace leviosim::tools

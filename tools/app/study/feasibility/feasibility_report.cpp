@@ -1,0 +1,139 @@
+#include "tools/app/study/feasibility/feasibility_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "tools/app/report/text_table.h"
+#include "tools/app/validation/references.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// Time of a frame of LEVIO in its paper, on GAP9 at 370 MHz (validate/references.h).
+struct Published {
+  int cores;
+  std::string_view reference;
+  int decimals;
+  std::string_view about;  ///< the paper says so in round numbers
+};
+constexpr std::array<Published, 2> kPublished = {
+    {{8, "latency.epnp", 1, ""}, {1, "latency.single_core", 0, "≈ "}}};
+constexpr std::array<std::string_view, 2> kPublishedOn = {"gap9", "gap9-370mhz"};
+
+std::string published(const Feasibility& row) {
+  if (std::find(kPublishedOn.begin(), kPublishedOn.end(), row.platform) == kPublishedOn.end())
+    return {};
+  for (const Published& p : kPublished)
+    for (const Reference& reference : paper_references())
+      if (p.cores == row.cores && p.reference == reference.name)
+        return fmt::format("{}{:.{}f}", p.about, reference.value, p.decimals);
+  return {};
+}
+
+std::string missing(const char* memory, const MemoryVerdict& verdict) {
+  return fmt::format("{} kB short of {} at '{}'",
+                     ((verdict.occupied - verdict.size).count() + 999) / 1000, memory,
+                     verdict.block);
+}
+
+std::string memory(const Feasibility& row) {
+  if (row.fits()) return "fits";
+  if (row.l1.fits()) return missing("L2", row.l2);
+  if (row.l2.fits()) return missing("L1", row.l1);
+  return missing("L1", row.l1) + "; " + missing("L2", row.l2);
+}
+
+template <class Unit>
+std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, int decimals) {
+  if (!e) return "–";
+  return fmt::format("{:.{}f} ({:.{}f}–{:.{}f})", e->value.count() * scale, decimals,
+                     e->low().count() * scale, decimals, e->high().count() * scale, decimals);
+}
+
+}  // namespace
+
+std::string feasibility_table(const std::vector<Feasibility>& rows) {
+  constexpr auto kLeft = TextTable::Align::Left;
+  TextTable table({{"chip", kLeft},
+                   {"cores"},
+                   {"MHz"},
+                   {"frame ms"},
+                   {"worst"},
+                   {"published"},
+                   {"optimiser ms"},
+                   {"frames/s"},
+                   {"mJ/frame"},
+                   {"mW"},
+                   {"memory", kLeft}});
+  bool any_without = false;
+  for (const Feasibility& row : rows) {
+    any_without = any_without || !row.fits();
+    const char* mark = row.fits() ? "" : "*";
+    table.add({row.platform, fmt::format("{}", row.cores),
+               fmt::format("{:g}", static_cast<double>(row.clock.count()) * 1e-6),
+               fmt::format("{:.1f}{}", row.front_end_ms, mark),
+               fmt::format("{:.1f}{}", row.worst_ms, mark), published(row),
+               fmt::format("{:.1f}{}", row.optimiser_ms, mark),
+               fmt::format("{:.1f}{}", row.frames_per_second(), mark),
+               banded(row.energy_per_frame, 1e3, 2), banded(row.power, 1e3, 1), memory(row)});
+  }
+  std::string text = table.str();
+  text +=
+      "frame: front end, mean and worst; optimiser: per frame. A chip with one core does one after "
+      "the other, others both at once\n"
+      "energy and mean power, with bands, at the rate that the chip keeps up with, at most the "
+      "camera's\n";
+  if (any_without)
+    text += "* if it had the memory: times and energy of the same work, as though all had fitted\n";
+  return text;
+}
+
+std::string stage_comparison(const std::vector<Feasibility>& rows) {
+  std::vector<TextTable::Column> columns{{"kilocycles of a call", TextTable::Align::Left}};
+  for (const Feasibility& row : rows) columns.push_back({row.platform});
+  TextTable table(std::move(columns));
+  const auto add = [&](const std::string& name, int decimals, auto&& of) {
+    std::vector<std::string> cells{name};
+    for (const Feasibility& row : rows) {
+      cells.push_back(fmt::format("{:.{}f}", of(row), decimals));
+      if (&row != &rows.front())
+        cells.back() += fmt::format(" (×{:.2f})", of(rows.front()) / of(row));
+    }
+    table.add(std::move(cells));
+  };
+  for (std::size_t i = 0; i < rows.front().stages.size(); ++i)
+    add(rows.front().stages[i].name, 1,
+        [&](const Feasibility& row) { return row.stages[i].kilocycles; });
+  add("frame ms", 2, [](const Feasibility& row) { return row.front_end_ms; });
+  add("worst frame ms", 2, [](const Feasibility& row) { return row.worst_ms; });
+  if (rows.front().energy_per_frame)
+    add("mJ/frame", 3, [](const Feasibility& row) {
+      return row.energy_per_frame ? row.energy_per_frame->value.count() * 1e3 : 0.0;
+    });
+  return table.str();
+}
+
+std::string feasibility_csv(const std::vector<Feasibility>& rows) {
+  std::string text =
+      "platform,cores,clock_hz,front_end_ms,worst_ms,published_ms,optimiser_ms,frames_per_s,"
+      "energy_per_frame_j,energy_low_j,energy_high_j,power_w,power_low_w,power_high_w,fits,l1_"
+      "bytes,"
+      "l1_size,l1_block,l2_bytes,l2_size,l2_block\n";
+  const auto numbers = [](const auto& e) {
+    return e ? fmt::format("{},{},{}", e->value.count(), e->low().count(), e->high().count())
+             : std::string(",,");
+  };
+  for (const Feasibility& row : rows)
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.platform,
+                        row.cores, row.clock.count(), row.front_end_ms, row.worst_ms,
+                        published(row), row.optimiser_ms, row.frames_per_second(),
+                        numbers(row.energy_per_frame), numbers(row.power), row.fits() ? 1 : 0,
+                        row.l1.occupied.count(), row.l1.size.count(), row.l1.block,
+                        row.l2.occupied.count(), row.l2.size.count(), row.l2.block);
+  return text;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,22 @@
+// The table of `leviosim platforms feasibility`, with published figures beside the chips that have
+// some.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/app/study/feasibility/feasibility.h"
+
+namespace leviosim::tools {
+
+/// A row per chip, and how to read it.
+std::string feasibility_table(const std::vector<Feasibility>& rows);
+
+/// Stages by chip: kilocycles of a call, and how many times as fast as on the first; then the
+/// frame.
+std::string stage_comparison(const std::vector<Feasibility>& rows);
+
+/// The first table with all digits.
+std::string feasibility_csv(const std::vector<Feasibility>& rows);
+
+}  // namespace leviosim::tools

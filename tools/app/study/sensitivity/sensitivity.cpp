@@ -1,0 +1,167 @@
+#include "tools/app/study/sensitivity/sensitivity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "sim/base/check.h"
+#include "sim/base/parallel_for.h"
+#include "sim/chip/accelerator.h"
+#include "sim/soc/job_timer.h"
+#include "tools/app/result/summary.h"
+#include "traces/work_traces/work_frames.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// A chip to time: a parameter at one end of its range, or, without parameter, the base.
+struct Trial {
+  const platform::Parameter* parameter = nullptr;
+  bool high = false;
+};
+
+double value_of(const platform::Parameter& parameter) {
+  const auto value = platform::parse_number(parameter.value);
+  check(value.has_value(), "a parameter with a range is no number");
+  return *value;
+}
+
+double end_of(const Trial& trial) {
+  return trial.high ? trial.parameter->range->high : trial.parameter->range->low;
+}
+
+/// Energies and what the supply allows have no effect on time.
+bool is_of_time(const platform::Parameter& parameter) {
+  for (const std::string_view section : {"energy.", "supply."})
+    if (std::string_view(parameter.path).substr(0, section.size()) == section) return false;
+  return true;
+}
+
+bool is_swept(const platform::Parameter& parameter) {
+  return parameter.range && is_of_time(parameter);
+}
+
+/// The base, then both ends of every range, except where an end is the value itself.
+std::vector<Trial> trials_of(const platform::ResolvedPlatform& platform) {
+  std::vector<Trial> trials{Trial{}};
+  for (const platform::Parameter& parameter : platform.parameters) {
+    if (!is_swept(parameter)) continue;
+    for (const bool high : {false, true}) {
+      const Trial trial{&parameter, high};
+      if (end_of(trial) != value_of(parameter)) trials.push_back(trial);
+    }
+  }
+  return trials;
+}
+
+bool is_uncertain(const platform::Parameter& parameter) {
+  return parameter.confidence != "high" && !parameter.unit.empty() && is_of_time(parameter);
+}
+
+class Average {
+ public:
+  void add(double value) {
+    sum_ += value;
+    ++n_;
+  }
+  std::optional<double> ms(Hertz clock) const {
+    if (n_ == 0) return std::nullopt;
+    return sum_ / static_cast<double>(n_) * 1e3 / static_cast<double>(clock.count());
+  }
+
+ private:
+  double sum_ = 0;
+  std::int64_t n_ = 0;
+};
+
+double largest(std::optional<double> a, std::optional<double> b) {
+  return std::max(std::abs(a.value_or(0)), std::abs(b.value_or(0)));
+}
+
+std::vector<Swing> collect(const platform::ResolvedPlatform& platform,
+                           const std::vector<Trial>& trials, const std::vector<Outcome>& outcomes) {
+  std::vector<Swing> swings;
+  for (const platform::Parameter& parameter : platform.parameters) {
+    if (!is_swept(parameter)) continue;
+    Swing swing{parameter, outcomes[0], outcomes[0]};
+    for (std::size_t i = 1; i < trials.size(); ++i)
+      if (trials[i].parameter == &parameter)
+        (trials[i].high ? swing.high : swing.low) = outcomes[i];
+    swings.push_back(std::move(swing));
+  }
+  return swings;
+}
+
+}  // namespace
+
+Outcome time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace) {
+  JobTimer timer(chip, workers);
+  Average frame;
+  Average epnp;
+  Average eight_point;
+  Average iteration;
+  traces::WorkFrames reader(trace, sim::has_accelerators(chip));
+  for (traces::WorkFrame recorded; reader.next(recorded);) {
+    for (const work::Job& job : recorded.iterations) {
+      Cycles cycles;
+      for (const sim::StageTiming& stage : timer.optimiser(job).stages) cycles += stage.cycles;
+      iteration.add(static_cast<double>(cycles.count()));
+    }
+    if (recorded.source == key_of(PoseSource::First)) continue;  // which only starts a map
+    const sim::JobTiming timing = timer.front_end(recorded.front_end);
+    const auto cycles = static_cast<double>(timer.front_end_cycles(timing).count());
+    frame.add(cycles);
+    if (recorded.source == key_of(PoseSource::Epnp)) epnp.add(cycles);
+    if (recorded.source == key_of(PoseSource::EightPoint)) eight_point.add(cycles);
+  }
+  const Hertz clock = chip.cluster.clock;
+  return {frame.ms(clock), epnp.ms(clock), eight_point.ms(clock),
+          iteration.ms(chip.controller.clock)};
+}
+
+std::optional<double> percent_change(std::optional<double> value, std::optional<double> base) {
+  if (!value || !base || *base == 0) return std::nullopt;
+  return 100 * (*value / *base - 1);
+}
+
+double effect_on_frame(const Swing& swing, const Outcome& base) {
+  return largest(percent_change(swing.low.frame, base.frame),
+                 percent_change(swing.high.frame, base.frame));
+}
+
+double effect_on_iteration(const Swing& swing, const Outcome& base) {
+  return largest(percent_change(swing.low.iteration, base.iteration),
+                 percent_change(swing.high.iteration, base.iteration));
+}
+
+Sensitivity sensitivity(const platform::Variants& platform, int workers,
+                        const traces::WorkTrace& trace, unsigned threads,
+                        const std::function<void(int, int)>& progress) {
+  const std::vector<Trial> trials = trials_of(platform.platform());
+  std::vector<Outcome> outcomes(trials.size());
+  std::mutex mutex;
+  int done = 0;
+  traces::parallel_for(trials.size(), threads, [&](std::size_t i) {
+    std::vector<platform::Change> changes;
+    if (trials[i].parameter != nullptr)
+      changes.push_back({trials[i].parameter->path, end_of(trials[i])});
+    outcomes[i] = time_on(platform.config(changes), workers, trace);
+    const std::lock_guard<std::mutex> lock(mutex);
+    progress(++done, static_cast<int>(trials.size()));
+  });
+
+  Sensitivity result;
+  result.base = outcomes[0];
+  result.swings = collect(platform.platform(), trials, outcomes);
+  std::stable_sort(result.swings.begin(), result.swings.end(), [&](const Swing& a, const Swing& b) {
+    const double frame_a = effect_on_frame(a, result.base);
+    const double frame_b = effect_on_frame(b, result.base);
+    if (frame_a != frame_b) return frame_a > frame_b;
+    return effect_on_iteration(a, result.base) > effect_on_iteration(b, result.base);
+  });
+  for (const platform::Parameter& parameter : platform.platform().parameters)
+    if (!parameter.range && is_uncertain(parameter)) result.unbounded.push_back(parameter.path);
+  return result;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,128 @@
+#include "tools/app/study/sweep/point_run.h"
+
+#include <algorithm>
+#include <array>
+
+#include "sim/base/error.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/report/statistics.h"
+#include "tools/app/result/energy.h"
+#include "tools/app/run/replay.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kFormat = "leviosim sweep point 1";
+
+/// Parts of names of statistics that a sweep leaves to run folders: a thousand figures per point
+/// that add up to others.
+constexpr std::array kLeftOut{".ops.", ".code.", ".account.", ".block.", ".domain."};
+
+bool is_kept(const std::string& name) {
+  return std::none_of(kLeftOut.begin(), kLeftOut.end(),
+                      [&](const char* part) { return name.find(part) != std::string::npos; });
+}
+
+double mean_latency_ms(const RunResult& run) {
+  double sum_ns = 0;
+  for (const FrameResult& f : run.frames) sum_ns += static_cast<double>(f.end_ns - f.arrival_ns);
+  return sum_ns * 1e-6 / static_cast<double>(run.frames.size());
+}
+
+double l1_peak(const RunResult& run) {
+  Bytes peak;
+  for (const StageResult& stage : run.stages)
+    if (!stage.on_controller) peak = std::max(peak, stage.memory.parallel);
+  return static_cast<double>(peak.count());
+}
+
+void add_objectives(const RunResult& run, bool ate_holds, std::vector<SweepFigure>& figures) {
+  const auto add = [&](std::size_t i, const char* description, double value) {
+    figures.push_back({kObjectives[i].figure, kObjectives[i].unit, description, value});
+  };
+  add(0, "mean over all frames, from the camera's frame to its pose", mean_latency_ms(run));
+  if (const std::optional<RunEnergy> energy = energy_of(run))
+    if (const auto per_frame = energy->per_frame())
+      add(1, "per frame, idle time included", per_frame->value.count() * 1e3);
+  add(2, "highest of the cluster's stages", l1_peak(run));
+  if (run.ate && ate_holds) add(3, "RMSE of the trajectory", run.ate->translation.rmse);
+}
+
+void add_comparison(const Replay& replay, std::vector<SweepFigure>& figures) {
+  const auto differs = [](const FrameComparison& f) { return !f.computes_the_same(); };
+  const auto count = std::count_if(replay.frames.begin(), replay.frames.end(), differs);
+  figures.push_back({"replay.differing_frames", "1",
+                     "frames at which the algorithm would have seen something else",
+                     static_cast<double>(count)});
+  if (count == 0) return;
+  const auto first = std::find_if(replay.frames.begin(), replay.frames.end(), differs);
+  figures.push_back(
+      {"replay.first_differing_frame", "1", "first of them", static_cast<double>(first->frame)});
+}
+
+void add_statistics(const RunResult& run, bool ate_holds, std::vector<SweepFigure>& figures) {
+  const Json document = statistics(run);
+  for (const Json& entry : document.at("statistics")) {
+    std::string name = entry.at("name").get<std::string>();
+    if (!entry.at("value").is_number() || !is_kept(name)) continue;
+    if (!ate_holds && name.starts_with("accuracy.")) continue;
+    figures.push_back({std::move(name), entry.at("unit").get<std::string>(),
+                       entry.at("description").get<std::string>(),
+                       entry.at("value").get<double>()});
+  }
+}
+
+PointResult computed(const ResolvedPoint& point) {
+  const auto progress = [](const Progress&) { throw_if_interrupted(); };
+  PointResult result;
+  if (point.trace == nullptr) {
+    const RunResult run = simulate(point.request, progress);
+    add_objectives(run, true, result.figures);
+    add_statistics(run, true, result.figures);
+    return result;
+  }
+  const Replay replayed = replay(*point.trace, point.request, progress);
+  const bool same = std::all_of(replayed.frames.begin(), replayed.frames.end(),
+                                [](const FrameComparison& f) { return f.computes_the_same(); });
+  add_objectives(replayed.run, same, result.figures);
+  add_comparison(replayed, result.figures);
+  add_statistics(replayed.run, same, result.figures);
+  return result;
+}
+
+}  // namespace
+
+PointResult run_point(const ResolvedPoint& point) {
+  try {
+    return computed(point);
+  } catch (const InputError& error) {
+    return {error.what(), {}};
+  }
+}
+
+std::string to_text(const PointResult& result) {
+  Json json;
+  json["format"] = kFormat;
+  json["failure"] = result.failure;
+  json["figures"] = Json::array();
+  for (const SweepFigure& f : result.figures)
+    json["figures"].push_back(Json::array({f.name, f.unit, f.description, f.value}));
+  return json_text(json) + '\n';
+}
+
+std::optional<PointResult> parse_point_result(std::string_view text) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("format") != kFormat) return std::nullopt;
+    PointResult result;
+    result.failure = json.at("failure").get<std::string>();
+    for (const Json& f : json.at("figures"))
+      result.figures.push_back({f.at(0).get<std::string>(), f.at(1).get<std::string>(),
+                                f.at(2).get<std::string>(), f.at(3).get<double>()});
+    return result;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,81 @@
+#include "tools/app/study/sweep/sweep_folder.h"
+
+#include <fmt/core.h>
+
+#include <set>
+
+#include "sim/base/error.h"
+#include "tools/app/study/sweep/sweep_store.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_regular(const fs::path& file) {
+  const std::optional<struct stat> status = base::status_of(file);
+  return status && S_ISREG(status->st_mode);
+}
+
+[[noreturn]] void refuse(const SweepFolder::Request& request, const std::string& why) {
+  throw InputError(fmt::format("{} {}: {}", request.option, request.path, why));
+}
+
+/// What SQLite keeps beside the data base while it is open.
+bool is_of_sqlite(const std::string& name) {
+  const std::string file(kSweepFile);
+  return name == file + "-journal" || name == file + "-wal" || name == file + "-shm";
+}
+
+}  // namespace
+
+SweepFolder::SweepFolder(const Request& request) {
+  std::error_code error;
+  path_ = base::resolved(request.path, error);
+  if (error) refuse(request, "cannot be used: " + error.message());
+  const std::optional<struct stat> status = base::status_of(path_);
+  if (status && S_ISLNK(status->st_mode)) refuse(request, "is a symbolic link that leads nowhere");
+  if (status && !S_ISDIR(status->st_mode)) refuse(request, "is a file; expected a folder");
+  std::set<std::string> names;
+  if (status)
+    for (const fs::directory_entry& entry : fs::directory_iterator(path_, error))
+      names.insert(entry.path().filename().string());
+  if (error) refuse(request, "cannot be listed: " + error.message());
+  for (const fs::path& input : request.inputs)
+    if (status && base::lies_in(input, path_))
+      refuse(request,
+             fmt::format("holds {}, which is read; choose another folder", input.string()));
+  for (const std::string& name : names) check_entry(request, name);
+  fs::create_directories(path_, error);
+  if (error) refuse(request, "cannot be created: " + error.message());
+  csv_.emplace(base::OutputRequest{.option = request.option,
+                                   .path = (fs::path(request.path) / kSweepCsv).string(),
+                                   .replace = true});
+  if (!is_regular(path_ / kSweepFile)) base::add_to_record(path_, kSweepFile, {});
+}
+
+void SweepFolder::check_entry(const Request& request, const std::string& name) const {
+  const auto foreign = [&] {
+    refuse(request, fmt::format("exists and holds something else than a sweep: {}; choose a new "
+                                "folder",
+                                name));
+  };
+  if (!base::status_of(path_ / name)) return;  // of another process, and gone by now
+  std::error_code error;
+  if (fs::equivalent(path_ / name, request.cache, error)) return;
+  if (!is_regular(path_ / name)) foreign();
+  if (name == base::kRecordName || name == kSweepCsv) return;  // its OutputFile looks at that
+  const std::optional<base::OutputRecord> record = base::OutputRecord::read(path_);
+  if (name == kSweepFile) {
+    if (!is_sweep(path_, record && record->names(kSweepFile))) foreign();
+    return;
+  }
+  if (is_of_sqlite(name) && is_regular(path_ / kSweepFile)) return;
+  if (!record || !record->describes(path_, name)) foreign();
+}
+
+void SweepFolder::empty() {
+  if (is_regular(path_ / kSweepFile)) empty_sweep(path_);
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,349 @@
+#include "tools/app/study/sweep/sweep_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "platform_models/loader/dimension.h"
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "sim/base/interruption.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/study/sweep/pareto.h"
+#include "tools/app/study/sweep/point_key.h"
+#include "tools/app/study/sweep/sweep_schema.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path made(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw InputError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+  return folder / kSweepFile;
+}
+
+fs::path existing(const fs::path& folder) {
+  if (!base::is_file(folder / kSweepFile))
+    throw InputError(fmt::format("{}: holds no {}; expected the folder of a sweep", folder.string(),
+                                 kSweepFile));
+  return folder / kSweepFile;
+}
+
+/// As an SQL identifier.
+std::string quoted(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return text + '"';
+}
+
+std::string literal(const std::string& text) {
+  std::string sql = "'";
+  for (const char c : text) sql += c == '\'' ? std::string("''") : std::string(1, c);
+  return sql + '\'';
+}
+
+/// As RFC 4180 asks for.
+std::string cell(const std::string& text) {
+  return text.find_first_of(",\"\n\r") == std::string::npos ? text : quoted(text);
+}
+
+bool is_objective(const std::string& name) {
+  return std::any_of(kObjectives.begin(), kObjectives.end(),
+                     [&](const Objective& o) { return o.figure == name; });
+}
+
+}  // namespace
+
+SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const SweepPoints& points)
+    : folder_(folder), database_(made(folder), Database::Mode::create) {
+  Transaction transaction(database_);
+  database_.run(kSweepTables);
+  database_.run(fmt::format("PRAGMA application_id = {}", kSweepApplication));
+  if (planned() > 0) {
+    if (!holds(points))
+      database_.fail(
+          "holds the results of another plan, of other data or of another leviosim; choose a new "
+          "folder, or --force to begin anew (finished points are found again where they are the "
+          "same)");
+    transaction.commit();
+    return;
+  }
+  Statement about(database_, "INSERT INTO sweep VALUES(?, ?)");
+  const auto say = [&](const char* name, std::string_view value) {
+    about.bind(1, std::string_view(name)).bind(2, value).run();
+  };
+  say("format", kSweepFormat);
+  say("program", fmt::format("leviosim {} {}", version(), revision()));
+  say("simulator", results_version());
+  say("plan", plan);
+  this->plan(points);
+  transaction.commit();
+}
+
+bool SweepStore::holds(const SweepPoints& points) {
+  if (planned() != static_cast<std::int64_t>(points.size())) return false;
+  Statement select(database_, "SELECT point, key FROM planned ORDER BY point");
+  for (std::size_t i = 0; select.step(); ++i) {
+    throw_if_interrupted();
+    if (select.whole(0) != static_cast<std::int64_t>(i) + 1 || select.text(1) != points.key(i))
+      return false;
+  }
+  return true;
+}
+
+void SweepStore::plan(const SweepPoints& points) {
+  Statement point(database_, "INSERT INTO planned VALUES(?, ?)");
+  Statement parameter(database_, "INSERT INTO parameters VALUES(?, ?, ?, ?, ?, ?)");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    throw_if_interrupted();
+    const SweepPoint p = points[i];
+    point.bind(1, std::int64_t{p.number}).bind(2, std::string_view(p.key)).run();
+    std::int64_t place = 0;
+    for (const PointParameter& v : p.parameters) {
+      parameter.bind(1, std::int64_t{p.number}).bind(2, place++).bind(3, std::string_view(v.name));
+      parameter.bind(4, std::string_view(v.text))
+          .bind(5, v.number)
+          .bind(6, std::string_view(v.unit));
+      parameter.run();
+    }
+  }
+}
+
+SweepStore::SweepStore(const fs::path& folder)
+    : folder_(folder), database_(existing(folder), Database::Mode::existing) {
+  Statement tables(database_,
+                   "SELECT COUNT(*) FROM sqlite_master WHERE name IN ('sweep', 'planned')");
+  tables.step();
+  if (tables.whole(0) != 2) database_.fail("is no file of leviosim sweep");
+  Statement format(database_, "SELECT value FROM sweep WHERE name = 'format'");
+  if (!format.step() || format.text(0) != kSweepFormat)
+    database_.fail(fmt::format("is of a version that is not known; expected '{}'", kSweepFormat));
+}
+
+SweepStore::Keys SweepStore::keys() {
+  Keys all;
+  Statement select(database_, "SELECT point, key FROM planned ORDER BY point");
+  while (select.step()) all.emplace_back(static_cast<int>(select.whole(0)), select.text(1));
+  return all;
+}
+
+std::set<int> SweepStore::finished() {
+  std::set<int> points;
+  Statement select(database_, "SELECT point FROM outcomes");
+  while (select.step()) points.insert(static_cast<int>(select.whole(0)));
+  return points;
+}
+
+std::int64_t SweepStore::planned() {
+  Statement select(database_, "SELECT COUNT(*) FROM planned");
+  select.step();
+  return select.whole(0);
+}
+
+void SweepStore::put(int point, const PointResult& result) {
+  Transaction transaction(database_);
+  write(point, result);
+  transaction.commit();
+}
+
+void SweepStore::write(int point, const PointResult& result) {
+  Statement outcome(database_, "INSERT OR IGNORE INTO outcomes VALUES(?, ?) RETURNING point");
+  outcome.bind(1, std::int64_t{point}).bind(2, std::string_view(result.failure));
+  const bool is_new = outcome.step();
+  outcome.reset();
+  if (!is_new) return;  // another process was faster
+  Statement figure(database_,
+                   "INSERT OR IGNORE INTO figures(name, unit, description) VALUES(?, ?, ?)");
+  Statement value(database_,
+                  "INSERT INTO figure_values SELECT ?, figure, ?, ? FROM figures WHERE name = ?");
+  std::int64_t place = 0;
+  for (const SweepFigure& f : result.figures) {
+    figure.bind(1, std::string_view(f.name)).bind(2, std::string_view(f.unit));
+    figure.bind(3, std::string_view(f.description)).run();
+    value.bind(1, std::int64_t{point}).bind(2, place++);
+    value.bind(3, std::optional(f.value)).bind(4, std::string_view(f.name)).run();
+  }
+}
+
+std::optional<PointResult> SweepStore::result_of(int point) {
+  Statement outcome(database_, "SELECT failure FROM outcomes WHERE point = ?");
+  if (!outcome.bind(1, std::int64_t{point}).step()) return std::nullopt;
+  PointResult result{outcome.text(0), {}};
+  Statement figures(database_,
+                    "SELECT name, unit, description, value FROM figure_values JOIN figures USING "
+                    "(figure) WHERE point = ? ORDER BY place");
+  figures.bind(1, std::int64_t{point});
+  while (figures.step())
+    result.figures.push_back(
+        {figures.text(0), figures.text(1), figures.text(2), figures.number(3).value_or(0)});
+  return result;
+}
+
+void SweepStore::merge(SweepStore& other) {
+  if (keys() != other.keys())
+    other.database_.fail(fmt::format("is of another plan, other data or another leviosim than {}",
+                                     (folder_ / kSweepFile).string()));
+  Transaction transaction(database_);
+  for (const int point : other.finished()) {
+    const PointResult theirs = other.result_of(point).value();
+    const std::optional<PointResult> ours = result_of(point);
+    if (!ours)
+      write(point, theirs);
+    else if (to_text(*ours) != to_text(theirs))
+      other.database_.fail(fmt::format("has other results for point {} than {}", point,
+                                       (folder_ / kSweepFile).string()));
+  }
+  transaction.commit();
+}
+
+void SweepStore::copy_plan_to(const fs::path& folder) {
+  if (fs::exists(folder / kSweepFile)) return;
+  Database copy(made(folder), Database::Mode::create);
+  Transaction transaction(copy);
+  copy.run(kSweepTables);
+  const auto copy_rows = [&](const char* select, const char* insert, int columns) {
+    Statement from(database_, select);
+    Statement into(copy, insert);
+    while (from.step()) {
+      for (int c = 0; c < columns; ++c) from.bind_column(c, into);
+      into.run();
+    }
+  };
+  copy_rows("SELECT * FROM sweep", "INSERT INTO sweep VALUES(?, ?)", 2);
+  copy_rows("SELECT * FROM planned", "INSERT INTO planned VALUES(?, ?)", 2);
+  copy_rows("SELECT * FROM parameters", "INSERT INTO parameters VALUES(?, ?, ?, ?, ?, ?)", 6);
+  transaction.commit();
+}
+
+std::vector<SweepOutcome> SweepStore::outcomes() {
+  std::vector<SweepOutcome> all;
+  Statement select(database_, "SELECT point, failure FROM outcomes ORDER BY point");
+  while (select.step()) all.push_back({static_cast<int>(select.whole(0)), select.text(1), {}});
+  Statement value(database_, "SELECT value FROM metrics WHERE point = ? AND name = ?");
+  for (SweepOutcome& outcome : all)
+    for (std::size_t k = 0; k < kObjectives.size(); ++k) {
+      value.bind(1, std::int64_t{outcome.point}).bind(2, std::string_view(kObjectives[k].figure));
+      if (value.step()) outcome.objectives[k] = value.number(0);
+      value.reset();
+    }
+  return all;
+}
+
+std::string SweepStore::settings_of(int point) {
+  std::string text;
+  Statement select(database_, "SELECT name, text FROM parameters WHERE point = ? ORDER BY place");
+  select.bind(1, std::int64_t{point});
+  while (select.step())
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", select.text(0), select.text(1));
+  return text;
+}
+
+std::vector<std::string> SweepStore::figure_names() {
+  std::vector<std::string> figures;
+  for (const Objective& o : kObjectives) figures.emplace_back(o.figure);
+  Statement select(database_, "SELECT name FROM figures ORDER BY name");
+  while (select.step())
+    if (!is_objective(select.text(0))) figures.push_back(select.text(0));
+  return figures;
+}
+
+void SweepStore::make_views(const std::vector<std::string>& parameters,
+                            const std::vector<std::string>& figures) {
+  std::string columns = "point, status, failure";
+  for (const std::string& name : parameters)
+    columns += fmt::format(
+        ",\n (SELECT COALESCE(number, text) FROM parameters p WHERE p.point = points.point AND "
+        "p.name = {}) AS {}",
+        literal(name), quoted(name));
+  Statement number(database_, "SELECT figure FROM figures WHERE name = ?");
+  for (const std::string& name : figures) {
+    const bool known = number.bind(1, std::string_view(name)).step();
+    columns += known ? fmt::format(
+                           ",\n (SELECT value FROM figure_values v WHERE v.point = "
+                           "points.point AND v.figure = {}) AS {}",
+                           number.whole(0), quoted(name))
+                     : fmt::format(",\n NULL AS {}", quoted(name));
+    number.reset();
+  }
+  database_.run("DROP VIEW IF EXISTS wide; CREATE VIEW wide AS SELECT " + columns + " FROM points");
+}
+
+std::string SweepStore::csv(const std::vector<std::string>& parameters,
+                            const std::vector<std::string>& figures) {
+  std::string text = "point,status";
+  for (const std::string& name : parameters) text += ',' + cell(name);
+  for (const std::string& name : figures) text += ',' + cell(name);
+  text += ",failure\n";
+  Statement row(database_, "SELECT * FROM wide WHERE status <> 'open' ORDER BY point");
+  Statement value(database_, "SELECT text FROM parameters WHERE point = ? ORDER BY place");
+  while (row.step()) {
+    text += fmt::format("{},{}", row.whole(0), row.text(1));
+    value.bind(1, row.whole(0));
+    while (value.step()) text += ',' + cell(value.text(0));
+    value.reset();
+    const auto first = static_cast<int>(3 + parameters.size());
+    for (int k = 0; k < static_cast<int>(figures.size()); ++k) {
+      const std::optional<double> figure = row.number(first + k);
+      text += ',' + (figure ? platform::number_text(*figure) : std::string());
+    }
+    text += ',' + cell(row.text(2)) + '\n';
+  }
+  return text;
+}
+
+void SweepStore::write_front() {
+  database_.run("DELETE FROM front");
+  Statement insert(database_, "INSERT INTO front VALUES(?)");
+  for (const SweepOutcome& o : pareto_front(outcomes()))
+    insert.bind(1, std::int64_t{o.point}).run();
+}
+
+std::set<int> SweepStore::front() {
+  std::set<int> points;
+  Statement select(database_, "SELECT point FROM front");
+  while (select.step()) points.insert(static_cast<int>(select.whole(0)));
+  return points;
+}
+
+std::optional<std::string> SweepStore::publish(base::OutputFile& file) {
+  Transaction transaction(database_);  // of several processes, the last sees what all have done
+  std::vector<std::string> parameters;
+  Statement select(database_,
+                   "SELECT name FROM parameters WHERE point = (SELECT MIN(point) FROM planned) "
+                   "ORDER BY place");
+  while (select.step()) parameters.push_back(select.text(0));
+  const std::vector<std::string> figures = figure_names();
+  make_views(parameters, figures);
+  write_front();
+  std::optional<std::string> elsewhere = file.publish(csv(parameters, figures));
+  select.reset();
+  transaction.commit();
+  return elsewhere;
+}
+
+bool is_sweep(const fs::path& folder, bool may_be_empty) {
+  Database database(folder / kSweepFile, Database::Mode::existing);
+  const auto count = [&](const char* sql) {
+    Statement statement(database, sql);
+    return statement.step() ? statement.whole(0) : 0;
+  };
+  if (count("PRAGMA application_id") == kSweepApplication) return true;
+  // Those of before were not marked.
+  if (count("SELECT COUNT(*) FROM sqlite_master WHERE name IN ('sweep', 'planned', 'outcomes')") ==
+      3)
+    return true;
+  return may_be_empty && count("SELECT COUNT(*) FROM sqlite_master") == 0;
+}
+
+void empty_sweep(const fs::path& folder) {
+  Database database(folder / kSweepFile, Database::Mode::existing);
+  Transaction transaction(database);
+  database.run(kSweepEmpty);
+  transaction.commit();
+}
+
+}  // namespace leviosim::tools

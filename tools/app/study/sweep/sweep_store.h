@@ -1,0 +1,86 @@
+// Results of a sweep in one SQLite file (README.md lists tables and views). Each point is written
+// as soon as it is finished, in a transaction of its own: a process that dies leaves whole points
+// only. Several processes may write to one file; a point that two of them finish is there once.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sim/base/output_file.h"
+#include "tools/app/study/sweep/point_run.h"
+#include "tools/app/study/sweep/sqlite.h"
+
+namespace leviosim::tools {
+
+inline constexpr const char* kSweepFile = "sweep.sqlite";
+inline constexpr const char* kSweepCsv = "sweep.csv";
+
+/// A finished point as the report needs it.
+struct SweepOutcome {
+  int point = 0;
+  std::string failure;  ///< empty if there are figures
+  std::array<std::optional<double>, kObjectives.size()> objectives;
+};
+
+class SweepStore {
+ public:
+  /// Opens the file, or makes it with the points of a sweep.
+  /// @throws InputError if it holds another sweep
+  SweepStore(const std::filesystem::path& folder, const std::string& plan,
+             const SweepPoints& points);
+  /// Opens what is there. @throws InputError if it is no sweep's
+  explicit SweepStore(const std::filesystem::path& folder);
+
+  std::set<int> finished();
+  void put(int point, const PointResult& result);
+
+  /// Takes over all that another has finished. @throws InputError if it is of another sweep, or if
+  /// both have a point with different results
+  void merge(SweepStore& other);
+  /// Makes a new file with the same points and nothing finished, if there is none.
+  void copy_plan_to(const std::filesystem::path& folder);
+
+  /// In the order of their numbers.
+  std::vector<SweepOutcome> outcomes();
+  /// "platform.cluster.clock=240MHz" of a point.
+  std::string settings_of(int point);
+  std::int64_t planned();
+
+  /// Numbers of the points on the Pareto front at the last publish().
+  std::set<int> front();
+
+  /// Brings views, front and sweep.csv up to date: a row per finished point, a column per parameter
+  /// and figure, in an order that does not depend on which was finished first.
+  /// @returns nothing, or why sweep.csv has another name now
+  [[nodiscard]] std::optional<std::string> publish(base::OutputFile& file);
+
+ private:
+  using Keys = std::vector<std::pair<int, std::string>>;
+
+  Keys keys();
+  bool holds(const SweepPoints& points);
+  void plan(const SweepPoints& points);
+  std::optional<PointResult> result_of(int point);
+  void write(int point, const PointResult& result);
+  std::vector<std::string> figure_names();
+  void write_front();
+  void make_views(const std::vector<std::string>& parameters,
+                  const std::vector<std::string>& figures);
+  std::string csv(const std::vector<std::string>& parameters,
+                  const std::vector<std::string>& figures);
+
+  std::filesystem::path folder_;
+  Database database_;
+};
+
+/// Whether a folder's data base is a sweep's; `may_be_empty`: also one without any table.
+/// @throws InputError if it is no data base
+bool is_sweep(const std::filesystem::path& folder, bool may_be_empty);
+/// Takes all of the sweep out of the data base, or nothing.
+void empty_sweep(const std::filesystem::path& folder);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,188 @@
+#include "tools/app/study/tune/tune_plot.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+
+#include "tools/app/report/plot/axes.h"
+#include "tools/app/report/plot/svg.h"
+
+namespace leviosim::tools {
+namespace {
+
+using plot::Anchor;
+using plot::Axes;
+using plot::Box;
+using plot::Point;
+using plot::Range;
+using plot::Scale;
+using plot::Stroke;
+using plot::Svg;
+
+constexpr double kWidth = 900;
+constexpr double kHeight = 940;
+constexpr double kLeftEdge = 80;
+constexpr double kPanelWidth = 660;
+constexpr double kPanelHeight = 230;
+constexpr double kFirstPanel = 92;
+constexpr double kPanelStep = 282;
+constexpr double kLegendX = 762;
+constexpr double kLineHeight = 20;
+constexpr const char* kInk = "#1c2733";
+constexpr const char* kLimit = "#8a939c";
+constexpr std::array kColours{"#203e8c", "#2a7f62", "#d98e04", "#be202e", "#7a3b9a", "#5c6670"};
+
+/// One of the curves' figures.
+struct Panel {
+  const char* label;
+  Scale scale;
+  std::function<std::optional<double>(const TunePoint&)> of;
+  std::optional<double> limit;
+  bool marks_missing = false;  ///< what has no value is marked at the top
+};
+
+std::vector<Panel> panels_of(const TunePlan& plan) {
+  const auto error = [](const TunePoint& p) {
+    const std::optional<double> ate = p.ate().median;
+    return ate && *ate > 0 ? ate : std::nullopt;
+  };
+  const auto missed = [](const TunePoint& p) { return std::optional(100 * p.miss_rate()); };
+  const auto power = [](const TunePoint& p) {
+    const std::optional<Banded> watts = p.median(&LoopOutcome::power_w);
+    return watts ? std::optional(watts->value * 1e3) : std::nullopt;
+  };
+  return {{"absolute trajectory error [m]", Scale::logarithmic, error, plan.ate_m, true},
+          {"missed frames [%]", Scale::linear, missed, 100 * plan.miss_rate, false},
+          {"mean power [mW]", Scale::linear, power, std::nullopt, false}};
+}
+
+double megahertz(const TunePoint& point) {
+  return static_cast<double>(point.setting.clock.count()) * 1e-6;
+}
+
+std::string colour_of(std::size_t rate) { return kColours[rate % kColours.size()]; }
+
+Range range_of(const Panel& panel, const std::vector<TunePoint>& points) {
+  std::optional<Range> range;
+  const auto include = [&](const std::optional<double>& value) {
+    if (!value || (panel.scale == Scale::logarithmic && !(*value > 0))) return;
+    if (!range) range = Range{*value, *value};
+    range->include(*value);
+  };
+  for (const TunePoint& point : points) include(panel.of(point));
+  include(panel.limit);
+  if (panel.scale == Scale::logarithmic)
+    return plot::widened_logarithmically(range.value_or(Range{0.1, 1}), 0.06);
+  if (!range) range = Range{0, 1};
+  range->include(0);
+  return plot::widened(*range, 0.05);
+}
+
+/// Where an estimate diverged: a cross at the top.
+void draw_cross(Svg& svg, Point at, const Stroke& stroke) {
+  constexpr double kHalf = 3.5;
+  svg.line({at.x - kHalf, at.y - kHalf}, {at.x + kHalf, at.y + kHalf}, stroke);
+  svg.line({at.x - kHalf, at.y + kHalf}, {at.x + kHalf, at.y - kHalf}, stroke);
+}
+
+/// The line of a frame rate, interrupted where there is no value.
+/// @param cross_y  where such points are marked, below the top of the box
+void draw_line(Svg& svg, const Axes& axes, const Panel& panel,
+               const std::vector<const TunePoint*>& points, const std::string& colour,
+               double cross_y) {
+  std::vector<Point> line;
+  const auto finish = [&] {
+    if (line.size() > 1) svg.polyline(line, {colour, 1.6});
+    for (const Point& at : line) svg.circle(at, 2.2, colour, {colour, 0});
+    line.clear();
+  };
+  for (const TunePoint* point : points) {
+    const std::optional<double> value = panel.of(*point);
+    if (value) {
+      line.push_back(axes.at(megahertz(*point), *value));
+      continue;
+    }
+    finish();
+    if (panel.marks_missing)
+      draw_cross(svg, {axes.at(megahertz(*point), axes.y().high).x, axes.box().y + cross_y},
+                 {colour, 1.6});
+  }
+  finish();
+}
+
+void draw_panel(Svg& svg, const TunePlan& plan, const Panel& panel, const Axes& axes,
+                const std::vector<TunePoint>& points, const std::vector<Choice>& choices) {
+  axes.draw(svg, "clock [MHz]", panel.label);
+  if (panel.limit)
+    svg.line(axes.at(axes.x().low, *panel.limit), axes.at(axes.x().high, *panel.limit),
+             {kLimit, 1.2, "6 4"});
+  for (std::size_t rate = 0; rate < plan.fps.size(); ++rate) {
+    std::vector<const TunePoint*> of_rate;
+    for (const TunePoint& point : points)
+      if (point.fps == plan.fps[rate]) of_rate.push_back(&point);
+    draw_line(svg, axes, panel, of_rate, colour_of(rate), 8 + 9 * static_cast<double>(rate));
+    const TunePoint* lowest = choices[rate].lowest;
+    const std::optional<double> value = lowest != nullptr ? panel.of(*lowest) : std::nullopt;
+    if (value) svg.circle(axes.at(megahertz(*lowest), *value), 6.5, "none", {colour_of(rate), 2});
+  }
+}
+
+void draw_legend(Svg& svg, const TunePlan& plan) {
+  double y = kFirstPanel + 8;
+  svg.text({kLegendX, y}, "frames/s", {12, Anchor::start, kInk, true});
+  for (std::size_t rate = 0; rate < plan.fps.size(); ++rate) {
+    y += kLineHeight;
+    svg.line({kLegendX, y - 4}, {kLegendX + 18, y - 4}, {colour_of(rate), 2});
+    svg.text({kLegendX + 26, y}, fmt::format("{:g}", plan.fps[rate]), {});
+  }
+  y += 1.5 * kLineHeight;
+  svg.line({kLegendX, y - 4}, {kLegendX + 18, y - 4}, {kLimit, 1.2, "6 4"});
+  svg.text({kLegendX + 26, y}, "limit", {});
+  y += kLineHeight;
+  svg.circle({kLegendX + 9, y - 4}, 6.5, "none", {kInk, 2});
+  svg.text({kLegendX + 26, y}, "lowest enough", {});
+  y += kLineHeight;
+  draw_cross(svg, {kLegendX + 9, y - 4}, {kInk, 1.6});
+  svg.text({kLegendX + 26, y}, "diverged", {});
+}
+
+/// Names of folders may be long; the last part tells most.
+std::string flight_name(const TunePlan& plan) {
+  const std::filesystem::path path =
+      std::filesystem::absolute(plan.sequence.folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+}  // namespace
+
+std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points,
+                      const std::vector<Choice>& choices) {
+  Svg svg(kWidth, kHeight, "Error, missed frames and power over the clock");
+  svg.text({kLeftEdge, 34},
+           fmt::format("Error, missed frames and power of {} over the clock", plan.request.profile),
+           {17, Anchor::start, kInk, true});
+  svg.text({kLeftEdge, 56},
+           fmt::format("{}, {} cores, at the lowest voltage of each clock; {}, {} frames recorded "
+                       "at {:g} frames/s;",
+                       plan.request.platform.name, plan.request.cores, flight_name(plan),
+                       plan.sequence.frames, plan.recorded_hz),
+           {12});
+  const std::string medians =
+      plan.seeds.size() > 1 ? fmt::format("; medians over {} seeds", plan.seeds.size()) : "";
+  svg.text({kLeftEdge, 74}, std::string(info_of(plan.deadline).description) + medians, {12});
+  Range x{megahertz(points.front()), megahertz(points.front())};
+  for (const TunePoint& point : points) x.include(megahertz(point));
+  double top = kFirstPanel;
+  for (const Panel& panel : panels_of(plan)) {
+    const Axes axes({kLeftEdge, top, kPanelWidth, kPanelHeight}, plot::widened(x, 0.02),
+                    range_of(panel, points), Scale::linear, panel.scale);
+    draw_panel(svg, plan, panel, axes, points, choices);
+    top += kPanelStep;
+  }
+  draw_legend(svg, plan);
+  return svg.str();
+}
+
+}  // namespace leviosim::tools

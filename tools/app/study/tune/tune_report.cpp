@@ -1,0 +1,206 @@
+#include "tools/app/study/tune/tune_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "sim/base/printable_text.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/report/text_table.h"
+#include "tools/app/study/batch/batch_options.h"
+#include "tools/app/study/batch/run_key.h"
+#include "tools/app/study/batch/runs_csv.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr auto kLeft = TextTable::Align::Left;
+constexpr const char* kNothing = "–";
+
+double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }
+
+std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
+
+/// Of nanoseconds.
+std::string ms(double ns) { return fmt::format("{:.1f}", ns * 1e-6); }
+
+std::string milli(const std::optional<Banded>& figure, int decimals) {
+  return figure ? fmt::format("{:.{}f}", figure->value * 1e3, decimals) : kNothing;
+}
+
+std::string milli_band(const std::optional<Banded>& figure) {
+  return figure ? fmt::format("{:.1f}–{:.1f}", figure->low * 1e3, figure->high * 1e3) : kNothing;
+}
+
+std::string volts(const ClockSetting& setting) {
+  return setting.voltage ? fmt::format("{:.2f}", setting.voltage->count()) : kNothing;
+}
+
+std::string ate(const std::optional<double>& error) {
+  return error ? fmt::format("{:.3f}", *error) : "diverged";
+}
+
+/// "240 MHz and 0.65 V".
+std::string clock_text(const ClockSetting& setting) {
+  std::string text = fmt::format("{:g} MHz", megahertz(setting.clock));
+  return setting.voltage ? text + fmt::format(", {:g} V", setting.voltage->count()) : text;
+}
+
+std::string choice_line(const TunePlan& plan, const Choice& choice) {
+  std::string text = fmt::format("  {:g} frames/s: ", choice.fps);
+  if (choice.lowest == nullptr) return text + "none of these clocks\n";
+  const TunePoint& point = *choice.lowest;
+  text += fmt::format("{}: {} % missed, ATE {} m", clock_text(point.setting),
+                      percent(point.miss_rate()), ate(point.ate().median));
+  if (const auto power = point.median(&LoopOutcome::power_w))
+    text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
+                        milli(point.median(&LoopOutcome::frame_j), 3));
+  std::vector<std::string> failing;
+  for (const TunePoint* higher : choice.higher_failing)
+    failing.push_back(fmt::format("{:g} ({} %, {})", megahertz(higher->setting.clock),
+                                  percent(higher->miss_rate()), ate(higher->ate().median)));
+  if (!failing.empty())
+    text += fmt::format(
+        "\n    but not at {} of {} higher clocks: {}", failing.size(),
+        std::count_if(plan.clocks.begin(), plan.clocks.end(),
+                      [&](const ClockSetting& s) { return s.clock > point.setting.clock; }),
+        fmt::join(failing, ", "));
+  return text + '\n';
+}
+
+Json banded_json(const std::optional<Banded>& figure) {
+  return figure ? Json(figure->value) : Json(nullptr);
+}
+
+std::string optional_cells(const std::optional<Banded>& figure) {
+  if (!figure) return ",,";
+  return fmt::format("{:.9f},{:.9f},{:.9f}", figure->value * 1e3, figure->low * 1e3,
+                     figure->high * 1e3);
+}
+
+struct LatencyColumn {
+  double (*of)(const LoopOutcome&);
+};
+constexpr std::array kLatencies{
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p50_ns); }},
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p95_ns); }},
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p99_ns); }},
+    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.max_ns); }}};
+
+std::string notes(const TunePlan& plan) {
+  std::string text = fmt::format(
+      "missed: dropped, or the pose came later than a period after the frame; {}\n"
+      "latency from a frame to its pose; mean power over all of the time, with its band; mJ per "
+      "processed frame\n"
+      "ATE: {}-aligned RMSE of the processed frames, diverged if above the length of the path; "
+      "poses: frames with a pose\n",
+      info_of(plan.deadline).description, name_of(plan.measure.alignment));
+  if (plan.seeds.size() > 1)
+    text += fmt::format("medians over {} seeds; poses: the least\n", plan.seeds.size());
+  return text;
+}
+
+/// All cells of a run but the last.
+std::string csv_line(const TunePlan& plan, const TunePoint& point, std::size_t seed) {
+  const RunOutcome& outcome = point.outcomes[seed];
+  const LoopOutcome& loop = *outcome.loop;
+  const CameraFigures& c = loop.camera;
+  return fmt::format(
+      "{:g},{:g},{},{},{},{},{},{},{},{},{:.6f},{},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{}",
+      point.fps, megahertz(point.setting.clock),
+      point.setting.voltage ? fmt::format("{:g}", point.setting.voltage->count()) : "",
+      info_of(plan.deadline).name, plan.seeds[seed], c.arrived, c.processed, c.dropped, c.late,
+      c.missed(), c.share_of(c.missed()), c.waited, c.most_found, c.latency.p50_ns,
+      c.latency.p95_ns, c.latency.p99_ns, c.latency.max_ns, optional_cells(loop.power_w),
+      optional_cells(loop.frame_j), outcome.ate_m ? fmt::format("{:.9f}", *outcome.ate_m) : "",
+      outcome.matched, outcome.completion, outcome.path_m, csv_cell(outcome.failure));
+}
+
+}  // namespace
+
+std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  const bool several = plan.seeds.size() > 1;
+  std::vector<TextTable::Column> columns{
+      {"frames/s"}, {"MHz"},      {"V"},  {"missed %"}, {"dropped %"}, {"p50 ms"}, {"p95 ms"},
+      {"p99 ms"},   {"worst ms"}, {"mW"}, {"band"},     {"mJ/frame"},  {"ATE m"}};
+  if (several) columns.push_back({"least … greatest"});
+  columns.push_back({"poses %"});
+  columns.push_back({"enough", kLeft});
+  TextTable table(std::move(columns));
+  for (const TunePoint& point : points) {
+    const auto power = point.median(&LoopOutcome::power_w);
+    const Spread errors = point.ate();
+    std::vector<std::string> cells{
+        fmt::format("{:g}", point.fps), fmt::format("{:g}", megahertz(point.setting.clock)),
+        volts(point.setting), percent(point.miss_rate()), percent(point.drop_rate())};
+    for (const LatencyColumn& latency : kLatencies) cells.push_back(ms(point.median(latency.of)));
+    cells.insert(cells.end(), {milli(power, 2), milli_band(power),
+                               milli(point.median(&LoopOutcome::frame_j), 3), ate(errors.median)});
+    if (several) cells.push_back(fmt::format("{} … {}", ate(errors.low), ate(errors.high)));
+    cells.push_back(percent(point.completion()));
+    cells.push_back(is_enough(point, plan) ? "yes" : "");
+    table.add(std::move(cells));
+  }
+  return table.str() + notes(plan);
+}
+
+std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  std::string text =
+      "fps,clock_mhz,voltage,deadline,seed,arrived,processed,dropped,late,missed,missed_share,"
+      "waited,most_found,latency_p50_ns,latency_p95_ns,latency_p99_ns,latency_worst_ns,power_mw,"
+      "power_low_mw,power_high_mw,frame_mj,frame_low_mj,frame_high_mj,ate_rmse_m,matched,"
+      "completion,path_m,failure,point_is_enough\n";
+  for (const TunePoint& point : points)
+    for (std::size_t i = 0; i < plan.seeds.size(); ++i)
+      text += csv_line(plan, point, i) + fmt::format(",{}\n", int{is_enough(point, plan)});
+  return text;
+}
+
+std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
+  std::string text =
+      fmt::format("the lowest of these clocks with at most {:g} % missed and an ATE of {:g} m:\n",
+                  100 * plan.miss_rate, plan.ate_m);
+  for (const Choice& choice : choices) text += choice_line(plan, choice);
+  const TunePoint* best = chosen(choices);
+  if (best == nullptr) return text + "no point is enough\n";
+  return text + fmt::format("the lowest of all: {} at {:g} frames/s\n  {}\n",
+                            clock_text(best->setting), best->fps,
+                            printable(run_command_text(plan, *best)));
+}
+
+Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
+                   const Words& command_line) {
+  Json document;
+  document["format"] = "leviosim tune manifest";
+  document["version"] = 1;
+  document["program"]["version"] = version();
+  document["program"]["revision"] = revision();
+  document["program"]["estimator"] = results_version();
+  document["command_line"] = command_line;
+  document["profile"] = plan.request.profile;
+  document["seeds"] = plan.seeds;
+  document["platform"]["name"] = plan.options.platform;
+  document["platform"]["cores"] = plan.request.cores;
+  document["deadline"] = info_of(plan.deadline).name;
+  document["miss_rate"] = plan.miss_rate;
+  document["ate_m"] = plan.ate_m;
+  document["sequence"] = {{"folder", plan.sequence.folder},
+                          {"frames", plan.sequence.frames},
+                          {"recorded_fps", plan.recorded_hz},
+                          {"inputs_sha256", plan.sequence.inputs}};
+  document["lowest"] = Json::array();
+  for (const Choice& choice : choices) {
+    Json& entry = document["lowest"].emplace_back(Json::object());
+    entry["fps"] = choice.fps;
+    entry["clock_mhz"] = choice.lowest ? Json(megahertz(choice.lowest->setting.clock)) : Json();
+    if (choice.lowest != nullptr)
+      entry["power_w"] = banded_json(choice.lowest->median(&LoopOutcome::power_w));
+  }
+  const TunePoint* best = chosen(choices);
+  document["chosen"] = best != nullptr ? Json(run_command_text(plan, *best)) : Json();
+  return document;
+}
+
+}  // namespace leviosim::tools

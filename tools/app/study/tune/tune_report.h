@@ -1,0 +1,24 @@
+// What `leviosim tune` found, as text, CSV and JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/app/cli/command_line.h"
+#include "tools/app/report/statistic_list.h"
+#include "tools/app/study/tune/tuning.h"
+
+namespace leviosim::tools {
+
+/// A row per point.
+std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points);
+std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points);
+
+/// The lowest clock at each frame rate, and that of all.
+std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices);
+
+/// The content of manifest.json. Nothing in it depends on the host or on what was found again.
+Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
+                   const Words& command_line);
+
+}  // namespace leviosim::tools

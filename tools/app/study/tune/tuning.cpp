@@ -1,0 +1,166 @@
+#include "tools/app/study/tune/tuning.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "sim/base/check.h"
+#include "tools/app/run/workload_overrides.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::vector<std::string> overrides_at(const TunePlan& plan, const ClockSetting& setting) {
+  std::vector<std::string> all = plan.options.overrides;
+  all.insert(all.end(), setting.overrides.begin(), setting.overrides.end());
+  return all;
+}
+
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:=,@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+double TunePoint::median(double (*of)(const LoopOutcome&)) const {
+  std::vector<std::optional<double>> values;
+  for (const RunOutcome& outcome : outcomes) values.push_back(of(*outcome.loop));
+  return *spread_of(values).median;
+}
+
+std::optional<Banded> TunePoint::median(std::optional<Banded> LoopOutcome::*of) const {
+  const auto part = [&](double Banded::*end) {
+    std::vector<std::optional<double>> values;
+    for (const RunOutcome& outcome : outcomes) {
+      const std::optional<Banded>& figure = *outcome.loop.*of;
+      values.push_back(figure ? std::optional(*figure.*end) : std::nullopt);
+    }
+    return spread_of(values).median;
+  };
+  const auto value = part(&Banded::value);
+  if (!value) return std::nullopt;
+  return Banded{*value, part(&Banded::low).value_or(0), part(&Banded::high).value_or(0)};
+}
+
+double TunePoint::miss_rate() const {
+  return median([](const LoopOutcome& l) { return l.camera.share_of(l.camera.missed()); });
+}
+
+double TunePoint::drop_rate() const {
+  return median([](const LoopOutcome& l) { return l.camera.share_of(l.camera.dropped); });
+}
+
+Spread TunePoint::ate() const {
+  std::vector<std::optional<double>> values;
+  for (const RunOutcome& outcome : outcomes) {
+    const bool diverged = !outcome.ate_m || *outcome.ate_m > outcome.path_m;
+    values.push_back(diverged ? std::nullopt : outcome.ate_m);
+  }
+  return spread_of(values);
+}
+
+double TunePoint::completion() const {
+  double least = 1;
+  for (const RunOutcome& outcome : outcomes) least = std::min(least, outcome.completion);
+  return least;
+}
+
+RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
+                      std::uint32_t seed) {
+  RunRequest request = plan.request;
+  request.seed = seed;
+  request.camera = CameraRequest{fps, plan.deadline};
+  request.platform = platform::resolve_platform(plan.options.platform,
+                                                split_overrides(overrides_at(plan, setting)).chip);
+  return request;
+}
+
+std::vector<BatchRun> tune_runs(const TunePlan& plan) {
+  std::vector<BatchRun> runs;
+  for (const double fps : plan.fps)
+    for (const ClockSetting& setting : plan.clocks)
+      for (const std::uint32_t seed : plan.seeds)
+        runs.push_back({&plan.sequence, request_of(plan, fps, setting, seed)});
+  return runs;
+}
+
+std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<RunOutcome>& outcomes) {
+  const std::size_t seeds = plan.seeds.size();
+  check_equal(outcomes.size(), plan.fps.size() * plan.clocks.size() * seeds, "an outcome per run");
+  auto first = outcomes.begin();
+  std::vector<TunePoint> points;
+  for (const double fps : plan.fps)
+    for (const ClockSetting& setting : plan.clocks) {
+      const auto last = first + static_cast<std::ptrdiff_t>(seeds);
+      points.push_back({fps, setting, {first, last}});
+      first = last;
+    }
+  return points;
+}
+
+bool is_enough(const TunePoint& point, const TunePlan& plan) {
+  const std::optional<double> ate = point.ate().median;
+  return point.miss_rate() <= plan.miss_rate && ate && *ate <= plan.ate_m;
+}
+
+std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  std::vector<Choice> all;
+  for (const double fps : plan.fps) {
+    Choice choice{fps, nullptr, {}};
+    for (const TunePoint& point : points) {
+      if (point.fps != fps) continue;
+      const bool enough = is_enough(point, plan);
+      if (choice.lowest == nullptr && enough) choice.lowest = &point;
+      if (choice.lowest != nullptr && !enough) choice.higher_failing.push_back(&point);
+    }
+    all.push_back(std::move(choice));
+  }
+  return all;
+}
+
+const TunePoint* chosen(const std::vector<Choice>& choices) {
+  const TunePoint* best = nullptr;
+  for (const Choice& choice : choices)
+    if (choice.lowest != nullptr &&
+        (best == nullptr || choice.lowest->setting.clock <= best->setting.clock))
+      best = choice.lowest;
+  return best;
+}
+
+RunOptions run_options_of(const TunePlan& plan, const TunePoint& point) {
+  RunOptions options = plan.options;
+  options.overrides = overrides_at(plan, point.setting);
+  options.camera_fps = fmt::format("{}", point.fps);
+  options.deadline = info_of(plan.deadline).name;
+  return options;
+}
+
+std::string run_command_text(const TunePlan& plan, const TunePoint& point) {
+  const RunOptions options = run_options_of(plan, point);
+  const RunOptions defaults;
+  std::vector<std::string> words{"leviosim", "run", "--platform", quoted(options.platform)};
+  const auto add = [&](const char* name, const std::string& value, const std::string& by_default) {
+    if (value == by_default) return;
+    words.emplace_back(name);
+    words.push_back(quoted(value));
+  };
+  for (const std::string& text : options.overrides) add("-p", text, "");
+  add("--data", options.data, "");
+  add("--profile", options.profile, defaults.profile);
+  add("--frames", options.frames, "");
+  add("--cores", options.cores, "");
+  add("--seed", options.seed, defaults.seed);
+  add("--size", options.size, defaults.size);
+  add("--camera-fps", options.camera_fps, "");
+  add("--deadline", options.deadline, "");
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+}  // namespace leviosim::tools

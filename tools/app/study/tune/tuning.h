@@ -1,0 +1,62 @@
+// Accuracy and power of closed loops over clock and frame rate, and the lowest clock that is
+// enough.
+#pragma once
+
+#include <vector>
+
+#include "tools/app/study/batch/spread.h"
+#include "tools/app/study/tune/tune_options.h"
+
+namespace leviosim::tools {
+
+/// A clock at a frame rate.
+struct TunePoint {
+  double fps = 0;
+  ClockSetting setting;
+  std::vector<RunOutcome> outcomes;  ///< by seed
+
+  /// Median over the seeds of a figure of their loops.
+  double median(double (*of)(const LoopOutcome&)) const;
+  /// The same of a figure that chips without energies lack.
+  std::optional<Banded> median(std::optional<Banded> LoopOutcome::*of) const;
+  /// Dropped or late frames over all, and dropped ones.
+  double miss_rate() const;
+  double drop_rate() const;
+  /// Of the absolute errors; one above the length of the path counts as diverged.
+  Spread ate() const;
+  /// Least share of frames with a pose that was compared.
+  double completion() const;
+};
+
+/// The closed loop of a point.
+RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
+                      std::uint32_t seed);
+
+/// By frame rate, clock, then seed; the sequence of the plan must outlive them.
+std::vector<BatchRun> tune_runs(const TunePlan& plan);
+
+/// @param outcomes  of tune_runs()
+std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<RunOutcome>& outcomes);
+
+/// Whether it misses no more frames and errs no more than the plan allows.
+bool is_enough(const TunePoint& point, const TunePlan& plan);
+
+/// What the plan's limits come to at a frame rate.
+struct Choice {
+  double fps = 0;
+  const TunePoint* lowest = nullptr;             ///< of the points that are enough; none if none is
+  std::vector<const TunePoint*> higher_failing;  ///< clocks above that are not enough
+};
+/// By frame rate. @param points  outlive the choices
+std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& points);
+
+/// The lowest clock of all; of equal clocks, that of the higher frame rate. nullptr if none is
+/// enough.
+const TunePoint* chosen(const std::vector<Choice>& choices);
+
+/// What is typed to run a point by itself, with the first seed: all words but those of --out.
+std::string run_command_text(const TunePlan& plan, const TunePoint& point);
+/// The same as the options of that command.
+RunOptions run_options_of(const TunePlan& plan, const TunePoint& point);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,15 @@
+// The text that `leviosim calibrate` prints.
+#pragma once
+
+#include <string>
+
+#include "tools/app/validation/calibration/calibration.h"
+
+namespace leviosim::tools {
+
+std::string constants_table(const Calibration& calibration);
+std::string residual_table(const Calibration& calibration);
+std::string left_out_table(const Calibration& calibration);
+std::string calibration_report(const Calibration& calibration);
+
+}  // namespace leviosim::tools

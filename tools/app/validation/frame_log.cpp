@@ -1,0 +1,59 @@
+#include "tools/app/validation/frame_log.h"
+
+#include <algorithm>
+
+#include "sim/base/check.h"
+#include "workload/vio/stages.h"
+
+namespace leviosim::tools {
+namespace {
+
+LoggedStage& stage_of(LoggedFrame& frame, std::string_view name) {
+  const auto it = std::find_if(frame.stages.begin(), frame.stages.end(),
+                               [&](const LoggedStage& stage) { return stage.name == name; });
+  if (it != frame.stages.end()) return *it;
+  LoggedStage stage;
+  stage.name = name;
+  frame.stages.push_back(stage);
+  return frame.stages.back();
+}
+
+}  // namespace
+
+const LoggedStage* LoggedFrame::find(std::string_view name) const {
+  const auto it = std::find_if(stages.begin(), stages.end(),
+                               [&](const LoggedStage& stage) { return stage.name == name; });
+  return it == stages.end() ? nullptr : &*it;
+}
+
+void FrameLog::on_front_end(const FrontEndJob& event) {
+  LoggedFrame frame;
+  frame.result = event.result;
+  frame.landmarks_before = frames_.empty() ? 0 : frames_.back().result.landmarks;
+  frame.keyframe_features = keyframe_features_;
+  const std::size_t runs = event.job.stages.size();
+  check_equal(event.parallel.stages.size(), runs, "timed stages of a job");
+  check_equal(event.single.stages.size(), runs, "stages of a job timed on one core");
+  for (std::size_t i = 0; i < runs; ++i) {
+    LoggedStage& stage = stage_of(frame, event.job.stages[i].stage);
+    ++stage.calls;
+    stage.parallel += event.parallel.stages[i].cycles;
+    stage.single += event.single.stages[i].cycles;
+    stage.counts += work::counts_of(event.job.stages[i]);
+  }
+  if (event.result.keyframe) keyframe_features_ = event.result.features;
+  frames_.push_back(std::move(frame));
+}
+
+void FrameLog::on_optimiser(const OptimiserJob& event) {
+  Cycles cycles;
+  bool iterated = false;
+  for (const sim::StageTiming& stage : event.timing.stages) {
+    if (stage.stage != vio::stages::kOptimiser) continue;
+    cycles += stage.cycles;
+    iterated = true;
+  }
+  if (iterated) iterations_.push_back({event.frame, cycles});
+}
+
+}  // namespace leviosim::tools

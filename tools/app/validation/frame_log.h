@@ -1,0 +1,52 @@
+// What each frame of a run did and cost, stage by stage. A run's sums (run_result.h) mix frames of
+// different kinds; published means stand for frames of one kind.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "sim/soc/run_observer.h"
+
+namespace leviosim::tools {
+
+/// The executions of one stage in one frame.
+struct LoggedStage {
+  std::string_view name;
+  int calls = 0;
+  Cycles single;        ///< on one core
+  Cycles parallel;      ///< on N cores
+  work::Counts counts;  ///< of all cores
+};
+
+struct LoggedFrame {
+  FrameResult result;
+  int landmarks_before = 0;   ///< alive when the frame came: what world matching compares with
+  int keyframe_features = 0;  ///< of the keyframe that frame matching compares with
+  std::vector<LoggedStage> stages;
+
+  /// Nullptr if the frame did not come to this stage.
+  const LoggedStage* find(std::string_view stage) const;
+};
+
+struct LoggedIteration {
+  int frame = 0;  ///< at whose start the snapshot was taken
+  Cycles cycles;  ///< of the controller
+};
+
+class FrameLog : public RunObserver {
+ public:
+  void on_front_end(const FrontEndJob& event) override;
+  void on_optimiser(const OptimiserJob& event) override;
+
+  const std::vector<LoggedFrame>& frames() const { return frames_; }
+  /// Of the optimiser, without the jobs that only bring in new keyframes.
+  const std::vector<LoggedIteration>& iterations() const { return iterations_; }
+
+ private:
+  std::vector<LoggedFrame> frames_;
+  std::vector<LoggedIteration> iterations_;
+  int keyframe_features_ = 0;
+};
+
+}  // namespace leviosim::tools

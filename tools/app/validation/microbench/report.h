@@ -1,0 +1,19 @@
+// Rows of a comparison with hardware, for people and for programs.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/app/validation/microbench/row.h"
+
+namespace leviosim::tools {
+
+/// Grouped, with the error of each row, and a line that sums up.
+std::string microbench_table(std::string_view chip, const std::vector<MicrobenchRow>& rows);
+std::string microbench_csv(const std::vector<MicrobenchRow>& rows);
+
+/// Mean of the absolute errors.
+double mean_error(const std::vector<MicrobenchRow>& rows);
+
+}  // namespace leviosim::tools

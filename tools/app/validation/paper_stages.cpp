@@ -1,0 +1,41 @@
+#include "tools/app/validation/paper_stages.h"
+
+#include <algorithm>
+
+#include "tools/app/result/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::int64_t pairs_of(const LoggedFrame& frame, std::string_view stage) {
+  const std::int64_t features = frame.result.features;
+  if (stage == vio::stages::kFrameMatching) return features * frame.keyframe_features;
+  if (stage == vio::stages::kWorldMatching) return features * frame.landmarks_before;
+  return 0;
+}
+
+}  // namespace
+
+std::optional<double> StageSum::mean_single() const { return mean(single, frames); }
+std::optional<double> StageSum::mean_parallel() const { return mean(parallel, frames); }
+
+StageSum sum_over(const std::vector<LoggedFrame>& frames, const PaperStage& stage) {
+  int fullest = 0;
+  for (const LoggedFrame& frame : frames) fullest = std::max(fullest, frame.landmarks_before);
+  StageSum sum;
+  for (const LoggedFrame& frame : frames) {
+    const LoggedStage* logged = frame.find(stage.stage);
+    if (logged == nullptr || !stage.stands_for(frame, fullest)) continue;
+    ++sum.frames;
+    sum.single += logged->single;
+    sum.parallel += logged->parallel;
+    sum.counts += logged->counts;
+    sum.pairs += pairs_of(frame, stage.stage);
+    sum.features += frame.result.features;
+    sum.landmarks += frame.landmarks_before;
+    sum.matches += frame.result.frame_matches;
+  }
+  return sum;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,171 @@
+#include "tools/app/validation/validation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/base/error.h"
+#include "sim/base/nearest.h"
+
+namespace leviosim::tools {
+namespace {
+
+using Value = std::optional<double>;
+
+constexpr std::string_view kError = "error.";
+
+bool is_summary(const Reference& reference) {
+  return std::string_view(reference.name).substr(0, kError.size()) == kError;
+}
+
+bool is_in_group(const std::string& name, std::string_view group) {
+  return name.rfind("compute.", 0) == 0 && name.size() > group.size() &&
+         std::string_view(name).substr(name.size() - group.size() - 1) == fmt::format(".{}", group);
+}
+
+/// "error.multi.worst" from the errors of all compute.*.multi; nothing if one of them is missing.
+Value summary(const std::string& name, const std::vector<Comparison>& before) {
+  const std::size_t dot = name.rfind('.');
+  const std::string what = name.substr(dot + 1);
+  const std::string group = name.substr(kError.size(), dot - kError.size());
+  double sum = 0;
+  double worst = 0;
+  int n = 0;
+  for (const Comparison& comparison : before) {
+    if (!is_in_group(comparison.reference.name, group)) continue;
+    if (!comparison.value) return std::nullopt;
+    const double error = std::abs(*comparison.error());
+    sum += error;
+    worst = std::max(worst, error);
+    ++n;
+  }
+  if (n == 0 || (what != "mean" && what != "worst"))
+    throw InputError(fmt::format(
+        "reference '{}': expected error.GROUP.mean or .worst after rows compute.*.GROUP", name));
+  return what == "mean" ? sum / n : worst;
+}
+
+Value find(const std::vector<Quantity>& quantities, const Reference& reference) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities) {
+    names.push_back(quantity.name);
+    if (quantity.name != reference.name) continue;
+    if (quantity.unit != reference.unit)
+      throw InputError(fmt::format("reference '{}': unit '{}'; expected '{}'", reference.name,
+                                   reference.unit, quantity.unit));
+    return quantity.value;
+  }
+  throw InputError(fmt::format("reference '{}': a run has no such quantity{}", reference.name,
+                               platform::did_you_mean(reference.name, names)));
+}
+
+std::string cell(Value value) { return value ? fmt::format("{:.6g}", *value) : std::string(); }
+Json json(Value value) { return value ? Json(*value) : Json(nullptr); }
+std::string deviation_text(const Reference& reference, double value) {
+  return fmt::format("{:.6g}{}", value, reference.tolerance.relative ? " %" : "");
+}
+
+std::string comparison_line(const Comparison& c) {
+  const Reference& r = c.reference;
+  return fmt::format(
+      "reference,{},{},{}{:.6g},{},{},{},{},{},{},{}\n", r.name, r.unit, r.limit ? "<" : "",
+      r.value, cell(c.value), c.value ? deviation_text(r, *c.error()) : "",
+      deviation_text(r, r.tolerance.value), r.guard ? deviation_text(r, *r.guard) : "",
+      name_of(c.verdict), r.reason, r.source);
+}
+
+Json comparison_json(const Comparison& c) {
+  const Reference& r = c.reference;
+  Json entry;
+  entry["name"] = r.name;
+  entry["unit"] = r.unit;
+  entry["reference"] = r.value;
+  entry["is_limit"] = r.limit;
+  entry["value"] = json(c.value);
+  entry["error"] = json(c.error());
+  entry["error_unit"] = r.tolerance.relative ? "%" : r.unit;
+  entry["tolerance"] = r.tolerance.value;
+  entry["guard"] = json(r.guard);
+  entry["verdict"] = name_of(c.verdict);
+  entry["reason"] = r.reason;
+  entry["source"] = r.source;
+  return entry;
+}
+
+Json normalised_json(const NormalisedFigure& n) {
+  Json entry;
+  entry["stage"] = n.stage;
+  entry["unit"] = n.unit;
+  entry["units_per_call"] = json(n.units);
+  entry["cycles_single"] = json(n.single);
+  entry["cycles_parallel"] = json(n.parallel);
+  entry["paper_units_per_call"] = json(n.paper_units);
+  entry["paper_cycles_single"] = json(n.paper_single);
+  entry["units_that_explain_the_paper"] = json(n.explaining_units);
+  return entry;
+}
+
+}  // namespace
+
+std::vector<Comparison> compare(const std::vector<Reference>& references,
+                                const std::vector<Quantity>& quantities) {
+  std::vector<Comparison> comparisons;
+  for (const Reference& reference : references) {
+    Comparison comparison{reference, {}, Verdict::NotCovered};
+    comparison.value =
+        is_summary(reference) ? summary(reference.name, comparisons) : find(quantities, reference);
+    comparison.verdict = judge(reference, comparison.value);
+    comparisons.push_back(std::move(comparison));
+  }
+  return comparisons;
+}
+
+Validation validate(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
+                    const std::vector<Reference>& references) {
+  return {compare(references, quantities_of(run, log)), inputs_of(run, log, profile),
+          normalised(run, log, profile)};
+}
+
+std::string validation_csv(const Validation& validation) {
+  std::string text = "kind,name,unit,paper,simulated,error,tolerance,guard,verdict,reason,source\n";
+  for (const Comparison& comparison : validation.comparisons) text += comparison_line(comparison);
+  for (const InputFigure& input : validation.inputs)
+    text += fmt::format("input,{},{},{},{},,,,,,{}\n", input.key, input.unit, cell(input.paper),
+                        cell(input.value), input.source);
+  for (const NormalisedFigure& n : validation.normalised) {
+    const Value paper =
+        n.paper_units && n.paper_single ? Value(*n.paper_single / *n.paper_units) : std::nullopt;
+    text += fmt::format("normalised,{}: one core,cycles per {},{},{},,,,,,\n", n.stage, n.unit,
+                        cell(paper), cell(n.single));
+    text += fmt::format("normalised,{}: N cores,cycles per {},,{},,,,,,\n", n.stage, n.unit,
+                        cell(n.parallel));
+  }
+  return text;
+}
+
+Json validation_json(const Validation& validation) {
+  Json document;
+  document["format"] = "leviosim validation";
+  document["version"] = 1;
+  document["comparisons"] = Json::array();
+  for (const Comparison& comparison : validation.comparisons)
+    document["comparisons"].push_back(comparison_json(comparison));
+  document["inputs"] = Json::array();
+  for (const InputFigure& input : validation.inputs) {
+    Json entry;
+    entry["name"] = input.key;
+    entry["description"] = input.name;
+    entry["unit"] = input.unit;
+    entry["value"] = json(input.value);
+    entry["paper"] = json(input.paper);
+    entry["source"] = input.source;
+    document["inputs"].push_back(std::move(entry));
+  }
+  document["normalised"] = Json::array();
+  for (const NormalisedFigure& figure : validation.normalised)
+    document["normalised"].push_back(normalised_json(figure));
+  return document;
+}
+
+}  // namespace leviosim::tools

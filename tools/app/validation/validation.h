@@ -1,0 +1,43 @@
+// A run beside the published figures: plain data, and its files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/app/report/statistics.h"
+#include "tools/app/validation/normalised.h"
+#include "tools/app/validation/quantities.h"
+#include "tools/app/validation/references.h"
+
+namespace leviosim::tools {
+
+struct Comparison {
+  Reference reference;
+  std::optional<double> value;  ///< of the run, in the reference's unit
+  Verdict verdict = Verdict::NotCovered;
+
+  std::optional<double> error() const {
+    return value ? std::optional(error_of(reference, *value)) : std::nullopt;
+  }
+};
+
+struct Validation {
+  std::vector<Comparison> comparisons;  ///< in the order of the references
+  std::vector<InputFigure> inputs;
+  std::vector<NormalisedFigure> normalised;
+};
+
+/// Quantities named error.GROUP.{mean,worst} are formed here: of the absolute errors of the
+/// references compute.*.GROUP before them.
+/// @throws InputError for a reference that names no quantity, or gives it another unit
+std::vector<Comparison> compare(const std::vector<Reference>& references,
+                                const std::vector<Quantity>& quantities);
+
+Validation validate(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
+                    const std::vector<Reference>& references);
+
+/// validation.csv: a row per reference, input and normalised figure, the first column says which.
+std::string validation_csv(const Validation& validation);
+Json validation_json(const Validation& validation);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,155 @@
+#include "tools/app/validation/validation_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/app/report/text_table.h"
+#include "tools/app/validation/paper_stages.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr auto kLeft = TextTable::Align::Left;
+constexpr const char* kNothing = "–";
+
+std::string number(std::optional<double> value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
+}
+
+/// As many decimals as make sense for the size of the number.
+std::string readable(std::optional<double> value) {
+  if (!value) return kNothing;
+  const double size = std::abs(*value);
+  if (size == std::round(size) && size < 1e7) return fmt::format("{:.0f}", *value);
+  return number(value, size >= 1000 ? 0 : size >= 10 ? 1 : 2);
+}
+
+std::string error_text(const Comparison& c) {
+  if (!c.value) return kNothing;
+  if (c.reference.limit && *c.error() == 0) return "kept";
+  return c.reference.tolerance.relative ? fmt::format("{:+.1f} %", *c.error())
+                                        : fmt::format("{:+.2f}", *c.error());
+}
+
+std::string tolerance_text(const Reference& r) {
+  if (r.limit && r.tolerance.value == 0) return "";
+  return fmt::format("±{:g}{}", r.tolerance.value, r.tolerance.relative ? " %" : "");
+}
+
+const char* within_text(const Comparison& c) {
+  if (!c.value) return "not covered";
+  return std::abs(*c.error()) <= c.reference.tolerance.value ? "yes" : "no";
+}
+
+const Comparison* find(const Validation& validation, const std::string& name) {
+  for (const Comparison& comparison : validation.comparisons)
+    if (comparison.reference.name == name) return &comparison;
+  return nullptr;
+}
+
+bool is_of_compute_table(const std::string& name) {
+  for (const PaperStage& stage : kPaperStages)
+    if (name.rfind(fmt::format("compute.{}.", stage.key), 0) == 0) return true;
+  return false;
+}
+
+void add_cells(std::vector<std::string>& cells, const Comparison* c, int decimals) {
+  cells.push_back(c == nullptr ? kNothing : number(c->reference.value, decimals));
+  cells.push_back(c == nullptr ? kNothing : number(c->value, decimals));
+  cells.push_back(c == nullptr ? kNothing : error_text(*c));
+}
+
+constexpr const char* kHowToRead =
+    "How to read this: the paper's averages are of 1578 frames whose numbers of features, "
+    "landmarks\n"
+    "and matches it does not print. RANSAC iterations and pixels are fixed, so these stages "
+    "compare\n"
+    "directly, up to scoring and describing. Matching compares pairs: its cycles follow the "
+    "inputs,\n"
+    "and \"needed\" is what a mean call would have to have for the paper's one-core value.\n";
+
+}  // namespace
+
+std::string compute_table(const Validation& validation, int cores) {
+  TextTable table({{"stage", kLeft},
+                   {"kcycles, 1 core"},
+                   {"simulated"},
+                   {"error"},
+                   {fmt::format("8 cores")},
+                   {fmt::format("simulated on {}", cores)},
+                   {"error"},
+                   {"speed-up"},
+                   {"simulated"},
+                   {"error"}});
+  for (const PaperStage& stage : kPaperStages) {
+    std::vector<std::string> cells{std::string(stage.title)};
+    const std::string path = fmt::format("compute.{}.", stage.key);
+    add_cells(cells, find(validation, path + "single"), 0);
+    add_cells(cells, find(validation, path + "multi"), 0);
+    add_cells(cells, find(validation, path + "speedup"), 2);
+    table.add(std::move(cells));
+  }
+  return "compute: the paper's averages and the simulated means over the same kind of frame\n" +
+         table.str();
+}
+
+std::string reference_table(const Validation& validation) {
+  TextTable table({{"quantity", kLeft},
+                   {"unit", kLeft},
+                   {"paper"},
+                   {"simulated"},
+                   {"error"},
+                   {"tolerance"},
+                   {"within", kLeft}});
+  for (const Comparison& c : validation.comparisons) {
+    const Reference& r = c.reference;
+    if (is_of_compute_table(r.name)) continue;
+    table.add({r.name, r.unit, fmt::format("{}{:g}", r.limit ? "< " : "", r.value),
+               number(c.value, 2), error_text(c), tolerance_text(r), within_text(c)});
+  }
+  return "shares, latencies, memory and limits (kB of 1000 bytes)\n" + table.str();
+}
+
+std::string input_table(const Validation& validation) {
+  TextTable table(
+      {{"input, mean", kLeft}, {"unit", kLeft}, {"paper"}, {"simulated"}, {"paper's", kLeft}});
+  for (const InputFigure& input : validation.inputs)
+    table.add({input.name, input.unit == "1" ? "" : input.unit, readable(input.paper),
+               readable(input.value), std::string(input.source)});
+  return "what the figures depend on\n" + table.str();
+}
+
+std::string normalised_table(const Validation& validation, int cores) {
+  TextTable table({{"cycles of", kLeft},
+                   {"for a", kLeft},
+                   {"1 core"},
+                   {fmt::format("{} cores", cores)},
+                   {"paper, 1 core"},
+                   {"in a call"},
+                   {"needed"}});
+  for (const NormalisedFigure& n : validation.normalised) {
+    const std::optional<double> paper = n.paper_units && n.paper_single
+                                            ? std::optional(*n.paper_single / *n.paper_units)
+                                            : std::nullopt;
+    table.add({n.stage, n.unit, readable(n.single), readable(n.parallel), readable(paper),
+               readable(n.units ? std::optional(std::round(*n.units)) : std::nullopt),
+               readable(n.explaining_units ? std::optional(std::round(*n.explaining_units))
+                                           : std::nullopt)});
+  }
+  return "cycles for a unit of work, which depend less on the input\n" + table.str() + kHowToRead;
+}
+
+std::string validation_report(const Validation& validation, int cores) {
+  const auto within = std::count_if(
+      validation.comparisons.begin(), validation.comparisons.end(), [](const Comparison& c) {
+        return c.value && std::abs(*c.error()) <= c.reference.tolerance.value;
+      });
+  return fmt::format("{}\n{}\n{}\n{}\n{} of {} references within their tolerance\n",
+                     compute_table(validation, cores), reference_table(validation),
+                     input_table(validation), normalised_table(validation, cores), within,
+                     validation.comparisons.size());
+}
+
+}  // namespace leviosim::tools

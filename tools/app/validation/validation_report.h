@@ -1,0 +1,22 @@
+// The text that `leviosim validate` prints.
+#pragma once
+
+#include <string>
+
+#include "tools/app/validation/validation.h"
+
+namespace leviosim::tools {
+
+/// Stages: cycles on one core and on N and the speed-up, each beside the paper's with its error.
+std::string compute_table(const Validation& validation, int cores);
+
+/// All other references, in groups by the first part of their names.
+std::string reference_table(const Validation& validation);
+
+/// Inputs, cycles per unit of work, and how a comparison of cycles must be read.
+std::string input_table(const Validation& validation);
+std::string normalised_table(const Validation& validation, int cores);
+
+std::string validation_report(const Validation& validation, int cores);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,41 @@
+#include "tools/commands/ablate_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/study/ablate/ablation_report.h"
+#include "tools/app/study/batch/runs_csv.h"
+
+namespace leviosim::tools {
+namespace {
+
+void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
+  const BatchPlan plan = make_plan(command, words);
+  const std::vector<BatchRun> runs = ablation_runs(plan);
+  const std::vector<RunOutcome> outcomes =
+      run_with_progress(plan, runs, ProgressLine::style_of_stderr(words.quiet));
+  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, paper_accuracy());
+  const std::string text = fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
+                                       ablation_text(plan, rows));
+  publish(*plan.out, text, [&] {
+    plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
+    plan.out->write("table.md", ablation_markdown(plan, rows));
+    plan.out->write("table.json", json_text(ablation_json(plan, rows), 2) + '\n');
+    plan.out->write("manifest.json", json_text(batch_manifest(plan, command_line), 2) + '\n');
+  });
+}
+
+}  // namespace
+
+Command add_ablate_command(CLI::App& app, const Words& words) {
+  CLI::App* command = app.add_subcommand(
+      "ablate", "The paper's table of pipeline configurations, over given sequences");
+  const auto typed = std::make_shared<BatchWords>();
+  add_batch_options(*command, *typed);
+  return {command, [=, &words] { run(*command, *typed, words); }};
+}
+
+}  // namespace leviosim::tools

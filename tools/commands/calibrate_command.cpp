@@ -1,0 +1,64 @@
+#include "tools/commands/calibrate_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "sim/base/error.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/validation/calibration/calibration_report.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct CalibrateOptions {
+  RunOptions run;
+  std::string constants = kDefaultConstants;
+};
+
+/// Loading takes what ends in .yaml for a file.
+std::optional<base::OutputFile> claimed_platform_file(const RunOptions& options) {
+  const std::string extension = std::filesystem::path(options.out).extension().string();
+  if (!options.out.empty() && extension != ".yaml" && extension != ".yml")
+    throw InputError(
+        fmt::format("--out {}: expected a platform file that ends in .yaml", options.out));
+  return claimed_file(out_request(options));
+}
+
+void run(const CalibrateOptions& options) {
+  RunRequest request = make_chip_request(options.run);
+  const std::vector<std::string> constants = parse_constants("--constants", options.constants);
+  const platform::Variants platform(request.platform);
+  bounds_of(platform, constants);  // refuses constants without a range before the run
+  std::optional<base::OutputFile> out = claimed_platform_file(options.run);
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.run.quiet);
+  request.data = data_folder(options.run, style);
+  FrameLog log;
+  request.observer = &log;
+  const RunResult result = simulate_with_progress(request, style);
+  const Calibration calibration =
+      calibrate(platform, stage_models(log, request.platform.config), constants);
+  const std::string yaml =
+      out ? platform::to_yaml(calibrated_platform(platform, calibration)) : std::string();
+  publish({{out, yaml, "platform file"}},
+          heading(options.run, result) + calibration_report(calibration));
+}
+
+}  // namespace
+
+Command add_calibrate_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "Fit code-generation constants to the paper's single-core values");
+  const auto options = std::make_shared<CalibrateOptions>();
+  add_chip_run_options(*command, options->run);
+  command
+      ->add_option("--constants", options->constants,
+                   fmt::format("up to {} [{}]", kMostConstants, kDefaultConstants))
+      ->type_name("PATH,…");
+  command->add_option("--out", options->run.out, "platform file to write")->type_name("FILE");
+  command->add_flag("--force", options->run.force, "replace the file");
+  return {command, [=] { run(*options); }};
+}
+
+}  // namespace leviosim::tools

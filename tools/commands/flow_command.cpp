@@ -1,0 +1,106 @@
+#include "tools/commands/flow_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "tools/app/cli/outputs.h"
+#include "tools/app/flow/flow_report.h"
+#include "tools/app/flow/flow_source.h"
+#include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_session.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// Of a run, as far as they make sense here, and those of the workload.
+struct FlowOptions : RunOptions {
+  std::string fps;
+  std::string grid = "5";
+  std::string search = "4";
+  bool gyro = false;
+};
+
+flow::Options workload_of(const FlowOptions& options) {
+  flow::Options workload;
+  workload.grid = static_cast<int>(parse_whole("--grid", options.grid, 1, workload.side));
+  workload.search =
+      static_cast<int>(parse_whole("--search", options.search, 1, flow::Options::kLargestSearch));
+  workload.gyro = options.gyro;
+  // Of a grid of few blocks the same share: 10 of 25.
+  workload.min_matches = std::max(1, workload.blocks() * 10 / 25);
+  workload.validate();
+  return workload;
+}
+
+RunRequest request_of(const FlowOptions& options) {
+  RunRequest request;
+  request.platform = platform::resolve_platform(options.platform, options.overrides);
+  request.cores = cores_of(options, request.platform.config.cluster);
+  if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
+  return request;
+}
+
+FlowRun run_flow(const FlowOptions& options, const RunRequest& request, ProgressLine::Style style) {
+  FlowSource source(request, workload_of(options));
+  FlowRun flow;
+  if (!options.fps.empty()) flow.rate = parse_positive("--fps", options.fps);
+  flow.run = simulate_with_progress(request, source, style);
+  flow.flows = source.flows();
+  flow.platform = request.platform.name;
+  flow.binning = source.camera().binning();
+  return flow;
+}
+
+void write_folder(base::OutputFolder& out, const FlowRun& flow, const Manifest& manifest,
+                  const std::string& platform_yaml) {
+  const auto write = [&](const char* name, const std::string& text) {
+    if (!text.empty()) out.write(name, text);
+  };
+  write("manifest.json", json_text(manifest_json(manifest, flow.run), 2) + '\n');
+  write("platform.yaml", platform_yaml);
+  write("flow.csv", flow_csv(flow));
+  write("stages.csv", stages_csv(flow.run));
+  write("memory.csv", memory_csv(flow.run));
+  write("energy.csv", energy_csv(flow.rate ? at_rate(flow.run, *flow.rate) : flow.run));
+  write("published.csv", published_csv(flow));
+}
+
+void run(const CLI::App& command, const FlowOptions& options, const Words& words) {
+  require(command, "--platform", "the name of a chip or a platform file");
+  require(command, "--data", "an ASL folder or 'synthetic'");
+  require(command, "--out", "a folder for the results");
+  workload_of(options);
+  if (!options.fps.empty()) parse_positive("--fps", options.fps);
+  RunRequest request = request_of(options);
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  base::OutputFolder out(out_request(options));
+  request.data = data_folder(options, style);
+  const FlowRun flow = run_flow(options, request, style);
+  const Manifest manifest = make_manifest(options, request, words);
+  publish(out, heading(options, flow.run) + flow_report(flow),
+          [&] { write_folder(out, flow, manifest, platform::to_yaml(request.platform)); });
+}
+
+}  // namespace
+
+Command add_flow_command(CLI::App& app, const Words& words) {
+  CLI::App* command =
+      app.add_subcommand("flow", "Run the optical flow of PX4FLOW, a second workload, on a chip");
+  const auto options = std::make_shared<FlowOptions>();
+  add_chip_options(*command, *options, "");
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  add("--data", options->data, "DIR|synthetic", "ASL/EuRoC folder, or the synthetic flight");
+  add("--frames", options->frames, "A:B", "frames, B exclusive [all]");
+  add("--fps", options->fps, "F", "rate of the camera, for energy and power [the recorded one]");
+  add("--grid", options->grid, "N", "N x N blocks [5]");
+  add("--search", options->search, "PX", "search range to either side [4]");
+  command->add_flag("--gyro", options->gyro, "take off the rotation of the camera");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  add_out_options(*command, *options);
+  return {command, [=, &words] { run(*command, *options, words); }};
+}
+
+}  // namespace leviosim::tools

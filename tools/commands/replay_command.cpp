@@ -1,0 +1,109 @@
+#include "tools/commands/replay_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/report/tables.h"
+#include "tools/app/run/memory_option.h"
+#include "tools/app/run/replay_report.h"
+#include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/run/workload_overrides.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct ReplayOptions : RunOptions {
+  std::string trace;
+  std::string memory;
+};
+
+/// Of a run folder its trace is taken.
+std::filesystem::path trace_file(const std::string& name) {
+  const std::filesystem::path path(name);
+  if (!base::is_folder(path)) return path;
+  if (!base::exists(path / kWorkTraceFile))
+    throw InputError(
+        fmt::format("{}: holds no {}; expected the folder of a run with --record, or a "
+                    "work trace",
+                    name, kWorkTraceFile));
+  return path / kWorkTraceFile;
+}
+
+RunRequest request_for(const traces::WorkTrace& trace, const RunOptions& options) {
+  for (const std::string& text : split_overrides(options.overrides).workload)
+    throw InputError(fmt::format(
+        "replay: the recorded work is that of a workload as it was; leave out --set {}", text));
+  RunRequest request;
+  request.platform = options.platform.empty()
+                         ? recorded_platform(trace, options.overrides)
+                         : platform::resolve_platform(options.platform, options.overrides);
+  request.cores = cores_of(options, request.platform.config.cluster);
+  return request;
+}
+
+Replay with_progress(const traces::WorkTrace& trace, const RunRequest& request,
+                     ProgressLine::Style style) {
+  ProgressLine line(style);
+  return replay(trace, request, [&](const Progress& p) {
+    throw_if_interrupted();
+    line.show(p.done, p.total,
+              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
+  });
+}
+
+Manifest manifest_of(const traces::WorkTrace& trace, const RunOptions& options,
+                     const Words& words) {
+  const InputDigest digest = digest_of_file(trace.name());
+  Manifest manifest;
+  manifest.command_line = words;
+  manifest.seed = trace.info().seed;
+  manifest.platform = options.platform;
+  manifest.overrides = options.overrides;
+  manifest.data = trace.info().data;
+  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
+  manifest.inputs = {digest};
+  manifest.recording = recording_json(trace, digest.sha256);
+  return manifest;
+}
+
+void run(const CLI::App& command, ReplayOptions options, const Words& words) {
+  require(command, "TRACE", "the work.trace of a run with --record, or its folder");
+  require(command, "--out", "a folder for the results");
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  base::OutputRequest wanted = out_request(options);
+  wanted.inputs.push_back(trace_file(options.trace));
+  base::OutputFolder out(std::move(wanted));
+  const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
+  const RunRequest request = request_for(trace, options);
+  const Replay result = with_progress(trace, request, style);
+  if (options.platform.empty()) options.platform = trace.info().platform;
+  const Manifest manifest = manifest_of(trace, options, words);
+  options.data = trace.info().data;
+  publish(out, heading(options, result.run) + replay_report(result, trace) + report(result.run),
+          [&] {
+            write_run_folder(out, result.run, manifest, platform::to_yaml(request.platform));
+            out.write(kReplayFile, replay_csv(result));
+          });
+}
+
+}  // namespace
+
+Command add_replay_command(CLI::App& app, const Words& words) {
+  CLI::App* command =
+      app.add_subcommand("replay", "Time the recorded work of a run on another chip");
+  const auto options = std::make_shared<ReplayOptions>();
+  command->add_option("TRACE", options->trace, "work.trace of a run with --record, or its folder");
+  add_chip_options(*command, *options, " [that of the recording]");
+  add_memory_option(*command, options->memory);
+  command->add_flag("--quiet", options->quiet, "no progress");
+  add_out_options(*command, *options);
+  return {command, [=, &words] { run(*command, *options, words); }};
+}
+
+}  // namespace leviosim::tools

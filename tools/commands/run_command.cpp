@@ -1,0 +1,61 @@
+#include "tools/commands/run_command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/report/tables.h"
+#include "tools/app/run/recording_source.h"
+#include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_session.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// What the run knows about itself beyond its work.
+void complete(traces::WorkTraceInfo& info, const RunOptions& options, const RunRequest& request,
+              const Manifest& manifest) {
+  info.program = fmt::format("leviosim {} {}", version(), revision());
+  info.seed = request.seed;
+  info.data = options.data;
+  info.first_frame = static_cast<std::int64_t>(manifest.first_frame);
+  info.platform = fmt::format("{}", fmt::join(manifest.overrides, " "));
+  info.platform =
+      options.platform + (info.platform.empty() ? std::string() : " with " + info.platform);
+  info.platform_yaml = platform::to_yaml(request.platform);
+  for (const InputDigest& input : manifest.inputs)
+    info.inputs.emplace_back(input.name, input.sha256);
+}
+
+void run(const CLI::App& command, const RunOptions& options, const Words& words) {
+  RunRequest request = make_request(command, options);
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  base::OutputFolder out(out_request(options));
+  request.data = data_folder(options, style);
+  out.reserve(expected_bytes(request, options.record));
+  WorkRecording recording(request.cores);
+  if (options.record) request.recording = &recording;
+  const RunResult result = simulate_with_progress(request, style);
+  const Manifest manifest = make_manifest(options, request, words);
+  publish(out, heading(options, result) + report(result), [&] {
+    write_run_folder(out, result, manifest,
+                     request.native ? std::string() : platform::to_yaml(request.platform));
+    if (!options.record) return;
+    complete(recording.info, options, request, manifest);
+    out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
+  });
+}
+
+}  // namespace
+
+Command add_run_command(CLI::App& app, const Words& words) {
+  CLI::App* command = app.add_subcommand("run", "Run the workload on a chip, or natively");
+  const auto options = std::make_shared<RunOptions>();
+  add_run_options(*command, *options);
+  return {command, [=, &words] { run(*command, *options, words); }};
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,55 @@
+#include "tools/commands/sensitivity_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/run/recording_source.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/study/sensitivity/sensitivity_report.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kFramesByDefault = "0:100";
+
+Sensitivity with_progress(const platform::Variants& platform, int cores,
+                          const traces::WorkTrace& trace, ProgressLine::Style style) {
+  ProgressLine line(style);
+  return sensitivity(platform, cores, trace, 0, [&](int done, int total) {
+    throw_if_interrupted();
+    line.show(done, total, [&] { return fmt::format("chip {}/{}", done, total); });
+  });
+}
+
+void run(const RunOptions& options) {
+  RunRequest request = make_chip_request(options);
+  std::optional<base::OutputFile> out = claimed_file(out_request(options));
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  request.data = data_folder(options, style);
+  WorkRecording recording(request.cores);
+  request.recording = &recording;
+  const RunResult result = simulate_with_progress(request, style);
+  const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
+  const Sensitivity found =
+      with_progress(platform::Variants(std::move(request.platform)), request.cores, trace, style);
+  publish({{out, sensitivity_csv(found), "table"}},
+          heading(options, result) + sensitivity_table(found, result.cores));
+}
+
+}  // namespace
+
+Command add_sensitivity_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "sensitivity", "Sweep every uncertain number of a chip over its range, one at a time");
+  const auto options = std::make_shared<RunOptions>();
+  options->frames = kFramesByDefault;
+  add_chip_run_options(*command, *options);
+  command->add_option("--out", options->out, "CSV file to write")->type_name("FILE");
+  command->add_flag("--force", options->force, "replace the file");
+  return {command, [=] { run(*options); }};
+}
+
+}  // namespace leviosim::tools

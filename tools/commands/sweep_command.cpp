@@ -1,0 +1,222 @@
+#include "tools/commands/sweep_command.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "sim/base/check.h"
+#include "sim/base/error.h"
+#include "tools/app/cli/cache_folder.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/progress_line.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/run/memory_option.h"
+#include "tools/app/study/batch/run_jobs.h"
+#include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/sweep_folder.h"
+#include "tools/app/study/sweep/sweep_report.h"
+#include "tools/app/study/sweep/sweep_store.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kMostJobs = 1024;
+constexpr std::int64_t kMostShards = 1'000'000;
+
+struct SweepWords {
+  std::string plan;
+  std::string out;
+  std::string point;
+  std::string shard;
+  std::string jobs;
+  std::string cache;
+  std::string memory;
+  std::vector<std::string> merge;
+  bool list = false;
+  bool force = false;
+  bool quiet = false;
+};
+
+/// Numbers of the points that --point or --shard ask for.
+std::vector<std::size_t> chosen_points(const SweepWords& words, std::size_t count) {
+  std::vector<std::size_t> chosen;
+  if (!words.point.empty()) {
+    if (!words.shard.empty()) throw InputError("sweep: expected --point or --shard, not both");
+    const std::int64_t k = parse_whole("--point", words.point, 1, static_cast<std::int64_t>(count));
+    return {static_cast<std::size_t>(k - 1)};
+  }
+  std::size_t part = 0;
+  std::size_t parts = 1;
+  if (!words.shard.empty()) {
+    const std::size_t slash = words.shard.find('/');
+    if (slash == std::string::npos)
+      throw InputError(fmt::format("--shard '{}': expected I/N, such as 1/4", words.shard));
+    parts = static_cast<std::size_t>(
+        parse_whole("--shard", words.shard.substr(slash + 1), 1, kMostShards));
+    part = static_cast<std::size_t>(parse_whole("--shard", words.shard.substr(0, slash), 1,
+                                                static_cast<std::int64_t>(parts))) -
+           1;
+  }
+  for (std::size_t i = part; i < count; i += parts) chosen.push_back(i);
+  return chosen;
+}
+
+struct Sweep {
+  const SweepPlan& plan;
+  const Expansion& expansion;
+  SweepInputs& inputs;
+};
+
+struct Tally {
+  std::int64_t stored = 0;  ///< in the file before
+  std::int64_t found = 0;   ///< in the cache
+  std::int64_t computed = 0;
+};
+
+/// What of the points is neither in the file nor in the cache.
+Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, SweepStore& store,
+                 const RunCache& cache, unsigned threads, ProgressLine::Style style) {
+  const std::set<int> finished = store.finished();
+  const SweepPoints& points = sweep.expansion.points;
+  std::vector<std::size_t> open;
+  for (const std::size_t i : chosen)
+    if (finished.count(static_cast<int>(i) + 1) == 0) open.push_back(i);
+  Tally tally;
+  tally.stored = static_cast<std::int64_t>(chosen.size() - open.size());
+  ProgressLine line(style);
+  JobBatch batch;
+  for (const std::size_t i : open) batch.keys.push_back(points.key(i));
+  batch.readable = [](const std::string& text) { return parse_point_result(text).has_value(); };
+  batch.compute = [&](std::size_t job) {
+    const ResolvedPoint point =
+        resolve(sweep.plan, points.settings(open[job]), sweep.inputs,
+                fmt::format("{}: point {}", sweep.plan.file, open[job] + 1));
+    const PointResult result = run_point(point);
+    return JobText{to_text(result), result.failure.empty()};
+  };
+  batch.take = [&](std::size_t job, const std::string& text, bool found) {
+    store.put(static_cast<int>(open[job]) + 1, parse_point_result(text).value());
+    ++(found ? tally.found : tally.computed);
+    const std::int64_t before = tally.stored + tally.found;
+    line.show(before + tally.computed, static_cast<std::int64_t>(chosen.size()), [&] {
+      return sweep_progress(before + tally.computed, before,
+                            static_cast<std::int64_t>(chosen.size()), line.host_seconds());
+    });
+  };
+  run_jobs(batch, cache, threads);
+  return tally;
+}
+
+void merge(const SweepWords& words) {
+  if (words.merge.size() < 2)
+    throw InputError("--merge: expected OUT IN..., the folder to merge into and those to merge");
+  for (std::size_t i = 1; i < words.merge.size(); ++i)
+    SweepStore{fs::path(words.merge[i])};  // refused before anything is written
+  SweepFolder out(
+      {"--merge", words.merge.front(), {words.merge.begin() + 1, words.merge.end()}, {}});
+  if (words.force) out.empty();
+  SweepStore(fs::path(words.merge[1])).copy_plan_to(out.path());
+  SweepStore store(out.path());
+  for (std::size_t i = 1; i < words.merge.size(); ++i) {
+    throw_if_interrupted();
+    SweepStore part{fs::path(words.merge[i])};
+    store.merge(part);
+  }
+  const std::optional<std::string> elsewhere = store.publish(out.csv());
+  print_result("leviosim {}: {} folders merged\n{}results: {}\n", version(), words.merge.size() - 1,
+               sweep_report(store), printable(words.merge.front()));
+  if (elsewhere) throw InputError(*elsewhere);
+}
+
+std::string expansion_text(const Expansion& expansion) {
+  const std::size_t points = expansion.points.size();
+  const std::size_t repeated = expansion.asked - points - expansion.impossible;
+  std::string text = fmt::format("{} points", points);
+  if (repeated > 0) text += fmt::format(", {} more that are the same as one of them", repeated);
+  if (expansion.impossible > 0)
+    text += fmt::format(", {} left out as impossible, the first: {}", expansion.impossible,
+                        printable(expansion.first_impossible));
+  return text;
+}
+
+void run_plan(const SweepWords& words) {
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(words.quiet);
+  SweepInputs inputs(fs::absolute(words.plan).parent_path(), style, trace_memory(words.memory));
+  const SweepPlan plan = read_plan(words.plan, inputs);
+  const Expansion expansion = expand(plan, inputs);
+  if (words.list) {
+    for (std::size_t i = 0; i < expansion.points.size(); ++i) {
+      throw_if_interrupted();
+      print_result("{}\t{}\n", i + 1, printable(expansion.points.settings_text(i)));
+    }
+    return;
+  }
+  if (words.out.empty())
+    throw InputError("sweep: --out is missing; expected a folder for the results");
+  const std::vector<std::size_t> chosen = chosen_points(words, expansion.points.size());
+  const unsigned threads =
+      words.jobs.empty() ? 0
+                         : static_cast<unsigned>(parse_whole("--jobs", words.jobs, 1, kMostJobs));
+  const fs::path cache_path =
+      words.cache.empty() ? cache_folder() / "sweeps" : fs::path(words.cache);
+  SweepFolder out({"--out", words.out, {words.plan}, cache_path});
+  if (words.force) out.empty();
+  const auto begin = std::chrono::steady_clock::now();
+  SweepStore store(out.path(), plan.text, expansion.points);
+  const RunCache cache(cache_path);
+  const Tally tally = run_points({plan, expansion, inputs}, chosen, store, cache, threads, style);
+  const std::optional<std::string> elsewhere = store.publish(out.csv());
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  print_result(
+      "leviosim {}: {}\n{} computed in {:.1f} s, {} found in the cache, {} done before\n{}"
+      "results: {}\n",
+      version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.stored,
+      sweep_report(store), printable(words.out));
+  if (elsewhere) throw InputError(*elsewhere);
+}
+
+void run(const CLI::App& command, const SweepWords& words) {
+  if (words.merge.empty()) {
+    require(command, "PLAN", "a file that says which points (tools/app/study/sweep/README.md)");
+    run_plan(words);
+    return;
+  }
+  for (const char* option : {"PLAN", "--out", "--list", "--point", "--shard"})
+    if (command.count(option) > 0)
+      throw InputError(fmt::format("sweep: --merge OUT IN... takes no {}", option));
+  merge(words);
+}
+
+}  // namespace
+
+Command add_sweep_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "sweep", "Many chips, parameters, profiles, flights or seeds: all points of a plan");
+  const auto words = std::make_shared<SweepWords>();
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  command->add_option("PLAN", words->plan, "YAML file: tools/app/study/sweep/README.md");
+  add("--out", words->out, "DIR", "folder for the results; goes on with what it holds");
+  command->add_flag("--list", words->list, "print the points with their numbers, run nothing");
+  add("--point", words->point, "K", "run this point only");
+  add("--shard", words->shard, "I/N", "run the I-th of N shares only");
+  command
+      ->add_option("--merge", words->merge,
+                   "put the results of folders IN together in OUT, in place of running a plan")
+      ->type_name("OUT IN...")
+      ->expected(2, 1'000'000);
+  add("--jobs", words->jobs, "N", "points at a time [cores of the host]");
+  add("--cache", words->cache, "DIR", "where finished points are kept and found again [user's]");
+  add_memory_option(*command, words->memory);
+  command->add_flag("--force", words->force, "begin anew; finished points are found in the cache");
+  command->add_flag("--quiet", words->quiet, "no progress");
+  return {command, [=] { run(*command, *words); }};
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,129 @@
+#include "tools/commands/synth_command.h"
+
+#include <fmt/core.h>
+
+#include <limits>
+#include <memory>
+
+#include "sim/base/error.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/run/flight_cache.h"
+#include "tools/app/run/run_options.h"
+#include "traces/synthesis/rendered_flight.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct SynthOptions {
+  std::string out;
+  std::string motion;
+  std::string seed = fmt::format("{}", kFlightSeed);
+  std::string duration = fmt::format("{:g}", kFlightSeconds);
+  std::string size = "160x120";
+  std::string imu;
+  std::string frames;
+  std::string motion_blur;
+  bool full_size = false;
+  bool illumination = false;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+constexpr auto kMotionOptions = {"--size",   "--full-size",   "--imu",
+                                 "--frames", "--motion-blur", "--illumination"};
+
+std::uint64_t seed(const SynthOptions& options) {
+  return static_cast<std::uint64_t>(
+      parse_whole("--seed", options.seed, 0, std::numeric_limits<std::int64_t>::max()));
+}
+
+traces::ImuSource parse_imu(const std::string& text) {
+  if (text.empty()) return traces::ImuSource::automatic;
+  if (text == "real") return traces::ImuSource::recorded;
+  if (text == "simulated") return traces::ImuSource::simulated;
+  throw InputError(fmt::format("--imu '{}': expected real or simulated", text));
+}
+
+traces::RenderedFlightOptions rendered_options(const CLI::App& command,
+                                               const SynthOptions& options) {
+  if (command.count("--duration") > 0)
+    throw InputError(
+        "synth: with --motion the recording says how long; use --frames A:B for a part");
+  if (options.full_size && command.count("--size") > 0)
+    throw InputError("synth: --full-size writes the camera's images; leave out --size");
+  traces::RenderedFlightOptions rendered;
+  rendered.seed = seed(options);
+  if (!options.full_size) rendered.prepared = parse_size(options.size);
+  rendered.imu = parse_imu(options.imu);
+  if (!options.frames.empty()) rendered.frames = traces::parse_frame_range(options.frames);
+  if (!options.motion_blur.empty())
+    rendered.exposure_s = 1e-3 * parse_positive("--motion-blur", options.motion_blur);
+  rendered.illumination = options.illumination;
+  rendered.overwrite = options.overwrite;
+  return rendered;
+}
+
+void render(const CLI::App& command, const SynthOptions& options) {
+  const traces::RenderedFlightOptions rendered = rendered_options(command, options);
+  ProgressLine line(ProgressLine::style_of_stderr(options.quiet));
+  traces::write_rendered_flight(
+      options.motion, options.out, rendered, [&](std::size_t done, std::size_t total) {
+        throw_if_interrupted();
+        line.show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total),
+                  [&] { return fmt::format("rendered flight: image {}/{}", done, total); });
+      });
+  line.clear();
+  print_result("rendered flight: {}\n", printable(options.out));
+  if (!options.full_size && options.size != SynthOptions().size)
+    print_result("its images are prepared for one size: run --size {}\n", options.size);
+}
+
+void run(const CLI::App& command, const SynthOptions& options) {
+  require(command, "--out", "a folder for the flight");
+  if (!options.motion.empty()) return render(command, options);
+  for (const char* option : kMotionOptions)
+    if (command.count(option) > 0)
+      throw InputError(fmt::format("synth: {} goes with --motion DIR", option));
+  traces::SyntheticOptions flight;
+  flight.seed = seed(options);
+  flight.duration_s = parse_positive("--duration", options.duration);
+  flight.overwrite = options.overwrite;
+  write_flight(options.out, flight, ProgressLine::style_of_stderr(options.quiet));
+  print_result("synthetic flight: {}\n", printable(options.out));
+}
+
+void add_motion_options(CLI::App& command, SynthOptions& options) {
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command.add_option(name, value, help)->type_name(type)->group("With --motion");
+  };
+  add("--motion", options.motion, "DIR",
+      "fly along the ground truth of this ASL folder (images not needed) through a hall");
+  add("--size", options.size, "WxH",
+      "of the images, undistorted and decimated as by run [160x120]");
+  command.add_flag("--full-size", options.full_size, "the camera's images instead")
+      ->group("With --motion");
+  add("--imu", options.imu, "real|simulated", "IMU samples [real, if there are any]");
+  add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
+  add("--motion-blur", options.motion_blur, "MS", "exposure time [none]");
+  command.add_flag("--illumination", options.illumination, "light that drifts, and dark stretches")
+      ->group("With --motion");
+}
+
+}  // namespace
+
+Command add_synth_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("synth", "Make a flight: synthetic, or rendered along a recorded motion");
+  const auto options = std::make_shared<SynthOptions>();
+  command->add_option("--out", options->out, "folder, which becomes an ASL folder");
+  command->add_option("--seed", options->seed, "of world, path and noise [1]");
+  command->add_option("--duration", options->duration, "seconds [20]");
+  add_motion_options(*command, *options);
+  command->add_flag("--overwrite,--force", options->overwrite,
+                    "replace a flight that was written before");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  return {command, [=] { run(*command, *options); }};
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,65 @@
+#include "tools/commands/validate_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/validation/validation_report.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kNotExamined = "not examined yet";
+
+/// The folder of the run, with what was found out about it.
+void write_folder(base::OutputFolder& out, const Validation& validation, const RunResult& run,
+                  const Manifest& manifest, const std::string& platform) {
+  write_run_folder(out, run, manifest, platform);
+  out.write("validation.csv", validation_csv(validation));
+  out.write("validation.json", json_text(validation_json(validation), 2) + '\n');
+  std::vector<std::optional<double>> values;
+  for (const Comparison& comparison : validation.comparisons) values.push_back(comparison.value);
+  out.write("paper.csv",
+            updated_references("paper.csv", paper_references_text(), values, kNotExamined));
+}
+
+void run(const RunOptions& options, const Words& words) {
+  RunRequest request = make_chip_request(options);
+  const std::vector<Reference> references = paper_references();
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  std::optional<base::OutputFolder> out;
+  if (!options.out.empty()) out.emplace(out_request(options));
+  request.data = data_folder(options, style);
+  FrameLog log;
+  request.observer = &log;
+  const RunResult result = simulate_with_progress(request, style);
+  const Validation validation = validate(result, log, profile_of(request), references);
+  const std::string text = heading(options, result) + validation_report(validation, result.cores);
+  if (!out) {
+    print_result("{}", text);
+    return;
+  }
+  const Manifest manifest = make_manifest(options, request, words);
+  publish(*out, text, [&] {
+    write_folder(*out, validation, result, manifest, platform::to_yaml(request.platform));
+  });
+}
+
+}  // namespace
+
+Command add_validate_command(CLI::App& app, const Words& words) {
+  CLI::App* command =
+      app.add_subcommand("validate", "Compare a run with the tables of the LEVIO paper");
+  const auto options = std::make_shared<RunOptions>();
+  add_chip_run_options(*command, *options);
+  command->add_option("--out", options->out, "folder for the results; must be new or empty")
+      ->type_name("DIR");
+  command->add_flag("--force", options->force, "replace the results of an earlier run");
+  return {command, [=, &words] { run(*options, words); }};
+}
+
+}  // namespace leviosim::tools

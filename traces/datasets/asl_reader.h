@@ -1,0 +1,61 @@
+// Reader of ASL/EuRoC folders (Burri et al., "The EuRoC micro aerial vehicle datasets", 2016):
+//   mav0/cam0/{sensor.yaml,data.csv,data/*.png}, mav0/imu0/{sensor.yaml,data.csv} and, optionally,
+//   mav0/state_groundtruth_estimate0/data.csv
+// Everything but the pixels is read and checked at once, so that a run does not fail halfway for a
+// reason that was visible at its start. Left out: cam1, the Leica and Vicon streams, colour,
+// rosbag.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "traces/datasets/dataset.h"
+#include "traces/datasets/frame_range.h"
+
+namespace leviosim::traces {
+
+struct OpenOptions {
+  std::optional<FrameRange> frames;  ///< all frames if absent
+  /// The longest gap between IMU samples around the frames, in nominal IMU periods (plus 1 % for
+  /// the jitter of recorded stamps).
+  double max_imu_gap_periods = 3;
+  /// How far a frame may lie outside the IMU samples, in nominal IMU periods.
+  double imu_edge_periods = 1;
+};
+
+/// Opens `folder`, which is a mav0 folder or contains one. Throws InputError (with file, line,
+/// column or key) for anything missing, broken, out of order, or not covered by the IMU; that the
+/// images exist is checked here, what is in them when they are read.
+Dataset open_asl(const std::filesystem::path& folder, const OpenOptions& options = {});
+
+/// Throws InputError if no accuracy could be told of poses at these times: there is ground truth,
+/// but fewer than three stamps have a true pose that is close enough (EvaluationOptions). Passes
+/// where there is no truth, or fewer than three stamps.
+void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stamps_ns);
+
+/// A flight without its pictures: how the body moved and where the camera sat on it.
+struct MotionRecord {
+  std::filesystem::path mav0;
+  CameraModel camera;
+  ImuModel imu_model;
+  std::vector<std::int64_t> frame_stamps;  ///< of cam0/data.csv; empty without that file
+  std::vector<ImuSample> imu;              ///< empty without imu0/data.csv
+  std::vector<GroundTruthPose>
+      ground_truth;  ///< at least two poses, no gap above kLongestTruthGapS
+};
+
+constexpr double kLongestTruthGapS = 0.1;
+
+/// Reads the text files of an ASL folder, whose images need not be there: both sensor.yaml and the
+/// ground truth must exist. Throws InputError as open_asl does.
+MotionRecord open_motion(const std::filesystem::path& folder);
+
+/// The single streams, for folders that lack the others. Throw InputError as open_asl does, also if
+/// there is no row.
+std::vector<FrameRef> read_frames_csv(const std::filesystem::path& data_csv);
+std::vector<ImuSample> read_imu_csv(const std::filesystem::path& data_csv);
+std::vector<GroundTruthPose> read_ground_truth_csv(const std::filesystem::path& data_csv);
+
+}  // namespace leviosim::traces

@@ -1,0 +1,111 @@
+#include "traces/datasets/sensor_yaml.h"
+
+#include <fmt/core.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "traces/datasets/yaml_map.h"
+
+namespace leviosim::traces {
+namespace {
+
+// EuRoC prints T_BS with 12 digits; 1e-4 also admits hand-made files with 5.
+constexpr double kRotationTolerance = 1e-4;
+
+// Far beyond what is built, and small enough that periods, pixels and variances stay numbers.
+constexpr double kLeastHz = 1e-3, kMostHz = 1e5;
+constexpr double kMostFocalPixels = 1e6;  // of the image centre, too
+constexpr double kMostDistortion = 1e3;
+constexpr double kMostArmM = 1e3;   // from the body to a sensor
+constexpr double kMostNoise = 1e3;  // densities and random walks, in their units
+
+void require_within(const YamlMap& map, const std::string& key, const std::vector<double>& values,
+                    double most) {
+  for (const double value : values)
+    if (std::abs(value) > most)
+      map.fail(key, fmt::format("{} is beyond what is possible; expected from {} to {}", value,
+                                -most, most));
+}
+
+/// T_BS: a 4×4 rigid transform, row by row.
+Eigen::Isometry3d read_extrinsics(const YamlMap& sensor) {
+  const YamlMap block = sensor.map("T_BS");
+  const std::vector<double> data = block.numbers("data", 16, "a 4x4 matrix, row by row");
+  using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  const Eigen::Matrix4d matrix = Eigen::Map<const Matrix>(data.data());
+  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+  const Eigen::RowVector4d last_row(0, 0, 0, 1);
+  const double skew = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (skew > kRotationTolerance || rotation.determinant() < 0)
+    block.fail("data", "its upper left 3x3 block is not a rotation");
+  if (matrix.row(3) != last_row) block.fail("data", "its last row is not 0, 0, 0, 1");
+  require_within(block, "data", {matrix(0, 3), matrix(1, 3), matrix(2, 3)}, kMostArmM);
+  return Eigen::Isometry3d(matrix);
+}
+
+int read_pixels(const YamlMap& sensor, double value) {
+  constexpr double kMost = 65535;
+  if (value < 1 || value > kMost || value != std::floor(value))
+    sensor.fail("resolution",
+                fmt::format("{} is not a whole number of pixels (1 ... {})", value, kMost));
+  return static_cast<int>(value);
+}
+
+void require_model(const YamlMap& sensor, const std::string& key, const std::string& supported) {
+  const std::string found = sensor.text(key);
+  if (found != supported)
+    sensor.fail(key, fmt::format("'{}' is not supported; supported: {}", found, supported));
+}
+
+}  // namespace
+
+CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
+  const YamlMap sensor = YamlMap::load(sensor_yaml);
+  require_model(sensor, "camera_model", "pinhole");
+  require_model(sensor, "distortion_model", "radial-tangential");
+  const auto resolution = sensor.numbers("resolution", 2, "width, height");
+  const auto intrinsics = sensor.numbers("intrinsics", 4, "fu, fv, cu, cv");
+  const auto distortion = sensor.numbers("distortion_coefficients", 4, "k1, k2, p1, p2");
+  if (intrinsics[0] <= 0 || intrinsics[1] <= 0)
+    sensor.fail("intrinsics", "the focal lengths fu, fv must be above 0");
+  require_within(sensor, "intrinsics", intrinsics, kMostFocalPixels);
+  require_within(sensor, "distortion_coefficients", distortion, kMostDistortion);
+
+  CameraModel camera;
+  camera.fx = intrinsics[0];
+  camera.fy = intrinsics[1];
+  camera.cx = intrinsics[2];
+  camera.cy = intrinsics[3];
+  camera.k1 = distortion[0];
+  camera.k2 = distortion[1];
+  camera.p1 = distortion[2];
+  camera.p2 = distortion[3];
+  camera.width = read_pixels(sensor, resolution[0]);
+  camera.height = read_pixels(sensor, resolution[1]);
+  if (static_cast<std::int64_t>(camera.width) * camera.height > kMostPixels)
+    sensor.fail("resolution", fmt::format("{}x{} is more than {} pixels, the most that is read",
+                                          camera.width, camera.height, kMostPixels));
+  camera.T_body_camera = read_extrinsics(sensor);
+  camera.rate_hz = sensor.positive("rate_hz", kLeastHz, kMostHz);
+  camera.prepared = sensor.flag("prepared", false);
+  return camera;
+}
+
+ImuModel read_imu_model(const std::filesystem::path& sensor_yaml) {
+  const YamlMap sensor = YamlMap::load(sensor_yaml);
+  ImuModel imu;
+  imu.rate_hz = sensor.positive("rate_hz", kLeastHz, kMostHz);
+  imu.gyro_noise_density = sensor.not_negative("gyroscope_noise_density", kMostNoise);
+  imu.gyro_random_walk = sensor.not_negative("gyroscope_random_walk", kMostNoise);
+  imu.accel_noise_density = sensor.not_negative("accelerometer_noise_density", kMostNoise);
+  imu.accel_random_walk = sensor.not_negative("accelerometer_random_walk", kMostNoise);
+  if (!read_extrinsics(sensor).isApprox(Eigen::Isometry3d::Identity(), kRotationTolerance))
+    sensor.fail("T_BS", "must be the identity: the body frame is taken to be the IMU frame");
+  return imu;
+}
+
+}  // namespace leviosim::traces

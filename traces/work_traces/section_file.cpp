@@ -1,0 +1,138 @@
+#include "traces/work_traces/section_file.h"
+
+#include <fmt/core.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <memory>
+
+#include "sim/base/check.h"
+#include "sim/base/error.h"
+#include "traces/work_traces/byte_stream.h"
+
+namespace leviosim::traces {
+namespace {
+
+constexpr std::size_t kMagicSize = 8;
+constexpr std::size_t kCoveredHead = kMagicSize + 4;
+constexpr std::size_t kHeadSize = kCoveredHead + 4;
+constexpr std::size_t kSizes = 8;
+constexpr std::size_t kSectionHead = kSizes + 4;
+/// No section of ours comes near; what a damaged or hostile file claims is not allocated.
+constexpr std::size_t kLargestContent = std::size_t{1} << 28;
+
+[[noreturn]] void fail(const std::string& file, std::size_t offset, std::string_view message) {
+  throw InputError(fmt::format("{}, byte {}: {}", file, offset, message));
+}
+
+void check_head(const FileKind& kind, const std::string& file, std::string_view bytes) {
+  if (bytes.substr(0, kMagicSize) != kind.magic)
+    throw InputError(fmt::format("{}: is not {}: expected '{}' at its begin", file, kind.name,
+                                 kind.magic.substr(0, kMagicSize - 1)));
+  if (bytes.size() < kHeadSize)
+    fail(file, bytes.size(), "the file ends within its head: it is truncated");
+  ByteReader head(bytes.substr(kMagicSize, 8), file);
+  const std::uint32_t version = head.u32("version");
+  if (head.u32("checksum") != crc_of(bytes.substr(0, kCoveredHead)))
+    fail(file, kMagicSize, "the head does not match its checksum: the file is damaged");
+  if (version == 0 || version > kind.version)
+    throw InputError(fmt::format(
+        "{}: is {} of version {}; this leviosim reads versions up to {}: use a newer one", file,
+        kind.name, version, kind.version));
+}
+
+}  // namespace
+
+std::uint32_t crc_of(std::string_view a, std::string_view b) {
+  uLong crc = 0;
+  for (const std::string_view bytes : {a, b})
+    if (!bytes.empty())  // zlib takes a null pointer for the wish to begin anew
+      crc = crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  return static_cast<std::uint32_t>(crc);
+}
+
+std::string file_head(const FileKind& kind) {
+  check_equal(kind.magic.size(), kMagicSize, "bytes that name a kind of file");
+  ByteWriter head;
+  head.append(kind.magic);
+  head.u32(kind.version);
+  head.u32(crc_of(head.bytes()));
+  return head.take();
+}
+
+std::uint32_t version_of(std::string_view bytes) {
+  const std::string place;
+  ByteReader head(bytes.substr(kMagicSize, 4), place);
+  return head.u32("version");
+}
+
+std::string packed_section(std::string_view content, int level) {
+  check(content.size() <= kLargestContent, "a section is too large");
+  std::string stored(ZSTD_compressBound(content.size()), '\0');
+  const std::size_t size =
+      ZSTD_compress(stored.data(), stored.size(), content.data(), content.size(), level);
+  check(!ZSTD_isError(size), "zstd compresses");
+  stored.resize(size);
+  ByteWriter section;
+  section.u32(static_cast<std::uint32_t>(stored.size()));
+  section.u32(static_cast<std::uint32_t>(content.size()));
+  section.u32(crc_of(section.bytes(), stored));
+  section.append(stored);
+  return section.take();
+}
+
+std::vector<Section> sections_of(const FileKind& kind, const std::string& file,
+                                 std::string_view bytes) {
+  check_head(kind, file, bytes);
+  std::vector<Section> sections;
+  for (std::size_t at = kHeadSize; at < bytes.size();) {
+    if (bytes.size() - at < kSectionHead)
+      fail(file, bytes.size(), "the file ends within the head of a section: it is truncated");
+    ByteReader head(bytes.substr(at, kSectionHead), file);
+    const std::size_t stored = head.u32("size");
+    const std::size_t content = head.u32("size");
+    const std::uint32_t crc = head.u32("checksum");
+    if (stored > bytes.size() - at - kSectionHead)
+      fail(file, bytes.size(),
+           fmt::format("the file ends within the section at byte {}, which takes {} bytes: it is "
+                       "truncated or damaged",
+                       at, stored + kSectionHead));
+    const std::string_view payload = bytes.substr(at + kSectionHead, stored);
+    if (crc != crc_of(bytes.substr(at, kSizes), payload))
+      fail(file, at,
+           fmt::format("the section of {} bytes that begins here does not match its checksum: the "
+                       "file is damaged",
+                       stored + kSectionHead));
+    if (content > kLargestContent)
+      fail(file, at,
+           fmt::format("a section of {} bytes; expected {} at most", content, kLargestContent));
+    sections.push_back({at, payload, content});
+    at += kSectionHead + stored;
+  }
+  return sections;
+}
+
+std::string unpacked(const Section& section, const std::string& file, MemoryBudget& budget) {
+  const std::size_t expected = section.content_size;
+  // What the frame itself says is its size comes first: a lie about it costs nothing.
+  const unsigned long long stated =
+      ZSTD_getFrameContentSize(section.stored.data(), section.stored.size());
+  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated != ZSTD_CONTENTSIZE_ERROR && stated != expected)
+    fail(file, section.offset,
+         fmt::format("the section holds {} bytes; expected {}", stated, expected));
+  if (!budget.take(expected))
+    fail(file, section.offset, budget.refusal("the content of the section", expected));
+  std::string content(expected, '\0');
+  const std::size_t size =
+      ZSTD_decompress(content.data(), content.size(), section.stored.data(), section.stored.size());
+  if (ZSTD_isError(size))
+    fail(file, section.offset,
+         fmt::format("the section is no zstd frame of {} bytes: {}", expected,
+                     ZSTD_getErrorName(size)));
+  if (size != expected)
+    fail(file, section.offset,
+         fmt::format("the section holds {} bytes; expected {}", size, expected));
+  return content;
+}
+
+}  // namespace leviosim::traces

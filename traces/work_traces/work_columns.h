@@ -1,0 +1,68 @@
+// Columns of a work trace: how the counts of many similar pieces of work become few bytes, and come
+// back fast. Pieces of work at the same place of a program form a *series*. The first of a series
+// is stored as it is. Of the counters that change at all, some are stored as differences from piece
+// to piece; the others are sums of multiples of these, since the operations of a program come in
+// the proportions of its basic blocks, of which it has fewer than kinds of operations.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/work/counts.h"
+#include "traces/work_traces/byte_stream.h"
+
+namespace leviosim::traces {
+
+/// All counters of work::Counts as one list: operations, then classes of code reuse.
+inline constexpr std::size_t kCounters = work::kOpCount + work::kReuseClasses;
+/// No piece of work counts as much; keeps what is derived from counts from overflowing.
+inline constexpr int kCounterBits = 40;
+
+inline std::uint64_t& counter(work::Counts& counts, std::size_t k) {
+  return k < work::kOpCount ? counts.n[k] : counts.code[k - work::kOpCount];
+}
+inline std::uint64_t counter(const work::Counts& counts, std::size_t k) {
+  return k < work::kOpCount ? counts.n[k] : counts.code[k - work::kOpCount];
+}
+
+/// Appends the description of a series to `head`, its differences to `columns`.
+void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWriter& columns);
+
+/// Gives the pieces of a series back, one after the other.
+class SeriesReader {
+ public:
+  /// @param fields  the counter of each field of the file
+  /// @throws InputError for what write_series() would not write
+  SeriesReader(ByteReader& head, ByteReader& columns, const std::vector<std::size_t>& fields);
+
+  void next(work::Counts& counts);
+  /// @throws InputError if pieces are left
+  void expect_end();
+
+ private:
+  [[noreturn]] void fail_count() const;
+
+  struct Column {
+    std::size_t counter;
+    ByteReader differences;
+  };
+  struct Term {
+    std::size_t counter;
+    std::uint64_t factor;
+  };
+  struct Sum {
+    std::size_t counter;
+    std::uint64_t constant;
+    std::size_t first_term, end_term;
+  };
+
+  const std::string* place_;
+  bool first_ = true;
+  work::Counts present_;
+  std::vector<Column> columns_;
+  std::vector<Term> terms_;
+  std::vector<Sum> sums_;
+};
+
+}  // namespace leviosim::traces

@@ -1,0 +1,119 @@
+#include "workload/vio/back_end.h"
+
+#include "workload/vio/stages.h"
+
+namespace leviosim::vio {
+
+template <class P>
+BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& controller,
+                    const PoseGraph<P>& graph)
+    : profile_(profile),
+      options_(profile.optimiser),
+      machine_(controller),
+      graph_(graph),
+      window_(controller.local(), graph.capacity),
+      damping_(options_) {
+  if (!options_.joint) return;
+  prior_ = WindowPrior<P>(controller.local(), graph.capacity.keyframes);
+  window_.lever_arm = {rig.p_camera_body[0], rig.p_camera_body[1], rig.p_camera_body[2]};
+}
+
+template <class P>
+bool BackEnd<P>::begin() {
+  if (work::value(graph_.keyframe_count()) < 2) return false;
+  if (options_.joint && is_settled()) return false;
+  const auto stage = machine_.stage(stages::kOptimiserUpdate);
+  if (options_.joint) {
+    update_prior();
+  } else if (profile_.use_imu) {
+    absorb_departed_intervals<P>(window_, graph_, profile_.imu_noise, profile_.biases);
+  }
+  take_snapshot<P>(graph_, profile_.imu_noise, machine_.local(), window_);
+  if (options_.joint && prior_.keyframes == 0) start_prior<P>(window_, options_.prior, prior_);
+  damping_ = LmState<P>(options_);
+  solved_ = false;
+  return true;
+}
+
+/// Whether the newest keyframe has had its share of iterations. More of them only wander along what
+/// the window hardly determines, and move a vehicle that stands still.
+template <class P>
+bool BackEnd<P>::is_settled() {
+  const int newest = work::value(I32(graph_.keyframe_ids[graph_.newest_keyframe()]));
+  if (newest != newest_) snapshots_ = 0;
+  newest_ = newest;
+  return ++snapshots_ > kSnapshotsPerKeyframe;
+}
+
+/// Marginalises the keyframes that have left the graph since the last snapshot, from which they
+/// have not gone yet. If none is left, which takes a queue of frames, the past is forgotten.
+template <class P>
+void BackEnd<P>::update_prior() {
+  if (prior_.keyframes == 0) return;
+  const I32 oldest = graph_.keyframe_ids[graph_.keyframe_slot(0)];
+  int departed = 0;
+  while (departed < window_.keyframes && I32(window_.keyframe_ids[departed]) < oldest) ++departed;
+  if (departed == window_.keyframes) {
+    prior_.keyframes = 0;
+  } else if (departed > 0) {
+    marginalise<P>(machine_.local(), window_, departed, options_.visual, options_.prior, prior_);
+  }
+}
+
+template <class P>
+OptimiserReport BackEnd<P>::optimise() {
+  const auto stage = machine_.stage(stages::kOptimiser);
+  const IterationReport report =
+      options_.joint ? optimise_jointly_once<P>(machine_, window_, prior_, damping_, options_)
+                     : optimise_once<P>(machine_, window_, damping_, options_);
+  solved_ = solved_ || report.positive_definite;
+  return {true, report.accepted, report.cost_before, report.cost_after};
+}
+
+template <class P>
+void BackEnd<P>::publish() {
+  const auto stage = machine_.stage(stages::kOptimiserUpdate);
+  if (profile_.use_imu && !options_.joint)
+    estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
+  if (!profile_.use_imu) follow_positions();
+  if (!solved_) prior_.keyframes = 0;  // rounding has spoilt it: the next window starts a new one
+  const int last = window_.keyframes - 1;
+  const I32 slot = window_.keyframe_slots[last];
+  const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
+  const Pose<P> before = graph_.keyframe(slot).T_world_camera;
+  vio::publish<P>(window_, graph_);
+  if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
+}
+
+/// Without an IMU a keyframe's velocity is that at which it was reached from the one before, and
+/// the optimiser, which has moved both, knows nothing of it. It gives the next 8-point pose its
+/// length: left as it was, the scale of the map would run away from that of the poses added to it.
+template <class P>
+void BackEnd<P>::follow_positions() {
+  for (int k : P::range(1, window_.keyframes)) {
+    const F dt = window_.interval(k).duration();
+    if (!(dt > 0.0f)) continue;
+    KeyframeState<P> state = window_.state.keyframe(k);
+    const Vec3<P> moved = state.T_world_camera.t - window_.state.pose(k - 1).t;
+    state.velocity = moved * F(F(1.0f) / dt);
+    window_.state.set_keyframe(k, state);
+  }
+}
+
+/// Keyframes added since the snapshot were placed relative to the last one in it: they follow it.
+template <class P>
+void BackEnd<P>::move_newer_keyframes(const Pose<P>& T_new_old) {
+  const int last = window_.keyframes - 1;
+  const I32 last_id = window_.keyframe_ids[last];
+  for (int k : P::range(0, work::value(graph_.keyframe_count()))) {
+    const I32 slot = graph_.keyframe_slot(k);
+    if (I32(graph_.keyframe_ids[slot]) <= last_id) continue;
+    const KeyframeState<P> state = graph_.keyframe(slot);
+    graph_.set_keyframe(slot, {T_new_old * state.T_world_camera, T_new_old.R * state.velocity});
+  }
+}
+
+template class BackEnd<work::Native>;
+template class BackEnd<work::Counting>;
+
+}  // namespace leviosim::vio

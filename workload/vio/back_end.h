@@ -1,0 +1,49 @@
+// The back end: the sliding-window optimiser on the fabric controller. It works on a snapshot of
+// the pose graph while the front end goes on, and publishes what it found when it is done.
+#pragma once
+
+#include "sim/work/machine.h"
+#include "workload/graph/marginalisation.h"
+#include "workload/graph/optimiser.h"
+#include "workload/graph/pose_graph.h"
+#include "workload/graph/window.h"
+#include "workload/vio/odometry.h"
+
+namespace leviosim::vio {
+
+template <class P>
+class BackEnd {
+ public:
+  /// @param graph  in L2; shared with the front end
+  BackEnd(const Profile& profile, const Rig& rig, work::Machine& controller,
+          const PoseGraph<P>& graph);
+
+  bool begin();
+  OptimiserReport optimise();
+  void publish();
+
+ private:
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+
+  /// As many as two keyframes in slow flight lie frames apart.
+  static constexpr int kSnapshotsPerKeyframe = 10;
+
+  bool is_settled();
+  void update_prior();
+  void follow_positions();
+  void move_newer_keyframes(const Pose<P>& T_new_old);
+
+  const Profile& profile_;
+  const OptimiserOptions& options_;
+  work::Machine& machine_;
+  PoseGraph<P> graph_;
+  Window<P> window_;
+  WindowPrior<P> prior_;  ///< only if the optimiser works jointly
+  LmState<P> damping_;
+  int newest_ = -1;      ///< serial number of the newest keyframe
+  int snapshots_ = 0;    ///< that were taken of it
+  bool solved_ = false;  ///< the system of this snapshot could be solved
+};
+
+}  // namespace leviosim::vio

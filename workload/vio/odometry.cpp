@@ -1,0 +1,105 @@
+#include "workload/vio/odometry.h"
+
+#include "workload/vio/back_end.h"
+#include "workload/vio/front_end.h"
+#include "workload/vio/stages.h"
+
+namespace leviosim::vio {
+namespace {
+
+/// Takes from the controller's memory, which is L2, what the persistent data occupy in it, so that
+/// what does not fit is refused.
+struct Reservation {
+  Reservation(work::Arena& l2, Bytes bytes) {
+    l2.alloc<work::Native::Span<std::uint8_t>>(kPersistentBlock, static_cast<int>(bytes.count()));
+  }
+};
+
+/// To hundredths of a pixel, as the release states the camera of its optimiser
+/// (PARAMETERS.md#input); the other stages take the calibration as it is. Not by a function of the
+/// C library, which the target's program (tools/rv32) does not have.
+float in_hundredths(float pixels) {
+  return static_cast<float>(static_cast<int>(static_cast<double>(pixels) * 100 + 0.5) / 100.0);
+}
+
+}  // namespace
+
+Profile fitted_to(const Rig& rig, Profile profile) {
+  ReprojectionOptions& visual = profile.optimiser.visual;
+  const PinholeCamera& c = rig.camera;
+  visual.lost_px *= static_cast<float>(rig.width) / ReprojectionOptions::kImageWidth;
+  visual.camera = {in_hundredths(c.fx), in_hundredths(c.fy), in_hundredths(c.cx),
+                   in_hundredths(c.cy)};
+  if (!profile.optimiser.joint) return profile;
+  // Observations come in units of 1 / subpixel_steps px.
+  const auto steps = static_cast<float>(profile.extractor.subpixel_steps);
+  visual.camera = {steps * c.fx, steps * c.fy, steps * c.cx, steps * c.cy};
+  visual.sigma_px *= steps;
+  visual.huber_px *= steps;
+  visual.lost_px *= steps;
+  return profile;
+}
+
+namespace {
+
+template <class P>
+class OdometryOf : public Odometry {
+ public:
+  OdometryOf(const Profile& profile, const Rig& rig, work::Machine& cluster,
+             work::Machine& controller)
+      : profile_(fitted_to(rig, profile)),
+        keyframe_memory_("L2", controller.local().capacity()),
+        graph_memory_("L2", controller.local().capacity()),
+        graph_(graph_memory_, keyframe_memory_,
+               {profile.optimiser_keyframes, profile.max_landmarks, profile.max_observations}),
+        front_end_(profile_, rig, cluster, keyframe_memory_, graph_),
+        reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),
+        back_end_(profile_, rig, controller, graph_) {
+    graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
+  }
+
+  FrameReport process_frame(const FrameInput& input) override { return front_end_.process(input); }
+  bool begin_optimisation() override { return back_end_.begin(); }
+  OptimiserReport optimise() override { return back_end_.optimise(); }
+  void publish() override { back_end_.publish(); }
+  const work::Arena& last_keyframe_memory() const override { return keyframe_memory_; }
+  const work::Arena& pose_graph_memory() const override { return graph_memory_; }
+
+ private:
+  Profile profile_;
+  work::Arena keyframe_memory_;
+  work::Arena graph_memory_;
+  PoseGraph<P> graph_;
+  FrontEnd<P> front_end_;
+  Reservation reserved_;
+  BackEnd<P> back_end_;
+};
+
+}  // namespace
+
+std::vector<StageName> stage_names(const Profile& profile) {
+  std::vector<StageName> names = {{stages::kImu, "sample", false},
+                                  {stages::kExtraction, "frame", false},
+                                  {stages::kWorldMatching, "frame", false},
+                                  {stages::kEpnp, "frame", false},
+                                  {stages::kFrameMatching, "frame", false},
+                                  {stages::kEightPoint, "frame", false},
+                                  {stages::kKeyframeSelection, "frame", false},
+                                  {stages::kTriangulation, "keyframe", false},
+                                  {stages::kOptimiserUpdate, "update", true},
+                                  {stages::kOptimiser, "iteration", true}};
+  if (!profile.guided.enabled) return names;
+  const auto epnp = names.begin() + 3;
+  names.insert(epnp + 1, {stages::kRefinement, "frame", false});
+  names.insert(names.begin() + 2, {stages::kGuided, "frame", false});
+  return names;
+}
+
+std::unique_ptr<Odometry> make_odometry(bool counting, const Profile& profile, const Rig& rig,
+                                        work::Machine& cluster, work::Machine& controller) {
+  if (counting)
+    return std::make_unique<OdometryOf<work::Counting>>(profile, rig, cluster, controller);
+  return std::make_unique<OdometryOf<work::Native>>(profile, rig, cluster, controller);
+}
+
+}  // namespace leviosim::vio

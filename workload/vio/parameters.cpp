@@ -1,0 +1,180 @@
+#include "workload/vio/parameters.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/base/check.h"
+
+namespace leviosim::vio {
+namespace {
+
+using Kind = Parameter::Kind;
+
+/// A field of the profile as get and set functions: of(p) is a reference to it.
+#define LEVIOSIM_FIELD(field)                                    \
+  [](const Profile& p) { return static_cast<double>(p.field); }, \
+      [](Profile& p, double value) { p.field = static_cast<decltype(p.field)>(value); }
+
+constexpr std::array kParameters = {
+    Parameter{"workload.fast_threshold", Kind::whole, "grey levels", 1, 254,
+              "brightness difference that makes a FAST corner", false,
+              LEVIOSIM_FIELD(extractor.fast_threshold)},
+    Parameter{"workload.harris_threshold", Kind::whole, "", 0, 100'000'000,
+              "Harris response that a corner must exceed", false,
+              LEVIOSIM_FIELD(extractor.harris_threshold)},
+    Parameter{"workload.cell", Kind::whole, "px", 4, 128,
+              "side of the square cells that features are kept from", false,
+              LEVIOSIM_FIELD(extractor.cell)},
+    Parameter{"workload.features_per_cell", Kind::whole, "features", 1,
+              ExtractorOptions::kMostPerCell, "kept of each cell", false,
+              LEVIOSIM_FIELD(extractor.per_cell)},
+    Parameter{"workload.subpixel_steps", Kind::whole, "steps", 1, 64,
+              "per pixel, of a corner's place; more than one needs the joint optimiser", false,
+              LEVIOSIM_FIELD(extractor.subpixel_steps)},
+    Parameter{"workload.guided", Kind::toggle, "", 0, 1,
+              "look for landmarks where the IMU predicts them, and refine the pose to them", false,
+              LEVIOSIM_FIELD(guided.enabled)},
+    Parameter{"workload.guided_radius", Kind::number, "px", 1, 100,
+              "of the search around a predicted place", false, LEVIOSIM_FIELD(guided.radius_px)},
+    Parameter{"workload.wide_radius", Kind::number, "px", 0, 200,
+              "of a second search where the first one finds too few; 0: none", false,
+              LEVIOSIM_FIELD(recovery.wide_radius_px)},
+    Parameter{"workload.min_tracked", Kind::whole, "landmarks", 0, 1000,
+              "a frame that sees fewer becomes a keyframe sooner", false,
+              LEVIOSIM_FIELD(recovery.min_tracked)},
+    Parameter{"workload.min_features", Kind::whole, "features", 0, 1000,
+              "a frame with fewer is no keyframe", false, LEVIOSIM_FIELD(recovery.min_features)},
+    Parameter{"workload.max_blind_time", Kind::number, "s", 0, 60,
+              "that the IMU alone carries the pose for", true,
+              LEVIOSIM_FIELD(recovery.max_blind_time)},
+    Parameter{"workload.match_distance", Kind::whole, "bits", 1, 256,
+              "descriptors match if they differ in fewer", false,
+              LEVIOSIM_FIELD(matcher.max_distance)},
+    Parameter{"workload.min_world_matches", Kind::whole, "matches", 4, 1000,
+              "with landmarks, which EPnP needs to be tried", false,
+              LEVIOSIM_FIELD(min_world_matches)},
+    Parameter{"workload.min_epnp_inliers", Kind::whole, "matches", 4, 1000,
+              "without as many, the pose is predicted instead", false,
+              LEVIOSIM_FIELD(min_epnp_inliers)},
+    Parameter{"workload.keyframe_parallax", Kind::number, "", 1e-3, 1,
+              "mean parallax in normalised image coordinates that makes a keyframe", false,
+              LEVIOSIM_FIELD(keyframe_parallax)},
+    Parameter{"workload.max_landmark_age", Kind::whole, "keyframes", 1, 250,
+              "unseen for longer, a landmark is not matched any more", false,
+              LEVIOSIM_FIELD(max_landmark_age)},
+    Parameter{"workload.max_landmarks", Kind::whole, "landmarks", 50, 4000, "in the map", false,
+              LEVIOSIM_FIELD(max_landmarks)},
+    Parameter{"workload.max_observations", Kind::whole, "observations", 100, 20000,
+              "of landmarks by the keyframes of the window", false,
+              LEVIOSIM_FIELD(max_observations)},
+    Parameter{"workload.max_observation_error", Kind::number, "px^2", 0.1, 10000,
+              "squared reprojection error from which on a recognised landmark is none", false,
+              LEVIOSIM_FIELD(max_observation_error_sq)},
+    Parameter{"workload.max_landmark_error", Kind::number, "px^2", 0.1, 10000,
+              "squared reprojection error from which on a triangulated point is no landmark", false,
+              LEVIOSIM_FIELD(max_landmark_error_sq)},
+    Parameter{"workload.joint", Kind::toggle, "", 0, 1,
+              "optimise poses, velocities and biases jointly, with a prior from marginalisation",
+              true, LEVIOSIM_FIELD(optimiser.joint)},
+    Parameter{"workload.tracked_marginalised", Kind::toggle, "", 0, 1,
+              "marginalise landmarks too that are still seen", true,
+              LEVIOSIM_FIELD(optimiser.prior.tracked_landmarks)},
+    Parameter{"workload.initial_velocity", Kind::number, "m/s", 1e-3, 100,
+              "standard deviation of the first keyframe's velocity, of the joint optimiser", true,
+              LEVIOSIM_FIELD(optimiser.prior.velocity)},
+    Parameter{"workload.initial_tilt", Kind::number, "rad", 1e-3, 3,
+              "standard deviation of the first keyframe's tilt, of the joint optimiser", true,
+              LEVIOSIM_FIELD(optimiser.prior.tilt)},
+    Parameter{"workload.rest_velocity", Kind::number, "m/s", 1e-3, 100,
+              "standard deviation of the first keyframe's velocity if it was at rest", true,
+              LEVIOSIM_FIELD(optimiser.prior.rest_velocity)},
+    Parameter{"workload.rest_tilt", Kind::number, "rad", 1e-3, 3,
+              "standard deviation of the first keyframe's tilt if it was at rest", true,
+              LEVIOSIM_FIELD(optimiser.prior.rest_tilt)},
+    Parameter{"workload.rest_gyro_bias", Kind::number, "rad/s", 1e-5, 10,
+              "standard deviation of the gyro's bias after rest", true,
+              LEVIOSIM_FIELD(optimiser.prior.rest_gyro_bias)},
+    Parameter{"workload.initial_accel_bias", Kind::number, "m/s^2", 1e-3, 10,
+              "standard deviation of the accelerometer's bias at first, of the joint optimiser",
+              true, LEVIOSIM_FIELD(optimiser.prior.accel_bias)},
+    Parameter{"workload.gyro_walk", Kind::number, "rad/s^2/sqrt(Hz)", 0, 1,
+              "random walk of the gyro's bias, of the joint optimiser", true,
+              LEVIOSIM_FIELD(optimiser.prior.gyro_walk)},
+    Parameter{"workload.accel_walk", Kind::number, "m/s^3/sqrt(Hz)", 0, 10,
+              "random walk of the accelerometer's bias, of the joint optimiser", true,
+              LEVIOSIM_FIELD(optimiser.prior.accel_walk)},
+    Parameter{"workload.window", Kind::whole, "keyframes", 2, 32, "that the optimiser works on",
+              false, LEVIOSIM_FIELD(optimiser_keyframes)},
+    Parameter{"workload.optimiser_iterations", Kind::whole, "iterations", 1, 100, "per frame",
+              false, LEVIOSIM_FIELD(optimiser_iterations)},
+    Parameter{"workload.reprojection_noise", Kind::number, "px", 0.01, 100,
+              "standard deviation of an observation in the optimiser", false,
+              LEVIOSIM_FIELD(optimiser.visual.sigma_px)},
+    Parameter{"workload.huber", Kind::number, "px", 0.01, 100,
+              "reprojection error from which on its cost grows linearly", false,
+              LEVIOSIM_FIELD(optimiser.visual.huber_px)},
+    Parameter{"workload.imu_noise.gyro", Kind::number, "rad/s/sqrt(Hz)", 1e-5, 10,
+              "noise density of the gyroscope, as assumed", true, LEVIOSIM_FIELD(imu_noise.gyro)},
+    Parameter{"workload.imu_noise.accel", Kind::number, "m/s^2/sqrt(Hz)", 1e-5, 100,
+              "noise density of the accelerometer, as assumed", true,
+              LEVIOSIM_FIELD(imu_noise.accel)},
+    Parameter{"workload.imu_noise.gravity", Kind::number, "m/s^2", 0, 10,
+              "standard deviation of each component of the gravity vector", true,
+              LEVIOSIM_FIELD(imu_noise.gravity)},
+    Parameter{"workload.imu_doubt", Kind::toggle, "", 0, 1,
+              "rely less on samples at the end of their range, and after a gap", true,
+              LEVIOSIM_FIELD(imu_doubt.enabled)},
+    Parameter{"workload.imu_range.gyro", Kind::number, "rad/s", 1e-3, 1000,
+              "largest rate that the gyroscope measures", true,
+              LEVIOSIM_FIELD(imu_doubt.gyro_range)},
+    Parameter{"workload.imu_range.accel", Kind::number, "m/s^2", 1e-3, 10000,
+              "largest specific force that the accelerometer measures", true,
+              LEVIOSIM_FIELD(imu_doubt.accel_range)},
+    Parameter{"workload.gravity_updates", Kind::toggle, "", 0, 1,
+              "measure gravity again whenever the vehicle stands still", true,
+              LEVIOSIM_FIELD(gravity_updates)},
+};
+
+#undef LEVIOSIM_FIELD
+
+}  // namespace
+
+std::span<const Parameter> parameters() { return kParameters; }
+
+const Parameter* find_parameter(std::string_view name) {
+  const auto* it = std::find_if(kParameters.begin(), kParameters.end(),
+                                [&](const Parameter& p) { return p.name == name; });
+  return it == kParameters.end() ? nullptr : it;
+}
+
+bool is_valid(const Parameter& parameter, double value) {
+  if (!(value >= parameter.low && value <= parameter.high)) return false;
+  return parameter.kind == Kind::number || value == std::floor(value);
+}
+
+std::string value_text(const Parameter& parameter, double value) {
+  if (parameter.kind == Kind::toggle) return value != 0 ? "on" : "off";
+  if (parameter.kind == Kind::whole) return fmt::format("{}", static_cast<int>(value));
+  return fmt::format("{}", static_cast<float>(value));
+}
+
+std::string value_with_unit(const Parameter& parameter, double value) {
+  const std::string text = value_text(parameter, value);
+  return parameter.unit.empty() ? text : fmt::format("{} {}", text, parameter.unit);
+}
+
+std::string Assignment::text() const {
+  return fmt::format("{}={}", parameter->name, value_text(*parameter, value));
+}
+
+void set_parameters(std::span<const Assignment> assignments, Profile& profile) {
+  for (const Assignment& a : assignments) {
+    check(is_valid(*a.parameter, a.value), "a workload parameter has a valid value");
+    a.parameter->set(profile, a.value);
+  }
+}
+
+}  // namespace leviosim::vio
