@@ -14,7 +14,7 @@
 namespace leviosim::platform {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -105,8 +105,8 @@ std::string line_of(const Record& record) {
   }
   const std::string& note = record.columns.front().second->note;
   return fmt::format("{{ {}{}source: {}, confidence: {}{}{} }}", out, unit,
-                     quoted(source_of(record)), confidence_of(record), ranges,
-                     note.empty() ? "" : ", note: " + quoted(note));
+                     in_quotes(source_of(record)), confidence_of(record), ranges,
+                     note.empty() ? "" : ", note: " + in_quotes(note));
 }
 
 std::vector<std::string> split(const std::string& path) {
@@ -144,10 +144,10 @@ class SectionWriter {
 
 std::string to_yaml(const ResolvedPlatform& platform) {
   const Schema schema;
-  std::string out = fmt::format("name: {}\ndescription: {}\n\nsources:\n", quoted(platform.name),
-                                quoted(platform.description));
+  std::string out = fmt::format("name: {}\ndescription: {}\n\nsources:\n", in_quotes(platform.name),
+                                in_quotes(platform.description));
   for (const auto& [key, meaning] : platform.sources)
-    out += fmt::format("  {}: {}\n", quoted(key), quoted(meaning));
+    out += fmt::format("  {}: {}\n", in_quotes(key), in_quotes(meaning));
   SectionWriter sections;
   for (const Record& record : records_of(schema, platform)) sections.add(record);
   return out + "\n" + sections.text();

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "sim/base/units.h"
-#include "sim/energy/config.h"
+#include "sim/chip/energy_config.h"
 #include "sim/work/kernel_calls.h"
 #include "sim/work/op.h"
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "sim/energy/config.h"
+#include "sim/chip/energy_config.h"
 
 namespace leviosim::sim {
 

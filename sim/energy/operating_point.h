@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "sim/energy/config.h"
+#include "sim/chip/energy_config.h"
 
 namespace leviosim::sim {
 

@@ -9,7 +9,7 @@
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
 namespace {
 
 /// Of a frame number with a fraction, between the stamps around it. [ns]
@@ -65,4 +65,4 @@ std::vector<CameraFrame> frames_at(double fps, const std::vector<std::int64_t>& 
   }
 }
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

@@ -22,7 +22,7 @@
 
 #include "sim/base/units.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
 
 /// What becomes of a frame that finds the front end busy.
 enum class Deadline : std::uint8_t {
@@ -87,4 +87,4 @@ struct CameraRecord {
   std::vector<Delivery> deliveries;
 };
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

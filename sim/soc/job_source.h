@@ -1,22 +1,22 @@
-// Where the work of a run comes from: the workload that computes it now (live_source.h), or a trace
-// of an earlier run (replay/trace_source.h). The simulation asks for it in the order of simulated
-// time, so a live source sees the data that a chip of that speed would have seen.
+// Where the work of a run comes from: a workload that computes it now, or a trace of an earlier
+// run. The simulation asks for it in the order of simulated time, so a live source sees the data
+// that a chip of that speed would have seen.
 //
-//   take_up(frame)      the front end begins a frame; an optimisation may begin with it
+//   begin_frame(frame)  the front end begins a frame; an optimisation may begin with it
 //   process_frame()     what the front end does with it
 //   optimise()          the iterations of that optimisation, maybe during later frames
-//   publish()           it has ended: what it found is visible to frames taken up from now on
+//   publish()           it has ended: what it found is visible to frames that begin from now on
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "sim/soc/stage_totals.h"
 #include "sim/work/program.h"
-#include "tools/app/result/run_result.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
 
-/// A frame is taken up.
+/// The front end begins a frame.
 struct FrameStart {
   int frame = 0;              ///< number in the run, from 0
   std::int64_t start_ns = 0;  ///< simulated time
@@ -37,9 +37,9 @@ class JobSource {
 
   /// Numbers rise; frames that the camera dropped are left out.
   /// @returns whether an optimisation begins; never while the optimiser is busy
-  virtual bool take_up(const FrameStart& start) = 0;
-  /// Of the frame taken up. Its work is valid until the next frame is; `result` lacks times.
-  virtual const work::Job& process_frame(FrameResult& result) = 0;
+  virtual bool begin_frame(const FrameStart& start) = 0;
+  /// Of the frame that was begun. Its work is valid until the next frame begins.
+  virtual const work::Job& process_frame() = 0;
 
   /// How many iterations the optimisation that began last has.
   virtual int iterations() const = 0;
@@ -49,8 +49,6 @@ class JobSource {
 
   /// Names and units of the stages.
   virtual std::vector<StageResult> empty_stages() const = 0;
-  /// Fills in what does not depend on timing, from frames that have been processed.
-  virtual void describe(RunResult& result) const = 0;
 };
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

@@ -2,7 +2,7 @@
 
 #include "sim/events/process.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
 namespace {
 
 // Free functions: a coroutine must not outlive a lambda that holds what it uses.
@@ -30,4 +30,4 @@ sim::JobTiming JobTimer::optimiser(const work::Job& job) {
   return timing;
 }
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

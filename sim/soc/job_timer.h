@@ -6,7 +6,7 @@
 #include "sim/chip/chip.h"
 #include "sim/work/program.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
 
 class JobTimer {
  public:
@@ -27,4 +27,4 @@ class JobTimer {
   sim::Chip chip_;
 };
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

@@ -1,34 +1,60 @@
 // The loop of a run: camera, front end and optimiser as processes in simulated time, around a
-// source of work that, if live, really computes.
+// source of work that, if live, really computes. It knows frames and jobs, not what they are for.
 //
 //   camera ──frames──▶ front end (cluster) ──snapshot──▶ optimiser (fabric controller)
 //                          ▲                                   │
 //                          └────────── published result ───────┘
 //
-// By default the loop is open: every recorded frame is delivered and waits until the front end has
-// time for it. Closed (RunRequest::camera), the camera has its own rate and two buffers (camera.h),
-// and frames are lost.
+// By default the loop is open: every frame is delivered and waits until the front end has time for
+// it. Closed (Setup::deadline), the camera has two buffers (camera.h), and frames are lost.
 //
 // A stage's values are computed when it starts in simulated time and used by others when it ends:
-// the front end of a frame sees what the optimiser had published when the frame was taken up.
+// the front end of a frame sees what the optimiser had published when the frame began.
 #pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
 
 #include "sim/chip/chip.h"
 #include "sim/events/channel.h"
+#include "sim/soc/camera.h"
 #include "sim/soc/job_source.h"
 #include "sim/soc/job_timer.h"
+#include "sim/soc/observer.h"
 #include "sim/soc/stage_book.h"
-#include "tools/app/run/run_request.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
+
+/// Called after every frame.
+struct Progress {
+  int done = 0;
+  int total = 0;
+  std::int64_t simulated_ns = 0;
+};
+using ProgressCallback = std::function<void(const Progress&)>;
+
+struct Setup {
+  const sim::ChipConfig& chip;
+  int cores = 1;                     ///< of the cluster
+  std::optional<Deadline> deadline;  ///< of a closed loop
+};
+
+struct Outcome {
+  std::vector<StageResult> stages;
+  std::optional<CameraRecord> camera;    ///< of a closed loop; its rate is not filled in
+  std::int64_t optimiser_published = 0;  ///< results that reached the front end
+  std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
+};
 
 class Simulation {
  public:
-  /// @param request  the chip and its observer; it and the source outlive the simulation
-  Simulation(const RunRequest& request, JobSource& source, ProgressCallback progress);
+  /// What setup refers to, source and observer outlive the simulation.
+  /// @throws InputError for a flight that is too long for the chip's timebase
+  Simulation(const Setup& setup, JobSource& source, Observer& observer, ProgressCallback progress);
 
   /// Runs all frames of the source.
-  RunResult run();
+  Outcome run();
 
  private:
   sim::Process camera();
@@ -37,21 +63,20 @@ class Simulation {
   /// Whether a frame that has arrived is taken. In a closed loop it may be dropped.
   bool takes(int frame);
   std::int64_t now_ns() const;
-  RunResult take_result();
 
-  const RunRequest& request_;
   JobSource& source_;
+  Observer& observer_;
   ProgressCallback progress_;
   sim::Chip chip_;
   JobTimer single_core_;  ///< the same jobs on one worker
   sim::Channel<int> camera_frames_;
-  int in_hand_ = 0;  ///< frames taken whose pose is not out yet
+  int in_flight_ = 0;  ///< frames taken whose result is not out yet
   sim::Event snapshot_taken_;
   bool optimiser_busy_ = false;
   int snapshot_frame_ = 0;    ///< at whose start the optimiser's snapshot was taken
-  int published_frame_ = -1;  ///< the same of the result that was published last
+  int published_frame_ = -1;  ///< the snapshot frame of the result that was published last
   StageBook book_;
-  RunResult result_;
+  Outcome outcome_;
 };
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

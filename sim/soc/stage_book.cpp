@@ -4,7 +4,7 @@
 
 #include "sim/chip/accelerator.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
 
 StageResult& StageBook::find(std::string_view name) {
   const auto it = std::find_if(stages_.begin(), stages_.end(),
@@ -58,4 +58,4 @@ void StageBook::add_single(const sim::JobTiming& timing) {
   for (const sim::StageTiming& run : timing.stages) find(run.stage).single += run.cycles;
 }
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "sim/chip/timing.h"
+#include "sim/soc/stage_totals.h"
 #include "sim/work/program.h"
-#include "tools/app/result/run_result.h"
 
-namespace leviosim::tools {
+namespace leviosim::soc {
 
 class StageBook {
  public:
@@ -36,4 +36,4 @@ class StageBook {
   sim::Accelerators controller_;
 };
 
-}  // namespace leviosim::tools
+}  // namespace leviosim::soc

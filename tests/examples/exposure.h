@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/soc/job_source.h"
 #include "sim/work/machine.h"
+#include "tools/app/run/run_source.h"
 
 namespace leviosim::example {
 
@@ -56,7 +56,7 @@ struct Frames {
 
 // [source]
 /// Computes as the simulation asks for work.
-class ExposureSource : public tools::JobSource {
+class ExposureSource : public tools::RunSource {
  public:
   ExposureSource(const Frames& frames, const sim::ChipConfig& chip, int cores)
       : frames_(frames),
@@ -64,11 +64,11 @@ class ExposureSource : public tools::JobSource {
 
   int frames() const override { return static_cast<int>(frames_.images.size()); }
   std::int64_t time_ns(int frame) const override { return frame * frames_.period_ns; }
-  bool take_up(const tools::FrameStart& start) override {
+  bool begin_frame(const soc::FrameStart& start) override {
     frame_ = start.frame;
     return false;  // no optimisation on the controller
   }
-  const work::Job& process_frame(tools::FrameResult& result) override {
+  const work::Job& process(tools::FrameResult& result) override {
     const auto& pixels = frames_.images[static_cast<std::size_t>(frame_)];
     levels.push_back(
         mean_level<work::Counting>(machine_, pixels.data(), frames_.width, frames_.height));

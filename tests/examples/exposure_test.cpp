@@ -4,10 +4,10 @@
 #include <numeric>
 
 #include "platform_models/loader/loader.h"
-#include "sim/soc/simulation.h"
 #include "tests/examples/exposure.h"
 #include "tests/support/paths.h"
 #include "tools/app/report/tables.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::example {
 namespace {
@@ -59,7 +59,7 @@ tools::RunResult run_on(const std::string& platform, const Frames& frames, int c
   request.platform = platform::resolve_platform(platform);
   request.cores = cores;
   ExposureSource source(frames, request.platform.config, cores);
-  return tools::Simulation(request, source, [](const tools::Progress&) {}).run();
+  return tools::simulate_source(request, source, [](const tools::Progress&) {});
 }
 
 TEST(ExampleWorkload, IsFasterOnMoreCores) {

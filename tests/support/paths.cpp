@@ -6,6 +6,8 @@ namespace leviosim::tests {
 
 std::filesystem::path source_folder() { return LEVIOSIM_SOURCE_DIR; }
 
+std::filesystem::path rooms_file() { return LEVIOSIM_ROOMS; }
+
 std::string program_path() {
   const char* const other = std::getenv("LEVIOSIM_TEST_PROGRAM");
   return other != nullptr ? other : LEVIOSIM_BINARY;

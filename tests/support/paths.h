@@ -14,4 +14,7 @@ std::filesystem::path source_folder();
 /// one, such as that of an older commit.
 std::string program_path();
 
+/// What each room may include, as the build knows it: lines "room: rooms and libraries".
+std::filesystem::path rooms_file();
+
 }  // namespace leviosim::tests

@@ -66,8 +66,8 @@ TEST(ClosedLoop, DropsAllFramesThatComeWhileOneIsWorkedOn) {
 class DivergingSource : public testing::ConstantSource {
  public:
   using ConstantSource::ConstantSource;
-  const work::Job& process_frame(FrameResult& result) override {
-    const work::Job& job = ConstantSource::process_frame(result);
+  const work::Job& process(FrameResult& result) override {
+    const work::Job& job = ConstantSource::process(result);
     if (result.index == 2) result.pose.T_world_body.translation().y() = std::nan("");
     return job;
   }
@@ -77,7 +77,7 @@ TEST(ClosedLoop, APoseThatIsNoNumberReachesNoTrajectory) {
   for (const std::optional<Deadline> deadline : {std::optional<Deadline>(), {Deadline::Drop}}) {
     DivergingSource source({.frames = 5});
     const RunRequest request = testing::request_at(Hertz(100'000'000), deadline);
-    const RunResult result = Simulation(request, source, [](const Progress&) {}).run();
+    const RunResult result = simulate_source(request, source, [](const Progress&) {});
     EXPECT_EQ(result.frames.size(), 5u);
     EXPECT_EQ(result.trajectory.size(), 4u);
     EXPECT_EQ(result.poses_left_out, 1);
@@ -132,7 +132,7 @@ TEST(ClosedLoop, ResultsOfTheOptimiserAreSeenByFramesTakenUpAfterItIsDone) {
   work.period_ns = length + 500;
   // Three iterations of 10 ns cycles take a little more than two and a half periods.
   work.iteration = static_cast<std::uint64_t>(work.period_ns) * 5 / 2 / 3 / 10;
-  for (const FrameStart& start : run_loop(work, Deadline::Drop).starts) {
+  for (const soc::FrameStart& start : run_loop(work, Deadline::Drop).starts) {
     const int begun = start.frame / 3 * 3;
     EXPECT_EQ(start.optimiser_busy, start.frame != begun) << start.frame;
     EXPECT_EQ(start.seen, start.frame < 3 ? -1 : begun - 3) << start.frame;
@@ -141,7 +141,7 @@ TEST(ClosedLoop, ResultsOfTheOptimiserAreSeenByFramesTakenUpAfterItIsDone) {
   work.period_ns = length * 3 / 5;
   work.iteration = static_cast<std::uint64_t>(length) * 5 / 2 / 3 / 10;
   const LoopRun slow = run_loop(work, Deadline::Drop);
-  for (const FrameStart& start : slow.starts) {
+  for (const soc::FrameStart& start : slow.starts) {
     EXPECT_EQ(start.frame % 2, 0);
     EXPECT_EQ(start.optimiser_busy, start.frame / 2 % 3 != 0) << start.frame;
   }
@@ -170,7 +170,7 @@ TEST(Camera, TakesEvenlyFromTheRecordingByTheRatioOfTheRates) {
   for (int i = 0; i < 12; ++i) stamps.push_back(5'000'000'000 + 50'000'000 * i);
   const auto recorded = [&](double fps) {
     std::vector<std::size_t> numbers;
-    for (const CameraFrame& frame : frames_at(fps, stamps, 20)) numbers.push_back(frame.recorded);
+    for (const soc::CameraFrame& frame : soc::frames_at(fps, stamps, 20)) numbers.push_back(frame.recorded);
     return numbers;
   };
   using Numbers = std::vector<std::size_t>;
@@ -179,17 +179,17 @@ TEST(Camera, TakesEvenlyFromTheRecordingByTheRatioOfTheRates) {
   EXPECT_EQ(recorded(15), (Numbers{0, 1, 3, 4, 5, 7, 8, 9, 11}));
   EXPECT_EQ(recorded(8), (Numbers{0, 3, 5, 8, 10}));
   EXPECT_EQ(recorded(0.1), (Numbers{0}));
-  const std::vector<CameraFrame> frames = frames_at(15, stamps, 20);
+  const std::vector<soc::CameraFrame> frames = soc::frames_at(15, stamps, 20);
   for (std::size_t k = 0; k < frames.size(); ++k)
     EXPECT_NEAR(static_cast<double>(frames[k].arrival_ns), static_cast<double>(k) * 1e9 / 15, 1);
-  expect_input_error([&] { frames_at(25, stamps, 20); },
+  expect_input_error([&] { soc::frames_at(25, stamps, 20); },
                      {"25 frames/s", "recorded at 20 frames/s", "at most 20"});
 }
 
 TEST(Camera, KeepsTheStampsOfTheRecordingAtItsRate) {
   const std::vector<std::int64_t> stamps{100, 150'000'100, 200'000'000, 250'000'007};
-  const std::vector<CameraFrame> all = all_frames(stamps);
-  const std::vector<CameraFrame> same = frames_at(20, stamps, 20);
+  const std::vector<soc::CameraFrame> all = soc::all_frames(stamps);
+  const std::vector<soc::CameraFrame> same = soc::frames_at(20, stamps, 20);
   ASSERT_EQ(same.size(), all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(same[i].recorded, i);
@@ -199,9 +199,9 @@ TEST(Camera, KeepsTheStampsOfTheRecordingAtItsRate) {
 }
 
 TEST(Camera, PoliciesAreKnownByName) {
-  EXPECT_EQ(parse_deadline("drop"), Deadline::Drop);
-  EXPECT_EQ(parse_deadline("queue"), Deadline::Queue);
-  expect_input_error([] { parse_deadline("quue"); },
+  EXPECT_EQ(soc::parse_deadline("drop"), Deadline::Drop);
+  EXPECT_EQ(soc::parse_deadline("queue"), Deadline::Queue);
+  expect_input_error([] { soc::parse_deadline("quue"); },
                      {"--deadline 'quue'", "drop or queue", "did you mean 'queue'"});
 }
 

@@ -1,6 +1,7 @@
 // `leviosim platforms feasibility`: the verdicts follow from the recorded work and the chips'
 // numbers.
 #include "tools/app/study/feasibility/feasibility.h"
+#include "tools/app/run/simulate.h"
 
 #include <gtest/gtest.h>
 

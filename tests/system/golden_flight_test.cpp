@@ -82,7 +82,7 @@ class Account {
   }
 
   sim::ChipConfig chip_;
-  JobTimer timer_;
+  soc::JobTimer timer_;
   std::map<std::string, std::int64_t> numbers_;
 };
 

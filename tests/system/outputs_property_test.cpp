@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "tests/support/scratch.h"
 #include "tests/support/run_program.h"
+#include "tests/support/scratch.h"
 #include "traces/synthesis/rng.h"
 #include "traces/synthesis/synthetic.h"
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "tests/support/scratch.h"
 #include "tests/support/run_program.h"
+#include "tests/support/scratch.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,5 +1,5 @@
 // What an observer sees of a run is the run: its sums, its times, and what re-timing gives.
-#include "sim/soc/run_observer.h"
+#include "tools/app/run/run_observer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 
 #include "platform_models/loader/variants.h"
 #include "sim/soc/job_timer.h"
-#include "sim/soc/simulation.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/run/simulate.h"
 #include "tools/app/validation/calibration/stage_model.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -116,7 +116,7 @@ TEST_F(Observed, StagesAddUpToTheRun) {
 TEST_F(Observed, TimingRecordedJobsAgainGivesTheSameCycles) {
   Notes notes;
   run(&notes);
-  JobTimer timer(platform::load_platform("gap9"), 8);
+  soc::JobTimer timer(platform::load_platform("gap9"), 8);
   for (const Notes::Frame& frame : notes.frames) {
     const sim::JobTiming again = timer.front_end(frame.job);
     EXPECT_EQ(timer.front_end_cycles(again), frame.result.cycles) << frame.frame;

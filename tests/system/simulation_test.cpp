@@ -1,5 +1,5 @@
 // The whole run: a flight in, stages, memory and a trajectory out.
-#include "sim/soc/simulation.h"
+#include "tools/app/run/simulate.h"
 
 #include <gtest/gtest.h>
 

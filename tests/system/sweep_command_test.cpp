@@ -10,6 +10,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tools/app/run/replay.h"
+#include "tools/app/run/simulate.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "traces/synthesis/rng.h"
 #include "traces/synthesis/synthetic.h"

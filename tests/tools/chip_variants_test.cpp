@@ -47,7 +47,7 @@ work::Job recorded(int cores, Bytes l1) {
 double cycles(std::vector<std::string> overrides) {
   const sim::ChipConfig chip = platform::load_platform("gap9", overrides);
   const work::Job job = recorded(chip.cluster.workers, chip.cluster.l1.size);
-  JobTimer timer(chip, chip.cluster.workers);
+  soc::JobTimer timer(chip, chip.cluster.workers);
   return static_cast<double>(timer.front_end_cycles(timer.front_end(job)).count());
 }
 

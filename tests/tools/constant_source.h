@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "sim/soc/job_source.h"
-#include "sim/soc/simulation.h"
 #include "tests/sim/chip_test_config.h"
+#include "tools/app/run/run_source.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools::testing {
 
@@ -18,7 +18,7 @@ struct ConstantWork {
   std::uint64_t iteration = 0;  ///< 0: there is never anything to optimise
 };
 
-class ConstantSource : public JobSource {
+class ConstantSource : public RunSource {
  public:
   explicit ConstantSource(const ConstantWork& work) : work_(work) {
     front_end_ = job("front end", work.front_end);
@@ -26,11 +26,11 @@ class ConstantSource : public JobSource {
   }
   int frames() const override { return work_.frames; }
   std::int64_t time_ns(int frame) const override { return 7'000 + frame * work_.period_ns; }
-  bool take_up(const FrameStart& start) override {
+  bool begin_frame(const soc::FrameStart& start) override {
     starts.push_back(start);
     return work_.iteration > 0 && !start.optimiser_busy;
   }
-  const work::Job& process_frame(FrameResult& result) override {
+  const work::Job& process(FrameResult& result) override {
     result.index = starts.back().frame;
     return front_end_;
   }
@@ -40,7 +40,7 @@ class ConstantSource : public JobSource {
   std::vector<StageResult> empty_stages() const override { return {}; }
   void describe(RunResult& result) const override { result.frame_period_ns = work_.period_ns; }
 
-  std::vector<FrameStart> starts;
+  std::vector<soc::FrameStart> starts;
 
  private:
   static work::Job job(std::string_view name, std::uint64_t cycles) {
@@ -66,14 +66,14 @@ inline RunRequest request_at(Hertz clock, std::optional<Deadline> deadline) {
 
 struct LoopRun {
   RunResult result;
-  std::vector<FrameStart> starts;
+  std::vector<soc::FrameStart> starts;
 };
 
 inline LoopRun run_loop(const ConstantWork& work, std::optional<Deadline> deadline,
                         Hertz clock = Hertz(100'000'000)) {
   ConstantSource source(work);
   const RunRequest request = request_at(clock, deadline);
-  RunResult result = Simulation(request, source, [](const Progress&) {}).run();
+  RunResult result = simulate_source(request, source, [](const Progress&) {});
   return {std::move(result), source.starts};
 }
 

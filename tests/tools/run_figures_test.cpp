@@ -54,7 +54,7 @@ TEST(RunFigures, TheWorstIsTheLongestOfSeveralAndNoSum) {
 }
 
 TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
-  StageBook book({}, platform::load_platform("gap9"));
+  soc::StageBook book({}, platform::load_platform("gap9"));
   for (const int cycles : {300, 500, 200}) {
     sim::StageTiming stage{"matching", {}, {}, Cycles(cycles), {}};
     stage.account.serial = cycles;
@@ -71,7 +71,7 @@ TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
 }
 
 TEST(RunFigures, TheBookAddsUpTransfers) {
-  StageBook book({}, platform::load_platform("gap9"));
+  soc::StageBook book({}, platform::load_platform("gap9"));
   const work::Transfer in{work::Direction::L2ToL1, Bytes(100)};
   const work::Transfer far{work::Direction::ExternalToL2, Bytes(7)};
   for (int k = 0; k < 3; ++k) book.add_work({{{"matching", {in, far, in}, {}}}});

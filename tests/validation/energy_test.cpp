@@ -10,9 +10,9 @@
 #include "platform_models/loader/loader.h"
 #include "sim/chip/chip.h"
 #include "sim/energy/model.h"
-#include "sim/soc/simulation.h"
 #include "tests/validation/energy_reference.h"
 #include "tools/app/result/energy.h"
+#include "tools/app/run/simulate.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::validation {

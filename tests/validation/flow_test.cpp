@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "platform_models/loader/loader.h"
-#include "sim/soc/simulation.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/flow/flow_source.h"
 #include "tools/app/flow/published.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {
 namespace {
@@ -44,7 +44,7 @@ std::optional<FlowOfFlight> run_on(const std::string& platform,
   request.cores = request.platform.config.cluster.workers;
   FlowSource source(request, {});
   FlowOfFlight result;
-  result.run = Simulation(request, source, [](const Progress&) {}).run();
+  result.run = simulate_source(request, source, [](const Progress&) {});
   result.flows = source.flows();
   result.focal_length = source.camera().focal_length();
   const traces::Dataset& data = source.data();

@@ -9,6 +9,7 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {
 namespace {

@@ -4,6 +4,7 @@
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/run/simulate.h"
 #include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {

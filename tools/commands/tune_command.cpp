@@ -11,6 +11,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/run/simulate.h"
 #include "tools/app/study/batch/batch_options.h"
 #include "tools/app/study/tune/tune_plot.h"
 #include "tools/app/study/tune/tune_report.h"

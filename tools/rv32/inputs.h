@@ -1,4 +1,4 @@
-// Reads the blocks that make_inputs.cpp wrote.
+// Reads the blocks that tests/bench/rv32_inputs.cpp wrote.
 #pragma once
 
 #include <cstdint>

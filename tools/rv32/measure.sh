@@ -20,7 +20,7 @@ flight=${1:-$out/flight}
 if [[ $# -eq 0 && ! -d $flight ]]; then
   "$root"/build/release/leviosim synth --out "$flight" --seed 1 --duration 20 --quiet
 fi
-"$root"/build/release/tools/leviosim_rv32_inputs "$flight" "$out/inputs.new"
+"$root"/build/release/tests/leviosim_rv32_inputs "$flight" "$out/inputs.new"
 # Only a change of the inputs makes the programs out of date.
 cmp -s "$out/inputs.new" "$out/inputs.bin" || cp "$out/inputs.new" "$out/inputs.bin"
 make --no-print-directory -j"$(nproc)" OUT="$out"

@@ -9,7 +9,6 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "traces/datasets/sensor_yaml.h"
-#include "traces/trajectories/evaluation.h"
 
 namespace leviosim::traces {
 namespace {
@@ -18,7 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr double kQuaternionTolerance = 1e-3;
 constexpr const char* kTruth = "state_groundtruth_estimate0";
-constexpr const char* kTruthCsv = "state_groundtruth_estimate0/data.csv";
 constexpr double kGapSlack = 1.01;  // recorded stamps jitter by a few hundred nanoseconds
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -210,24 +208,6 @@ Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
   require_cover(data, options.imu_edge_periods * period_s, imu_csv);
   require_no_gaps(data, options.max_imu_gap_periods * period_s, imu_csv);
   return data;
-}
-
-void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stamps_ns) {
-  constexpr std::size_t kFewest = 3;
-  if (data.ground_truth.empty() || stamps_ns.size() < kFewest) return;
-  Trajectory frames;
-  for (const std::int64_t t_ns : stamps_ns) frames.push_back({t_ns, {}});
-  const EvaluationOptions how;
-  const std::size_t matched =
-      associate(frames, to_trajectory(data.ground_truth), how.max_gap_ns).size();
-  if (matched >= kFewest) return;
-  throw InputError(fmt::format(
-      "{}: {} of the {} frames ({} to {} ns) {} a true pose within {:g} ms; expected at least {}, "
-      "or no ground truth (it spans {} to {} ns)",
-      (data.frames_csv.parent_path().parent_path() / kTruthCsv).string(),
-      matched == 0 ? "none" : fmt::format("{}", matched), stamps_ns.size(), stamps_ns.front(),
-      stamps_ns.back(), matched > 1 ? "have" : "has", static_cast<double>(how.max_gap_ns) * 1e-6,
-      kFewest, data.ground_truth.front().t_ns, data.ground_truth.back().t_ns));
 }
 
 MotionRecord open_motion(const fs::path& folder) {

@@ -25,15 +25,13 @@ struct OpenOptions {
   double imu_edge_periods = 1;
 };
 
+/// Where ground truth lies in a mav0 folder, if there is any.
+constexpr const char* kTruthCsv = "state_groundtruth_estimate0/data.csv";
+
 /// Opens `folder`, which is a mav0 folder or contains one. Throws InputError (with file, line,
 /// column or key) for anything missing, broken, out of order, or not covered by the IMU; that the
 /// images exist is checked here, what is in them when they are read.
 Dataset open_asl(const std::filesystem::path& folder, const OpenOptions& options = {});
-
-/// Throws InputError if no accuracy could be told of poses at these times: there is ground truth,
-/// but fewer than three stamps have a true pose that is close enough (EvaluationOptions). Passes
-/// where there is no truth, or fewer than three stamps.
-void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stamps_ns);
 
 /// A flight without its pictures: how the body moved and where the camera sat on it.
 struct MotionRecord {

@@ -33,7 +33,7 @@ FlowSource::FlowSource(const RunRequest& request, flow::Options options)
       cluster_(cluster_machine(request)),
       estimator_(flow::make_estimator(true, options_, cluster_)) {}
 
-bool FlowSource::take_up(const FrameStart& start) {
+bool FlowSource::begin_frame(const soc::FrameStart& start) {
   frame_ = start.frame;
   return false;
 }
@@ -48,7 +48,7 @@ Eigen::Vector3d FlowSource::rate_before(int frame) const {
   return data_.camera.T_body_camera.rotation().transpose() * mean;
 }
 
-const work::Job& FlowSource::process_frame(FrameResult& result) {
+const work::Job& FlowSource::process(FrameResult& result) {
   const std::vector<std::uint8_t> pixels = camera_.read(static_cast<std::size_t>(frame_));
   const Eigen::Vector3d rate = rate_before(frame_);
   const std::int64_t dt_ns = frame_ > 0 ? time_ns(frame_) - time_ns(frame_ - 1) : 0;

@@ -6,15 +6,15 @@
 #include <memory>
 #include <vector>
 
-#include "sim/soc/job_source.h"
 #include "tools/app/flow/binned_frames.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/run/run_source.h"
 #include "traces/datasets/dataset.h"
 #include "workload/flow/estimator.h"
 
 namespace leviosim::tools {
 
-class FlowSource : public JobSource {
+class FlowSource : public RunSource {
  public:
   /// @param request  data, frames, platform and cores are used
   /// @param options  the focal length is that of the data
@@ -25,8 +25,8 @@ class FlowSource : public JobSource {
   std::int64_t time_ns(int frame) const override {
     return data_.frames[static_cast<std::size_t>(frame)].t_ns;
   }
-  bool take_up(const FrameStart& start) override;
-  const work::Job& process_frame(FrameResult& result) override;
+  bool begin_frame(const soc::FrameStart& start) override;
+  const work::Job& process(FrameResult& result) override;
   int iterations() const override { return 0; }
   const work::Job& optimise() override;
   void publish() override {}
@@ -46,7 +46,7 @@ class FlowSource : public JobSource {
   flow::Options options_;
   work::Machine cluster_;
   std::unique_ptr<flow::Estimator> estimator_;
-  int frame_ = 0;  ///< taken up last
+  int frame_ = 0;  ///< begun last
   work::Job job_;
   std::vector<flow::Flow> flows_;
 };

@@ -40,7 +40,7 @@ std::optional<CameraFigures> camera_figures(const RunResult& run) {
   CameraFigures figures;
   figures.arrived = static_cast<std::int64_t>(run.camera->deliveries.size());
   figures.processed = static_cast<std::int64_t>(run.frames.size());
-  for (const Delivery& delivery : run.camera->deliveries) {
+  for (const soc::Delivery& delivery : run.camera->deliveries) {
     if (delivery.dropped) ++figures.dropped;
     figures.most_found = std::max(figures.most_found, delivery.found);
   }

@@ -1,5 +1,5 @@
-// Everything that a run produced, before it becomes tables and files. Plain data: the simulation
-// (simulation.h) fills it in, reporters (tables.h, run_folder.h) read it.
+// Everything that a run produced, before it becomes tables and files. Plain data: simulate() fills
+// it in, reporters read it.
 #pragma once
 
 #include <array>
@@ -10,36 +10,23 @@
 
 #include "sim/base/units.h"
 #include "sim/chip/config.h"
-#include "sim/chip/timing.h"
 #include "sim/soc/camera.h"
+#include "sim/soc/observer.h"
+#include "sim/soc/stage_totals.h"
 #include "sim/work/program.h"
-#include "sim/work/transfers.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
 #include "workload/vio/odometry.h"
 
 namespace leviosim::tools {
 
-/// One stage of the workload over the whole run.
-struct StageResult {
-  std::string name;
-  std::string unit = "call";   ///< what one call is: "frame", "sample", "iteration", …
-  bool on_controller = false;  ///< runs on the fabric controller, one core whatever N is
-  std::int64_t calls = 0;
-  Cycles single;                         ///< one core, summed over the calls
-  Cycles parallel;                       ///< N cores, summed over the calls
-  Cycles worst_parallel;                 ///< longest call on N cores
-  sim::Account account;                  ///< of the N-core execution, core-cycles
-  work::Counts counts;                   ///< operations executed by cores
-  std::vector<work::KernelWork> served;  ///< calls that accelerators served
-  work::MemoryPeak memory;  ///< highest peak over the calls, of L1 (L2 for the controller)
-  std::vector<work::Block> persistent;  ///< filled in for the controller's L2 only
-  work::Transferred transfers;          ///< between L1 and L2
-};
-
+using soc::CameraRecord;
+using soc::Deadline;
+using soc::StageResult;
 using vio::PoseSource;
 
-struct FrameResult {
+/// What a frame yielded, and when.
+struct FrameResult : soc::FrameTiming {
   int index = 0;          ///< in the data set
   std::int64_t t_ns = 0;  ///< camera timestamp
   PoseSource source = PoseSource::First;
@@ -48,12 +35,7 @@ struct FrameResult {
   int world_matches = 0;
   int frame_matches = 0;
   int inliers = 0;
-  int landmarks = 0;            ///< alive after the frame
-  std::int64_t arrival_ns = 0;  ///< simulated time since the first frame
-  std::int64_t start_ns = 0;    ///< front end begins (≥ arrival)
-  std::int64_t end_ns = 0;      ///< pose available
-  Cycles cycles;                ///< front end on N cores
-  Cycles single_cycles;         ///< front end on one core
+  int landmarks = 0;  ///< alive after the frame
   traces::StampedPose pose;
 };
 

@@ -31,13 +31,13 @@ class Feed {
   const vio::FrameInput& frame(int i);
 
  private:
-  const CameraFrame& camera_frame(int i) const { return frames_[static_cast<std::size_t>(i)]; }
+  const soc::CameraFrame& camera_frame(int i) const { return frames_[static_cast<std::size_t>(i)]; }
   traces::GrayImage read(int i) const { return images_.read(camera_frame(i).recorded); }
   traces::GrayImage take_image(int i);
   std::span<const traces::ImuSample> imu_of(int i) const;
 
   traces::Dataset data_;
-  std::vector<CameraFrame> frames_;
+  std::vector<soc::CameraFrame> frames_;
   double rate_hz_;
   traces::ImageSource images_;
   vio::Rig rig_;

@@ -9,6 +9,7 @@
 #include "tools/app/result/summary.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/truth_coverage.h"
 
 namespace leviosim::tools {
 namespace {
@@ -39,7 +40,7 @@ work::MachineConfig cluster_machine(const RunRequest& request, const vio::Profil
 
 work::MachineConfig controller_machine(const RunRequest& request) {
   Bytes l2 = request.platform.config.l2.size;
-  if (request.camera) l2 -= second_buffer(request.image_size.width, request.image_size.height);
+  if (request.camera) l2 -= soc::second_buffer(request.image_size.width, request.image_size.height);
   return {.cores = 1,
           .memory = "L2",
           .capacity = request.native ? kUnlimited : l2,
@@ -78,12 +79,12 @@ LiveSource::LiveSource(const RunRequest& request)
   if (evaluate_) traces::require_truth_at(feed_.data(), stamps_of(feed_));
 }
 
-bool LiveSource::take_up(const FrameStart& start) {
+bool LiveSource::begin_frame(const soc::FrameStart& start) {
   frame_ = start.frame;
   return !start.optimiser_busy && odometry_->begin_optimisation();
 }
 
-const work::Job& LiveSource::process_frame(FrameResult& result) {
+const work::Job& LiveSource::process(FrameResult& result) {
   const vio::FrameReport report = odometry_->process_frame(feed_.frame(frame_));
   front_end_job_ = cluster_.take_job();
   result.index = frame_;

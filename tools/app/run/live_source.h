@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "sim/soc/job_source.h"
 #include "tools/app/run/feed.h"
+#include "tools/app/run/run_source.h"
 
 namespace leviosim::tools {
 
-class LiveSource : public JobSource {
+class LiveSource : public RunSource {
  public:
   /// @param request  outlives the source
   explicit LiveSource(const RunRequest& request);
@@ -16,8 +16,8 @@ class LiveSource : public JobSource {
   int frames() const override { return feed_.size(); }
   std::int64_t time_ns(int frame) const override { return feed_.time_ns(frame); }
   std::int64_t arrival_ns(int frame) const override { return feed_.arrival_ns(frame); }
-  bool take_up(const FrameStart& start) override;
-  const work::Job& process_frame(FrameResult& result) override;
+  bool begin_frame(const soc::FrameStart& start) override;
+  const work::Job& process(FrameResult& result) override;
   int iterations() const override { return profile_.optimiser_iterations; }
   const work::Job& optimise() override;
   void publish() override;
@@ -33,7 +33,7 @@ class LiveSource : public JobSource {
   work::Machine cluster_;
   work::Machine controller_;
   std::unique_ptr<vio::Odometry> odometry_;
-  int frame_ = 0;  ///< taken up last
+  int frame_ = 0;  ///< begun last
   work::Job front_end_job_;
   work::Job optimiser_job_;
 };

@@ -7,9 +7,9 @@
 
 namespace leviosim::tools {
 
-bool RecordingSource::take_up(const FrameStart& start) {
+bool RecordingSource::begin_frame(const soc::FrameStart& start) {
   write_complete_frames();
-  const bool begun = source_.take_up(start);
+  const bool begun = source_.begin_frame(start);
   if (begun) {
     check_equal(iterations_left_, std::size_t{0}, "iterations left of the optimisation before");
     iterations_left_ = static_cast<std::size_t>(source_.iterations());
@@ -22,8 +22,8 @@ bool RecordingSource::take_up(const FrameStart& start) {
   return begun;
 }
 
-const work::Job& RecordingSource::process_frame(FrameResult& result) {
-  const work::Job& job = source_.process_frame(result);
+const work::Job& RecordingSource::process(FrameResult& result) {
+  const work::Job& job = source_.process(result);
   traces::WorkFrame& frame = frames_.back();
   frame.index = result.index;
   frame.t_ns = result.t_ns;

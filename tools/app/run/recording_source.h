@@ -3,7 +3,7 @@
 
 #include <deque>
 
-#include "sim/soc/job_source.h"
+#include "tools/app/run/run_source.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -17,17 +17,17 @@ struct WorkRecording {
   traces::WorkTraceInfo info;  ///< as far as the source knows it
 };
 
-class RecordingSource : public JobSource {
+class RecordingSource : public RunSource {
  public:
   /// Both outlive the source.
-  RecordingSource(JobSource& source, WorkRecording& recording)
+  RecordingSource(RunSource& source, WorkRecording& recording)
       : source_(source), recording_(recording) {}
 
   int frames() const override { return source_.frames(); }
   std::int64_t time_ns(int frame) const override { return source_.time_ns(frame); }
   std::int64_t arrival_ns(int frame) const override { return source_.arrival_ns(frame); }
-  bool take_up(const FrameStart& start) override;
-  const work::Job& process_frame(FrameResult& result) override;
+  bool begin_frame(const soc::FrameStart& start) override;
+  const work::Job& process(FrameResult& result) override;
   int iterations() const override { return source_.iterations(); }
   const work::Job& optimise() override;
   void publish() override { source_.publish(); }
@@ -42,7 +42,7 @@ class RecordingSource : public JobSource {
   /// Hands over the frames whose optimisation is complete, in order.
   void write_complete_frames();
 
-  JobSource& source_;
+  RunSource& source_;
   WorkRecording& recording_;
   /// Not yet written; the first may wait for its optimisation, which goes on during later frames.
   std::deque<traces::WorkFrame> frames_;

@@ -6,7 +6,7 @@
 
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
-#include "sim/soc/simulation.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {
 void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
@@ -35,7 +35,7 @@ Replay replay(const traces::WorkTrace& trace, const RunRequest& request,
   const sim::ChipConfig& chip = request.platform.config;
   TraceSource source(trace, chip.cluster.l1.size, chip.l2.size, sim::has_accelerators(chip));
   Replay result;
-  result.run = Simulation(request, source, progress).run();
+  result.run = simulate_source(request, source, progress);
   result.run.host_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.frames = source.comparisons();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostRows = 10;
 
-/// "busy", "begins", or "idle": what the optimiser does when a frame is taken up.
+/// "busy", "begins", or "idle": what the optimiser does when a frame begins.
 std::string_view optimiser_of(const FrameComparison::Start& start) {
   if (start.optimiser_busy) return "busy";
   return start.optimised ? "begins" : "idle";

@@ -12,7 +12,7 @@ namespace leviosim::tools {
 /// Sums, and the first frames that differ.
 std::string replay_report(const Replay& replay, const traces::WorkTrace& trace);
 
-/// A row per frame: how it was taken up in the recording and now.
+/// A row per frame: how it began in the recording and now.
 std::string replay_csv(const Replay& replay);
 
 /// For the manifest: what was recorded, and the digest of the trace.

@@ -128,7 +128,7 @@ CsvLine frame_line(const RunResult& run, const FrameResult& frame) {
 }
 
 /// A frame that was never processed: all cells but frame, stamp and arrival are empty.
-CsvLine dropped_line(const Delivery& delivery) {
+CsvLine dropped_line(const soc::Delivery& delivery) {
   constexpr int kOfTheImage = 7;
   constexpr int kOfTheTiming = 5;
   CsvLine line;
@@ -143,7 +143,7 @@ CsvLine dropped_line(const Delivery& delivery) {
 std::string delivery_lines(const RunResult& run) {
   std::string text;
   auto frame = run.frames.begin();
-  for (const Delivery& delivery : run.camera->deliveries) {
+  for (const soc::Delivery& delivery : run.camera->deliveries) {
     const bool missed = delivery.dropped || is_late(*frame, run);
     CsvLine line = delivery.dropped ? dropped_line(delivery) : frame_line(run, *frame++);
     line.add(std::int64_t{delivery.found})

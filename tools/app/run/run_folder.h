@@ -10,7 +10,7 @@
 //   energy.csv       a row per stage, quantity and domain of the chip, with its band
 //   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
 //   work.trace       with --record: all work (traces/work_traces/work_trace.h), for leviosim replay
-//   replay.csv       of a replay: how each frame was taken up, in the recording and now
+//   replay.csv       of a replay: how each frame began, in the recording and now
 //
 // A native run has no platform.yaml, stages.csv, memory.csv and energy.csv, and no timing columns.
 // A platform without energy figures leaves no energy.csv.

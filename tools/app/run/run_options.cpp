@@ -106,7 +106,7 @@ std::optional<CameraRequest> parse_camera(const std::string& fps, const std::str
   if (fps.empty() && deadline.empty()) return std::nullopt;
   CameraRequest camera;
   if (!fps.empty()) camera.fps = parse_positive("--camera-fps", fps);
-  if (!deadline.empty()) camera.deadline = parse_deadline(deadline);
+  if (!deadline.empty()) camera.deadline = soc::parse_deadline(deadline);
   return camera;
 }
 

@@ -1,20 +1,24 @@
 // What the user asked `leviosim run` to do, after the command line has been checked.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "platform_models/loader/loader.h"
 #include "sim/soc/camera.h"
-#include "sim/soc/run_observer.h"
+#include "sim/soc/simulation.h"
 #include "tools/app/result/run_result.h"
+#include "tools/app/run/run_observer.h"
 #include "traces/datasets/frame_range.h"
 #include "traces/datasets/image_source.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
+
+using soc::CameraRequest;
+using soc::Progress;
+using soc::ProgressCallback;
 
 struct WorkRecording;
 
@@ -42,16 +46,5 @@ void check_together(const vio::Profile& profile);
 
 /// The profile with the parameters that were set. @throws InputError as check_together() does
 vio::Profile profile_of(const RunRequest& request);
-
-/// Called after every frame.
-struct Progress {
-  int done = 0;
-  int total = 0;
-  std::int64_t simulated_ns = 0;
-};
-using ProgressCallback = std::function<void(const Progress&)>;
-
-/// Runs the workload over the data. @throws InputError for data or requests that cannot be run.
-RunResult simulate(const RunRequest& request, const ProgressCallback& progress);
 
 }  // namespace leviosim::tools

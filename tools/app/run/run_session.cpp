@@ -7,10 +7,10 @@
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "sim/energy/model.h"
-#include "sim/soc/simulation.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"
+#include "tools/app/run/simulate.h"
 #include "tools/app/run/workload_overrides.h"
 #include "traces/datasets/asl_reader.h"
 
@@ -64,10 +64,10 @@ RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style 
   return simulate(request, shown_on(line));
 }
 
-RunResult simulate_with_progress(const RunRequest& request, JobSource& source,
+RunResult simulate_with_progress(const RunRequest& request, RunSource& source,
                                  ProgressLine::Style style) {
   ProgressLine line(style);
-  RunResult result = Simulation(request, source, shown_on(line)).run();
+  RunResult result = simulate_source(request, source, shown_on(line));
   result.host_seconds = line.host_seconds();
   return result;
 }

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "sim/base/output_request.h"
-#include "sim/soc/job_source.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/progress_line.h"
 #include "tools/app/run/manifest.h"
 #include "tools/app/run/run_options.h"
+#include "tools/app/run/run_source.h"
 
 namespace leviosim::tools {
 
@@ -30,7 +30,7 @@ std::string data_folder(const RunOptions& options, ProgressLine::Style progress)
 RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style);
 
 /// The same with the work of another workload than LEVIO, on the chip of the request.
-RunResult simulate_with_progress(const RunRequest& request, JobSource& source,
+RunResult simulate_with_progress(const RunRequest& request, RunSource& source,
                                  ProgressLine::Style style);
 
 Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words);

@@ -21,7 +21,7 @@ PoseSource source_of(const traces::WorkFrame& frame, const traces::WorkTrace& tr
 TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool kernels)
     : trace_(trace), l1_(l1), l2_(l2), reader_(trace, kernels) {}
 
-bool TraceSource::take_up(const FrameStart& start) {
+bool TraceSource::begin_frame(const soc::FrameStart& start) {
   for (; number_ < start.frame; ++number_)
     check(reader_.next(frame_), "a trace has as many frames as it has time stamps");
   const std::int64_t arrival_ns = time_ns(start.frame) - time_ns(0);
@@ -37,7 +37,7 @@ bool TraceSource::take_up(const FrameStart& start) {
   return begun;
 }
 
-const work::Job& TraceSource::process_frame(FrameResult& result) {
+const work::Job& TraceSource::process(FrameResult& result) {
   result.index = frame_.index;
   result.t_ns = frame_.t_ns;
   result.source = source_of(frame_, trace_, number_);

@@ -2,19 +2,19 @@
 // at hand is faster or slower than that of the recording, the work stays what it was. What the
 // algorithm would have seen otherwise is noted frame by frame:
 //
-//   - another result of the optimiser, or none, when the frame was taken up;
+//   - another result of the optimiser, or none, when the frame began;
 //   - an optimisation that would not have begun, since the optimiser is still busy: it is left out;
 //   - an optimisation that would have begun, but was not recorded: it is missing.
 //
 // A frame that had to wait is noted too. With a queue, that alone changes nothing that is computed.
 #pragma once
 
-#include "sim/soc/job_source.h"
+#include "tools/app/run/run_source.h"
 #include "traces/work_traces/work_frames.h"
 
 namespace leviosim::tools {
 
-/// How a frame was taken up, in the recording and now.
+/// How a frame began, in the recording and now.
 struct FrameComparison {
   struct Start {
     std::int64_t waited_ns = 0;  ///< since the camera delivered it
@@ -32,7 +32,7 @@ struct FrameComparison {
   bool computes_the_same() const { return !sees_another_result() && !optimiser_differs(); }
 };
 
-class TraceSource : public JobSource {
+class TraceSource : public RunSource {
  public:
   /// @param trace  outlives the source and all names in what it gives
   /// @param l1,l2    sizes of the memories that the work has to fit in
@@ -43,9 +43,9 @@ class TraceSource : public JobSource {
   std::int64_t time_ns(int frame) const override {
     return trace_.info().stamps_ns[static_cast<std::size_t>(frame)];
   }
-  bool take_up(const FrameStart& start) override;
+  bool begin_frame(const soc::FrameStart& start) override;
   /// @throws InputError naming the stage if it does not fit in L1
-  const work::Job& process_frame(FrameResult& result) override;
+  const work::Job& process(FrameResult& result) override;
   int iterations() const override { return static_cast<int>(iterations_.size()); }
   /// @throws InputError naming the stage if it does not fit in L2
   const work::Job& optimise() override;

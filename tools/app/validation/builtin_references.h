@@ -1,4 +1,5 @@
-// tools/app/validation/published/*.csv as part of the program; generated when it is built (embed.cmake).
+// tools/app/validation/published/*.csv as part of the program; generated when it is built
+// (embed.cmake).
 #pragma once
 
 #include <span>

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/soc/run_observer.h"
+#include "tools/app/run/run_observer.h"
 
 namespace leviosim::tools {
 

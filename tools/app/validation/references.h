@@ -1,7 +1,7 @@
-// Published figures to compare a run with, as data: tools/app/validation/published/paper.csv, which is part of
-// the program. Each has a tolerance and says whether it is met. One that is not stays visible with
-// its reason, and its error is guarded: a later change may not make it worse without a test that
-// fails.
+// Published figures to compare a run with, as data: tools/app/validation/published/paper.csv, which
+// is part of the program. Each has a tolerance and says whether it is met. One that is not stays
+// visible with its reason, and its error is guarded: a later change may not make it worse without a
+// test that fails.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,7 @@
-// What the LEVIO paper says of the golden model's accuracy: tools/app/validation/published/paper_accuracy.csv,
-// which is part of the program. Columns: sequence (EuRoC's name), profile, width, height, chosen_by
-// (ate or relative), figure (ate or relative), value, unit, source.
+// What the LEVIO paper says of the golden model's accuracy:
+// tools/app/validation/published/paper_accuracy.csv, which is part of the program. Columns:
+// sequence (EuRoC's name), profile, width, height, chosen_by (ate or relative), figure (ate or
+// relative), value, unit, source.
 #pragma once
 
 #include <string>

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/run/simulate.h"
 #include "tools/app/study/batch/run_jobs.h"
 #include "tools/app/study/batch/run_key.h"
 

@@ -9,6 +9,7 @@
 #include "sim/base/sha256.h"
 #include "tools/app/run/digest.h"
 #include "traces/datasets/asl_reader.h"
+#include "traces/trajectories/truth_coverage.h"
 
 namespace leviosim::tools {
 namespace {

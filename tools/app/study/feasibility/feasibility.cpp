@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "sim/chip/accelerator.h"
-#include "sim/soc/simulation.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/replay.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {
 namespace {
@@ -39,7 +39,7 @@ class PacedSource : public TraceSource {
 
 RunResult paced(const traces::WorkTrace& work, const RunRequest& request, std::int64_t period_ns) {
   PacedSource source(work, request.platform.config, period_ns);
-  return Simulation(request, source, [](const Progress&) {}).run();
+  return simulate_source(request, source, [](const Progress&) {});
 }
 
 /// The block at which blocks, one after the other, exceed the memory.

@@ -95,7 +95,7 @@ std::vector<Swing> collect(const platform::ResolvedPlatform& platform,
 }  // namespace
 
 Outcome time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace) {
-  JobTimer timer(chip, workers);
+  soc::JobTimer timer(chip, workers);
   Average frame;
   Average epnp;
   Average eight_point;

@@ -8,6 +8,7 @@
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/run/replay.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {
 namespace {

@@ -91,7 +91,7 @@ double checked_recorded_rate(const RunRequest& request, const std::vector<double
   const traces::Dataset data = traces::open_asl(request.data, {.frames = request.frames});
   std::vector<std::int64_t> stamps_ns;
   for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
-  for (const double rate : fps) frames_at(rate, stamps_ns, data.camera.rate_hz);
+  for (const double rate : fps) soc::frames_at(rate, stamps_ns, data.camera.rate_hz);
   return data.camera.rate_hz;
 }
 
@@ -185,7 +185,7 @@ TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
   for (auto clock = clocks.rbegin(); clock != clocks.rend(); ++clock)
     plan.clocks.push_back(setting_for(chip, plan.request.platform.name, *clock));
   std::reverse(plan.clocks.begin(), plan.clocks.end());
-  plan.deadline = parse_deadline(words.deadline);
+  plan.deadline = soc::parse_deadline(words.deadline);
   plan.miss_rate = parse_miss_rate(words.miss_rate);
   plan.ate_m = parse_positive("--ate", words.ate);
   if (!words.fps.empty()) plan.fps = parse_rates(words.fps);

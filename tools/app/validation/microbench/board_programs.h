@@ -1,6 +1,6 @@
-// The kernels that the vendor measured on a GAP8 board (tools/app/validation/published/gap8_board.csv), written
-// as a programmer of that board would: each core takes a share of the rows, columns or outputs, all
-// data lie in L1.
+// The kernels that the vendor measured on a GAP8 board
+// (tools/app/validation/published/gap8_board.csv), written as a programmer of that board would:
+// each core takes a share of the rows, columns or outputs, all data lie in L1.
 //
 // The source does not state the data types. Scalar kernels work on 16-bit values here (8-bit ones
 // cost the same loads). SIMD kernels: pairs of 16 bits for the 2×2 pools, since a window is two

@@ -1,4 +1,5 @@
-// What the rows of a comparison refer to: tools/app/validation/published/*.csv, compiled into the program.
+// What the rows of a comparison refer to: tools/app/validation/published/*.csv, compiled into the
+// program.
 #pragma once
 
 #include <string>

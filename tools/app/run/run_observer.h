@@ -1,4 +1,4 @@
-// Looks on while a run happens: sees every job that a chip was given, with the frame it belongs to
+// Looks on while a run happens: sees every job that a chip was given, with what its frame yielded
 // and how long it took, in the order in which the jobs ended in simulated time. What an observer
 // needs to re-time the run elsewhere is in the jobs; native runs have none.
 //
@@ -7,6 +7,7 @@
 // workload, or the trace's.
 #pragma once
 
+#include "sim/soc/observer.h"
 #include "tools/app/result/run_result.h"
 
 namespace leviosim::tools {
@@ -21,14 +22,7 @@ struct FrontEndJob {
   const sim::JobTiming& single;    ///< on one core
 };
 
-/// The controller has finished an iteration of an optimisation.
-struct OptimiserJob {
-  int frame = 0;      ///< number of the frame at whose start the snapshot was taken
-  int iteration = 0;  ///< from 0
-  bool last = false;  ///< what the iterations found is published now
-  const work::Job& job;
-  const sim::JobTiming& timing;
-};
+using soc::OptimiserJob;
 
 class RunObserver {
  public:

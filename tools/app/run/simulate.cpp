@@ -1,0 +1,131 @@
+#include "tools/app/run/simulate.h"
+
+#include <chrono>
+#include <utility>
+
+#include "sim/soc/simulation.h"
+#include "tools/app/run/live_source.h"
+#include "tools/app/run/recording_source.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// Joins what the frames yielded with when they were processed.
+class FrameCollector : public soc::Observer {
+ public:
+  FrameCollector(const RunSource& source, RunObserver* observer)
+      : source_(source), observer_(observer) {}
+
+  void on_front_end(const soc::FrontEndJob& e) override {
+    FrameResult& frame = frames.emplace_back(source_.frame());
+    static_cast<soc::FrameTiming&>(frame) = e.times;
+    if (observer_ != nullptr)
+      observer_->on_front_end({e.frame, e.optimisation_begun, frame, e.job, e.parallel, e.single});
+  }
+  void on_optimiser(const OptimiserJob& e) override {
+    if (observer_ != nullptr) observer_->on_optimiser(e);
+  }
+
+  std::vector<FrameResult> frames;
+
+ private:
+  const RunSource& source_;
+  RunObserver* observer_;
+};
+
+/// Fills in what does not depend on timing.
+void describe(RunResult& result, const RunRequest& request, const RunSource& source) {
+  const sim::ChipConfig& chip = request.platform.config;
+  result.timed = !request.native;
+  result.cores = request.cores;
+  result.cluster_clock = chip.cluster.clock;
+  result.controller_clock = chip.controller.clock;
+  if (result.timed) result.chip = chip;
+  result.l1_size = chip.cluster.l1.size;
+  result.l2_size = chip.l2.size;
+  for (const FrameResult& frame : result.frames) {
+    if (frame.pose.T_world_body.matrix().allFinite())
+      result.trajectory.push_back(frame.pose);
+    else
+      ++result.poses_left_out;
+  }
+  source.describe(result);
+}
+
+/// What persists in L2 lies below whatever the controller allocates; it has rows of its own.
+void add_l2_rows(RunResult& result) {
+  Bytes persistent;
+  for (const L2Row& row : result.l2) persistent += row.bytes;
+  L2Row optimiser{"optimiser", Bytes(0), {}};
+  for (const StageResult& stage : result.stages) {
+    if (!stage.on_controller || stage.memory.parallel <= optimiser.bytes + persistent) continue;
+    optimiser = {"optimiser", stage.memory.parallel - persistent, stage.memory.blocks};
+    std::erase_if(optimiser.blocks,
+                  [](const work::Block& block) { return block.name == vio::kPersistentBlock; });
+  }
+  if (optimiser.bytes > Bytes(0)) result.l2.push_back(optimiser);
+  if (result.camera) {
+    const Bytes size = soc::second_buffer(result.image_width, result.image_height);
+    result.l2.push_back({"camera", size, {{"second image buffer", Bytes(0), size}}});
+  }
+}
+
+/// The golden model: the same computation without a chip. The optimiser's result of a frame is
+/// published before the next one, as on a chip that keeps up.
+RunResult run_natively(const RunRequest& request, const ProgressCallback& progress) {
+  LiveSource source(request);
+  RunResult result;
+  for (int i = 0; i < source.frames(); ++i) {
+    const bool optimising = source.begin_frame({.frame = i});
+    FrameResult frame;
+    source.process(frame);
+    for (int k = 0; optimising && k < source.iterations(); ++k) source.optimise();
+    if (optimising) {
+      source.publish();
+      ++result.optimiser_published;
+    }
+    result.frames.push_back(frame);
+    progress({i + 1, source.frames(), source.time_ns(i) - source.time_ns(0)});
+  }
+  describe(result, request, source);
+  return result;
+}
+
+RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progress) {
+  LiveSource live(request);
+  if (request.recording == nullptr) return simulate_source(request, live, progress);
+  RecordingSource recorded(live, *request.recording);
+  RunResult result = simulate_source(request, recorded, progress);
+  recorded.finish();
+  return result;
+}
+
+}  // namespace
+
+RunResult simulate_source(const RunRequest& request, RunSource& source,
+                          const ProgressCallback& progress) {
+  soc::Setup setup{request.platform.config, request.cores, {}};
+  if (request.camera) setup.deadline = request.camera->deadline;
+  FrameCollector collector(source, request.observer);
+  soc::Outcome outcome = soc::Simulation(setup, source, collector, progress).run();
+  RunResult result;
+  result.stages = std::move(outcome.stages);
+  result.frames = std::move(collector.frames);
+  result.camera = std::move(outcome.camera);
+  result.optimiser_published = outcome.optimiser_published;
+  result.optimiser_late = outcome.optimiser_late;
+  describe(result, request, source);
+  add_l2_rows(result);
+  return result;
+}
+
+RunResult simulate(const RunRequest& request, const ProgressCallback& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  RunResult result =
+      request.native ? run_natively(request, progress) : run_on_chip(request, progress);
+  result.host_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace leviosim::tools
