@@ -7,7 +7,8 @@
 #     --only PATTERN  those whose file, old text or new text matches this regular expression
 #     --jobs N        compilers at once, and parts in which the tests run (default: 2)
 # First come the tests that include the changed file's header or are named like it, then those of
-# its folder, then all others. A test run longer than 20 minutes counts as a failure: it hangs.
+# its part of the tree, then all others; only the test programs that are needed are built. A test run
+# longer than 20 minutes counts as a failure: it hangs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
@@ -93,12 +94,14 @@ update_copy() {
     while IFS= read -r file; do rm "$copy/$file"; done
 }
 
-build() { # build LOG; tests are not listed after the build, which would run mutants
+build() { # build LOG TARGET...; tests are not listed after the build, which would run mutants
+  local log=$1
   local options=(-DLEVIOSIM_BUILD_BENCHMARKS=OFF -DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST)
+  shift
   {
     [[ -f $binary/build.ninja ]] || (cd "$copy" && cmake --preset release "${options[@]}")
-    ninja -C "$binary" -j "$jobs" leviosim leviosim_tests
-  } >"$1" 2>&1
+    ninja -C "$binary" -j "$jobs" "$@"
+  } >"$log" 2>&1
 }
 
 # Replaces OLD, which must be there once. Status 1, and nothing changed, if it is not.
@@ -117,16 +120,19 @@ replace() { # replace FILE OLD NEW
   ' "$copy/$1" "$2" "$3"
 }
 
-# The test sources of a step, nearest first.
-tests_of() { # tests_of near|folder|all FILE
-  local header=${2%.*}.h stem
-  stem=$(basename "${2%.*}")
+# The folders of tests, each of which is a program: leviosim_FOLDER_tests.
+parts=(sim workload platform_models traces tools examples system validation)
+
+# The test sources of a step in a folder of tests, nearest first.
+tests_of() { # tests_of near|part|all FOLDER FILE
+  local header=${3%.*}.h stem
+  stem=$(basename "${3%.*}")
   case $1 in
     near)
-      { grep -rlF --include=*_test.cpp "#include \"$header\"" tests || true
-        find tests -name "${stem}*_test.cpp"; } | LC_ALL=C sort -u ;;
-    folder) find "tests/${2%%/*}" -name '*_test.cpp' | LC_ALL=C sort ;;
-    all) find tests -name '*_test.cpp' | LC_ALL=C sort ;;
+      { grep -rlF --include=*_test.cpp "#include \"$header\"" "tests/$2" || true
+        find "tests/$2" -name "${stem}*_test.cpp"; } | LC_ALL=C sort -u ;;
+    part) [[ $2 != "${3%%/*}" ]] || find "tests/$2" -name '*_test.cpp' | LC_ALL=C sort ;;
+    all) find "tests/$2" -name '*_test.cpp' | LC_ALL=C sort ;;
   esac
 }
 
@@ -137,23 +143,23 @@ filter_of() {
     END { print join(":", map { "$_.*:*/$_.*:$_/*" } sort keys %suites) }'
 }
 
-# Runs tests in parts at the same time, all of which end with the first that fails.
-run_tests() { # run_tests FILTER; logs are $copy/logs/N.txt
-  local parts=() part status=0
+# Runs tests of a program in parts at the same time, all of which end with the first that fails.
+run_tests() { # run_tests FOLDER FILTER; logs are $copy/logs/N.txt
+  local running=() part status=0
   rm -rf "$copy/logs" && mkdir -p "$copy/logs"
   for ((part = 0; part < jobs; ++part)); do
     (
-      ulimit -v 16000000 -c 0
-      GTEST_SHARD_INDEX=$part exec timeout -s KILL "$limit" "$binary/tests/leviosim_tests" \
-        --gtest_fail_fast --gtest_filter="$1"
+      ulimit -v 40000000 -c 0
+      GTEST_SHARD_INDEX=$part exec timeout -s KILL "$limit" "$binary/tests/leviosim_$1_tests" \
+        --gtest_fail_fast --gtest_filter="$2"
     ) >"$copy/logs/$part.txt" 2>&1 &
-    parts+=($!)
+    running+=($!)
   done
   for ((part = 0; part < jobs; ++part)); do
     wait -n || { status=1; break; }
   done
-  kill "${parts[@]}" 2>/dev/null || true
-  wait "${parts[@]}" 2>/dev/null || true
+  kill "${running[@]}" 2>/dev/null || true
+  wait "${running[@]}" 2>/dev/null || true
   return $status
 }
 
@@ -170,14 +176,19 @@ culprit() {
   echo "?"
 }
 
-# Status 0 if no test notices the change of FILE.
+# Status 0 if no test notices the change of FILE, 1 if one does, 2 if it does not build.
 survives() { # survives FILE
-  local near folder
-  near=$(tests_of near "$1" | filter_of)
-  folder=$(tests_of folder "$1" | filter_of)
-  [[ -z $near ]] || run_tests "$near" || return 1
-  [[ -z $folder ]] || run_tests "$folder-$near" || return 1
-  run_tests "*-$near:$folder"
+  local step part filter
+  local -A ran=()
+  for step in near part all; do
+    for part in "${parts[@]}"; do
+      filter=$(tests_of "$step" "$part" "$1" | filter_of)
+      [[ -n $filter ]] || continue
+      build "$copy/build.txt" leviosim "leviosim_${part}_tests" || return 2
+      run_tests "$part" "$filter${ran[$part]:+-${ran[$part]}}" || return 1
+      ran[$part]=$filter
+    done
+  done
 }
 
 mutants=$(read_list) || exit 2
@@ -185,11 +196,13 @@ mutants=$(read_list) || exit 2
 update_copy
 mkdir -p "$copy/logs" "$XDG_CACHE_HOME"
 echo "mutate: building without a change"
-build "$copy/build.txt" || { tail -20 "$copy/build.txt" >&2; fail "the tree does not build"; }
+build "$copy/build.txt" leviosim leviosim_tests || { tail -20 "$copy/build.txt" >&2; fail "the tree does not build"; }
 state=$(sources | grep -v -e '\.md$' -e '^tests/mutants.txt$' | xargs sha256sum | sha256sum)
 if [[ $(cat "$copy/build/passed" 2>/dev/null) != "$state" ]]; then
   echo "mutate: running all tests without a change"
-  run_tests '*' || fail "$(culprit) fails without a change"
+  for part in "${parts[@]}"; do
+    run_tests "$part" '*' || fail "$(culprit) fails without a change"
+  done
   echo "$state" >"$copy/build/passed"
 fi
 
@@ -213,15 +226,13 @@ while IFS=$'\x1f' read -r file old new reason <&3; do
     continue
   fi
   changed=$file
-  if ! build "$copy/build.txt"; then
-    report unbuilt "$(grep -m1 -E 'error|FAILED' "$copy/build.txt" || true)"
-  elif ! survives "$file"; then
-    report noticed "by $(culprit)"
-  elif [[ -n $reason ]]; then
-    report equivalent "$reason"
-  else
-    report survived ""
-  fi
+  survived=0
+  survives "$file" || survived=$?
+  case $survived in
+    1) report noticed "by $(culprit)" ;;
+    2) report unbuilt "$(grep -m1 -E 'error|FAILED' "$copy/build.txt" || true)" ;;
+    0) [[ -n $reason ]] && report equivalent "$reason" || report survived "" ;;
+  esac
 done 3<<<"$mutants"
 
 judged=$((count[noticed] + count[survived]))
