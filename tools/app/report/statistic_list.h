@@ -35,7 +35,7 @@ class StatisticList {
   Json list_ = Json::array();
 };
 
-/// {"format": "leviosim statistics", "version": 1, "statistics": `list`}, with the members of
+/// {"format": "leviosim statistics", "version": N, "statistics": `list`}, with the members of
 /// `about` before the statistics.
 Json statistics_document(Json list, const Json& about = Json::object());
 

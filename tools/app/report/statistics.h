@@ -10,7 +10,7 @@
 
 namespace leviosim::tools {
 
-/// {"format": "leviosim statistics", "version": 1, "statistics": [{"name", "unit", "description",
+/// {"format": "leviosim statistics", "version": N, "statistics": [{"name", "unit", "description",
 /// "value"}, …]}. What does not exist (a mean over no calls) is null. Accuracy figures also carry
 /// "protocol".
 Json statistics(const RunResult& run);
