@@ -38,6 +38,14 @@ TEST(RunFigures, EveryPercentileOfLatencyIsItsOwn) {
   EXPECT_EQ(value(document, "latency.all.worst"), 200'000);
 }
 
+TEST(RunFigures, AnOpenLoopHasPercentilesOfLatencyToo) {
+  RunResult open = long_loop();
+  open.camera.reset();
+  const Json document = statistics(open);
+  EXPECT_EQ(value(document, "latency.all.p95"), 190'000);
+  EXPECT_EQ(value(document, "latency.all.worst"), 200'000);
+}
+
 TEST(RunFigures, ALatencyOfExactlyThePeriodIsInTime) {
   RunResult run = testing::example_run();
   EXPECT_FALSE(is_late(testing::frame(0, PoseSource::Epnp, false, run.frame_period_ns), run));

@@ -138,6 +138,17 @@ void add_latencies(StatisticList& list, const RunResult& run) {
   }
 }
 
+void add_latencies_of_all(StatisticList& list, const RunResult& run) {
+  const CameraFigures::Latencies latency = latencies_of(run);
+  list.add("latency.all.p50", "ns", "median from the camera's frame to its pose", latency.p50_ns);
+  list.add("latency.all.p95", "ns", "that 95 % of the processed frames do not exceed",
+           latency.p95_ns);
+  list.add("latency.all.p99", "ns", "that 99 % of the processed frames do not exceed",
+           latency.p99_ns);
+  list.add("latency.all.worst", "ns", "longest from the camera's frame to its pose",
+           latency.max_ns);
+}
+
 /// Of closed loops only.
 void add_camera(StatisticList& list, const RunResult& run) {
   const std::optional<CameraFigures> figures = camera_figures(run);
@@ -157,14 +168,6 @@ void add_camera(StatisticList& list, const RunResult& run) {
            figures->share_of(figures->missed()));
   list.add("camera.most_found", "1", "most frames that one found in the camera's two buffers",
            figures->most_found);
-  const CameraFigures::Latencies& latency = figures->latency;
-  list.add("latency.all.p50", "ns", "median from the camera's frame to its pose", latency.p50_ns);
-  list.add("latency.all.p95", "ns", "that 95 % of the processed frames do not exceed",
-           latency.p95_ns);
-  list.add("latency.all.p99", "ns", "that 99 % of the processed frames do not exceed",
-           latency.p99_ns);
-  list.add("latency.all.worst", "ns", "longest from the camera's frame to its pose",
-           latency.max_ns);
 }
 
 void add_l2(StatisticList& list, const RunResult& run) {
@@ -231,6 +234,7 @@ Json statistics(const RunResult& run) {
   if (run.timed) {
     add_latencies(list, run);
     add_camera(list, run);
+    add_latencies_of_all(list, run);
     add_l2(list, run);
     add_energy(list, run);
     list.add("optimiser.published", "1", "results that reached the front end",

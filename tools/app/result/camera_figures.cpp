@@ -6,7 +6,6 @@
 #include "sim/base/check.h"
 
 namespace leviosim::tools {
-namespace {
 
 CameraFigures::Latencies latencies_of(const RunResult& run) {
   std::vector<std::int64_t> sorted;
@@ -16,8 +15,6 @@ CameraFigures::Latencies latencies_of(const RunResult& run) {
   return {percentile(sorted, 0.5), percentile(sorted, 0.95), percentile(sorted, 0.99),
           sorted.back()};
 }
-
-}  // namespace
 
 double CameraFigures::share_of(std::int64_t frames) const {
   return arrived > 0 ? static_cast<double>(frames) / static_cast<double>(arrived) : 0;

@@ -40,6 +40,9 @@ bool is_late(const FrameResult& frame, const RunResult& run);
 /// @param sorted  not empty
 std::int64_t percentile(const std::vector<std::int64_t>& sorted, double share);
 
+/// Of any run, whether its loop was open or closed.
+CameraFigures::Latencies latencies_of(const RunResult& run);
+
 /// Absent if the loop was open.
 std::optional<CameraFigures> camera_figures(const RunResult& run);
 
