@@ -123,6 +123,29 @@ TEST_F(EvalCommand, WritesTheFiguresItPrints) {
   EXPECT_EQ(document.at("estimate").at("format"), "TUM");
 }
 
+TEST_F(EvalCommand, SetsSeveralEstimatesSideBySide) {
+  traces::write_tum(folder_ / "worse.tum", spiral(0.05));
+  const ProgramResult result =
+      eval({"--also", path("worse.tum"), "--relative", "5", "--json", path("both.json")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_parts(result.out, {"estimate", "drift over 5 m %", "est.tum", "worse.tum"});
+  const Json both = Json::parse(read_text_file(folder_ / "both.json"));
+  ASSERT_EQ(both["evaluations"].size(), 2u);
+  std::vector<double> errors;
+  for (const Json& one : both["evaluations"])
+    for (const Json& statistic : one["statistics"])
+      if (statistic["name"] == "accuracy.ate.rmse") errors.push_back(statistic["value"]);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_GT(errors[1], 2 * errors[0]);
+  expect_parts(result.out, {fmt::format("{:.4f}", errors[0]), fmt::format("{:.4f}", errors[1])});
+
+  expect_refused(eval({"--also", path("worse.tum"), "--plot", path("both.svg")}),
+                 {"--plot", "draws one estimate", "--also"});
+  expect_refused(eval({"--also", path("none.tum")}), {"none.tum"});
+  expect_refused(eval({"--also", path("worse.tum"), "--json", path("worse.tum"), "--force"}),
+                 {"--json", "worse.tum"});
+}
+
 TEST_F(EvalCommand, DrawsTheSamePictureAgain) {
   for (const char* name : {"a.svg", "b.svg"}) EXPECT_EQ(eval({"--plot", path(name)}).status, 0);
   const std::string picture = read_text_file(folder_ / "a.svg");

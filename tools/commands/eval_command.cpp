@@ -3,12 +3,15 @@
 #include <fmt/core.h>
 
 #include <memory>
+#include <vector>
 
 #include "sim/base/error.h"
+#include "sim/base/printable_text.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/evaluation/eval_options.h"
 #include "tools/app/evaluation/trajectory_plot.h"
 #include "tools/app/report/accuracy.h"
+#include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -66,8 +69,8 @@ Json protocol_json(const EvalRequest& request) {
           {"relative_lengths_m", request.lengths_m}};
 }
 
-std::string figures_text(const traces::TrajectoryPair& pair, const EvalRequest& request,
-                         const Accuracy& accuracy) {
+Json figures(const traces::TrajectoryPair& pair, const EvalRequest& request,
+             const Accuracy& accuracy) {
   StatisticList list;
   add_ate(list, accuracy.evaluation);
   list.add("accuracy.longest_gap", "s", "between successive matched poses",
@@ -76,30 +79,81 @@ std::string figures_text(const traces::TrajectoryPair& pair, const EvalRequest& 
            rounded(accuracy.evaluation.alignment.scale));
   for (const RelativeErrors& errors : accuracy.relative)
     add_relative(list, accuracy.evaluation, errors);
-  return statistics_document_text(
-      statistics_document(list.take(), {{"estimate", file_json(pair.estimate)},
-                                        {"ground_truth", file_json(pair.truth)},
-                                        {"protocol", protocol_json(request)}}));
+  return statistics_document(list.take(), {{"estimate", file_json(pair.estimate)},
+                                           {"ground_truth", file_json(pair.truth)},
+                                           {"protocol", protocol_json(request)}});
 }
 
+/// An estimate, the truth, and how far they lie apart.
+struct Evaluated {
+  traces::TrajectoryPair pair;
+  Accuracy accuracy;
+};
+
 /// @throws InputError that names the file
-Accuracy measured(const traces::TrajectoryPair& pair, EvalRequest& request,
-                  const EvalOptions& options) {
+Evaluated evaluated(const std::string& estimate, const EvalOptions& options, EvalRequest& request) {
+  Evaluated result;
+  result.pair = read_pair(estimate, options.truth, request.read);
   try {
-    return measure(pair, request);
+    result.accuracy = measure(result.pair, request);
   } catch (const traces::NotComparable& error) {
-    throw InputError(
-        fmt::format("{} against {}: {}", options.estimate, options.truth, error.what()));
+    throw InputError(fmt::format("{} against {}: {}", estimate, options.truth, error.what()));
   }
+  return result;
+}
+
+/// A row for each estimate, in the order in which they were named.
+std::string side_by_side(const std::vector<Evaluated>& all) {
+  std::vector<TextTable::Column> columns{{"estimate", TextTable::Align::Left},
+                                         {"ATE m"},
+                                         {"median"},
+                                         {"worst"},
+                                         {"rotation °"},
+                                         {"scale"},
+                                         {"poses"},
+                                         {"complete %"}};
+  for (const RelativeErrors& errors : all.front().accuracy.relative)
+    columns.push_back({fmt::format("drift over {:g} m %", errors.length_m)});
+  TextTable table(columns);
+  for (const auto& [pair, accuracy] : all) {
+    const Evaluation& e = accuracy.evaluation;
+    std::vector<std::string> cells{printable(pair.estimate.file.string()),
+                                   fmt::format("{:.4f}", e.translation.rmse),
+                                   fmt::format("{:.4f}", e.translation.median),
+                                   fmt::format("{:.4f}", e.translation.max),
+                                   fmt::format("{:.2f}", e.rotation_rmse_deg),
+                                   fmt::format("{:.4f}", e.alignment.scale),
+                                   fmt::format("{}", e.matched),
+                                   fmt::format("{:.1f}", 100 * e.completion)};
+    for (const RelativeErrors& errors : accuracy.relative)
+      cells.push_back(errors.count > 0 ? fmt::format("{:.3f}", errors.translation.mean) : "–");
+    table.add(std::move(cells));
+  }
+  return table.str();
+}
+
+/// One estimate: its figures. Several: a list of such documents.
+std::string json_of(const std::vector<Evaluated>& all, const EvalRequest& request) {
+  if (all.size() == 1)
+    return statistics_document_text(figures(all[0].pair, request, all[0].accuracy));
+  Json document{{"format", "leviosim evaluations"}, {"version", 1}};
+  document["evaluations"] = Json::array();
+  for (const Evaluated& one : all)
+    document["evaluations"].push_back(figures(one.pair, request, one.accuracy));
+  return json_text(document, 1) + '\n';
 }
 
 void run(const CLI::App& command, const EvalOptions& options) {
   EvalRequest request = make_eval_request(command, options);
-  const traces::TrajectoryPair pair = read_pair(options.estimate, options.truth, request.read);
-  const Accuracy accuracy = measured(pair, request, options);
-  publish({{request.json, figures_text(pair, request, accuracy), "figures"},
-           {request.plot, trajectory_plot(pair, accuracy.evaluation), "plot"}},
-          report(pair, request, accuracy));
+  std::vector<Evaluated> all{evaluated(options.estimate, options, request)};
+  for (const std::string& estimate : options.also)
+    all.push_back(evaluated(estimate, options, request));
+  std::string text;
+  for (const Evaluated& one : all) text += report(one.pair, request, one.accuracy);
+  if (all.size() > 1) text += side_by_side(all);
+  publish({{request.json, json_of(all, request), "figures"},
+           {request.plot, trajectory_plot(all[0].pair, all[0].accuracy.evaluation), "plot"}},
+          text);
 }
 
 }  // namespace

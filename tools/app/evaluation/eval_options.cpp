@@ -31,16 +31,21 @@ std::vector<double> parse_lengths(const std::vector<std::string>& words) {
 
 base::OutputRequest output(const EvalOptions& options, const char* option,
                            const std::string& file) {
-  return {.option = option,
-          .path = file,
-          .replace = options.force,
-          .inputs = {options.estimate, options.truth, options.times}};
+  base::OutputRequest request{.option = option,
+                              .path = file,
+                              .replace = options.force,
+                              .inputs = {options.estimate, options.truth, options.times}};
+  request.inputs.insert(request.inputs.end(), options.also.begin(), options.also.end());
+  return request;
 }
 
 /// Told from each other as files, not as names.
 void claim_outputs(const EvalOptions& options, EvalRequest& request) {
   if (!options.plot.empty() && std::filesystem::path(options.plot).extension() != ".svg")
     throw InputError(fmt::format("--plot {}: expected a file that ends in .svg", options.plot));
+  if (!options.plot.empty() && !options.also.empty())
+    throw InputError(
+        fmt::format("--plot {}: draws one estimate; expected no --also", options.plot));
   request.json = claimed_file(output(options, "--json", options.json));
   request.plot = claimed_file(output(options, "--plot", options.plot));
   if (request.json && request.plot && request.json->path() == request.plot->path())
@@ -52,6 +57,12 @@ void claim_outputs(const EvalOptions& options, EvalRequest& request) {
 void add_eval_options(CLI::App& command, EvalOptions& options) {
   command.add_option("EST", options.estimate, "estimated trajectory: a file or a run folder");
   command.add_option("GT", options.truth, "ground truth: a file or an ASL folder");
+  command
+      .add_option("--also", options.also,
+                  "another estimate of the same flight, repeatable: a row for each, side by side")
+      ->type_name("EST")
+      ->take_all()
+      ->allow_extra_args(false);
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     command.add_option(name, value, help)->type_name(type);
   };

@@ -21,6 +21,7 @@ struct EvalOptions {
   std::string truth;
   std::string align = "se3";
   std::string max_dt = "10ms";
+  std::vector<std::string> also;  ///< further estimates
   std::vector<std::string> relative;
   std::string expected;
   std::string format;
