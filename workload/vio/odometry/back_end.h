@@ -7,7 +7,7 @@
 #include "workload/graph/optimiser.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/graph/window.h"
-#include "workload/vio/odometry.h"
+#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::vio {
 
