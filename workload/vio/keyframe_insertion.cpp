@@ -17,7 +17,7 @@ Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera
   using F = typename P::F32;
   const KeyframeState<P> last = graph.keyframe(graph.newest_keyframe());
   if (!state.profile.use_imu) {
-    const F dt = std::max(state.time_since_keyframe, 1e-3f);
+    const F dt = std::max(state.time_since_keyframe, 1e-3f);  // for a quotient that is finite
     return (T_world_camera.t - last.T_world_camera.t) * F(F(1.0f) / dt);
   }
   const ImuDelta<P> delta = Preintegration<P>(interval).corrected(graph.bias());
@@ -95,8 +95,8 @@ void triangulate_landmarks(const FrontEndState<P>& state, const Frame<P>& frame,
     if (!point.valid || !agrees_with_view<P>(T_old, point.point, before, state.rig.camera, limit) ||
         !agrees_with_view<P>(T_now, point.point, now, state.rig.camera, limit))
       continue;
-    const auto words = frame.features.list.descriptors.subspan(
-        work::value(I32(feature * I32(kDescriptorWords))), kDescriptorWords);
+    const auto words = frame.features.list.descriptors.subspan(I32(feature * I32(kDescriptorWords)),
+                                                               kDescriptorWords);
     const I32 landmark = graph.add_landmark(point.point, words);
     if (landmark < I32(0)) return;
     graph.add_observation(previous_slot, landmark, old_u, old_v);
