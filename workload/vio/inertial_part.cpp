@@ -18,7 +18,7 @@ template <class P>
 InertialPart<P>::InertialPart(const FrontEndState<P>& state)
     : state_(state),
       R_camera_body_(matrix_from<P>(state.rig.R_camera_body)),
-      stillness_(StillnessOptions{}, state.keyframe.stillness) {}
+      stillness_(state.profile.stillness, state.keyframe.stillness) {}
 
 template <class P>
 void InertialPart<P>::integrate(const FrameInput& input) {
@@ -93,7 +93,7 @@ void InertialPart<P>::detect_stillness(const Preintegration<P>& interval, float 
   }
   BiasPrior<P> prior = state_.graph_in_l2.bias_prior();
   const float gyro_variance = state_.profile.imu_noise.gyro * state_.profile.imu_noise.gyro;
-  const float duration = seconds * static_cast<float>(StillnessOptions{}.batches);
+  const float duration = seconds * static_cast<float>(state_.profile.stillness.batches);
   prior.mean.gyro = seen.gyro_mean;
   prior.gyro_information = work::max(prior.gyro_information, F(duration / gyro_variance));
   state_.graph_in_l2.set_bias_prior(prior);

@@ -44,6 +44,7 @@ void match_around(const FrontEndState<P>& state, const FeatureList<P>& features,
       T_camera_world, rig.camera,  rig.width, rig.height, profile.extractor.subpixel_steps};
   GuidedOptions options = profile.guided;
   options.radius_px = radius_px;
+  options.min_depth = profile.optimiser.visual.min_depth;
   match_guided<P>(machine, input, features, options, found.matches);
 }
 
@@ -112,6 +113,7 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
   RefinementOptions options = profile.refinement;
   options.rotation = search.rotation;
   options.position = search.position;
+  options.min_depth = profile.optimiser.visual.min_depth;
   const RefinedPose<P> refined =
       refine_pose<P>(state.machine, input, T_camera_world, options, inliers);
   report.inliers = refined.inliers;
@@ -151,8 +153,9 @@ std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
   forget_landmarks<P>(frame);
   const std::optional<Pose<P>> recovered = pose_from_landmarks<P>(state, inertial, frame, report);
   if (!recovered || report.source != PoseSource::Epnp) return recovered;
-  const auto pose =
-      search_landmarks<P>(state, frame, *recovered, {near.radius_px, 1.0f, 1.0f}, report);
+  const LandmarkSearch around{near.radius_px, recovery.recovered_rotation,
+                              recovery.recovered_position};
+  const auto pose = search_landmarks<P>(state, frame, *recovered, around, report);
   return pose ? pose : recovered;
 }
 

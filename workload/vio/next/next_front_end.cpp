@@ -130,16 +130,16 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
 template <class P>
 Pose<P> NextFrontEnd<P>::settled(const Pose<P>& T_world_camera) {
   using F = typename P::F32;
-  constexpr float kFarthest = 0.05f;  // that the noise of a frame puts a camera at rest [m]
-  constexpr float kTurned = 0.02f;    // likewise, rad
+  const RestOptions& limits = state_.profile.rest;
   const auto stage = state_.machine.stage(stages::kGuided);
   const Pose<P> now{orthonormalised<P>(T_world_camera.R), T_world_camera.t};
   const Pose<P> last = prediction_.last_reported();
   const Vec3<P> moved = now.t - last.t;
   const auto& turn = (transpose(last.R) * now.R).m;
   // The trace is 1 + 2 cos(angle).
-  const bool near = dot(moved, moved) < F(kFarthest * kFarthest) &&
-                    F(3.0f) - (turn[0][0] + turn[1][1] + turn[2][2]) < F(kTurned * kTurned);
+  const bool near =
+      dot(moved, moved) < F(limits.position * limits.position) &&
+      F(3.0f) - (turn[0][0] + turn[1][1] + turn[2][2]) < F(limits.rotation * limits.rotation);
   const bool rests = inertial_.rest().has_value();
   may_rest_ = !rests || (may_rest_ && near);
   return rests && may_rest_ ? last : now;

@@ -22,11 +22,12 @@ template <class P>
 bool pose_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction,
                        const Pose<P>& T_world_camera, float seconds) {
   using F = typename P::F32;
-  constexpr float kCorrection = 1;  // that the optimiser may have made meanwhile, m
   const Vec3<P> moved = T_world_camera.t - prediction.last_reported().t;
-  const float limit = state.profile.recovery.max_speed * seconds + kCorrection;
+  const RecoveryOptions& limits = state.profile.recovery;
+  const float limit = limits.max_speed * seconds + limits.max_correction;
   const Mat3<P>& R = T_world_camera.R;
   const F size = dot(R.row(0), R.row(0)) + dot(R.row(1), R.row(1)) + dot(R.row(2), R.row(2));
+  // The rows of a rotation are of length 1: three within what rounding does to them.
   return dot(moved, moved) < F(limit * limit) && size > F(2.9f) && size < F(3.1f);
 }
 
@@ -34,7 +35,9 @@ template <class P>
 bool agrees_with_gyro(const FrontEndState<P>& state, const InertialPart<P>& inertial,
                       const Mat3<P>& R_camera_keyframe) {
   using F = typename P::F32;
-  const float limit = 0.05f + state.profile.optimiser.prior.gyro_bias * state.time_since_keyframe;
+  const Profile& profile = state.profile;
+  const float limit = profile.recovery.max_gyro_difference +
+                      profile.optimiser.prior.gyro_bias * state.time_since_keyframe;
   const auto& R = (R_camera_keyframe * inertial.motion_since_keyframe().R).m;
   // The trace is 1 + 2 cos(angle).
   return bool(F(3.0f) - (R[0][0] + R[1][1] + R[2][2]) < F(limit * limit));

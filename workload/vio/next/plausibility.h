@@ -16,7 +16,7 @@ template <class P>
 bool pose_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction,
                        const Pose<P>& T_world_camera, float seconds);
 
-/// Whether the gyro saw this rotation since the keyframe, but for the largest bias and 0.05 rad.
+/// Whether the gyro saw this rotation since the keyframe, but for the largest bias.
 /// The 8-point algorithm's choice among its four solutions is wrong at times, and a map that begins
 /// with one is of no use.
 template <class P>

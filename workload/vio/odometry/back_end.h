@@ -26,9 +26,6 @@ class BackEnd {
   using F = typename P::F32;
   using I32 = typename P::I32;
 
-  /// As many as two keyframes in slow flight lie frames apart.
-  static constexpr int kSnapshotsPerKeyframe = 10;
-
   bool is_settled();
   void update_prior();
   void follow_positions();
