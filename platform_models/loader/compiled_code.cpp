@@ -1,6 +1,7 @@
 #include "platform_models/loader/compiled_code.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -84,11 +85,19 @@ work::CodeMap code_map_from(const std::string& file, std::string_view text) {
   return reader.take();
 }
 
+work::CodeMap code_map_named(std::string_view name) {
+  std::vector<std::string> names;
+  for (const BuiltinFile& file : builtin_code()) {
+    if (file.name == name) return code_map_from(fmt::format("{}.csv", name), file.text);
+    names.emplace_back(file.name);
+  }
+  throw InputError(
+      fmt::format("no table of compiled code '{}' (platform_models/code/{}.csv); there is {}", name,
+                  name, fmt::join(names, ", ")));
+}
+
 const work::CodeMap& compiled_code() {
-  static const work::CodeMap map = [] {
-    const BuiltinFile& file = builtin_code().front();
-    return code_map_from(std::string(file.name) + ".csv", file.text);
-  }();
+  static const work::CodeMap map = code_map_named(kCompiledCode);
   return map;
 }
 

@@ -9,8 +9,15 @@
 
 namespace leviosim::platform {
 
-/// The pieces of all named functions of the workload as compiled for RV32IMFC.
+/// The table that all chips take the workload's code from: as compiled for RV32IMFC.
+inline constexpr std::string_view kCompiledCode = "rv32imfc";
+
+/// The pieces of all named functions of the workload, of the table kCompiledCode.
 const work::CodeMap& compiled_code();
+
+/// Of the table code/NAME.csv.
+/// @throws InputError with the tables that there are if there is none of this name
+work::CodeMap code_map_named(std::string_view name);
 
 /// From the text of such a file: comments (#), a header, then rows of
 /// function,after,lines,visits,refetches. `after` is empty for what runs from the function's entry

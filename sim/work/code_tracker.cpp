@@ -99,7 +99,10 @@ void CodeTracker::walk(Place& place, CodeEvent event) {
 
 void CodeTracker::visit(Place& place, std::uint64_t piece_key) {
   const int piece = map_->find(piece_key);
-  if (piece == CodeMap::kUnknown) return;
+  if (piece == CodeMap::kUnknown) {
+    without_size_.insert(piece_key);
+    return;
+  }
   const std::vector<CodeMap::Piece>& pieces = map_->pieces();
   const CodeMap::Piece& code = pieces[index(piece)];
   const auto number = static_cast<std::uint32_t>(piece);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -34,6 +35,10 @@ class CodeTracker {
   void follow(const CodeWindow& window);
   /// Adds to the tally of this thread what the events since the last call fetched.
   void settle();
+
+  /// What was executed and is not in the map, and so counts as code of no size: keys of pieces
+  /// (CodeMap::piece_key).
+  const std::set<std::uint64_t>& without_size() const { return without_size_; }
 
  private:
   static constexpr std::int32_t kNone = -1;
@@ -79,6 +84,7 @@ class CodeTracker {
   std::vector<Fetch> fetches_;           ///< of all steps
   std::vector<std::int32_t> unsettled_;  ///< steps in use
   std::unordered_multimap<std::uint64_t, std::uint32_t> state_of_hash_;
+  std::set<std::uint64_t> without_size_;
   std::size_t core_ = 0;                        ///< the one selected
   std::uint32_t state_ = 0;                     ///< of that core
   std::vector<std::uint32_t> states_of_cores_;  ///< of the other cores

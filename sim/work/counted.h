@@ -78,6 +78,14 @@ struct Product {
   friend Product operator-(Product p) { return Product(T::wrap_sub(Plain{}, p.v)); }
 };
 
+/// The plain value of a counted integer, for what the host needs: sizes, bounds of loops, figures
+/// of a report. It becomes an int by itself, but is no index of a view (memory.h): as an int it
+/// would pass for an index of a loop, while the integer itself counts as what it is, data.
+struct PlainInt {
+  std::int32_t v;
+  constexpr operator std::int32_t() const { return v; }
+};
+
 /// 32-bit integer, signed or unsigned. Overflow wraps, as it does on the target.
 template <class Rep>
 struct Int {

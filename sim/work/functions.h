@@ -100,7 +100,7 @@ inline I32 to_i32(F32 x) {
 inline bool is_finite(F32 x) { return is_finite(x.v); }
 inline float value(F32 x) { return x.v; }
 inline double value(F64 x) { return x.v; }
-inline std::int32_t value(I32 x) { return x.v; }
+inline PlainInt value(I32 x) { return {x.v}; }
 inline std::uint32_t value(U32 x) { return x.v; }
 inline bool value(Cond x) { return x.v; }
 inline I32 bits_of(F32 x) { return I32(bits_of(x.v)); }

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -157,6 +158,12 @@ class Machine {
 
   /// What was recorded since the last call.
   Job take_job();
+
+  /// Keys of the pieces of code that were executed and whose size is not known, which therefore
+  /// cost no fetches (code_tracker.h). Empty if no code was followed.
+  std::set<std::uint64_t> code_without_size() const {
+    return tracker_ ? tracker_->without_size() : std::set<std::uint64_t>{};
+  }
 
  private:
   template <class To, class From>

@@ -3,7 +3,10 @@
 //
 // The index tells what the address costs: a plain `int` comes from a loop and is affine in the loop
 // indices, so a compiler strength-reduces it to a stream; an I32 is data, so its address is
-// computed. What a view does not count: values kept in C++ variables, which stand for registers.
+// computed. value() of an I32 is refused as an index. A run of elements at a computed place is
+// subspan() with an I32: what it takes to compute the place has been counted, and from there on the
+// elements are a stream. What a view does not count: values kept in C++ variables, which stand for
+// registers.
 #pragma once
 
 #include <cstddef>
@@ -119,7 +122,10 @@ class CountedSpan {
   T* data() const { return data_; }
   Stream operator[](int i) const { return {data_ + i, access_weight(straddles_)}; }
   Indexed operator[](I32 i) const { return {data_ + i.v, access_weight(straddles_)}; }
+  Stream operator[](PlainInt i) const = delete;
   CountedSpan subspan(int offset, int size) const { return {data_ + offset, size, straddles_}; }
+  CountedSpan subspan(I32 offset, int size) const { return {data_ + offset.v, size, straddles_}; }
+  CountedSpan subspan(PlainInt offset, int size) const = delete;
 
  private:
   T* data_ = nullptr;
@@ -156,6 +162,7 @@ class CountedArray {
   auto operator[](I32 i) { return CountedSpan<T>(data_, N)[i]; }
   auto operator[](int i) const { return CountedSpan<const T>(data_, N)[i]; }
   auto operator[](I32 i) const { return CountedSpan<const T>(data_, N)[i]; }
+  void operator[](PlainInt i) const = delete;
   operator CountedSpan<T>() { return {data_, N}; }
   operator CountedSpan<const T>() const { return {data_, N}; }
 

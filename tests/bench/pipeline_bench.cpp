@@ -19,6 +19,7 @@
 #include "tests/bench/cpu_time.h"
 #include "tools/app/run/feed.h"
 #include "traces/synthesis/synthetic.h"
+#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim {
 namespace {

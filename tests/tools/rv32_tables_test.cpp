@@ -11,25 +11,13 @@
 
 #include "sim/base/csv.h"
 #include "sim/work/op.h"
+#include "tests/support/named_functions.h"
 #include "tests/support/paths.h"
 
 namespace leviosim::tools {
 namespace {
 
 const std::filesystem::path kSource = leviosim::tests::source_folder();
-
-/// The names in `typename P::Function function("name")` of the workload.
-std::set<std::string> named_functions() {
-  static const std::regex scope("P::(?:Function|Code)\\s+\\w+\\(\"([^\"]+)\"\\)");
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSource / "workload")) {
-    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-    const std::string text = traces::read_text_file(entry.path());
-    for (std::sregex_iterator it(text.begin(), text.end(), scope), end; it != end; ++it)
-      names.insert((*it)[1]);
-  }
-  return names;
-}
 
 struct Piece {
   std::string function, after;
@@ -51,23 +39,19 @@ std::vector<Piece> pieces() {
 const std::set<std::string> kLibrary = {"f64_add",     "f64_mul",  "f64_div", "f64_compare",
                                         "f64_convert", "popcount", "memset"};
 
-/// What the scenes do not come to: their vehicle never stands still for a second. The model takes
-/// such code to be of no size.
-const std::set<std::string> kNotReached = {"levelled"};
-
 TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   std::set<std::string> measured;
   for (const Piece& piece : pieces())
     if (piece.after.empty()) measured.insert(piece.function);
-  const std::set<std::string> names = named_functions();
+  const std::set<std::string> names = leviosim::tests::named_functions();
   EXPECT_GT(names.size(), 50u);
   for (const std::string& name : names)
-    EXPECT_NE(measured.contains(name), kNotReached.contains(name))
+    EXPECT_NE(measured.contains(name), leviosim::tests::kFunctionsWithoutSize.contains(name))
         << name << " has no footprint: run tools/rv32/measure.sh";
 }
 
 TEST(Rv32Code, NamesNoFunctionThatTheWorkloadDoesNotHave) {
-  const std::set<std::string> names = named_functions();
+  const std::set<std::string> names = leviosim::tests::named_functions();
   for (const Piece& piece : pieces()) {
     EXPECT_TRUE(names.contains(piece.function) || kLibrary.contains(piece.function))
         << piece.function << " is gone: run tools/rv32/measure.sh";

@@ -1,4 +1,4 @@
-#include "workload/vio/back_end.h"
+#include "workload/vio/odometry/back_end.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "tests/workload/preintegration_motion.h"
 #include "tests/workload/vision_runs.h"
-#include "workload/vio/front_end.h"
+#include "workload/vio/levio/levio_front_end.h"
 
 namespace leviosim::vio::test {
 
@@ -64,7 +64,7 @@ struct FrontEndAlone {
   work::Machine cluster;
   work::Arena memory;
   PoseGraph<Native> graph;
-  FrontEnd<Native> front_end;
+  LevioFrontEnd<Native> front_end;
   const cv::Mat flat{kHeight, kWidth, CV_8U, cv::Scalar(100)};
   const cv::Mat picture = vision_test::rectangle_image(kWidth, kHeight, 3);
   int frames = 0;

@@ -1,5 +1,5 @@
 // The front end alone: one frame after the other, its graph open to view.
-#include "workload/vio/front_end.h"
+#include "workload/vio/levio/levio_front_end.h"
 
 #include <gtest/gtest.h>
 

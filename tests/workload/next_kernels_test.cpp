@@ -31,7 +31,7 @@ TEST(Subpixel, FindsTheCornerOfAQuadrant) {
   for (const double dx : {-0.4, 0.0, 0.3})
     for (const double dy : {-0.2, 0.0, 0.45}) {
       const auto pixels = quadrant(10 + dx, 10 + dy, 21);
-      const Vec2<Native> offset = corner_offset<Native>({pixels.data(), 441}, 21, 10, 10);
+      const Vec2<Native> offset = corner_offset<Native>({pixels.data(), 441}, 21, 10, 10, 1.5f);
       EXPECT_NEAR(static_cast<double>(offset.x), dx, 0.15);
       EXPECT_NEAR(static_cast<double>(offset.y), dy, 0.15);
     }
@@ -39,7 +39,7 @@ TEST(Subpixel, FindsTheCornerOfAQuadrant) {
 
 TEST(Subpixel, AKeypointWithoutACornerStays) {
   const std::vector<std::uint8_t> flat(441, 100);
-  const Vec2<Native> offset = corner_offset<Native>({flat.data(), 441}, 21, 10, 10);
+  const Vec2<Native> offset = corner_offset<Native>({flat.data(), 441}, 21, 10, 10, 1.5f);
   EXPECT_EQ(offset.x, 0.0f);
   EXPECT_EQ(offset.y, 0.0f);
 }

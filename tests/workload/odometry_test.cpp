@@ -1,5 +1,5 @@
 // What the odometry makes of a profile before it runs it.
-#include "workload/vio/odometry.h"
+#include "workload/vio/odometry/odometry.h"
 
 #include <gtest/gtest.h>
 

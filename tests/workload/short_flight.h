@@ -19,7 +19,7 @@
 #include "traces/synthesis/renderer.h"
 #include "traces/synthesis/world.h"
 #include "traces/trajectories/evaluation.h"
-#include "workload/vio/odometry.h"
+#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::vio::test {
 

@@ -18,7 +18,7 @@
 #include "workload/math/inverse_power.h"
 #include "workload/math/solve.h"
 #include "workload/math/svd.h"
-#include "workload/vio/odometry.h"
+#include "workload/vio/odometry/odometry.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/matcher.h"
 

@@ -37,7 +37,7 @@ void add_match(const PnpInput<P>& matches, const Pose<P>& T, const RefinementOpt
   using F = typename P::F32;
   const typename P::Code code("refine_pose_add_match");
   const Vec3<P> x = T * point_of<P>(matches, i);
-  if (!(x.z > F(0.05f))) return;
+  if (!(x.z > F(options.min_depth))) return;
   const F inverse = F(1.0f) / x.z;
   const F a = x.x * inverse, b = x.y * inverse;
   const F fx = matches.camera.fx, fy = matches.camera.fy;
@@ -91,11 +91,12 @@ void gather(MatrixView<P> partial, MatrixView<P> H, typename P::template Span<ty
 }
 
 template <class P>
-typename P::I32 mark_inliers(const PnpInput<P>& matches, const Pose<P>& T, float limit,
-                             work::Share share,
+typename P::I32 mark_inliers(const PnpInput<P>& matches, const Pose<P>& T,
+                             const RefinementOptions& options, work::Share share,
                              typename P::template Span<typename P::Byte> inliers) {
   using F = typename P::F32;
   using I32 = typename P::I32;
+  const float limit = options.inlier_px * options.inlier_px;
   I32 number = 0;
   for (int i : P::range(share.begin, share.end)) {
     const Vec3<P> x = T * point_of<P>(matches, i);
@@ -105,7 +106,7 @@ typename P::I32 mark_inliers(const PnpInput<P>& matches, const Pose<P>& T, float
     const F dv = F(matches.camera.fy) * (x.y * inverse) + F(matches.camera.cy) -
                  F(matches.pixels[2 * i + 1]);
     const F error_sq = du * du + dv * dv;
-    const bool agrees = x.z > F(0.05f) && error_sq < F(limit);
+    const bool agrees = x.z > F(options.min_depth) && error_sq < F(limit);
     inliers[i] = work::narrow<typename P::Byte>(I32(agrees ? 1 : 0));
     if (agrees) ++number;
   }
@@ -148,9 +149,8 @@ RefinedPose<P> refine_pose(work::Machine& machine, const PnpInput<P>& matches,
     const Mat3<P> turn = so3_exp<P>(load_vec3<P>(b, 0));
     T = {turn * T.R, turn * T.t + load_vec3<P>(b, 3)};
   }
-  const float limit = options.inlier_px * options.inlier_px;
   machine.fork("inliers", [&](work::Core& core) {
-    numbers[core.id] = mark_inliers<P>(matches, T, limit, core.share(matches.n), inliers);
+    numbers[core.id] = mark_inliers<P>(matches, T, options, core.share(matches.n), inliers);
   });
   I32 number = 0;
   for (int id : P::range(0, machine.cores())) number += I32(numbers[id]);

@@ -12,15 +12,17 @@
 
 namespace leviosim::vio {
 
+/// Chosen on the rendered EuRoC flights (ACCURACY.md).
 struct RefinementOptions {
   int steps = 4;
   float sigma_px = 1.0f;
-  float huber_px = 1.0f;   ///< errors count linearly from here on
-  float inlier_px = 3.0f;  ///< of a match that agrees
-  float min_share = 0.6f;  ///< of the matches that must agree; of wrong ones found within 8 px, a
-                           ///< seventh does by chance
-  float rotation = 0.02f;  ///< standard deviation of the prior, each axis, rad
-  float position = 0.05f;  ///< likewise, m
+  float huber_px = 1.0f;    ///< errors count linearly from here on
+  float inlier_px = 3.0f;   ///< of a match that agrees
+  float min_share = 0.6f;   ///< of the matches that must agree; of wrong ones found within 8 px, a
+                            ///< seventh does by chance
+  float rotation = 0.02f;   ///< standard deviation of the prior, each axis, rad
+  float position = 0.05f;   ///< likewise, m
+  float min_depth = 0.05f;  ///< of a landmark in view, m
 };
 
 template <class P>

@@ -109,7 +109,7 @@ struct GraphMemory {
   /// Floats of the interval before keyframe `slot`.
   Span<F> interval_record(I32 slot) const {
     const I32 at = slot * I32(Preintegration<P>::kFloats);
-    return keyframe_intervals.subspan(work::value(at), Preintegration<P>::kFloats);
+    return keyframe_intervals.subspan(at, Preintegration<P>::kFloats);
   }
 
   GraphCapacity capacity;

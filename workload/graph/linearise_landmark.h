@@ -23,7 +23,7 @@ template <class P>
 Pose<P> pose_of(const WindowState<P>& state, typename P::I32 k) {
   using I32 = typename P::I32;
   const I32 at = k * I32(kPoseFloats);
-  return load_pose<P>(state.poses.subspan(work::value(at), kPoseFloats), 0);
+  return load_pose<P>(state.poses.subspan(at, kPoseFloats), 0);
 }
 
 template <class P>

@@ -100,19 +100,16 @@ class PoseGraph : public GraphMemory<P, Where> {
   I32 landmark_count() const { return this->header[kLandmarks]; }
 
   KeyframeState<P> keyframe(I32 slot) const {
-    return {load_pose<P>(this->keyframe_poses, work::value(I32(slot * I32(kPoseFloats)))),
-            load_vec3<P>(this->keyframe_velocities, work::value(I32(slot * I32(3))))};
+    return {load_pose<P>(element(this->keyframe_poses, slot, kPoseFloats), 0),
+            load_vec3<P>(element(this->keyframe_velocities, slot, 3), 0)};
   }
   void set_keyframe(I32 slot, const KeyframeState<P>& state) const {
-    store_pose<P>(this->keyframe_poses, work::value(I32(slot * I32(kPoseFloats))),
-                  state.T_world_camera);
-    store_vec3<P>(this->keyframe_velocities, work::value(I32(slot * I32(3))), state.velocity);
+    store_pose<P>(element(this->keyframe_poses, slot, kPoseFloats), 0, state.T_world_camera);
+    store_vec3<P>(element(this->keyframe_velocities, slot, 3), 0, state.velocity);
   }
-  Vec3<P> point(I32 landmark) const {
-    return load_vec3<P>(this->points, work::value(I32(landmark * I32(3))));
-  }
+  Vec3<P> point(I32 landmark) const { return load_vec3<P>(element(this->points, landmark, 3), 0); }
   void set_point(I32 landmark, const Vec3<P>& point) const {
-    store_vec3<P>(this->points, work::value(I32(landmark * I32(3))), point);
+    store_vec3<P>(element(this->points, landmark, 3), 0, point);
   }
   ImuBias<P> bias() const {
     return {load_vec3<P>(this->environment, 0), load_vec3<P>(this->environment, 3)};
@@ -147,6 +144,12 @@ class PoseGraph : public GraphMemory<P, Where> {
     kHeaderWords,
   };
   static_assert(kHeaderWords == kGraphHeaderWords);
+
+  /// The `floats` of element i.
+  template <class Span>
+  static Span element(const Span& all, I32 i, int floats) {
+    return all.subspan(I32(i * I32(floats)), floats);
+  }
 
   void drop_oldest_keyframe() const;
   void remove_observations(I32 keyframe) const;
@@ -288,8 +291,8 @@ template <class P, class Where>
 template <class Words>
 void PoseGraph<P, Where>::update_descriptor(I32 landmark, const Words& descriptor) const {
   const typename P::Function function("PoseGraph::update_descriptor");
-  const auto to = this->descriptors.subspan(work::value(I32(landmark << kLog2DescriptorWords)),
-                                            kGraphDescriptorWords);
+  const auto to =
+      this->descriptors.subspan(I32(landmark << kLog2DescriptorWords), kGraphDescriptorWords);
   for (int i : P::range(0, kGraphDescriptorWords)) to[i] = typename P::U32(descriptor[i]);
 }
 

@@ -36,12 +36,11 @@ class ReducedSystem {
     const I32 n = unknowns(), d = per_keyframe_;
     const I32 row = a * d;
     const I32 at = row * n + b * d;
-    return matrix_.data().subspan(work::value(at),
-                                  (per_keyframe_ - 1) * unknowns() + per_keyframe_);
+    return matrix_.data().subspan(at, (per_keyframe_ - 1) * unknowns() + per_keyframe_);
   }
   Span vector(I32 keyframe) const {
     const I32 at = keyframe * I32(per_keyframe_);
-    return vector_.subspan(work::value(at), per_keyframe_);
+    return vector_.subspan(at, per_keyframe_);
   }
 
   void clear() const {

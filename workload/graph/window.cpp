@@ -99,7 +99,7 @@ void copy_landmarks(const PoseGraph<P>& graph, const SnapshotTables<P>& tables, 
     window.first_observations[landmarks] = work::narrow<U16>(observations);
     window.observation_numbers[landmarks] = work::narrow<Byte>(I32(0));
     window.lost[landmarks] = work::narrow<Byte>(I32(0));
-    const auto point = window.state.points.subspan(work::value(I32(landmarks * I32(3))), 3);
+    const auto point = window.state.points.subspan(I32(landmarks * I32(3)), 3);
     for (int c = 0; c < 3; ++c) point[c] = F(graph.points[3 * slot + c]);
     observations += seen;
     ++landmarks;

@@ -50,7 +50,7 @@ Mat3<P> levelled(const Mat3<P>& R_world_camera, const Vec3<P>& force) {
   const Vec3<P> up = R_world_camera * (force * F(F(1.0f) / norm(force)));
   const Vec3<P> axis{up.y, -up.x, 0.0f};  // up × z, of length sin(angle)
   const F sine = norm(axis);
-  if (!(sine > F(1e-6f))) return R_world_camera;
+  if (!(sine > F(1e-6f))) return R_world_camera;  // upright within single precision
   return so3_exp<P>(axis * F(atan2_of<P>(sine, up.z) / sine)) * R_world_camera;
 }
 
@@ -65,6 +65,7 @@ Vec3<P> mean_force(const Span& batch, int n) {
   return sum * F(F(1.0f) / F(static_cast<float>(n)));
 }
 
+/// Standing still (PARAMETERS.md#standstill); the thresholds are explained above.
 struct StillnessOptions {
   int batches = 20;            ///< looked at: one second of batches of one frame each
   float gyro_stddev = 0.04f;   ///< above this the vehicle moves, rad/s

@@ -42,13 +42,14 @@ struct KeyframeRecord {
 
   /// @param strips  whether features are extracted from strips of the image, which takes a blurred
   ///                copy in L2
-  KeyframeRecord(work::Arena& arena, int capacity, int width, int height, bool strips)
+  KeyframeRecord(work::Arena& arena, int capacity, int width, int height, bool strips,
+                 const StillnessOptions& standstill)
       : features(alloc_observed_features<P>(arena, capacity)),
         interval(
             arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
         last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample", kImuSampleFloats)),
         stillness(arena.alloc<typename P::template Span<F>>(
-            "IMU sums of the last second", StillnessDetector<P>::floats(StillnessOptions{}))),
+            "IMU sums of the last second", StillnessDetector<P>::floats(standstill))),
         image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
                                                                        width * height),
               width, height} {

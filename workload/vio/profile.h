@@ -12,6 +12,7 @@
 #include "workload/geometry/pose_refinement.h"
 #include "workload/graph/optimiser.h"
 #include "workload/inertial/bias_estimation.h"
+#include "workload/inertial/initialisation.h"
 #include "workload/inertial/preintegration.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/guided_matcher.h"
@@ -19,19 +20,33 @@
 
 namespace leviosim::vio {
 
-/// What `next` does when landmarks get few or are lost (guided_tracking.cpp).
+/// What `next` does when landmarks get few or are lost (next/). Chosen on the rendered EuRoC
+/// flights (ACCURACY.md).
 struct RecoveryOptions {
-  float wide_radius_px = 24;  ///< of a second search, where the first one finds too few; 0: none
-  float rotation = 0.1f;      ///< of its prior, standard deviation of each axis, rad
-  float position = 0.3f;      ///< likewise, m
-  float max_blind_time = 3;   ///< that the IMU alone carries the pose for [s]
-  int min_tracked = 60;       ///< a frame that sees fewer landmarks becomes a keyframe, 0: never
-  float min_parallax = 0.3f;  ///< that it needs for that, as a share of keyframe_parallax
-  int min_features = 40;      ///< an image with fewer is dark or blurred, and no keyframe
+  float wide_radius_px = 24;     ///< of a second search, where the first one finds too few; 0: none
+  float rotation = 0.1f;         ///< of its prior, standard deviation of each axis, rad
+  float position = 0.3f;         ///< likewise, m
+  float recovered_rotation = 1;  ///< of a search around the pose that EPnP found, likewise, rad
+  float recovered_position = 1;  ///< likewise, m
+  float max_blind_time = 3;      ///< that the IMU alone carries the pose for [s]
+  int min_tracked = 60;          ///< a frame that sees fewer landmarks becomes a keyframe, 0: never
+  float min_parallax = 0.3f;     ///< that it needs for that, as a share of keyframe_parallax
+  int min_features = 40;         ///< an image with fewer is dark or blurred, and no keyframe
   // Beyond these a map has no meaning any more, and another one is begun.
   float max_speed = 20;       ///< m/s
   float max_gyro_bias = 0.5;  ///< rad/s
   float max_accel_bias = 3;   ///< m/s²
+  float max_correction = 1;   ///< that the optimiser may have made since the last frame, m
+  /// An 8-point pose whose rotation differs by more from the gyro's, but for the largest bias since
+  /// the keyframe, is none, rad.
+  float max_gyro_difference = 0.05f;
+};
+
+/// What the noise of a frame does to the pose of a camera at rest, at most; beyond it the images
+/// contradict rest. Chosen on the rendered EuRoC flights (ACCURACY.md).
+struct RestOptions {
+  float position = 0.05f;  ///< m
+  float rotation = 0.02f;  ///< rad
 };
 
 struct Profile {
@@ -49,10 +64,11 @@ struct Profile {
   float min_translation = 0.01f;      ///< per keyframe interval, of the 8-point pose [m]
   float max_translation_time = 1.0f;  ///< that the last velocity is trusted for [s]
 
-  // What `next` adds to it (guided_tracking.cpp). Not enabled: `levio`.
+  // What `next` adds to it (next/). Not enabled: `levio`.
   GuidedOptions guided;
   RefinementOptions refinement;
   RecoveryOptions recovery;
+  RestOptions rest;
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates
@@ -69,11 +85,15 @@ struct Profile {
   bool gravity_updates = true;  ///< gravity is measured again whenever the vehicle stands still
   ImuNoise imu_noise;
   ImuDoubt imu_doubt;
+  StillnessOptions stillness;
   BiasOptions biases;
   OptimiserOptions optimiser;
   int optimiser_keyframes = 8;  ///< window
   int max_observations = 2400;
   int optimiser_iterations = 3;  ///< per frame
+  /// Of the same newest keyframe, for the joint optimiser; as many as two keyframes in slow flight
+  /// lie frames apart.
+  int max_snapshots = 10;
 
   int l1_alignment = 1;  ///< bytes; the release's allocator packs blocks
 };

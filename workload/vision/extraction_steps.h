@@ -67,9 +67,8 @@ typename P::I32 detect(ConstImageView<P> image, const ExtractionTables<P>& table
   for (int c : P::range(cells.begin, cells.end)) {
     const I row = I(c) / cells_per_row;
     const I column = I(c) - row * cells_per_row;
-    const int begin = work::value(found);
-    BestOfCell<P> best(x.subspan(begin, x.size() - begin), y.subspan(begin, y.size() - begin),
-                       options.per_cell);
+    const int room = x.size() - work::value(found);
+    BestOfCell<P> best(x.subspan(found, room), y.subspan(found, room), options.per_cell);
     detect_in_box<P>(image, box_of_cell<P>(image, options, column, row), tables.ring_offsets,
                      options, best);
     found += best.count();
@@ -112,6 +111,7 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred,
     for (int i : P::range(features.begin + begin, features.begin + end)) {
       const I column = out.x[i];
       const I row = out.y[i];
+      // The windows around it are streams from a computed place.
       const int centre = work::value(I(row * I(blurred.width) + column)) - rows_above;
       const Moments<P> moments =
           disc_moments<P>(blurred.pixels, blurred.width, centre, tables.disc);

@@ -86,7 +86,7 @@ void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
   });
   // Last, because descriptors are of whole pixels.
   if (options.subpixel_steps > 1)
-    refine_keypoints<P>(machine, work.image, options.subpixel_steps, {0, out.count}, out);
+    refine_keypoints<P>(machine, work.image, options, {0, out.count}, out);
 }
 
 template void extract_features<work::Native>(work::Machine&, ImageView<work::Native>,

@@ -27,6 +27,10 @@ struct ExtractorOptions {
 
   /// Keypoints come in units of 1/subpixel_steps px, refined (subpixel.h) if that is more than 1.
   int subpixel_steps = 1;
+  /// Of a refined keypoint, in each direction, px: one whose corner is farther stays in its pixel.
+  /// Detected corners of one structure lie side by side (there is no non-maximum suppression), so
+  /// the true one may be a pixel away.
+  float max_corner_shift = 1.5f;
 
   static constexpr int kMostPerCell = 16;
 

@@ -5,8 +5,7 @@
 namespace leviosim::vio {
 namespace {
 
-constexpr int kCell = 8;  ///< px
-constexpr int kNone = 0xffff;
+constexpr int kNone = 0xffff;  ///< of 16 bits that index features and landmarks
 
 /// Features by cell: those of cell c are order[begin[c]] … order[begin[c + 1] - 1].
 template <class P>
@@ -15,10 +14,11 @@ struct Cells {
   using U16 = typename P::U16;
   using Table = typename P::template Span<U16>;
 
-  Cells(work::Arena& arena, int width, int height, int steps_per_px, int features)
-      : columns((width + kCell - 1) / kCell),
-        rows((height + kCell - 1) / kCell),
-        side(kCell * steps_per_px),
+  /// @param cell  their side in px
+  Cells(work::Arena& arena, int cell, int width, int height, int steps_per_px, int features)
+      : columns((width + cell - 1) / cell),
+        rows((height + cell - 1) / cell),
+        side(cell * steps_per_px),
         begin(arena.alloc<Table>("cells of features", columns * rows + 1)),
         order(arena.alloc<Table>("features by cell", features)) {}
 
@@ -82,7 +82,7 @@ Candidate<P> search_around(const FeatureList<P>& features, const Cells<P>& cells
       const I dx = I(features.x[feature]) - u, dy = I(features.y[feature]) - v;
       const I distance_sq = dx * dx + dy * dy;
       if (distance_sq > limit) continue;
-      const int at = work::value(I(feature * I(kDescriptorWords)));
+      const I at = feature * I(kDescriptorWords);
       const I distance =
           hamming_distance<P>(descriptor, features.descriptors.subspan(at, kDescriptorWords));
       if (distance < best.distance) best = {feature, distance};
@@ -114,7 +114,7 @@ void search(const GuidedInput<P>& input, const FeatureList<P>& features, const C
     const Vec3<P> world{F(input.points[3 * l]), F(input.points[3 * l + 1]),
                         F(input.points[3 * l + 2])};
     const Vec3<P> x = input.T_camera_world * world;
-    if (!(x.z > F(0.05f))) continue;
+    if (!(x.z > F(options.min_depth))) continue;
     const F inverse = F(1.0f) / x.z;
     const F u = F(c.fx) * (x.x * inverse) + F(c.cx), v = F(c.fy) * (x.y * inverse) + F(c.cy);
     if (!(u > 0.0f) || !(v > 0.0f) || !(u < width) || !(v < height)) continue;
@@ -162,7 +162,8 @@ void match_guided(work::Machine& machine, const GuidedInput<P>& input,
   check(options.max_distance <= 255, "distances of guided matches are kept in a byte");
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
-  const Cells<P> cells(local, input.width, input.height, input.steps, features.count);
+  const Cells<P> cells(local, options.cell_px, input.width, input.height, input.steps,
+                       features.count);
   const Claims<P> claims{
       local.alloc<typename P::template Span<typename P::U16>>("claimed features", input.landmarks),
       local.alloc<typename P::template Span<typename P::Byte>>("distances", input.landmarks)};

@@ -13,10 +13,13 @@
 
 namespace leviosim::vio {
 
+/// Chosen on the rendered EuRoC flights (ACCURACY.md); the side of a cell decides the work only.
 struct GuidedOptions {
   bool enabled = false;
-  float radius_px = 8.0f;  ///< around the predicted place
-  int max_distance = 50;   ///< bits; a match is strictly closer
+  float radius_px = 8.0f;   ///< around the predicted place
+  int max_distance = 50;    ///< bits, at most 255; a match is strictly closer
+  int cell_px = 8;          ///< side of the cells that features are sorted into
+  float min_depth = 0.05f;  ///< m; nearer landmarks are out of view
 };
 
 /// Landmarks and the view that they are looked for in; all in local memory.

@@ -116,8 +116,7 @@ void extract_features_in_strips(work::Machine& machine, ImageView<P> image_in_l2
     if (options.subpixel_steps > 1)
       for_each_strip<P>(machine, image_in_l2, strips(kHarrisReach),
                         [&](int i, const Strip&, ConstImageView<P> view) {
-                          refine_keypoints<P>(machine, view, options.subpixel_steps, features_of(i),
-                                              out);
+                          refine_keypoints<P>(machine, view, options, features_of(i), out);
                         });
   });
 }

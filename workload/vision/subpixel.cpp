@@ -3,6 +3,7 @@
 namespace leviosim::vio {
 namespace {
 
+/// That of the corner score (harris.h), for which the sums below do not overflow.
 constexpr int kWindowRadius = 3;
 
 /// Whole-number sums over the window; at most 49 · 1020² · 3 < 2^31.
@@ -41,7 +42,7 @@ GradientSums<P> sum_gradients(typename P::template Span<const typename P::Byte> 
 
 template <class P>
 Vec2<P> corner_offset(typename P::template Span<const typename P::Byte> image, int width, int x,
-                      int y) {
+                      int y, float max_shift) {
   using F = typename P::F32;
   const typename P::Function function("corner_offset");
   const GradientSums<P> sums = sum_gradients<P>(image, width, x, y);
@@ -52,23 +53,25 @@ Vec2<P> corner_offset(typename P::template Span<const typename P::Byte> image, i
   const F scale = F(1.0f) / determinant;
   const F dx = (yy * bx - xy * by) * scale;
   const F dy = (xx * by - xy * bx) * scale;
-  if (work::abs(dx) > F(kLargestShift) || work::abs(dy) > F(kLargestShift)) return {0.0f, 0.0f};
+  if (work::abs(dx) > F(max_shift) || work::abs(dy) > F(max_shift)) return {0.0f, 0.0f};
   return {dx, dy};
 }
 
 template <class P>
-void refine_keypoints(work::Machine& machine, ConstImageView<P> image, int steps, work::Share which,
+void refine_keypoints(work::Machine& machine, ConstImageView<P> image,
+                      const ExtractorOptions& options, work::Share which,
                       const FeatureList<P>& features) {
   using F = typename P::F32;
   using I = typename P::I32;
   using U16 = typename P::U16;
   machine.fork("refine", [&](work::Core& core) {
     const auto [begin, end] = core.share(which.end - which.begin);
-    const F unit = static_cast<float>(steps);
+    const F unit = static_cast<float>(options.subpixel_steps);
     for (int i : P::range(which.begin + begin, which.begin + end)) {
       const I x = features.x[i], y = features.y[i];
-      const Vec2<P> offset =
-          corner_offset<P>(image.pixels, image.width, work::value(x), work::value(y) - image.top);
+      // The window around it is a stream from a computed place.
+      const Vec2<P> offset = corner_offset<P>(image.pixels, image.width, work::value(x),
+                                              work::value(y) - image.top, options.max_corner_shift);
       // To the nearest step; coordinates are positive.
       const F u = (work::to_f32(x) + offset.x) * unit + F(0.5f);
       const F v = (work::to_f32(y) + offset.y) * unit + F(0.5f);
@@ -79,12 +82,14 @@ void refine_keypoints(work::Machine& machine, ConstImageView<P> image, int steps
 }
 
 template Vec2<work::Native> corner_offset(work::Native::Span<const work::Native::Byte>, int, int,
-                                          int);
+                                          int, float);
 template Vec2<work::Counting> corner_offset(work::Counting::Span<const work::Counting::Byte>, int,
-                                            int, int);
-template void refine_keypoints(work::Machine&, ConstImageView<work::Native>, int, work::Share,
+                                            int, int, float);
+template void refine_keypoints(work::Machine&, ConstImageView<work::Native>,
+                               const ExtractorOptions&, work::Share,
                                const FeatureList<work::Native>&);
-template void refine_keypoints(work::Machine&, ConstImageView<work::Counting>, int, work::Share,
+template void refine_keypoints(work::Machine&, ConstImageView<work::Counting>,
+                               const ExtractorOptions&, work::Share,
                                const FeatureList<work::Counting>&);
 
 }  // namespace leviosim::vio

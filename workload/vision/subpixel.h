@@ -3,29 +3,28 @@
 // gᵀ (c − p) = 0, and c solves Σ g gᵀ c = Σ g gᵀ p. One step from the pixel that the detector
 // found, over a 7×7 window of 3×3 Sobel gradients, as the corner score sees it.
 //
-// A corner that would lie more than kLargestShift px away belongs to something else; the keypoint
-// then stays in the middle of its pixel.
+// A corner that would lie farther away than the caller allows belongs to something else; the
+// keypoint then stays in the middle of its pixel.
 #pragma once
 
 #include "sim/work/machine.h"
 #include "workload/math/vec.h"
+#include "workload/vision/extractor.h"
 #include "workload/vision/features.h"
 
 namespace leviosim::vio {
 
-/// px, in each direction. Detected corners of one structure lie side by side (there is no
-/// non-maximum suppression), so the true one may be a pixel away.
-inline constexpr float kLargestShift = 1.5f;
-
 /// Offset of the corner from the pixel (x, y), in px. The 9×9 pixels around it lie in the image.
+/// @param max_shift  in each direction, px; beyond it the offset is zero
 template <class P>
 Vec2<P> corner_offset(typename P::template Span<const typename P::Byte> image, int width, int x,
-                      int y);
+                      int y, float max_shift);
 
 /// Replaces the coordinates of the keypoints [which.begin, which.end) by those of their corners in
-/// units of 1/steps px. One team fork, "refine".
+/// units of 1/options.subpixel_steps px. One team fork, "refine".
 template <class P>
-void refine_keypoints(work::Machine& machine, ConstImageView<P> image, int steps, work::Share which,
+void refine_keypoints(work::Machine& machine, ConstImageView<P> image,
+                      const ExtractorOptions& options, work::Share which,
                       const FeatureList<P>& features);
 
 }  // namespace leviosim::vio

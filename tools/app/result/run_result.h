@@ -16,7 +16,7 @@
 #include "sim/work/program.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
-#include "workload/vio/odometry.h"
+#include "workload/vio/records.h"
 
 namespace leviosim::tools {
 

@@ -9,7 +9,7 @@
 #include "tools/app/run/run_request.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_source.h"
-#include "workload/vio/odometry.h"
+#include "workload/vio/records.h"
 
 namespace leviosim::tools {
 

@@ -5,6 +5,7 @@
 
 #include "tools/app/run/feed.h"
 #include "tools/app/run/run_source.h"
+#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::tools {
 

@@ -6,6 +6,7 @@
 #include "sim/soc/simulation.h"
 #include "tools/app/run/live_source.h"
 #include "tools/app/run/recording_source.h"
+#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,7 +1,8 @@
-#include "workload/vio/odometry.h"
+#include "workload/vio/odometry/odometry.h"
 
-#include "workload/vio/back_end.h"
-#include "workload/vio/front_end.h"
+#include "workload/vio/levio/levio_front_end.h"
+#include "workload/vio/next/next_front_end.h"
+#include "workload/vio/odometry/back_end.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
@@ -42,6 +43,16 @@ Profile fitted_to(const Rig& rig, Profile profile) {
 
 namespace {
 
+/// The only place that asks which of the two it is.
+template <class P>
+std::unique_ptr<FrontEnd<P>> make_front_end(const Profile& profile, const Rig& rig,
+                                            work::Machine& cluster, work::Arena& keyframe_memory,
+                                            const PoseGraph<P>& graph) {
+  if (profile.guided.enabled)
+    return std::make_unique<NextFrontEnd<P>>(profile, rig, cluster, keyframe_memory, graph);
+  return std::make_unique<LevioFrontEnd<P>>(profile, rig, cluster, keyframe_memory, graph);
+}
+
 template <class P>
 class OdometryOf : public Odometry {
  public:
@@ -52,13 +63,13 @@ class OdometryOf : public Odometry {
         graph_memory_("L2", controller.local().capacity()),
         graph_(graph_memory_, keyframe_memory_,
                {profile.optimiser_keyframes, profile.max_landmarks, profile.max_observations}),
-        front_end_(profile_, rig, cluster, keyframe_memory_, graph_),
+        front_end_(make_front_end(profile_, rig, cluster, keyframe_memory_, graph_)),
         reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),
         back_end_(profile_, rig, controller, graph_) {
     graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
   }
 
-  FrameReport process_frame(const FrameInput& input) override { return front_end_.process(input); }
+  FrameReport process_frame(const FrameInput& input) override { return front_end_->process(input); }
   bool begin_optimisation() override { return back_end_.begin(); }
   OptimiserReport optimise() override { return back_end_.optimise(); }
   void publish() override { back_end_.publish(); }
@@ -70,7 +81,7 @@ class OdometryOf : public Odometry {
   work::Arena keyframe_memory_;
   work::Arena graph_memory_;
   PoseGraph<P> graph_;
-  FrontEnd<P> front_end_;
+  std::unique_ptr<FrontEnd<P>> front_end_;
   Reservation reserved_;
   BackEnd<P> back_end_;
 };

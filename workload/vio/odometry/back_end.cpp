@@ -1,4 +1,4 @@
-#include "workload/vio/back_end.h"
+#include "workload/vio/odometry/back_end.h"
 
 #include "workload/vio/stages.h"
 
@@ -42,7 +42,7 @@ bool BackEnd<P>::is_settled() {
   const int newest = work::value(I32(graph_.keyframe_ids[graph_.newest_keyframe()]));
   if (newest != newest_) snapshots_ = 0;
   newest_ = newest;
-  return ++snapshots_ > kSnapshotsPerKeyframe;
+  return ++snapshots_ > profile_.max_snapshots;
 }
 
 /// Marginalises the keyframes that have left the graph since the last snapshot, from which they

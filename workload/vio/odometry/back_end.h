@@ -7,7 +7,7 @@
 #include "workload/graph/optimiser.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/graph/window.h"
-#include "workload/vio/odometry.h"
+#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::vio {
 
@@ -25,9 +25,6 @@ class BackEnd {
  private:
   using F = typename P::F32;
   using I32 = typename P::I32;
-
-  /// As many as two keyframes in slow flight lie frames apart.
-  static constexpr int kSnapshotsPerKeyframe = 10;
 
   bool is_settled();
   void update_prior();

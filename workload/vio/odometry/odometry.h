@@ -8,47 +8,15 @@
 //   publish()                           what was found becomes visible       when that has finished
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <string_view>
 #include <vector>
 
 #include "sim/work/machine.h"
-#include "workload/math/vec.h"
-#include "workload/vio/frame_facts.h"
 #include "workload/vio/profile.h"
+#include "workload/vio/records.h"
 
 namespace leviosim::vio {
-
-/// One IMU sample in the body (IMU) frame.
-struct ImuInput {
-  float dt;        ///< since the sample before [s]
-  float gyro[3];   ///< [rad/s]
-  float accel[3];  ///< specific force [m/s²]
-};
-
-struct FrameInput {
-  const std::uint8_t* pixels;  ///< width × height, row by row, undistorted
-  int width;
-  int height;
-  float dt;  ///< since the frame before [s]; 0 for the first
-  std::vector<ImuInput> imu;
-};
-
-/// Camera and its place on the body.
-struct Rig {
-  PinholeCamera camera;  ///< of the undistorted, decimated image [px]
-  int width;
-  int height;
-  std::array<float, 9> R_camera_body;    ///< row-major
-  std::array<float, 3> p_camera_body{};  ///< of the body (IMU) in the camera frame [m]
-};
-
-struct FrameReport : FrameFacts {
-  std::array<float, 9> R_world_camera{};  ///< row-major
-  std::array<float, 3> p_world_camera{};  ///< [m]
-};
 
 struct OptimiserReport {
   bool ran = false;  ///< false while there is nothing to optimise yet

@@ -1,0 +1,62 @@
+#include "workload/vio/frame.h"
+
+#include <cstring>
+
+#include "workload/vio/stages.h"
+#include "workload/vision/strip_extractor.h"
+
+namespace leviosim::vio {
+
+template <class P>
+void take_image(const FrameInput& input, FrontEndState<P>& state) {
+  std::memcpy(static_cast<void*>(state.keyframe.image.pixels.data()), input.pixels,
+              static_cast<std::size_t>(input.width * input.height));
+  ++state.frame_number;
+  state.time_since_keyframe += input.dt;
+}
+
+template <class P>
+void extract_frame(FrontEndState<P>& state, Frame<P>& frame) {
+  const auto stage = state.machine.stage(stages::kExtraction);
+  const ExtractorOptions& options = state.profile.extractor;
+  const KeyframeRecord<P>& keyframe = state.keyframe;
+  frame.features =
+      alloc_observed_features<P>(state.machine.local(), keyframe.features.list.capacity);
+  if (state.strips)
+    extract_features_in_strips<P>(state.machine, keyframe.image, keyframe.blurred, options,
+                                  frame.features.list);
+  else
+    extract_features<P>(state.machine, keyframe.image, options, frame.features.list);
+  forget_landmarks(frame);
+}
+
+template <class P>
+void forget_landmarks(const Frame<P>& frame) {
+  using I32 = typename P::I32;
+  for (int i : P::range(0, frame.features.list.count))
+    frame.features.landmarks[i] = work::narrow<typename P::U16>(I32(kNoLandmark));
+}
+
+template <class P>
+void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport& report) {
+  report.features = frame.features.list.count;
+  report.frame_matches = frame.matches.list.count;
+  report.landmarks = work::value(state.graph.landmark_count());
+  const Pose<P>& T = frame.T_world_camera;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) report.R_world_camera[3 * r + c] = work::value(T.R.m[r][c]);
+  report.p_world_camera = {work::value(T.t.x), work::value(T.t.y), work::value(T.t.z)};
+}
+
+template void take_image(const FrameInput&, FrontEndState<work::Native>&);
+template void take_image(const FrameInput&, FrontEndState<work::Counting>&);
+template void extract_frame(FrontEndState<work::Native>&, Frame<work::Native>&);
+template void extract_frame(FrontEndState<work::Counting>&, Frame<work::Counting>&);
+template void forget_landmarks(const Frame<work::Native>&);
+template void forget_landmarks(const Frame<work::Counting>&);
+template void complete(const FrontEndState<work::Native>&, const Frame<work::Native>&,
+                       FrameReport&);
+template void complete(const FrontEndState<work::Counting>&, const Frame<work::Counting>&,
+                       FrameReport&);
+
+}  // namespace leviosim::vio

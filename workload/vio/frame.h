@@ -1,0 +1,49 @@
+// A frame on its way through a front end: its features, their matches with the last keyframe, and
+// its pose. The first and the last step of it, which both front ends share, are here too.
+#pragma once
+
+#include "workload/vio/front_end_state.h"
+#include "workload/vision/matcher.h"
+
+namespace leviosim::vio {
+
+/// Matches with the features of the last keyframe, and what is known of those; all in L1.
+template <class P>
+struct KeyframeMatches {
+  using I32 = typename P::I32;
+  using Table = typename P::template Span<typename P::U16>;
+
+  /// Where the keyframe's feature `old` is.
+  I32 u(I32 old) const { return pixels[old]; }
+  I32 v(I32 old) const { return pixels[I32(old + I32(first_v))]; }
+
+  MatchList<P> list;  ///< current feature → feature of the last keyframe
+  Table pixels;       ///< u of all keyframe features, from first_v on their v
+  int first_v = 0;
+  Table landmarks;  ///< of the keyframe features
+};
+
+template <class P>
+struct Frame {
+  ObservedFeatures<P> features;  ///< in L1
+  KeyframeMatches<P> matches;
+  Pose<P> T_world_camera{};
+};
+
+/// Takes the image, as the camera interface does, and counts the frame.
+template <class P>
+void take_image(const FrameInput& input, FrontEndState<P>& state);
+
+/// Features of the image in L2, without landmarks; they stay in L1.
+template <class P>
+void extract_frame(FrontEndState<P>& state, Frame<P>& frame);
+
+/// No feature shows a landmark.
+template <class P>
+void forget_landmarks(const Frame<P>& frame);
+
+/// What the frame came to, as plain numbers.
+template <class P>
+void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport& report);
+
+}  // namespace leviosim::vio

@@ -1,0 +1,41 @@
+// What a front end keeps between frames, and where it works: the parts of both front ends take it
+// and change it. Its data persist in L2; L1 is a scratchpad that is empty between frames.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/work/machine.h"
+#include "workload/graph/pose_graph.h"
+#include "workload/vio/feature_camera.h"
+#include "workload/vio/keyframe_record.h"
+#include "workload/vio/profile.h"
+#include "workload/vio/records.h"
+
+namespace leviosim::vio {
+
+template <class P>
+struct FrontEndState {
+  /// @param cluster          where the front end runs; its memory is L1
+  /// @param keyframe_memory  in L2, for the last keyframe
+  /// @param in_l2            the graph, shared with the back end
+  FrontEndState(const Profile& parameters, const Rig& camera_rig, work::Machine& cluster,
+                work::Arena& keyframe_memory, const PoseGraph<P>& in_l2);
+
+  KeyframeState<P> newest_keyframe() const {
+    return graph_in_l2.keyframe(graph_in_l2.newest_keyframe());
+  }
+
+  const Profile& profile;
+  Rig rig;
+  work::Machine& machine;
+  FeatureCamera<P> camera;
+  bool strips;  ///< the image does not fit in local memory as a whole
+  KeyframeRecord<P> keyframe;
+  PoseGraph<P> graph;                       ///< in L2, as the source and target of transfers
+  PoseGraph<P, L2FromCluster> graph_in_l2;  ///< the same, as a cluster core reaches it
+  bool started = false;                     ///< there is a map
+  std::uint32_t frame_number = 0;           ///< of the present frame, from 1 on
+  float time_since_keyframe = 0;            ///< [s]
+};
+
+}  // namespace leviosim::vio

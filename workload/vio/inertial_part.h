@@ -1,0 +1,48 @@
+// What a front end does with the IMU: the motion since the last keyframe, gravity and the gyro's
+// bias at rest, and the pose that it predicts.
+#pragma once
+
+#include <optional>
+
+#include "workload/inertial/initialisation.h"
+#include "workload/vio/front_end_state.h"
+
+namespace leviosim::vio {
+
+template <class P>
+class InertialPart {
+ public:
+  using F = typename P::F32;
+  using Floats = typename P::template Span<F>;
+
+  /// @param state  outlives this
+  explicit InertialPart(const FrontEndState<P>& state);
+
+  /// Adds the samples since the last frame to the motion since the last keyframe. Before the first
+  /// frame there is no motion to measure: the forces are summed up for gravity, in the place of the
+  /// motion.
+  void integrate(const FrameInput& input);
+
+  /// Since the last keyframe, at the bias of the graph.
+  ImuDelta<P> motion_since_keyframe() const;
+
+  /// The last keyframe's pose, moved on as the IMU measured; without an IMU, at its velocity.
+  Pose<P> predicted_pose() const;
+
+  /// Means over the last second if the vehicle stands still; only for the joint optimiser.
+  const std::optional<Stillness<P>>& rest() const { return rest_; }
+  /// Mean specific force over the last second [m/s²].
+  const Vec3<P>& recent_force() const { return recent_force_; }
+
+ private:
+  ImuNoise noise_of(const ImuInput& sample) const;
+  void detect_stillness(const Preintegration<P>& interval, float seconds);
+
+  const FrontEndState<P>& state_;
+  Mat3<P> R_camera_body_;
+  StillnessDetector<P> stillness_;
+  std::optional<Stillness<P>> rest_;
+  Vec3<P> recent_force_{0.0f, 0.0f, 0.0f};
+};
+
+}  // namespace leviosim::vio

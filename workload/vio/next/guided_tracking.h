@@ -1,0 +1,20 @@
+// Tracking by prediction: where the camera must be by now tells where to look for landmarks, and
+// the pose is refined to all that are found. EPnP RANSAC is left for recovery.
+#pragma once
+
+#include <optional>
+
+#include "workload/vio/next/prediction.h"
+
+namespace leviosim::vio {
+
+/// Finds the pose among the landmarks: near the prediction, then in a wider search, then, lost, by
+/// pose_from_landmarks(). The features then know their landmarks. Sets frame.T_world_last.
+/// @return T_world_camera, if enough landmarks agree with one
+template <class P>
+std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
+                                       const InertialPart<P>& inertial,
+                                       const Prediction<P>& prediction, TrackedFrame<P>& frame,
+                                       FrameReport& report);
+
+}  // namespace leviosim::vio

@@ -1,0 +1,43 @@
+// What goes into the odometry and what comes out of it, frame by frame. Plain numbers, without an
+// arithmetic policy: callers build and read these records.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "workload/math/vec.h"
+#include "workload/vio/frame_facts.h"
+
+namespace leviosim::vio {
+
+/// One IMU sample in the body (IMU) frame.
+struct ImuInput {
+  float dt;        ///< since the sample before [s]
+  float gyro[3];   ///< [rad/s]
+  float accel[3];  ///< specific force [m/s²]
+};
+
+struct FrameInput {
+  const std::uint8_t* pixels;  ///< width × height, row by row, undistorted
+  int width;
+  int height;
+  float dt;  ///< since the frame before [s]; 0 for the first
+  std::vector<ImuInput> imu;
+};
+
+/// Camera and its place on the body.
+struct Rig {
+  PinholeCamera camera;  ///< of the undistorted, decimated image [px]
+  int width;
+  int height;
+  std::array<float, 9> R_camera_body;    ///< row-major
+  std::array<float, 3> p_camera_body{};  ///< of the body (IMU) in the camera frame [m]
+};
+
+struct FrameReport : FrameFacts {
+  std::array<float, 9> R_world_camera{};  ///< row-major
+  std::array<float, 3> p_world_camera{};  ///< [m]
+};
+
+}  // namespace leviosim::vio
