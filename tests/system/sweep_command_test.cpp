@@ -70,7 +70,7 @@ class SweepCommand : public ::testing::Test {
     return WEXITSTATUS(status);
   }
   static std::string example(const std::string& name) {
-    return fmt::format("'{}/tools/sweep/examples/{}'", leviosim::tests::source_folder().string(),
+    return fmt::format("'{}/tools/app/study/sweep/examples/{}'", leviosim::tests::source_folder().string(),
                        name);
   }
 

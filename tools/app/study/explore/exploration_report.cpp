@@ -8,13 +8,7 @@
 namespace leviosim::tools {
 namespace {
 
-std::string number(std::optional<double> value) {
-  return value ? fmt::format("{:.9f}", *value) : std::string();
-}
-
-std::string cell(std::optional<double> value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : "diverged";
-}
+constexpr const char* kDiverged = "diverged";
 
 std::string set_text(const ExploredPoint& point) {
   std::vector<std::string> texts;
@@ -24,14 +18,21 @@ std::string set_text(const ExploredPoint& point) {
 }
 
 /// Values of the dimensions with this profile.
-std::vector<std::string> dimension_cells(const std::vector<Dimension>& dimensions,
-                                         const vio::Profile& profile) {
-  std::vector<std::string> cells;
+void add_dimensions(const std::vector<Dimension>& dimensions, const vio::Profile& profile,
+                    CsvRow& row) {
   for (const Dimension& d : dimensions)
-    cells.push_back(d.parameter->needs_imu && !profile.use_imu
-                        ? std::string()
-                        : vio::value_text(*d.parameter, d.parameter->get(profile)));
-  return cells;
+    row.push_back(Cell(std::string(d.parameter->name),
+                       d.parameter->needs_imu && !profile.use_imu
+                           ? std::string()
+                           : vio::value_text(*d.parameter, d.parameter->get(profile))));
+}
+
+/// "ate_median_m".
+void add_spread(const std::string& figure, const std::string& unit, const Spread& spread,
+                CsvRow& row) {
+  row.insert(row.end(), {Cell(figure + "_median_" + unit, decimals(spread.median, 9)),
+                         Cell(figure + "_least_" + unit, decimals(spread.low, 9)),
+                         Cell(figure + "_greatest_" + unit, decimals(spread.high, 9))});
 }
 
 TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
@@ -44,10 +45,11 @@ TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& ex
                    {"set (workload.…)", kLeft}});
   const auto add = [&](const char* what, const std::string& profile, const ExploredPoint* point) {
     if (point == nullptr)
-      table.add({profile, what, "–", "diverged", "diverged", "–"});
+      table.add({profile, what, "–", kDiverged, kDiverged, "–"});
     else
-      table.add({profile, what, fmt::format("{}", point->point), cell(point->mean_ate, 3),
-                 cell(point->mean_relative, 2), set_text(*point)});
+      table.add({profile, what, fmt::format("{}", point->point),
+                 decimals(point->mean_ate, 3, kDiverged),
+                 decimals(point->mean_relative, 2, kDiverged), set_text(*point)});
   };
   for (const std::string& profile : plan.profiles) {
     for (const ExploredPoint& point : explored)
@@ -77,35 +79,28 @@ std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint
 
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored) {
-  std::string text = "point,profile";
-  for (const Dimension& d : dimensions) text += fmt::format(",{}", d.parameter->name);
-  text +=
-      ",sequence,runs,failed,ate_median_m,ate_least_m,ate_greatest_m,relative_median_percent,"
-      "relative_least_percent,relative_greatest_percent\n";
+  std::vector<CsvRow> rows;
   for (const ExploredPoint& point : explored) {
     vio::Profile profile = vio::profile_named(point.profile, 1);
     vio::set_parameters(point.set, profile);
-    const std::vector<std::string> cells = dimension_cells(dimensions, profile);
-    for (const ExploredPoint::OfSequence& s : point.sequences)
-      text +=
-          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", point.point, point.profile,
-                      fmt::join(cells, ","), s.sequence, s.ate.runs, s.ate.failed,
-                      number(s.ate.median), number(s.ate.low), number(s.ate.high),
-                      number(s.relative.median), number(s.relative.low), number(s.relative.high));
+    for (const ExploredPoint::OfSequence& s : point.sequences) {
+      CsvRow& row =
+          rows.emplace_back(CsvRow{Cell("point", point.point), Cell("profile", point.profile)});
+      add_dimensions(dimensions, profile, row);
+      row.insert(row.end(), {Cell("sequence", s.sequence), Cell("runs", s.ate.runs),
+                             Cell("failed", s.ate.failed)});
+      add_spread("ate", "m", s.ate, row);
+      add_spread("relative", "percent", s.relative, row);
+    }
   }
-  return text;
+  return csv_text(rows);
 }
 
-LeadingColumns point_columns(const std::vector<Dimension>& dimensions,
-                             const ExplorationRuns& runs) {
-  LeadingColumns columns{{"point"}, {}};
-  for (const Dimension& d : dimensions) columns.names.emplace_back(d.parameter->name);
-  for (std::size_t i = 0; i < runs.runs.size(); ++i) {
-    std::vector<std::string> cells = dimension_cells(dimensions, profile_of(runs.runs[i].request));
-    cells.insert(cells.begin(), fmt::format("{}", runs.point[i]));
-    columns.cells.push_back(std::move(cells));
-  }
-  return columns;
+CsvRow point_cells(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
+                   const Point& run) {
+  CsvRow row{Cell("point", point_of_row(plan, run.row))};
+  add_dimensions(dimensions, profile_of(run.request), row);
+  return row;
 }
 
 }  // namespace leviosim::tools

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "tools/app/report/text_table.h"
+#include "tools/app/study/csv_table.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -116,24 +117,36 @@ std::string stage_comparison(const std::vector<Feasibility>& rows) {
   return table.str();
 }
 
-std::string feasibility_csv(const std::vector<Feasibility>& rows) {
-  std::string text =
-      "platform,cores,clock_hz,front_end_ms,worst_ms,published_ms,optimiser_ms,frames_per_s,"
-      "energy_per_frame_j,energy_low_j,energy_high_j,power_w,power_low_w,power_high_w,fits,l1_"
-      "bytes,"
-      "l1_size,l1_block,l2_bytes,l2_size,l2_block\n";
-  const auto numbers = [](const auto& e) {
-    return e ? fmt::format("{},{},{}", e->value.count(), e->low().count(), e->high().count())
-             : std::string(",,");
-  };
-  for (const Feasibility& row : rows)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.platform,
-                        row.cores, row.clock.count(), row.front_end_ms, row.worst_ms,
-                        published(row), row.optimiser_ms, row.frames_per_second(),
-                        numbers(row.energy_per_frame), numbers(row.power), row.fits() ? 1 : 0,
-                        row.l1.occupied.count(), row.l1.size.count(), row.l1.block,
-                        row.l2.occupied.count(), row.l2.size.count(), row.l2.block);
-  return text;
+std::string feasibility_csv(const std::vector<Feasibility>& all) {
+  std::vector<CsvRow> rows;
+  for (const Feasibility& f : all) {
+    CsvRow& row = rows.emplace_back(
+        CsvRow{Cell("platform", f.platform), Cell("cores", f.cores),
+               Cell("clock_hz", f.clock.count()), Cell("front_end_ms", f.front_end_ms),
+               Cell("worst_ms", f.worst_ms), Cell("published_ms", published(f)),
+               Cell("optimiser_ms", f.optimiser_ms), Cell("frames_per_s", f.frames_per_second())});
+    const auto add_band = [&](const std::string& figure, const auto& mean) {
+      const auto add = [&](const std::string& name, const auto& end) {
+        row.push_back(Cell(name, mean ? fmt::format("{}", end(*mean).count()) : std::string()));
+      };
+      const std::string name = figure.substr(0, figure.find('_'));
+      const std::string unit = figure.substr(figure.rfind('_'));
+      add(figure, [](const auto& e) { return e.value; });
+      add(name + "_low" + unit, [](const auto& e) { return e.low(); });
+      add(name + "_high" + unit, [](const auto& e) { return e.high(); });
+    };
+    add_band("energy_per_frame_j", f.energy_per_frame);
+    add_band("power_w", f.power);
+    row.push_back(Cell("fits", f.fits() ? 1 : 0));
+    const auto add_memory = [&](const std::string& name, const MemoryVerdict& memory) {
+      row.insert(row.end(),
+                 {Cell(name + "_bytes", memory.occupied.count()),
+                  Cell(name + "_size", memory.size.count()), Cell(name + "_block", memory.block)});
+    };
+    add_memory("l1", f.l1);
+    add_memory("l2", f.l2);
+  }
+  return csv_text(rows);
 }
 
 }  // namespace leviosim::tools

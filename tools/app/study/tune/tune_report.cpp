@@ -7,11 +7,9 @@
 #include <array>
 
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/batch/batch_options.h"
-#include "tools/app/study/batch/run_key.h"
-#include "tools/app/study/batch/runs_csv.h"
+#include "tools/app/study/batch_plan.h"
+#include "tools/app/study/csv_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -38,9 +36,7 @@ std::string volts(const ClockSetting& setting) {
   return setting.voltage ? fmt::format("{:.2f}", setting.voltage->count()) : kNothing;
 }
 
-std::string ate(const std::optional<double>& error) {
-  return error ? fmt::format("{:.3f}", *error) : "diverged";
-}
+std::string ate(const std::optional<double>& error) { return decimals(error, 3, "diverged"); }
 
 /// "240 MHz and 0.65 V".
 std::string clock_text(const ClockSetting& setting) {
@@ -74,12 +70,6 @@ Json banded_json(const std::optional<Banded>& figure) {
   return figure ? Json(figure->value) : Json(nullptr);
 }
 
-std::string optional_cells(const std::optional<Banded>& figure) {
-  if (!figure) return ",,";
-  return fmt::format("{:.9f},{:.9f},{:.9f}", figure->value * 1e3, figure->low * 1e3,
-                     figure->high * 1e3);
-}
-
 struct LatencyColumn {
   double (*of)(const LoopOutcome&);
 };
@@ -102,20 +92,44 @@ std::string notes(const TunePlan& plan) {
   return text;
 }
 
-/// All cells of a run but the last.
-std::string csv_line(const TunePlan& plan, const TunePoint& point, std::size_t seed) {
+/// A figure and the ends of its band, in thousandths.
+void add_banded(const std::string& name, const std::string& unit,
+                const std::optional<Banded>& figure, CsvRow& row) {
+  const auto milli = [&](double Banded::*part) {
+    return figure ? decimals(*figure.*part * 1e3, 9) : std::string();
+  };
+  row.insert(row.end(), {Cell(name + "_" + unit, milli(&Banded::value)),
+                         Cell(name + "_low_" + unit, milli(&Banded::low)),
+                         Cell(name + "_high_" + unit, milli(&Banded::high))});
+}
+
+CsvRow csv_row(const TunePlan& plan, const TunePoint& point, std::size_t seed) {
   const RunOutcome& outcome = point.outcomes[seed];
   const LoopOutcome& loop = *outcome.loop;
   const CameraFigures& c = loop.camera;
-  return fmt::format(
-      "{:g},{:g},{},{},{},{},{},{},{},{},{:.6f},{},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{}",
-      point.fps, megahertz(point.setting.clock),
-      point.setting.voltage ? fmt::format("{:g}", point.setting.voltage->count()) : "",
-      info_of(plan.deadline).name, plan.seeds[seed], c.arrived, c.processed, c.dropped, c.late,
-      c.missed(), c.share_of(c.missed()), c.waited, c.most_found, c.latency.p50_ns,
-      c.latency.p95_ns, c.latency.p99_ns, c.latency.max_ns, optional_cells(loop.power_w),
-      optional_cells(loop.frame_j), outcome.ate_m ? fmt::format("{:.9f}", *outcome.ate_m) : "",
-      outcome.matched, outcome.completion, outcome.path_m, csv_cell(outcome.failure));
+  const auto general = [](double value) { return fmt::format("{:g}", value); };
+  const std::optional<Volts>& voltage = point.setting.voltage;
+  CsvRow row;
+  row.insert(
+      row.end(),
+      {Cell("fps", general(point.fps)), Cell("clock_mhz", general(megahertz(point.setting.clock))),
+       Cell("voltage", voltage ? general(voltage->count()) : ""),
+       Cell("deadline", info_of(plan.deadline).name), Cell("seed", plan.seeds[seed]),
+       Cell("arrived", c.arrived), Cell("processed", c.processed), Cell("dropped", c.dropped),
+       Cell("late", c.late), Cell("missed", c.missed()),
+       Cell("missed_share", decimals(c.share_of(c.missed()), 6)), Cell("waited", c.waited),
+       Cell("most_found", c.most_found), Cell("latency_p50_ns", c.latency.p50_ns),
+       Cell("latency_p95_ns", c.latency.p95_ns), Cell("latency_p99_ns", c.latency.p99_ns),
+       Cell("latency_worst_ns", c.latency.max_ns)});
+  add_banded("power", "mw", loop.power_w, row);
+  add_banded("frame", "mj", loop.frame_j, row);
+  row.insert(
+      row.end(),
+      {Cell("ate_rmse_m", decimals(outcome.ate_m, 9)), Cell("matched", outcome.matched),
+       Cell("completion", decimals(outcome.completion, 9)),
+       Cell("path_m", decimals(outcome.path_m, 9)), Cell("failure", plain_cell(outcome.failure)),
+       Cell("point_is_enough", int{is_enough(point, plan)})});
+  return row;
 }
 
 }  // namespace
@@ -147,15 +161,10 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  std::string text =
-      "fps,clock_mhz,voltage,deadline,seed,arrived,processed,dropped,late,missed,missed_share,"
-      "waited,most_found,latency_p50_ns,latency_p95_ns,latency_p99_ns,latency_worst_ns,power_mw,"
-      "power_low_mw,power_high_mw,frame_mj,frame_low_mj,frame_high_mj,ate_rmse_m,matched,"
-      "completion,path_m,failure,point_is_enough\n";
+  std::vector<CsvRow> rows;
   for (const TunePoint& point : points)
-    for (std::size_t i = 0; i < plan.seeds.size(); ++i)
-      text += csv_line(plan, point, i) + fmt::format(",{}\n", int{is_enough(point, plan)});
-  return text;
+    for (std::size_t i = 0; i < plan.seeds.size(); ++i) rows.push_back(csv_row(plan, point, i));
+  return csv_text(rows);
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
@@ -172,13 +181,7 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
 
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line) {
-  Json document;
-  document["format"] = "leviosim tune manifest";
-  document["version"] = 1;
-  document["program"]["version"] = version();
-  document["program"]["revision"] = revision();
-  document["program"]["estimator"] = results_version();
-  document["command_line"] = command_line;
+  Json document = study_manifest("leviosim tune manifest", command_line);
   document["profile"] = plan.request.profile;
   document["seeds"] = plan.seeds;
   document["platform"]["name"] = plan.options.platform;
