@@ -276,6 +276,11 @@ void add_l1_and_dma(Table& table) {
       quantity("cluster.dma.completion", kCycles, 0, kMaxCost,
                "cycles from the last data until the waiting core goes on"),
       [](auto& chip) -> auto& { return chip.cluster.dma.completion; });
+  table.add(
+      optional(
+          quantity("cluster.dma.commands", kUnits, 1, kMaxParts,
+                   "transfers that are under way at most; the programming core waits for room")),
+      [](auto& chip) -> auto& { return chip.cluster.dma.commands; });
 }
 
 void add_events(Table& table) {

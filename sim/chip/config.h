@@ -98,6 +98,7 @@ struct DmaConfig {
   double first_data = 0;       ///< latency until the first beat arrives
   double bytes_per_cycle = 0;  ///< payload
   double completion = 0;       ///< from the last beat until the waiting core goes on
+  int commands = 0;            ///< transfers that are under way at most; 0: any number
 };
 
 struct EventUnitConfig {

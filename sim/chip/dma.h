@@ -3,7 +3,7 @@
 // the one before; a transfer that finds its channel idle waits for the first data
 // (FACTS.md#cluster-dma). While data flow, they take banks of L1 from the cores (contention.h).
 //
-// Left out: the depth of the command queues, bursts and the number that may be under way (eight of
+// Left out: bursts and the number that may be under way (eight of
 // 256 bytes hide the latency of L2), 2D transfers, and waits of the DMA itself for banks (its ports
 // are wider than the payload).
 #pragma once

@@ -13,7 +13,7 @@ for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables; do
 done
 "$seeds" "$folder"
 
-cp platform_models/*.yaml "$folder/platform_yaml"
+cp platform_models/chips/*.yaml "$folder/platform_yaml"
 cat >"$folder/overrides/some" <<'END'
 cluster.clock=240MHz
 cluster.workers=4

@@ -82,6 +82,24 @@ TEST(Cluster, BackgroundTransfersOverlapWithWorkAndWithTheOtherDirection) {
   EXPECT_EQ(cycles({in, in, first, second}), kAlone + 1000) << "one behind the other";
 }
 
+TEST(Cluster, AFullQueueOfTheDmaLetsTheProgrammingCoreWait) {
+  const work::Transfer in{work::Direction::L2ToL1, Bytes(8000), true};
+  const auto cycles_with = [&](int commands) {
+    ChipConfig config = test_chip();
+    config.cluster.dma.commands = commands;
+    // The work lasts longer than any transfer, so only programming can let it wait.
+    return run(one_stage({in, in, in, work::Serial{alu(10'000)}, work::TransferWait{2}}), 8, config)
+        .stages[0]
+        .cycles.count();
+  };
+  constexpr std::int64_t kWork = 10'000 + 8;
+  EXPECT_EQ(cycles_with(0), 3 * 25 + kWork) << "any number may be under way";
+  EXPECT_EQ(cycles_with(3), 3 * 25 + kWork);
+  constexpr std::int64_t kFirst = 25 + 16 + 1000;  // has arrived
+  EXPECT_EQ(cycles_with(2), kFirst + 25 + kWork) << "the third finds room when the first is there";
+  EXPECT_EQ(cycles_with(1), kFirst + (25 + 16 + 1000) + 25 + kWork) << "one after the other";
+}
+
 TEST(Cluster, TheDmaTakesBanksFromTheCores) {
   Counts work;
   work[Op::LoadStream] = 10'000;

@@ -2,7 +2,7 @@
 // digit: poses and where they come from, keyframes, matches, inliers, landmarks, error, and cycles
 // per stage on GAP9. Determinism makes exact values possible, and no data is needed. Whoever means
 // to change what is computed makes golden_flight.csv anew, and looks at what has changed:
-//   LEVIOSIM_RENEW_GOLDEN=1 build/release/tests/leviosim_tests --gtest_filter='*GoldenFlight*'
+//   LEVIOSIM_RENEW_GOLDEN=1 build/release/tests/leviosim_system_tests --gtest_filter='*GoldenFlight*'
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ class Account {
   Account() : chip_(platform::load_platform("gap9")), timer_(chip_, 8) {}
 
   void add(const vio::FrameReport& report) {
-    count("source " + std::string(key_of(report.source)), 1);
+    count("source " + std::string(name_of(report.source)), 1);
     count("keyframes", report.keyframe ? 1 : 0);
     count("features", report.features);
     count("world matches", report.world_matches);

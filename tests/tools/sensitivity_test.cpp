@@ -36,7 +36,7 @@ traces::WorkTrace example() {
   traces::WorkFrame frame;
   const auto add = [&](PoseSource source, const work::Job& job) {
     frame.t_ns += 50'000'000;
-    frame.source = key_of(source);
+    frame.source = name_of(source);
     frame.front_end = job;
     writer.add(frame);
   };

@@ -58,10 +58,10 @@ TEST(Statistics, EveryFrameHasASourceAndAKind) {
   run.frames.clear();
   for (int k = 0; k <= static_cast<int>(PoseSource::Tracked); ++k) {
     const auto source = static_cast<PoseSource>(k);
-    EXPECT_EQ(source_named(key_of(source)), source);
+    EXPECT_EQ(vio::source_named(name_of(source)), source);
     run.frames.push_back(testing::frame(k, source, false, 10'000'000));
   }
-  EXPECT_EQ(source_named("guessed"), std::nullopt);
+  EXPECT_EQ(vio::source_named("guessed"), std::nullopt);
   const Json document = statistics(run);
   std::int64_t sources = 0, kinds = 0;
   for (const Json& entry : document.at("statistics")) {

@@ -98,7 +98,7 @@ inline std::string section(std::size_t frames, const std::string& series,
 inline std::string frame_facts(std::uint64_t flags = 0, std::int64_t seen = -1) {
   ByteWriter out;
   for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{0}, flags}) out.whole(value);
-  for (int i = 0; i < 5; ++i) out.whole(0);
+  for (int i = 0; i < 5; ++i) out.whole(0);  // facts
   for (int i = 0; i < 12; ++i) out.f64(0);
   out.whole(0);  // start
   out.integer(seen);

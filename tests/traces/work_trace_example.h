@@ -52,11 +52,7 @@ inline WorkFrame example_frame(int frame) {
   f.t_ns = 1'403'636'579'763'555'584 + 50'000'000 * std::int64_t{frame};
   f.source = frame == 0 ? "first" : "epnp";
   f.keyframe = frame % 3 == 0;
-  f.features = 300 + frame;
-  f.world_matches = 40;
-  f.frame_matches = 50;
-  f.inliers = 30;
-  f.landmarks = 999;
+  f.facts = {300 + frame, 40, 50, 30, 999};
   f.T_world_body.translation() = Eigen::Vector3d(0.1 * frame, -1e-9, 2);
   f.start_ns = 50'000'000 * std::int64_t{frame};
   f.optimised = frame % 2 == 0;
@@ -99,6 +95,7 @@ inline WorkTraceInfo example_info() {
   info.image_height = 120;
   info.frame_period_ns = 50'000'000;
   info.stages = {{"matching", "frame", false}, {"iteration", "iteration", true}};
+  info.facts = {"features", "world_matches", "frame_matches", "inliers", "landmarks"};
   info.l2 = {{"pose graph", Bytes(40), {{"poses", Bytes(0), Bytes(40)}}}};
   info.ate = Evaluation{};
   info.ate->translation = {0.25, 0.125, 0.1, 0.75};
@@ -163,9 +160,7 @@ inline void expect_equal(const WorkFrame& a, const WorkFrame& b) {
   EXPECT_EQ(a.t_ns, b.t_ns);
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.keyframe, b.keyframe);
-  for (const auto number : {&WorkFrame::features, &WorkFrame::world_matches,
-                            &WorkFrame::frame_matches, &WorkFrame::inliers, &WorkFrame::landmarks})
-    EXPECT_EQ(a.*number, b.*number);
+  EXPECT_EQ(a.facts, b.facts);
   EXPECT_EQ(a.T_world_body.matrix(), b.T_world_body.matrix());
   EXPECT_EQ(a.start_ns, b.start_ns);
   EXPECT_EQ(a.optimiser_busy, b.optimiser_busy);

@@ -15,7 +15,7 @@ using testing::expect_input_error;
 using testing::read_all;
 
 constexpr int kHeadBytes = 16;
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 /// The container around other contents, with checksums that are right.
 std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = kVersion) {
@@ -29,6 +29,17 @@ std::vector<std::string> contents_of(const std::string& trace) {
   MemoryBudget budget(kTraceMemory);
   for (const Section& section : sections_of({"LEVIOWT\n", "a work trace", kVersion}, "t", trace))
     contents.push_back(unpacked(section, "t", budget));
+  return contents;
+}
+
+/// The contents as version 2 had them: the summary does not name the facts of frames.
+std::vector<std::string> without_names_of_facts(std::vector<std::string> contents) {
+  ByteWriter names;
+  names.whole(testing::example_info().facts.size());
+  for (const std::string& name : testing::example_info().facts) names.text(name);
+  const std::size_t at = contents[0].find(names.bytes());
+  EXPECT_NE(at, std::string::npos);
+  contents[0].erase(at, names.bytes().size());
   return contents;
 }
 
@@ -96,6 +107,37 @@ TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
                      {"version_1.trace", "version 1", "kernels", "record it again"});
 }
 
+TEST(WorkTrace, ReadsTheSecondVersion) {
+  const std::string whole = testing::example_trace_with_kernels(5);
+  const WorkTrace second("second", trace_of(without_names_of_facts(contents_of(whole)), 2));
+  EXPECT_EQ(second.info().facts, testing::example_info().facts);
+  WorkFrames reader(second, true);
+  WorkFrame frame;
+  for (int i = 0; reader.next(frame); ++i)
+    testing::expect_equal(frame, testing::example_frame_with_kernels(i));
+}
+
+TEST(WorkTrace, KeepsFactsOfAnyNameAndNumber) {
+  WorkTraceWriter writer(3);
+  WorkTraceInfo info = testing::example_info();
+  info.facts = {"restarts", "of another program"};
+  WorkFrame frame = example_frame(0);
+  frame.facts = {7, 0};
+  writer.add(frame);
+  const std::string bytes = writer.finish(info);
+  const WorkTrace trace("facts", bytes);
+  EXPECT_EQ(trace.info().facts, info.facts);
+  WorkFrame read;
+  ASSERT_TRUE(WorkFrames(trace).next(read));
+  EXPECT_EQ(read.facts, frame.facts);
+
+  std::vector<std::string> contents = contents_of(bytes);
+  const std::size_t at = contents[0].find("\x02\x08restarts");
+  ASSERT_NE(at, std::string::npos);
+  contents[0][at] = 65;
+  expect_input_error([&] { WorkTrace("many", trace_of(contents)); }, {"facts of frames", "65"});
+}
+
 TEST_P(FramesOfTraces, ComeBackWithTheirKernels) {
   const WorkTrace trace("example", testing::example_trace_with_kernels(GetParam()));
   WorkFrames reader(trace, true);
@@ -131,7 +173,7 @@ TEST(WorkTrace, RefusesKernelsThatCannotBe) {
 TEST(WorkTrace, WritesTheContentOfTheFirstVersion) {
   const std::string golden = read_text_file(leviosim::tests::source_folder() /
                                             "tests/traces/golden/version_1_46_operations.trace");
-  std::vector<std::string> contents = contents_of(example_trace(5));
+  std::vector<std::string> contents = without_names_of_facts(contents_of(example_trace(5)));
   contents.pop_back();  // kernels, since version 2
   EXPECT_EQ(contents_of(golden), contents);
 }
@@ -197,7 +239,7 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   std::string damaged = whole;
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
-  refuse(trace_of(contents_of(whole), 3), {"version 3", "up to 2", "newer"});
+  refuse(trace_of(contents_of(whole), 4), {"version 4", "up to 3", "newer"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});

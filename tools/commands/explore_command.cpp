@@ -78,9 +78,7 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
                                        points.size(), runs.size(), best_text(plan, explored));
   publish(*plan.out, text, [&] {
     base::OutputFolder& out = *plan.out;
-    out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, [&](const Point& run) {
-                return point_cells(plan, dimensions, run);
-              }));
+    out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
     out.write("points.csv", points_csv(dimensions, explored));
     out.write("best.md", best_markdown(plan, explored));
     out.write("scatter.svg", scatter_plot(plan, explored));

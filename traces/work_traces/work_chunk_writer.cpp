@@ -27,9 +27,7 @@ void ChunkWriter::add(const WorkFrame& frame) {
   text_.whole(names_->number_of(frame.source));
   text_.whole((frame.keyframe ? kKeyframe : 0) | (frame.optimiser_busy ? kBusy : 0) |
               (frame.optimised ? kOptimised : 0));
-  for (const int value :
-       {frame.features, frame.world_matches, frame.frame_matches, frame.inliers, frame.landmarks})
-    text_.whole(static_cast<std::uint64_t>(value));
+  for (const int fact : frame.facts) text_.whole(static_cast<std::uint64_t>(fact));
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column) text_.f64(frame.T_world_body(row, column));
   text_.whole(static_cast<std::uint64_t>(frame.start_ns));

@@ -131,11 +131,8 @@ void WorkFrames::read_facts(WorkFrame& frame) {
   frame.optimised = (flags & kOptimised) != 0;
   if (frame.optimiser_busy && frame.optimised)
     text_.fail("a frame begins an optimisation while the optimiser is busy");
-  frame.features = number("features");
-  frame.world_matches = number("world matches");
-  frame.frame_matches = number("frame matches");
-  frame.inliers = number("inliers");
-  frame.landmarks = number("landmarks");
+  frame.facts.resize(trace_->info().facts.size());
+  for (int& fact : frame.facts) fact = number("a fact of a frame");
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
       frame.T_world_body(row, column) = text_.f64("a number of a pose");

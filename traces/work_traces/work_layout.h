@@ -1,4 +1,4 @@
-// Numbers in the frames of a work trace (work_trace.md) that its writer and reader share.
+// Numbers in the frames of a work trace (FORMAT.md) that its writer and reader share.
 #pragma once
 
 #include <cstdint>

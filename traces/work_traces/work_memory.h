@@ -24,6 +24,8 @@ inline constexpr std::size_t kTextMemory = 128;   ///< beside its characters
 
 /// Kinds of stage; each gets some hundred statistics.
 inline constexpr std::size_t kMostStages = 256;
+/// Numbers that a frame yields.
+inline constexpr std::size_t kMostFacts = 64;
 /// Memories of the summary; likewise.
 inline constexpr std::size_t kMostMemories = 256;
 /// Bytes of a memory or block. No memory of such chips comes near.

@@ -3,19 +3,26 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
+#include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "traces/work_traces/byte_stream.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_frames.h"
+#include "traces/work_traces/work_memory.h"
 
 namespace leviosim::traces {
 namespace {
 
-constexpr FileKind kKind{"LEVIOWT\n", "a work trace", 2};
+constexpr FileKind kKind{"LEVIOWT\n", "a work trace", 3};
 constexpr std::uint32_t kWithKernels = 2;
+constexpr std::uint32_t kWithNamesOfFacts = 3;
+/// Of frames in files of older versions.
+constexpr std::array kOldFacts{"features", "world_matches", "frame_matches", "inliers",
+                               "landmarks"};
 constexpr int kFramesPerChunk = 32;
 constexpr int kLevel = 9;  ///< of zstd; higher ones take longer than the run for 2 % of size
 constexpr std::uint64_t kMostCores = 1024;
@@ -69,6 +76,7 @@ std::string summary_of(const WorkTraceInfo& info, NameTable& names,
     out.text(stage.unit);
     out.byte(stage.on_controller ? 1 : 0);
   }
+  write_texts(out, info.facts);
   out.byte(info.ate ? 1 : 0);
   if (info.ate) write_ate(out, *info.ate);
   for (const WorkTraceInfo::Memory& memory : info.l2)
@@ -229,9 +237,19 @@ void WorkTrace::read_summary(ByteReader& in) {
     stage.unit = in.text("the unit of a stage");
     stage.on_controller = read_flag(in, "whether a stage runs on the controller");
   }
+  read_facts(in);
   if (read_flag(in, "whether the accuracy is known")) info_.ate = read_ate(in);
   names_ = read_names(in);
   info_.l2 = read_l2(in, names_);
+}
+
+void WorkTrace::read_facts(ByteReader& in) {
+  if (version_of(bytes_) < kWithNamesOfFacts) {
+    info_.facts.assign(kOldFacts.begin(), kOldFacts.end());
+    return;
+  }
+  info_.facts.resize(in.whole_below(kMostFacts + 1, "facts of frames"));
+  for (std::string& fact : info_.facts) fact = in.text("the name of a fact");
 }
 
 void WorkTrace::read_chunks(ByteReader& in, const std::vector<Section>& sections) {
@@ -267,8 +285,9 @@ struct WorkTraceWriter::State {
   ChunkWriter chunk;
   std::vector<int> chunk_frames;
   std::vector<std::int64_t> stamps_ns;
+  std::optional<std::size_t> facts;  ///< of each frame
   std::string sections;
-  std::string kernels;  ///< likewise
+  std::string kernels;
 };
 
 WorkTraceWriter::WorkTraceWriter(int cores) : state_(std::make_unique<State>(cores)) {}
@@ -278,6 +297,8 @@ WorkTraceWriter& WorkTraceWriter::operator=(WorkTraceWriter&&) noexcept = defaul
 
 void WorkTraceWriter::add(const WorkFrame& frame) {
   state_->stamps_ns.push_back(frame.t_ns);
+  if (!state_->facts) state_->facts = frame.facts.size();
+  check_equal(frame.facts.size(), *state_->facts, "facts of each frame of a trace");
   state_->chunk.add(frame);
   if (state_->chunk.frames() == kFramesPerChunk) state_->end_chunk();
 }
@@ -285,6 +306,7 @@ void WorkTraceWriter::add(const WorkFrame& frame) {
 std::string WorkTraceWriter::finish(WorkTraceInfo info) {
   if (state_->chunk.frames() > 0) state_->end_chunk();
   info.cores = state_->cores;
+  if (state_->facts) check_equal(info.facts.size(), *state_->facts, "names of facts of frames");
   info.stamps_ns = state_->stamps_ns;
   return file_head(kKind) +
          packed_section(summary_of(info, state_->names, state_->chunk_frames), kLevel) +

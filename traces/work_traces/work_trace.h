@@ -1,4 +1,4 @@
-// Recorded work: everything that timing a run on a chip needs, in a file (work_trace.md). For every
+// Recorded work: everything that timing a run on a chip needs, in a file (FORMAT.md). For every
 // frame it holds the job of the front end, those of the optimisation that began with it, and what
 // came out; so a chip can be timed without computing, and without the images.
 //
@@ -34,11 +34,7 @@ struct WorkFrame {
   std::int64_t t_ns = 0;    ///< camera timestamp
   std::string_view source;  ///< of the pose, a key of frames.csv
   bool keyframe = false;
-  int features = 0;
-  int world_matches = 0;
-  int frame_matches = 0;
-  int inliers = 0;
-  int landmarks = 0;
+  std::vector<int> facts;   ///< numbers that are not negative, named by WorkTraceInfo::facts
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();  ///< [m]
 
   std::int64_t start_ns = 0;    ///< the front end took it up, in simulated time of the recording
@@ -78,6 +74,7 @@ struct WorkTraceInfo {
   int image_height = 0;
   std::int64_t frame_period_ns = 0;
   std::vector<Stage> stages;
+  std::vector<std::string> facts;  ///< names of the numbers that each frame yields
   std::vector<Memory> l2;         ///< what the workload keeps there
   std::optional<Evaluation> ate;  ///< where ground truth exists; without its poses
   std::vector<std::pair<std::string, std::string>> inputs;  ///< name → SHA-256, for provenance
@@ -119,6 +116,7 @@ class WorkTrace {
 
  private:
   void read_summary(ByteReader& in);
+  void read_facts(ByteReader& in);
   void read_chunks(ByteReader& in, const std::vector<Section>& sections);
 
   std::string name_;

@@ -16,6 +16,7 @@
 
 #include "sim/work/machine.h"
 #include "workload/math/vec.h"
+#include "workload/vio/frame_facts.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::vio {
@@ -44,23 +45,7 @@ struct Rig {
   std::array<float, 3> p_camera_body{};  ///< of the body (IMU) in the camera frame [m]
 };
 
-enum class PoseSource : std::uint8_t {
-  First,       ///< the first frame defines the world
-  Epnp,        ///< from matches with landmarks
-  EightPoint,  ///< from matches with the previous keyframe
-  Kept,        ///< too few matches: the last keyframe's pose
-  Predicted,   ///< EPnP found too few inliers: the last keyframe's pose, moved on
-  Tracked      ///< refined from landmarks that a predicted pose found, or from EPnP's pose
-};
-
-struct FrameReport {
-  PoseSource source = PoseSource::First;
-  bool keyframe = false;
-  int features = 0;
-  int world_matches = 0;  ///< after the age filter
-  int frame_matches = 0;
-  int inliers = 0;                        ///< of the RANSAC that gave the pose
-  int landmarks = 0;                      ///< alive after the frame
+struct FrameReport : FrameFacts {
   std::array<float, 9> R_world_camera{};  ///< row-major
   std::array<float, 3> p_world_camera{};  ///< [m]
 };

@@ -105,24 +105,15 @@ void add_frames(StatisticList& list, const RunResult& run) {
   const auto count = [&](const auto& condition) {
     return std::count_if(run.frames.begin(), run.frames.end(), condition);
   };
-  for (const PoseSource source : {PoseSource::First, PoseSource::Epnp, PoseSource::EightPoint,
-                                  PoseSource::Kept, PoseSource::Predicted, PoseSource::Tracked})
-    list.add(fmt::format("frames.source.{}", key_of(source)), "1", "frames by source of the pose",
-             count([&](const FrameResult& f) { return f.source == source; }));
+  for (const vio::PoseSourceInfo& info : vio::kPoseSources)
+    list.add(fmt::format("frames.source.{}", info.name), "1", "frames by source of the pose",
+             count([&](const FrameResult& f) { return f.source == info.source; }));
   list.add("frames.keyframes", "1", "frames that became keyframes",
            count([](const FrameResult& f) { return f.keyframe; }));
-  struct Field {
-    const char* name;
-    int FrameResult::*of;
-  };
-  for (const Field& field :
-       {Field{"features", &FrameResult::features},
-        Field{"world_matches", &FrameResult::world_matches},
-        Field{"frame_matches", &FrameResult::frame_matches},
-        Field{"inliers", &FrameResult::inliers}, Field{"landmarks", &FrameResult::landmarks}}) {
+  for (const vio::FrameFact& fact : vio::kFrameFacts) {
     std::int64_t sum = 0;
-    for (const FrameResult& frame : run.frames) sum += frame.*field.of;
-    list.add(fmt::format("frames.{}.sum", field.name), "1", "summed over the frames", sum);
+    for (const FrameResult& frame : run.frames) sum += frame.*fact.of;
+    list.add(fmt::format("frames.{}.sum", fact.name), "1", "summed over the frames", sum);
   }
 }
 

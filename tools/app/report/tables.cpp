@@ -37,44 +37,36 @@ std::string milliseconds_text(std::optional<double> cycles, Hertz clock) {
   return number(cycles ? std::optional(milliseconds(*cycles, clock)) : std::nullopt, 3);
 }
 
-/// The parts of an account that a table has room for; together they are its total.
-struct AccountColumn {
-  const char* title;
-  double (*of)(const sim::Account&);
-};
-constexpr std::array kAccountColumns{
-    AccountColumn{"useful",
-                  [](const sim::Account& a) { return a.useful.total() - a.useful.fetch; }},
-    AccountColumn{"I-cache", [](const sim::Account& a) { return a.useful.fetch + a.fetch; }},
-    AccountColumn{"FPU", [](const sim::Account& a) { return a.fpu; }},
-    AccountColumn{"divider", [](const sim::Account& a) { return a.divider; }},
-    AccountColumn{"banks", [](const sim::Account& a) { return a.banks; }},
-    AccountColumn{"imbalance", [](const sim::Account& a) { return a.imbalance + a.rounding; }},
-    AccountColumn{"sync", [](const sim::Account& a) { return a.synchronisation; }},
-    AccountColumn{"transfer", [](const sim::Account& a) { return a.transfer; }},
-    AccountColumn{"serial", [](const sim::Account& a) { return a.serial; }},
-};
+/// Columns of the table of accounts, in its order.
+constexpr std::array<std::string_view, 11> kAccountColumns{
+    "useful", "served",    "queue", "I-cache",  "FPU",   "divider",
+    "banks",  "imbalance", "sync",  "transfer", "serial"};
 
-/// Those of the run: what accelerators serve has columns where there are some.
-std::vector<AccountColumn> account_columns(const RunResult& run) {
-  std::vector<AccountColumn> columns(kAccountColumns.begin(), kAccountColumns.end());
-  if (!run.timed || !sim::has_accelerators(run.chip.cluster.accelerators)) return columns;
-  columns.front().of = [](const sim::Account& a) {
-    return a.useful.total() - a.useful.fetch - a.useful.accelerator;
-  };
-  columns.insert(columns.begin() + 1,
-                 {{"served", [](const sim::Account& a) { return a.useful.accelerator; }},
-                  {"queue", [](const sim::Account& a) { return a.accelerator; }}});
-  return columns;
+/// What stands in a column, summed up. Absent for a column that no part belongs to.
+std::optional<double> sum_of(std::string_view column, const std::vector<AccountPart>& parts,
+                             const sim::Account& account) {
+  std::optional<double> sum;
+  for (const AccountPart& part : parts)
+    if (part.column == column) sum = sum.value_or(0) + part.of(account);
+  return sum;
 }
 
-std::vector<std::string> account_cells(const std::vector<AccountColumn>& columns,
+/// Those that there are on the cluster.
+std::vector<AccountPart> cluster_parts(const RunResult& run) {
+  std::vector<AccountPart> parts(kAccountParts.begin(), kAccountParts.end());
+  if (run.timed && sim::has_accelerators(run.chip.cluster.accelerators))
+    parts.insert(parts.end(), kAcceleratorParts.begin(), kAcceleratorParts.end());
+  return parts;
+}
+
+std::vector<std::string> account_cells(const std::vector<AccountPart>& parts,
                                        const sim::Account& account) {
-  if (!(account.total() > 0)) return std::vector<std::string>(columns.size() + 1, kNothing);
-  std::vector<double> parts;
-  for (const AccountColumn& column : columns) parts.push_back(column.of(account));
+  std::vector<double> sums;
+  for (const std::string_view column : kAccountColumns)
+    if (const auto sum = sum_of(column, parts, account)) sums.push_back(*sum);
+  if (!(account.total() > 0)) return std::vector<std::string>(sums.size() + 1, kNothing);
   std::vector<std::string> cells;
-  for (const double percent : tenths_of_percent(parts)) cells.push_back(number(percent, 1));
+  for (const double percent : tenths_of_percent(sums)) cells.push_back(number(percent, 1));
   cells.push_back(number(account.total() * 1e-6, 1));
   return cells;
 }
@@ -199,8 +191,9 @@ std::string stage_table(const RunResult& run) {
 
 std::string account_table(const RunResult& run) {
   std::vector<TextTable::Column> columns{{"stage", kLeft}};
-  const std::vector<AccountColumn> parts = account_columns(run);
-  for (const AccountColumn& column : parts) columns.push_back({column.title});
+  const std::vector<AccountPart> parts = cluster_parts(run);
+  for (const std::string_view column : kAccountColumns)
+    if (sum_of(column, parts, {})) columns.push_back({std::string(column)});
   columns.push_back({"core-Mcycles"});
   TextTable table(std::move(columns));
   for (const StageResult& stage : run.stages) {

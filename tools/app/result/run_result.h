@@ -26,16 +26,9 @@ using soc::StageResult;
 using vio::PoseSource;
 
 /// What a frame yielded, and when.
-struct FrameResult : soc::FrameTiming {
+struct FrameResult : vio::FrameFacts, soc::FrameTiming {
   int index = 0;          ///< in the data set
   std::int64_t t_ns = 0;  ///< camera timestamp
-  PoseSource source = PoseSource::First;
-  bool keyframe = false;
-  int features = 0;
-  int world_matches = 0;
-  int frame_matches = 0;
-  int inliers = 0;
-  int landmarks = 0;  ///< alive after the frame
   traces::StampedPose pose;
 };
 

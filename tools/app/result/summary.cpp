@@ -9,11 +9,6 @@
 namespace leviosim::tools {
 namespace {
 
-/// In the order of PoseSource.
-constexpr std::array<std::string_view, 6> kSourceKeys{"first", "epnp",      "eight_point",
-                                                      "kept",  "predicted", "tracked"};
-static_assert(static_cast<std::size_t>(PoseSource::Tracked) + 1 == kSourceKeys.size());
-
 enum Kind : std::size_t { kEpnp = 0, kEightPoint = 2, kTracked = 4, kOther = 6 };
 
 /// By the means that found the pose; the number after it is that of the kind with keyframe. EPnP
@@ -66,14 +61,6 @@ std::string key_of(std::string_view name) {
   }
   while (!key.empty() && key.back() == '_') key.pop_back();
   return key;
-}
-
-std::string_view key_of(PoseSource source) { return kSourceKeys[static_cast<std::size_t>(source)]; }
-
-std::optional<PoseSource> source_named(std::string_view key) {
-  const auto found = std::find(kSourceKeys.begin(), kSourceKeys.end(), key);
-  if (found == kSourceKeys.end()) return std::nullopt;
-  return static_cast<PoseSource>(found - kSourceKeys.begin());
 }
 
 std::optional<double> mean(Cycles sum, std::int64_t calls) {

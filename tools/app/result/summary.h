@@ -14,9 +14,6 @@ namespace leviosim::tools {
 
 /// "EPnP RANSAC" → "epnp_ransac", for names in files.
 std::string key_of(std::string_view name);
-std::string_view key_of(PoseSource source);
-/// The inverse of it; absent for other words.
-std::optional<PoseSource> source_named(std::string_view key);
 
 /// Absent if there were no calls.
 std::optional<double> mean(Cycles sum, std::int64_t calls);
@@ -60,46 +57,50 @@ Waiting frames_that_waited(const RunResult& run);
 /// One part of an account. All parts together are its total.
 struct AccountPart {
   std::string_view key;
+  std::string_view column;  ///< of the table that people read, which it is added to
   std::string_view description;
   double (*of)(const sim::Account&);
 };
 inline constexpr std::array kAccountParts{
-    AccountPart{"issue", "issuing instructions of parallel work",
+    AccountPart{"issue", "useful", "issuing instructions of parallel work",
                 [](const sim::Account& a) { return a.useful.issue; }},
-    AccountPart{"load_use", "waiting for loaded values",
+    AccountPart{"load_use", "useful", "waiting for loaded values",
                 [](const sim::Account& a) { return a.useful.load_use; }},
-    AccountPart{"control", "pipeline refills after branches, calls and loop entries",
+    AccountPart{"control", "useful", "pipeline refills after branches, calls and loop entries",
                 [](const sim::Account& a) { return a.useful.control; }},
-    AccountPart{"memory", "L2 latency and straddling words",
+    AccountPart{"memory", "useful", "L2 latency and straddling words",
                 [](const sim::Account& a) { return a.useful.memory; }},
-    AccountPart{"arithmetic", "latency of integer divisions and floating-point operations",
+    AccountPart{"arithmetic", "useful",
+                "latency of integer divisions and floating-point operations",
                 [](const sim::Account& a) { return a.useful.arithmetic; }},
-    AccountPart{"fpu", "waiting for a shared floating-point unit",
+    AccountPart{"fpu", "FPU", "waiting for a shared floating-point unit",
                 [](const sim::Account& a) { return a.fpu; }},
-    AccountPart{"divider", "waiting for the shared divider",
+    AccountPart{"divider", "divider", "waiting for the shared divider",
                 [](const sim::Account& a) { return a.divider; }},
-    AccountPart{"banks", "waiting for L1 banks", [](const sim::Account& a) { return a.banks; }},
-    AccountPart{"fetch", "waiting for code that the private instruction cache lacks",
+    AccountPart{"banks", "banks", "waiting for L1 banks",
+                [](const sim::Account& a) { return a.banks; }},
+    AccountPart{"fetch", "I-cache", "waiting for code that the private instruction cache lacks",
                 [](const sim::Account& a) { return a.useful.fetch; }},
-    AccountPart{"fetch_contention", "more of that, since other cores fetch as well",
+    AccountPart{"fetch_contention", "I-cache", "more of that, since other cores fetch as well",
                 [](const sim::Account& a) { return a.fetch; }},
-    AccountPart{"imbalance", "waiting at the end of forks for the slowest core",
+    AccountPart{"imbalance", "imbalance", "waiting at the end of forks for the slowest core",
                 [](const sim::Account& a) { return a.imbalance; }},
-    AccountPart{"synchronisation", "forking, waking up, barriers",
+    AccountPart{"synchronisation", "sync", "forking, waking up, barriers",
                 [](const sim::Account& a) { return a.synchronisation; }},
-    AccountPart{"transfer", "waiting for the DMA",
+    AccountPart{"transfer", "transfer", "waiting for the DMA",
                 [](const sim::Account& a) { return a.transfer; }},
-    AccountPart{"serial", "all cores, while the master works alone",
+    AccountPart{"serial", "serial", "all cores, while the master works alone",
                 [](const sim::Account& a) { return a.serial; }},
-    AccountPart{"rounding", "ends of shares moved to the next clock edge",
+    AccountPart{"rounding", "imbalance", "ends of shares moved to the next clock edge",
                 [](const sim::Account& a) { return a.rounding; }},
 };
 
 /// Those that there are on chips with accelerators only.
 inline constexpr std::array kAcceleratorParts{
-    AccountPart{"accelerator", "waiting for accelerators while they serve the core",
+    AccountPart{"accelerator", "served", "waiting for accelerators while they serve the core",
                 [](const sim::Account& a) { return a.useful.accelerator; }},
-    AccountPart{"accelerator_contention", "waiting for accelerators while they serve others",
+    AccountPart{"accelerator_contention", "queue",
+                "waiting for accelerators while they serve others",
                 [](const sim::Account& a) { return a.accelerator; }},
 };
 /// All parts that a run has.

@@ -34,7 +34,8 @@ vio::ImuInput to_input(const traces::ImuSample& sample, std::int64_t before_ns) 
   return input;
 }
 
-std::vector<soc::CameraFrame> camera_frames(const RunRequest& request, const traces::Dataset& data) {
+std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
+                                            const traces::Dataset& data) {
   std::vector<std::int64_t> stamps_ns;
   for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
   if (!request.camera || !request.camera->fps) return soc::all_frames(stamps_ns);

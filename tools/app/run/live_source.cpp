@@ -89,13 +89,7 @@ const work::Job& LiveSource::process(FrameResult& result) {
   front_end_job_ = cluster_.take_job();
   result.index = frame_;
   result.t_ns = feed_.time_ns(frame_);
-  result.source = report.source;
-  result.keyframe = report.keyframe;
-  result.features = report.features;
-  result.world_matches = report.world_matches;
-  result.frame_matches = report.frame_matches;
-  result.inliers = report.inliers;
-  result.landmarks = report.landmarks;
+  static_cast<vio::FrameFacts&>(result) = report;
   result.pose = body_pose(report, feed_.data().camera, result.t_ns);
   return front_end_job_;
 }

@@ -27,13 +27,10 @@ const work::Job& RecordingSource::process(FrameResult& result) {
   traces::WorkFrame& frame = frames_.back();
   frame.index = result.index;
   frame.t_ns = result.t_ns;
-  frame.source = key_of(result.source);
+  frame.source = name_of(result.source);
   frame.keyframe = result.keyframe;
-  frame.features = result.features;
-  frame.world_matches = result.world_matches;
-  frame.frame_matches = result.frame_matches;
-  frame.inliers = result.inliers;
-  frame.landmarks = result.landmarks;
+  frame.facts.clear();
+  for (const vio::FrameFact& fact : vio::kFrameFacts) frame.facts.push_back(result.*fact.of);
   frame.T_world_body = result.pose.T_world_body;
   frame.front_end = job;
   return job;
@@ -71,6 +68,7 @@ void RecordingSource::describe(RunResult& result) const {
   info.image_width = result.image_width;
   info.image_height = result.image_height;
   info.frame_period_ns = result.frame_period_ns;
+  for (const vio::FrameFact& fact : vio::kFrameFacts) info.facts.emplace_back(fact.name);
   for (const StageResult& stage : empty_stages())
     info.stages.push_back({stage.name, stage.unit, stage.on_controller});
   for (const L2Row& row : result.l2) info.l2.push_back({row.name, row.bytes, row.blocks});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
@@ -10,189 +11,199 @@
 namespace leviosim::tools {
 namespace {
 
-/// Cells of one line, in order. Text cells are our own names and hold neither commas nor quotes.
-class CsvLine {
- public:
-  CsvLine& add(std::string_view cell) {
-    cells_.emplace_back(cell);
-    return *this;
-  }
-  CsvLine& add(std::int64_t value) { return add(fmt::format("{}", value)); }
-  CsvLine& add(Cycles value) { return add(value.count()); }
-  CsvLine& add(Bytes value) { return add(value.count()); }
-  CsvLine& add(double value) { return add(fmt::format("{:.3f}", value)); }
-  CsvLine& add(std::optional<double> value) {
-    return value ? add(*value) : add(std::string_view());
-  }
-  std::string str() const { return fmt::format("{}\n", fmt::join(cells_, ",")); }
+using base::Cell;
+using base::CsvTable;
+using base::fixed;
 
- private:
-  std::vector<std::string> cells_;
+CsvTable<StageResult> stage_table_of(const RunResult& run) {
+  using S = StageResult;
+  CsvTable<S> table{
+      {"stage", [](const S& s) { return s.name; }},
+      {"call", [](const S& s) { return s.unit; }},
+      {"runs_on", [](const S& s) { return s.on_controller ? "controller" : "cluster"; }},
+      {"calls", [](const S& s) { return s.calls; }},
+      {"single_cycles", [](const S& s) { return s.single; }},
+      {"parallel_cycles", [](const S& s) { return s.parallel; }},
+      {"single_cycles_per_call", [](const S& s) { return fixed(mean(s.single, s.calls), 3); }},
+      {"parallel_cycles_per_call", [](const S& s) { return fixed(mean(s.parallel, s.calls), 3); }},
+      {"worst_parallel_cycles", [](const S& s) { return s.worst_parallel; }},
+      {"speedup", [](const S& s) { return fixed(speedup(s), 3); }},
+      {"parallel_ms_per_call",
+       [&run](const S& s) {
+         const std::optional<double> cycles = mean(s.parallel, s.calls);
+         return cycles ? fixed(milliseconds(*cycles, clock_of(run, s)), 3) : Cell();
+       }},
+      {"memory_single_bytes", [](const S& s) { return s.memory.single; }},
+      {"memory_parallel_bytes", [](const S& s) { return s.memory.parallel; }},
+  };
+  for (const AccountPart& part : account_parts(run))
+    table.add(fmt::format("{}_core_cycles", part.key),
+              [part](const S& s) { return fixed(part.of(s.account), 3); });
+  for (const work::OpInfo& op : work::kOps)
+    table.add(fmt::format("{}_ops", op.name), [&op](const S& s) { return s.counts[op.op]; });
+  return table;
+}
+
+/// A frame of the camera; one that was dropped has no result.
+struct FrameRow {
+  const FrameResult* result = nullptr;
+  const soc::Delivery* delivery = nullptr;  ///< of a closed loop
+  bool missed = false;
 };
 
-std::string stages_header(const RunResult& run) {
-  CsvLine line;
-  for (const char* name :
-       {"stage", "call", "runs_on", "calls", "single_cycles", "parallel_cycles",
-        "single_cycles_per_call", "parallel_cycles_per_call", "worst_parallel_cycles", "speedup",
-        "parallel_ms_per_call", "memory_single_bytes", "memory_parallel_bytes"})
-    line.add(std::string_view(name));
-  for (const AccountPart& part : account_parts(run))
-    line.add(fmt::format("{}_core_cycles", part.key));
-  for (const work::OpInfo& op : work::kOps) line.add(fmt::format("{}_ops", op.name));
-  return line.str();
+/// A column about what came of the frame: empty for one that was dropped.
+template <class Of>
+base::Column<FrameRow> of_result(std::string name, Of of) {
+  return {std::move(name), [of](const FrameRow& row) {
+            return row.result == nullptr ? Cell() : Cell(of(*row.result));
+          }};
 }
 
-std::string stage_line(const RunResult& run, const StageResult& stage) {
-  const std::optional<double> parallel = mean(stage.parallel, stage.calls);
-  std::optional<double> ms;
-  if (parallel) ms = milliseconds(*parallel, clock_of(run, stage));
-  CsvLine line;
-  line.add(stage.name).add(stage.unit).add(stage.on_controller ? "controller" : "cluster");
-  line.add(stage.calls).add(stage.single).add(stage.parallel);
-  line.add(mean(stage.single, stage.calls)).add(parallel).add(stage.worst_parallel);
-  line.add(speedup(stage)).add(ms).add(stage.memory.single).add(stage.memory.parallel);
-  for (const AccountPart& part : account_parts(run)) line.add(part.of(stage.account));
-  for (const work::OpInfo& op : work::kOps)
-    line.add(static_cast<std::int64_t>(stage.counts[op.op]));
-  return line.str();
+CsvTable<FrameRow> frame_table_of(const RunResult& run) {
+  using F = FrameResult;
+  CsvTable<FrameRow> table;
+  const auto add = [&](base::Column<FrameRow> c) { table.add(std::move(c.name), std::move(c.of)); };
+  table.add("frame",
+            [](const FrameRow& r) { return r.result ? r.result->index : r.delivery->frame; });
+  table.add("t_ns", [](const FrameRow& r) { return r.result ? r.result->t_ns : r.delivery->t_ns; });
+  add(of_result("source", [](const F& f) { return name_of(f.source); }));
+  add(of_result("keyframe", [](const F& f) { return int{f.keyframe}; }));
+  for (const vio::FrameFact& fact : vio::kFrameFacts)
+    add(of_result(std::string(fact.name), [&fact](const F& f) { return f.*fact.of; }));
+  if (run.timed) {
+    table.add("arrival_ns", [](const FrameRow& r) {
+      return r.result ? r.result->arrival_ns : r.delivery->arrival_ns;
+    });
+    add(of_result("start_ns", [](const F& f) { return f.start_ns; }));
+    add(of_result("end_ns", [](const F& f) { return f.end_ns; }));
+    add(of_result("latency_ns", [](const F& f) { return f.end_ns - f.arrival_ns; }));
+    add(of_result("parallel_cycles", [](const F& f) { return f.cycles; }));
+    add(of_result("single_cycles", [](const F& f) { return f.single_cycles; }));
+  }
+  if (run.camera) {
+    table.add("found_in_buffers", [](const FrameRow& r) { return r.delivery->found; });
+    table.add("dropped", [](const FrameRow& r) { return int{r.delivery->dropped}; });
+    table.add("missed", [](const FrameRow& r) { return int{r.missed}; });
+  }
+  return table;
 }
 
-/// A peak of a memory and the blocks alive at it.
-std::string memory_lines(std::string_view memory, Bytes size, std::string_view owner,
-                         std::string_view peak, Bytes bytes,
-                         const std::vector<work::Block>& blocks) {
-  const auto line = [&](std::string_view what, std::string_view name, int copies, Bytes amount) {
-    return CsvLine()
-        .add(memory)
-        .add(owner)
-        .add(what)
-        .add(name)
-        .add(std::int64_t{copies})
-        .add(amount)
-        .add(percent_of_nominal(amount, size))
-        .str();
-  };
-  std::string text = line(peak, "", 1, bytes);
-  for (const BlockGroup& group : grouped(blocks))
-    text += line("block", group.name, group.copies, group.bytes);
-  return text;
-}
-
-/// One quantity of a row, in all domains and in total. @param scale  from joules to its unit
-std::string energy_lines(std::string_view stage, std::string_view quantity, std::string_view unit,
-                         double scale, const sim::DomainEnergies& energies) {
-  const auto line = [&](std::string_view domain, const sim::Estimate<Joules>& e) {
-    const auto figure = [&](Joules joules) {
-      return fmt::format("{:.6f}", joules.count() * scale);
-    };
-    return CsvLine()
-        .add(stage)
-        .add(quantity)
-        .add(domain)
-        .add(figure(e.value))
-        .add(unit)
-        .add(figure(e.low()))
-        .add(figure(e.high()))
-        .str();
-  };
-  std::string text;
-  for (const sim::DomainInfo& info : sim::kDomains) text += line(info.name, energies[info.domain]);
-  return text + line("total", energies.total());
-}
-
-std::string energy_lines(const EnergyRow& row) {
-  std::string text = energy_lines(row.name, "energy", "mJ", 1e3, row.energy);
-  if (row.calls > 0)
-    text += energy_lines(row.name, fmt::format("energy per {}", row.unit), "uJ",
-                         1e6 / static_cast<double>(row.calls), row.energy);
-  if (row.time > Seconds(0))
-    text += energy_lines(row.name, "power", "mW", 1e3 / row.time.count(), row.energy);
-  return text;
-}
-
-CsvLine frame_line(const RunResult& run, const FrameResult& frame) {
-  CsvLine line;
-  line.add(std::int64_t{frame.index}).add(frame.t_ns).add(key_of(frame.source));
-  for (const int value : {int{frame.keyframe}, frame.features, frame.world_matches,
-                          frame.frame_matches, frame.inliers, frame.landmarks})
-    line.add(std::int64_t{value});
-  if (run.timed)
-    line.add(frame.arrival_ns)
-        .add(frame.start_ns)
-        .add(frame.end_ns)
-        .add(frame.end_ns - frame.arrival_ns)
-        .add(frame.cycles)
-        .add(frame.single_cycles);
-  return line;
-}
-
-/// A frame that was never processed: all cells but frame, stamp and arrival are empty.
-CsvLine dropped_line(const soc::Delivery& delivery) {
-  constexpr int kOfTheImage = 7;
-  constexpr int kOfTheTiming = 5;
-  CsvLine line;
-  line.add(std::int64_t{delivery.frame}).add(delivery.t_ns);
-  for (int i = 0; i < kOfTheImage; ++i) line.add(std::string_view());
-  line.add(delivery.arrival_ns);
-  for (int i = 0; i < kOfTheTiming; ++i) line.add(std::string_view());
-  return line;
-}
-
-/// Of a closed loop: all frames of the camera, dropped or not.
-std::string delivery_lines(const RunResult& run) {
-  std::string text;
+/// All frames; in a closed loop those of the camera, dropped or not.
+std::vector<FrameRow> frame_rows(const RunResult& run) {
+  std::vector<FrameRow> rows;
+  if (!run.camera) {
+    for (const FrameResult& frame : run.frames) rows.push_back({&frame, nullptr, false});
+    return rows;
+  }
   auto frame = run.frames.begin();
   for (const soc::Delivery& delivery : run.camera->deliveries) {
-    const bool missed = delivery.dropped || is_late(*frame, run);
-    CsvLine line = delivery.dropped ? dropped_line(delivery) : frame_line(run, *frame++);
-    line.add(std::int64_t{delivery.found})
-        .add(std::int64_t{delivery.dropped})
-        .add(std::int64_t{missed});
-    text += line.str();
+    if (delivery.dropped)
+      rows.push_back({nullptr, &delivery, true});
+    else {
+      rows.push_back({&*frame, &delivery, is_late(*frame, run)});
+      ++frame;
+    }
   }
-  return text;
+  return rows;
+}
+
+/// A peak of a memory, or a block that was alive at it.
+struct MemoryRow {
+  std::string_view memory;
+  Bytes size;  ///< of the memory
+  std::string_view owner;
+  std::string_view what;
+  std::string_view block;
+  int copies;
+  Bytes bytes;
+};
+
+const CsvTable<MemoryRow>& memory_table() {
+  using M = MemoryRow;
+  static const CsvTable<M> table{
+      {"memory", [](const M& m) { return m.memory; }},
+      {"owner", [](const M& m) { return m.owner; }},
+      {"what", [](const M& m) { return m.what; }},
+      {"block", [](const M& m) { return m.block; }},
+      {"copies", [](const M& m) { return m.copies; }},
+      {"bytes", [](const M& m) { return m.bytes; }},
+      {"percent_of_nominal",
+       [](const M& m) { return fixed(percent_of_nominal(m.bytes, m.size), 3); }},
+  };
+  return table;
+}
+
+void add_peak(std::vector<MemoryRow>& rows, MemoryRow peak,
+              const std::vector<work::Block>& blocks) {
+  rows.push_back(peak);
+  for (const BlockGroup& group : grouped(blocks))
+    rows.push_back(
+        {peak.memory, peak.size, peak.owner, "block", group.name, group.copies, group.bytes});
+}
+
+/// A quantity of a stage in one domain, or in total, with its band.
+struct EnergyCsvRow {
+  std::string stage;
+  std::string quantity;
+  std::string_view domain;
+  sim::Estimate<Joules> energy;
+  double scale;  ///< from joules to the unit
+  std::string_view unit;
+};
+
+const CsvTable<EnergyCsvRow>& energy_table() {
+  using E = EnergyCsvRow;
+  static const CsvTable<E> table{
+      {"stage", [](const E& e) { return e.stage; }},
+      {"quantity", [](const E& e) { return e.quantity; }},
+      {"domain", [](const E& e) { return e.domain; }},
+      {"value", [](const E& e) { return fixed(e.energy.value.count() * e.scale, 6); }},
+      {"unit", [](const E& e) { return e.unit; }},
+      {"low", [](const E& e) { return fixed(e.energy.low().count() * e.scale, 6); }},
+      {"high", [](const E& e) { return fixed(e.energy.high().count() * e.scale, 6); }},
+  };
+  return table;
+}
+
+void add_energy(std::vector<EnergyCsvRow>& rows, const EnergyRow& row) {
+  const auto add = [&](const std::string& quantity, std::string_view unit, double scale) {
+    for (const sim::DomainInfo& info : sim::kDomains)
+      rows.push_back({row.name, quantity, info.name, row.energy[info.domain], scale, unit});
+    rows.push_back({row.name, quantity, "total", row.energy.total(), scale, unit});
+  };
+  add("energy", "mJ", 1e3);
+  if (row.calls > 0)
+    add(fmt::format("energy per {}", row.unit), "uJ", 1e6 / static_cast<double>(row.calls));
+  if (row.time > Seconds(0)) add("power", "mW", 1e3 / row.time.count());
 }
 
 }  // namespace
 
-std::string stages_csv(const RunResult& run) {
-  std::string text = stages_header(run);
-  for (const StageResult& stage : run.stages) text += stage_line(run, stage);
-  return text;
-}
+std::string stages_csv(const RunResult& run) { return stage_table_of(run).text(run.stages); }
 
-std::string frames_csv(const RunResult& run) {
-  std::string text =
-      "frame,t_ns,source,keyframe,features,world_matches,frame_matches,inliers,landmarks";
-  if (run.timed) text += ",arrival_ns,start_ns,end_ns,latency_ns,parallel_cycles,single_cycles";
-  if (run.camera) return text + ",found_in_buffers,dropped,missed\n" + delivery_lines(run);
-  text += '\n';
-  for (const FrameResult& frame : run.frames) text += frame_line(run, frame).str();
-  return text;
-}
+std::string frames_csv(const RunResult& run) { return frame_table_of(run).text(frame_rows(run)); }
 
 std::string memory_csv(const RunResult& run) {
-  std::string text = "memory,owner,what,block,copies,bytes,percent_of_nominal\n";
+  std::vector<MemoryRow> rows;
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;  // it is one of the rows of L2
-    text +=
-        memory_lines("L1", run.l1_size, stage.name, "peak on one core", stage.memory.single, {});
-    text += memory_lines("L1", run.l1_size, stage.name, "peak on N cores", stage.memory.parallel,
-                         stage.memory.blocks);
+    const work::MemoryPeak& peak = stage.memory;
+    add_peak(rows, {"L1", run.l1_size, stage.name, "peak on one core", "", 1, peak.single}, {});
+    add_peak(rows, {"L1", run.l1_size, stage.name, "peak on N cores", "", 1, peak.parallel},
+             peak.blocks);
   }
   for (const L2Row& row : run.l2)
-    text += memory_lines("L2", run.l2_size, row.name, "peak", row.bytes, row.blocks);
-  return text;
+    add_peak(rows, {"L2", run.l2_size, row.name, "peak", "", 1, row.bytes}, row.blocks);
+  return memory_table().text(rows);
 }
 
 std::string energy_csv(const RunResult& run) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return {};
-  std::string text = "stage,quantity,domain,value,unit,low,high\n";
-  for (const EnergyRow& row : energy->rows) text += energy_lines(row);
-  return text +
-         energy_lines({"all", "frame", false, energy->frames, energy->time, energy->total()});
+  std::vector<EnergyCsvRow> rows;
+  for (const EnergyRow& row : energy->rows) add_energy(rows, row);
+  add_energy(rows, {"all", "frame", false, energy->frames, energy->time, energy->total()});
+  return energy_table().text(rows);
 }
 
 void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manifest& manifest,

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "tools/app/result/summary.h"
@@ -10,16 +12,27 @@ namespace leviosim::tools {
 namespace {
 
 PoseSource source_of(const traces::WorkFrame& frame, const traces::WorkTrace& trace, int number) {
-  if (const auto source = source_named(frame.source)) return *source;
+  if (const auto source = vio::source_named(frame.source)) return *source;
   throw InputError(
       fmt::format("{}: frame {} has its pose from '{}', which this leviosim does not know",
                   trace.name(), number, frame.source));
 }
 
+/// What the facts of the trace are called here; null for one that this program does not know.
+std::vector<const vio::FrameFact*> known_facts(const traces::WorkTraceInfo& info) {
+  std::vector<const vio::FrameFact*> facts;
+  for (const std::string& name : info.facts) {
+    const auto fact = std::find_if(vio::kFrameFacts.begin(), vio::kFrameFacts.end(),
+                                   [&](const vio::FrameFact& f) { return f.name == name; });
+    facts.push_back(fact == vio::kFrameFacts.end() ? nullptr : &*fact);
+  }
+  return facts;
+}
+
 }  // namespace
 
 TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool kernels)
-    : trace_(trace), l1_(l1), l2_(l2), reader_(trace, kernels) {}
+    : trace_(trace), l1_(l1), l2_(l2), reader_(trace, kernels), facts_(known_facts(trace.info())) {}
 
 bool TraceSource::begin_frame(const soc::FrameStart& start) {
   for (; number_ < start.frame; ++number_)
@@ -42,11 +55,8 @@ const work::Job& TraceSource::process(FrameResult& result) {
   result.t_ns = frame_.t_ns;
   result.source = source_of(frame_, trace_, number_);
   result.keyframe = frame_.keyframe;
-  result.features = frame_.features;
-  result.world_matches = frame_.world_matches;
-  result.frame_matches = frame_.frame_matches;
-  result.inliers = frame_.inliers;
-  result.landmarks = frame_.landmarks;
+  for (std::size_t i = 0; i < facts_.size(); ++i)
+    if (facts_[i] != nullptr) result.*facts_[i]->of = frame_.facts[i];
   result.pose = {frame_.t_ns, frame_.T_world_body};
   check_fits(frame_.front_end, "L1", l1_);
   return frame_.front_end;

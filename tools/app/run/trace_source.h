@@ -63,6 +63,7 @@ class TraceSource : public RunSource {
   Bytes l1_;
   Bytes l2_;
   traces::WorkFrames reader_;
+  std::vector<const vio::FrameFact*> facts_;  ///< of the trace, in its order
   traces::WorkFrame frame_;
   int number_ = -1;                    ///< of the frame
   std::vector<work::Job> iterations_;  ///< of the optimisation that began last

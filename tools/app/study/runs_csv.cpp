@@ -1,31 +1,54 @@
 #include "tools/app/study/runs_csv.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "sim/base/check.h"
 #include "tools/app/study/sequence.h"
 
 namespace leviosim::tools {
 
+std::string plain_cell(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return c == ',' || c == '"' || c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
 std::string runs_csv(const std::vector<Point>& points, const std::vector<RunOutcome>& outcomes,
-                     const Measure& how, const std::function<CsvRow(const Point&)>& leading) {
+                     const Measure& how, RunColumns columns) {
   check_equal(points.size(), outcomes.size(), "an outcome per run");
-  std::vector<CsvRow> rows;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const RunRequest& run = points[i].request;
-    const RunOutcome& o = outcomes[i];
-    CsvRow& row = rows.emplace_back(leading ? leading(points[i]) : CsvRow());
-    row.insert(row.end(),
-               {Cell("sequence", plain_cell(points[i].sequence->name)),
-                Cell("folder", plain_cell(points[i].sequence->folder)),
-                Cell("width", run.image_size.width), Cell("height", run.image_size.height),
-                Cell("profile", run.profile), Cell("seed", run.seed), Cell("frames", o.frames),
-                Cell("alignment", name_of(how.alignment)), Cell("ate_rmse_m", decimals(o.ate_m, 9)),
-                Cell("relative_length_m", fmt::format("{:g}", how.length_m)),
-                Cell("relative_translation_mean_percent", decimals(o.relative_percent, 9)),
-                Cell("sub_trajectories", o.sub_trajectories), Cell("matched", o.matched),
-                Cell("completion", decimals(o.completion, 9)),
-                Cell("path_m", decimals(o.path_m, 9)), Cell("failure", plain_cell(o.failure))});
-  }
-  return csv_text(rows);
+  using Run = const FinishedRun&;
+  using base::fixed;
+  const auto add_of_point = [&](const char* name, auto of) {
+    columns.add(name, [of](Run r) { return base::Cell(of(r.point, r.point.request)); });
+  };
+  const auto add = [&](const char* name, auto of) {
+    columns.add(name, [of](Run r) { return base::Cell(of(r.outcome)); });
+  };
+  using P = const Point&;
+  using R = const RunRequest&;
+  using O = const RunOutcome&;
+  add_of_point("sequence", [](P p, R) { return plain_cell(p.sequence->name); });
+  add_of_point("folder", [](P p, R) { return plain_cell(p.sequence->folder); });
+  add_of_point("width", [](P, R r) { return r.image_size.width; });
+  add_of_point("height", [](P, R r) { return r.image_size.height; });
+  add_of_point("profile", [](P, R r) { return r.profile; });
+  add_of_point("seed", [](P, R r) { return r.seed; });
+  add("frames", [](O o) { return o.frames; });
+  add("alignment", [how](O) { return name_of(how.alignment); });
+  add("ate_rmse_m", [](O o) { return fixed(o.ate_m, 9); });
+  add("relative_length_m", [how](O) { return fmt::format("{:g}", how.length_m); });
+  add("relative_translation_mean_percent", [](O o) { return fixed(o.relative_percent, 9); });
+  add("sub_trajectories", [](O o) { return o.sub_trajectories; });
+  add("matched", [](O o) { return o.matched; });
+  add("completion", [](O o) { return fixed(o.completion, 9); });
+  add("path_m", [](O o) { return fixed(o.path_m, 9); });
+  add("failure", [](O o) { return plain_cell(o.failure); });
+  std::vector<FinishedRun> runs;
+  for (std::size_t i = 0; i < points.size(); ++i) runs.push_back({points[i], outcomes[i]});
+  return columns.text(runs);
 }
 
 }  // namespace leviosim::tools

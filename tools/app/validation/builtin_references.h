@@ -15,7 +15,7 @@ struct BuiltinReferences {
 /// Sorted by name.
 std::span<const BuiltinReferences> builtin_references();
 
-/// The text of tests/validation/NAME.csv, which must be there.
+/// The text of published/NAME.csv, which must be there.
 std::string_view reference_text(std::string_view name);
 
 }  // namespace leviosim::tools

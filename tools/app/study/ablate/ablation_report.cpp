@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/csv_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -13,6 +12,10 @@ namespace {
 constexpr const char* kNone = "–";
 constexpr const char* kMean = "mean of them";
 constexpr const char* kDiverged = "diverged";
+
+std::string decimals(std::optional<double> value, int count, const char* otherwise = "") {
+  return value ? fmt::format("{:.{}f}", *value, count) : otherwise;
+}
 
 std::string median_text(const Spread& spread, int count) {
   if (spread.runs == 0) return kNone;

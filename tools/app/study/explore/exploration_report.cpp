@@ -17,22 +17,15 @@ std::string set_text(const ExploredPoint& point) {
   return texts.empty() ? "as it is" : fmt::format("{}", fmt::join(texts, " "));
 }
 
-/// Values of the dimensions with this profile.
-void add_dimensions(const std::vector<Dimension>& dimensions, const vio::Profile& profile,
-                    CsvRow& row) {
-  for (const Dimension& d : dimensions)
-    row.push_back(Cell(std::string(d.parameter->name),
-                       d.parameter->needs_imu && !profile.use_imu
-                           ? std::string()
-                           : vio::value_text(*d.parameter, d.parameter->get(profile))));
+std::string text_of(std::optional<double> error, int decimals) {
+  return error ? fmt::format("{:.{}f}", *error, decimals) : kDiverged;
 }
 
-/// "ate_median_m".
-void add_spread(const std::string& figure, const std::string& unit, const Spread& spread,
-                CsvRow& row) {
-  row.insert(row.end(), {Cell(figure + "_median_" + unit, decimals(spread.median, 9)),
-                         Cell(figure + "_least_" + unit, decimals(spread.low, 9)),
-                         Cell(figure + "_greatest_" + unit, decimals(spread.high, 9))});
+/// The value of a dimension with this profile.
+std::string value_of(const Dimension& d, const vio::Profile& profile) {
+  return d.parameter->needs_imu && !profile.use_imu
+             ? std::string()
+             : vio::value_text(*d.parameter, d.parameter->get(profile));
 }
 
 TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
@@ -47,9 +40,8 @@ TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& ex
     if (point == nullptr)
       table.add({profile, what, "–", kDiverged, kDiverged, "–"});
     else
-      table.add({profile, what, fmt::format("{}", point->point),
-                 decimals(point->mean_ate, 3, kDiverged),
-                 decimals(point->mean_relative, 2, kDiverged), set_text(*point)});
+      table.add({profile, what, fmt::format("{}", point->point), text_of(point->mean_ate, 3),
+                 text_of(point->mean_relative, 2), set_text(*point)});
   };
   for (const std::string& profile : plan.profiles) {
     for (const ExploredPoint& point : explored)
@@ -79,28 +71,46 @@ std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint
 
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored) {
-  std::vector<CsvRow> rows;
+  struct Row {
+    const ExploredPoint& point;
+    const ExploredPoint::OfSequence& at;
+    const vio::Profile& profile;
+  };
+  using R = const Row&;
+  base::CsvTable<Row> table{{"point", [](R r) { return r.point.point; }},
+                            {"profile", [](R r) { return r.point.profile; }}};
+  for (const Dimension& d : dimensions)
+    table.add(std::string(d.parameter->name), [&d](R r) { return value_of(d, r.profile); });
+  table.add("sequence", [](R r) { return r.at.sequence; });
+  table.add("runs", [](R r) { return r.at.ate.runs; });
+  table.add("failed", [](R r) { return r.at.ate.failed; });
+  const auto add_spread = [&](const std::string& name, const std::string& unit, auto figure) {
+    const auto add = [&](const char* part, auto of) {
+      table.add(name + part + unit, [=](R r) { return base::fixed(r.at.*figure.*of, 9); });
+    };
+    add("_median_", &Spread::median);
+    add("_least_", &Spread::low);
+    add("_greatest_", &Spread::high);
+  };
+  add_spread("ate", "m", &ExploredPoint::OfSequence::ate);
+  add_spread("relative", "percent", &ExploredPoint::OfSequence::relative);
+  std::string text = table.header();
   for (const ExploredPoint& point : explored) {
     vio::Profile profile = vio::profile_named(point.profile, 1);
     vio::set_parameters(point.set, profile);
-    for (const ExploredPoint::OfSequence& s : point.sequences) {
-      CsvRow& row =
-          rows.emplace_back(CsvRow{Cell("point", point.point), Cell("profile", point.profile)});
-      add_dimensions(dimensions, profile, row);
-      row.insert(row.end(), {Cell("sequence", s.sequence), Cell("runs", s.ate.runs),
-                             Cell("failed", s.ate.failed)});
-      add_spread("ate", "m", s.ate, row);
-      add_spread("relative", "percent", s.relative, row);
-    }
+    for (const ExploredPoint::OfSequence& at : point.sequences)
+      text += table.line({point, at, profile});
   }
-  return csv_text(rows);
+  return text;
 }
 
-CsvRow point_cells(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
-                   const Point& run) {
-  CsvRow row{Cell("point", point_of_row(plan, run.row))};
-  add_dimensions(dimensions, profile_of(run.request), row);
-  return row;
+RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
+  using R = const FinishedRun&;
+  RunColumns columns{{"point", [&plan](R r) { return point_of_row(plan, r.point.row); }}};
+  for (const Dimension& d : dimensions)
+    columns.add(std::string(d.parameter->name),
+                [&d](R r) { return value_of(d, profile_of(r.point.request)); });
+  return columns;
 }
 
 }  // namespace leviosim::tools

@@ -18,8 +18,7 @@ std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored);
 
-/// Point and dimensions of a run, for runs_csv().
-CsvRow point_cells(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
-                   const Point& run);
+/// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
+RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions);
 
 }  // namespace leviosim::tools

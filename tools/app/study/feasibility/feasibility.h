@@ -1,5 +1,5 @@
 // Whether a workload is feasible on a chip: how long its frames take, what they cost, and whether
-// it fits. The work is computed once, recorded, and timed on every chip (replay/trace_source.h), so
+// it fits. The work is computed once, recorded, and timed on every chip (run/trace_source.h), so
 // all chips do the same work: what each frame and each optimisation of the recording did, whatever
 // the chip's speed would have changed. Memories have room for everything while it is timed; what
 // would not have fitted is part of the verdict.

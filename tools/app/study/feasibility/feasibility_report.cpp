@@ -6,8 +6,8 @@
 #include <array>
 #include <string_view>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/csv_table.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -117,36 +117,40 @@ std::string stage_comparison(const std::vector<Feasibility>& rows) {
   return table.str();
 }
 
-std::string feasibility_csv(const std::vector<Feasibility>& all) {
-  std::vector<CsvRow> rows;
-  for (const Feasibility& f : all) {
-    CsvRow& row = rows.emplace_back(
-        CsvRow{Cell("platform", f.platform), Cell("cores", f.cores),
-               Cell("clock_hz", f.clock.count()), Cell("front_end_ms", f.front_end_ms),
-               Cell("worst_ms", f.worst_ms), Cell("published_ms", published(f)),
-               Cell("optimiser_ms", f.optimiser_ms), Cell("frames_per_s", f.frames_per_second())});
-    const auto add_band = [&](const std::string& figure, const auto& mean) {
-      const auto add = [&](const std::string& name, const auto& end) {
-        row.push_back(Cell(name, mean ? fmt::format("{}", end(*mean).count()) : std::string()));
-      };
-      const std::string name = figure.substr(0, figure.find('_'));
-      const std::string unit = figure.substr(figure.rfind('_'));
-      add(figure, [](const auto& e) { return e.value; });
-      add(name + "_low" + unit, [](const auto& e) { return e.low(); });
-      add(name + "_high" + unit, [](const auto& e) { return e.high(); });
-    };
-    add_band("energy_per_frame_j", f.energy_per_frame);
-    add_band("power_w", f.power);
-    row.push_back(Cell("fits", f.fits() ? 1 : 0));
-    const auto add_memory = [&](const std::string& name, const MemoryVerdict& memory) {
-      row.insert(row.end(),
-                 {Cell(name + "_bytes", memory.occupied.count()),
-                  Cell(name + "_size", memory.size.count()), Cell(name + "_block", memory.block)});
-    };
-    add_memory("l1", f.l1);
-    add_memory("l2", f.l2);
-  }
-  return csv_text(rows);
+std::string feasibility_csv(const std::vector<Feasibility>& rows) {
+  using F = const Feasibility&;
+  const auto text = [](double value) { return fmt::format("{}", value); };
+  base::CsvTable<Feasibility> table{
+      {"platform", [](F f) { return f.platform; }},
+      {"cores", [](F f) { return f.cores; }},
+      {"clock_hz", [](F f) { return f.clock; }},
+      {"front_end_ms", [=](F f) { return text(f.front_end_ms); }},
+      {"worst_ms", [=](F f) { return text(f.worst_ms); }},
+      {"published_ms", [](F f) { return published(f); }},
+      {"optimiser_ms", [=](F f) { return text(f.optimiser_ms); }},
+      {"frames_per_s", [=](F f) { return text(f.frames_per_second()); }}};
+  const auto add_end = [&](const char* name, auto figure, auto end) {
+    table.add(name, [=](F f) {
+      return f.*figure ? text(std::invoke(end, *(f.*figure)).count()) : std::string();
+    });
+  };
+  using Energy = sim::Estimate<Joules>;
+  using Power = sim::Estimate<Watts>;
+  add_end("energy_per_frame_j", &Feasibility::energy_per_frame, &Energy::value);
+  add_end("energy_low_j", &Feasibility::energy_per_frame, &Energy::low);
+  add_end("energy_high_j", &Feasibility::energy_per_frame, &Energy::high);
+  add_end("power_w", &Feasibility::power, &Power::value);
+  add_end("power_low_w", &Feasibility::power, &Power::low);
+  add_end("power_high_w", &Feasibility::power, &Power::high);
+  table.add("fits", [](F f) { return f.fits() ? 1 : 0; });
+  const auto add_memory = [&](const std::string& name, auto of) {
+    table.add(name + "_bytes", [=](F f) { return (f.*of).occupied; });
+    table.add(name + "_size", [=](F f) { return (f.*of).size; });
+    table.add(name + "_block", [=](F f) { return (f.*of).block; });
+  };
+  add_memory("l1", &Feasibility::l1);
+  add_memory("l2", &Feasibility::l2);
+  return table.text(rows);
 }
 
 }  // namespace leviosim::tools

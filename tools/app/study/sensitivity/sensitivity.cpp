@@ -106,12 +106,12 @@ MeanTimes time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTr
       for (const sim::StageTiming& stage : timer.optimiser(job).stages) cycles += stage.cycles;
       iteration.add(static_cast<double>(cycles.count()));
     }
-    if (recorded.source == key_of(PoseSource::First)) continue;  // which only starts a map
+    if (recorded.source == name_of(PoseSource::First)) continue;  // which only starts a map
     const sim::JobTiming timing = timer.front_end(recorded.front_end);
     const auto cycles = static_cast<double>(timer.front_end_cycles(timing).count());
     frame.add(cycles);
-    if (recorded.source == key_of(PoseSource::Epnp)) epnp.add(cycles);
-    if (recorded.source == key_of(PoseSource::EightPoint)) eight_point.add(cycles);
+    if (recorded.source == name_of(PoseSource::Epnp)) epnp.add(cycles);
+    if (recorded.source == name_of(PoseSource::EightPoint)) eight_point.add(cycles);
   }
   const Hertz clock = chip.cluster.clock;
   return {frame.ms(clock), epnp.ms(clock), eight_point.ms(clock),

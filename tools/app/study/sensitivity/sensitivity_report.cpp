@@ -4,8 +4,8 @@
 
 #include <array>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/csv_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -77,27 +77,28 @@ std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
 }
 
 std::string sensitivity_csv(const Sensitivity& sensitivity) {
-  std::vector<CsvRow> rows;
-  for (const Swing& swing : sensitivity.swings) {
-    const platform::Parameter& p = swing.parameter;
-    CsvRow& row = rows.emplace_back(CsvRow{Cell("number", p.path), Cell("confidence", p.confidence),
-                                           Cell("unit", p.unit), Cell("value", p.value),
-                                           Cell("low", p.range->low), Cell("high", p.range->high)});
-    for (const TimeColumn& column : kColumns) {
-      const auto add = [&](const char* name, std::optional<double> value) {
-        row.push_back(Cell(fmt::format("{}_{}", column.key, name), decimals(value, 6)));
-      };
-      const auto base = sensitivity.base.*column.of;
-      const auto low = swing.low.*column.of;
-      const auto high = swing.high.*column.of;
-      add("base_ms", base);
-      add("low_ms", low);
-      add("high_ms", high);
-      add("low_percent", percent_change(low, base));
-      add("high_percent", percent_change(high, base));
-    }
+  using S = const Swing&;
+  base::CsvTable<Swing> table{
+      {"number", [](S s) { return s.parameter.path; }},
+      {"confidence", [](S s) { return s.parameter.confidence; }},
+      {"unit", [](S s) { return s.parameter.unit; }},
+      {"value", [](S s) { return s.parameter.value; }},
+      {"low", [](S s) { return fmt::format("{}", s.parameter.range->low); }},
+      {"high", [](S s) { return fmt::format("{}", s.parameter.range->high); }}};
+  for (const TimeColumn& column : kColumns) {
+    const auto of = column.of;
+    const std::optional<double> base_ms = sensitivity.base.*of;
+    const auto add = [&](const char* name, auto value) {
+      table.add(fmt::format("{}_{}", column.key, name),
+                [=](S s) { return base::fixed(value(s), 6); });
+    };
+    add("base_ms", [=](S) { return base_ms; });
+    add("low_ms", [=](S s) { return s.low.*of; });
+    add("high_ms", [=](S s) { return s.high.*of; });
+    add("low_percent", [=](S s) { return percent_change(s.low.*of, base_ms); });
+    add("high_percent", [=](S s) { return percent_change(s.high.*of, base_ms); });
   }
-  return csv_text(rows);
+  return table.text(sensitivity.swings);
 }
 
 }  // namespace leviosim::tools

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "platform_models/loader/dimension.h"
+#include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/study/csv_table.h"
 #include "tools/app/study/sweep/pareto.h"
 #include "tools/app/study/sweep/sweep_schema.h"
 
@@ -269,25 +269,25 @@ void SweepStore::make_views(const std::vector<std::string>& parameters,
 
 std::string SweepStore::csv(const std::vector<std::string>& parameters,
                             const std::vector<std::string>& figures) {
-  std::vector<std::string> cells{"point", "status"};
+  std::vector<base::Cell> cells{"point", "status"};
   cells.insert(cells.end(), parameters.begin(), parameters.end());
   cells.insert(cells.end(), figures.begin(), figures.end());
   cells.emplace_back("failure");
-  std::string text = csv_line(cells);
+  std::string text = base::csv_line(cells);
   Statement row(database_, "SELECT * FROM wide WHERE status <> 'open' ORDER BY point");
   Statement value(database_, "SELECT text FROM parameters WHERE point = ? ORDER BY place");
   while (row.step()) {
     cells = {row.text(0), row.text(1)};
     value.bind(1, row.whole(0));
-    while (value.step()) cells.push_back(value.text(0));
+    while (value.step()) cells.emplace_back(value.text(0));
     value.reset();
     const auto first = static_cast<int>(3 + parameters.size());
     for (int k = 0; k < static_cast<int>(figures.size()); ++k) {
       const std::optional<double> figure = row.number(first + k);
-      cells.push_back(figure ? platform::number_text(*figure) : std::string());
+      cells.emplace_back(figure ? platform::number_text(*figure) : std::string());
     }
-    cells.push_back(row.text(2));
-    text += csv_line(cells);
+    cells.emplace_back(row.text(2));
+    text += base::csv_line(cells);
   }
   return text;
 }

@@ -9,7 +9,7 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/study/batch_plan.h"
-#include "tools/app/study/csv_table.h"
+#include "tools/app/study/runs_csv.h"
 
 namespace leviosim::tools {
 namespace {
@@ -36,7 +36,9 @@ std::string volts(const ClockSetting& setting) {
   return setting.voltage ? fmt::format("{:.2f}", setting.voltage->count()) : kNothing;
 }
 
-std::string ate(const std::optional<double>& error) { return decimals(error, 3, "diverged"); }
+std::string ate(const std::optional<double>& error) {
+  return error ? fmt::format("{:.3f}", *error) : "diverged";
+}
 
 /// "240 MHz and 0.65 V".
 std::string clock_text(const ClockSetting& setting) {
@@ -92,44 +94,67 @@ std::string notes(const TunePlan& plan) {
   return text;
 }
 
-/// A figure and the ends of its band, in thousandths.
-void add_banded(const std::string& name, const std::string& unit,
-                const std::optional<Banded>& figure, CsvRow& row) {
-  const auto milli = [&](double Banded::*part) {
-    return figure ? decimals(*figure.*part * 1e3, 9) : std::string();
-  };
-  row.insert(row.end(), {Cell(name + "_" + unit, milli(&Banded::value)),
-                         Cell(name + "_low_" + unit, milli(&Banded::low)),
-                         Cell(name + "_high_" + unit, milli(&Banded::high))});
-}
+/// A row of runs.csv.
+struct Run {
+  const TunePoint& point;
+  const RunOutcome& outcome;
+  std::uint32_t seed;
+};
 
-CsvRow csv_row(const TunePlan& plan, const TunePoint& point, std::size_t seed) {
-  const RunOutcome& outcome = point.outcomes[seed];
-  const LoopOutcome& loop = *outcome.loop;
-  const CameraFigures& c = loop.camera;
+base::CsvTable<Run> runs_table(const TunePlan& plan) {
+  using base::fixed;
+  base::CsvTable<Run> table;
   const auto general = [](double value) { return fmt::format("{:g}", value); };
-  const std::optional<Volts>& voltage = point.setting.voltage;
-  CsvRow row;
-  row.insert(
-      row.end(),
-      {Cell("fps", general(point.fps)), Cell("clock_mhz", general(megahertz(point.setting.clock))),
-       Cell("voltage", voltage ? general(voltage->count()) : ""),
-       Cell("deadline", info_of(plan.deadline).name), Cell("seed", plan.seeds[seed]),
-       Cell("arrived", c.arrived), Cell("processed", c.processed), Cell("dropped", c.dropped),
-       Cell("late", c.late), Cell("missed", c.missed()),
-       Cell("missed_share", decimals(c.share_of(c.missed()), 6)), Cell("waited", c.waited),
-       Cell("most_found", c.most_found), Cell("latency_p50_ns", c.latency.p50_ns),
-       Cell("latency_p95_ns", c.latency.p95_ns), Cell("latency_p99_ns", c.latency.p99_ns),
-       Cell("latency_worst_ns", c.latency.max_ns)});
-  add_banded("power", "mw", loop.power_w, row);
-  add_banded("frame", "mj", loop.frame_j, row);
-  row.insert(
-      row.end(),
-      {Cell("ate_rmse_m", decimals(outcome.ate_m, 9)), Cell("matched", outcome.matched),
-       Cell("completion", decimals(outcome.completion, 9)),
-       Cell("path_m", decimals(outcome.path_m, 9)), Cell("failure", plain_cell(outcome.failure)),
-       Cell("point_is_enough", int{is_enough(point, plan)})});
-  return row;
+  const auto add_of_point = [&](const char* name, auto of) {
+    table.add(name, [of](const Run& r) { return base::Cell(of(r.point)); });
+  };
+  const auto add_of_camera = [&](const char* name, auto of) {
+    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome.loop->camera)); });
+  };
+  const auto add = [&](const char* name, auto of) {
+    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome)); });
+  };
+  using P = const TunePoint&;
+  using C = const CameraFigures&;
+  using O = const RunOutcome&;
+  add_of_point("fps", [=](P p) { return general(p.fps); });
+  add_of_point("clock_mhz", [=](P p) { return general(megahertz(p.setting.clock)); });
+  add_of_point("voltage", [=](P p) {
+    return p.setting.voltage ? general(p.setting.voltage->count()) : std::string();
+  });
+  add("deadline", [&plan](O) { return info_of(plan.deadline).name; });
+  table.add("seed", [](const Run& r) { return r.seed; });
+  add_of_camera("arrived", [](C c) { return c.arrived; });
+  add_of_camera("processed", [](C c) { return c.processed; });
+  add_of_camera("dropped", [](C c) { return c.dropped; });
+  add_of_camera("late", [](C c) { return c.late; });
+  add_of_camera("missed", [](C c) { return c.missed(); });
+  add_of_camera("missed_share", [](C c) { return fixed(c.share_of(c.missed()), 6); });
+  add_of_camera("waited", [](C c) { return c.waited; });
+  add_of_camera("most_found", [](C c) { return c.most_found; });
+  add_of_camera("latency_p50_ns", [](C c) { return c.latency.p50_ns; });
+  add_of_camera("latency_p95_ns", [](C c) { return c.latency.p95_ns; });
+  add_of_camera("latency_p99_ns", [](C c) { return c.latency.p99_ns; });
+  add_of_camera("latency_worst_ns", [](C c) { return c.latency.max_ns; });
+  const auto add_milli = [&](const char* name, auto figure, double Banded::*part) {
+    add(name, [=](O o) {
+      const std::optional<Banded>& banded = *o.loop.*figure;
+      return banded ? fixed(*banded.*part * 1e3, 9) : base::Cell();
+    });
+  };
+  add_milli("power_mw", &LoopOutcome::power_w, &Banded::value);
+  add_milli("power_low_mw", &LoopOutcome::power_w, &Banded::low);
+  add_milli("power_high_mw", &LoopOutcome::power_w, &Banded::high);
+  add_milli("frame_mj", &LoopOutcome::frame_j, &Banded::value);
+  add_milli("frame_low_mj", &LoopOutcome::frame_j, &Banded::low);
+  add_milli("frame_high_mj", &LoopOutcome::frame_j, &Banded::high);
+  add("ate_rmse_m", [](O o) { return fixed(o.ate_m, 9); });
+  add("matched", [](O o) { return o.matched; });
+  add("completion", [](O o) { return fixed(o.completion, 9); });
+  add("path_m", [](O o) { return fixed(o.path_m, 9); });
+  add("failure", [](O o) { return plain_cell(o.failure); });
+  add_of_point("point_is_enough", [&plan](P p) { return int{is_enough(p, plan)}; });
+  return table;
 }
 
 }  // namespace
@@ -161,10 +186,11 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  std::vector<CsvRow> rows;
+  std::vector<Run> runs;
   for (const TunePoint& point : points)
-    for (std::size_t i = 0; i < plan.seeds.size(); ++i) rows.push_back(csv_row(plan, point, i));
-  return csv_text(rows);
+    for (std::size_t i = 0; i < plan.seeds.size(); ++i)
+      runs.push_back({point, point.outcomes[i], plan.seeds[i]});
+  return runs_table(plan).text(runs);
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {

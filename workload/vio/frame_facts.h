@@ -1,0 +1,71 @@
+// What the front end tells about a frame besides its pose, each fact described once: CSV files,
+// statistics, work traces and tables walk over these descriptions. A new fact is a member and a row
+// of kFrameFacts.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace leviosim::vio {
+
+enum class PoseSource : std::uint8_t { First, Epnp, EightPoint, Kept, Predicted, Tracked };
+
+struct PoseSourceInfo {
+  PoseSource source;
+  std::string_view name;  ///< in files
+  std::string_view meaning;
+};
+
+inline constexpr std::array kPoseSources{
+    PoseSourceInfo{PoseSource::First, "first", "the first frame defines the world"},
+    PoseSourceInfo{PoseSource::Epnp, "epnp", "from matches with landmarks"},
+    PoseSourceInfo{PoseSource::EightPoint, "eight_point",
+                   "from matches with the previous keyframe"},
+    PoseSourceInfo{PoseSource::Kept, "kept", "too few matches: the last keyframe's pose"},
+    PoseSourceInfo{PoseSource::Predicted, "predicted",
+                   "EPnP found too few inliers: the last keyframe's pose, moved on"},
+    PoseSourceInfo{PoseSource::Tracked, "tracked",
+                   "refined from landmarks that a predicted pose found, or from EPnP's pose"},
+};
+
+constexpr std::string_view name_of(PoseSource source) {
+  return kPoseSources[static_cast<std::size_t>(source)].name;
+}
+
+/// Absent for other words.
+constexpr std::optional<PoseSource> source_named(std::string_view name) {
+  for (const PoseSourceInfo& info : kPoseSources)
+    if (info.name == name) return info.source;
+  return std::nullopt;
+}
+
+struct FrameFacts {
+  PoseSource source = PoseSource::First;
+  bool keyframe = false;
+  int features = 0;
+  int world_matches = 0;
+  int frame_matches = 0;
+  int inliers = 0;
+  int landmarks = 0;
+};
+
+/// A number that is never negative.
+struct FrameFact {
+  std::string_view name;  ///< in files
+  std::string_view meaning;
+  int FrameFacts::*of;
+};
+
+inline constexpr std::array kFrameFacts{
+    FrameFact{"features", "features in the image", &FrameFacts::features},
+    FrameFact{"world_matches", "matches with landmarks, after the age filter",
+              &FrameFacts::world_matches},
+    FrameFact{"frame_matches", "matches with the last keyframe", &FrameFacts::frame_matches},
+    FrameFact{"inliers", "inliers of the RANSAC that gave the pose", &FrameFacts::inliers},
+    FrameFact{"landmarks", "landmarks alive after the frame", &FrameFacts::landmarks},
+};
+
+}  // namespace leviosim::vio
