@@ -65,8 +65,8 @@ TEST(Ablation, PutsThePapersValuesBesideItsSequencesOnly) {
   plan.sizes = {{752, 480}, {160, 120}};
   plan.seeds = {1, 2, 3};
   for (const char* name : {"MH_01_easy", "MH_01_easy", "mine"})
-    plan.sequences.push_back({name, "folder", "inputs", 100, 50, {}});
-  const std::vector<BatchRun> runs = ablation_runs(plan);
+    plan.sequences.push_back({name, "folder", "inputs", 100, 50, {}, "work"});
+  const std::vector<Point> runs = ablation_runs(plan);
   EXPECT_EQ(runs.size(), 2u * 2 * 3 * 3);
   std::vector<RunOutcome> outcomes;
   for (std::size_t i = 0; i < runs.size(); ++i) {

@@ -1,15 +1,16 @@
 // Batches of runs: what a run is found again by, what is kept of it, how several are condensed.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/batch/batch_options.h"
-#include "tools/app/study/batch/run_key.h"
-#include "tools/app/study/batch/runs_csv.h"
-#include "tools/app/study/batch/spread.h"
+#include "tools/app/study/runs_csv.h"
+#include "tools/app/study/sequence.h"
+#include "tools/app/study/spread.h"
 
 namespace leviosim::tools {
 namespace {
@@ -31,97 +32,99 @@ RunOutcome example_outcome() {
   return outcome;
 }
 
-RunRequest example_request() {
-  RunRequest request;
-  request.data = "folder";
-  request.native = true;
-  return request;
+Outcome example_figures() { return figures_of(example_outcome()); }
+
+Point example_run() {
+  Point point;
+  point.work = "data inputs 1:2";
+  point.request.data = "folder";
+  point.request.native = true;
+  return point;
 }
 
-TEST(RunCache, GivesBackWhatWasStored) {
+TEST(OutcomeCache, GivesBackWhatWasStored) {
   const TempFolder folder;
-  const RunCache cache(folder / "runs");
+  const OutcomeCache cache(folder / "runs");
   const std::string key(64, 'a');
   EXPECT_FALSE(cache.find(key));
-  cache.store(key, example_outcome());
-  const std::optional<RunOutcome> found = cache.find(key);
+  cache.store(key, example_figures());
+  const std::optional<Outcome> found = cache.find(key);
   ASSERT_TRUE(found);
-  EXPECT_EQ(to_text(*found), to_text(example_outcome()));
-  EXPECT_EQ(found->ate_m, 0.1 + 0.2);
-  EXPECT_FALSE(found->relative_percent);
+  EXPECT_EQ(to_text(*found), to_text(example_figures()));
+  EXPECT_EQ(run_outcome_of(*found).ate_m, 0.1 + 0.2);
+  EXPECT_FALSE(run_outcome_of(*found).relative_percent);
   EXPECT_FALSE(cache.find(std::string(64, 'b')));
 }
 
-TEST(RunCache, TakesNoFileThatWasCutOffOrIsOfAnotherKind) {
+TEST(OutcomeCache, TakesNoFileThatWasCutOffOrIsOfAnotherKind) {
   const TempFolder folder;
-  const RunCache cache(folder / "runs");
+  const OutcomeCache cache(folder / "runs");
   const std::string key(64, 'a');
-  cache.store(key, example_outcome());
+  cache.store(key, example_figures());
   const fs::path file = folder / "runs/aa" / (key + ".json");
   const std::string text = traces::read_text_file(file);
   for (const std::string& broken :
        {std::string(), text.substr(0, text.size() / 2), std::string("{}"), std::string("[1]"),
-        std::string(R"({"format":"leviosim run outcome 0"})"), std::string("\xff\x00", 2)}) {
+        std::string(R"({"format":"leviosim outcome 0"})"), std::string("\xff\x00", 2)}) {
     traces::write_file_atomically(file, broken);
     EXPECT_FALSE(cache.find(key)) << broken;
   }
 }
 
-TEST(RunCache, BelievesNoFileOfAnotherKeyAndWritesItAnew) {
+TEST(OutcomeCache, BelievesNoFileOfAnotherKeyAndWritesItAnew) {
   const TempFolder folder;
-  const RunCache cache(folder / "runs");
+  const OutcomeCache cache(folder / "runs");
   const std::string key(64, 'a');
   const std::string other(64, 'b');
-  RunOutcome swapped = example_outcome();
-  swapped.ate_m = 7;
-  cache.store(key, example_outcome());
+  const Outcome swapped{"another", {}};
+  cache.store(key, example_figures());
   cache.store(other, swapped);
   const fs::path file = folder / "runs/aa" / (key + ".json");
   fs::copy_file(folder / "runs/bb" / (other + ".json"), file, fs::copy_options::overwrite_existing);
   EXPECT_FALSE(cache.find(key));
   EXPECT_TRUE(cache.find(other));
-  cache.store(key, example_outcome());
+  cache.store(key, example_figures());
   ASSERT_TRUE(cache.find(key));
-  EXPECT_EQ(cache.find(key)->ate_m, example_outcome().ate_m);
+  EXPECT_EQ(to_text(*cache.find(key)), to_text(example_figures()));
   cache.store(key, swapped);  // what is whole stays
-  EXPECT_EQ(cache.find(key)->ate_m, example_outcome().ate_m);
+  EXPECT_EQ(to_text(*cache.find(key)), to_text(example_figures()));
 }
 
 TEST(RunKey, DependsOnEverythingButTheFolder) {
-  const RunRequest request = example_request();
   const Measure how;
-  const std::string key = run_key(request, "inputs", how);
+  const platform::Schema schema;
+  const std::string key = run_key(example_run(), how, schema);
   EXPECT_EQ(key.size(), 64u);
-  RunRequest elsewhere = request;
-  elsewhere.data = "copy of the folder";
-  EXPECT_EQ(run_key(elsewhere, "inputs", how), key);
+  Point elsewhere = example_run();
+  elsewhere.request.data = "copy of the folder";
+  EXPECT_EQ(run_key(elsewhere, how, schema), key);
 
-  std::set<std::string> keys{key, run_key(request, "other inputs", how),
-                             run_key(request, "inputs", {traces::Alignment::sim3, 40}),
-                             run_key(request, "inputs", {traces::Alignment::se3, 20})};
+  std::set<std::string> keys{key, run_key(example_run(), {traces::Alignment::sim3, 40}, schema),
+                             run_key(example_run(), {traces::Alignment::se3, 20}, schema)};
   const auto add = [&](auto change) {
-    RunRequest other = request;
+    Point other = example_run();
     change(other);
-    keys.insert(run_key(other, "inputs", how));
+    keys.insert(run_key(other, how, schema));
   };
-  add([](RunRequest& r) { r.profile = "levio-no-imu"; });
-  add([](RunRequest& r) { r.seed = 2; });
-  add([](RunRequest& r) { r.image_size = {320, 240}; });
-  add([](RunRequest& r) { r.frames = traces::FrameRange{0, 10}; });
-  add([](RunRequest& r) { r.frames = traces::FrameRange{0, 11}; });
-  add([](RunRequest& r) { r.workload = {{vio::find_parameter("workload.window"), 6}}; });
-  add([](RunRequest& r) { r.workload = {{vio::find_parameter("workload.window"), 7}}; });
-  EXPECT_EQ(keys.size(), 11u);
+  add([](Point& p) { p.work = "data other inputs 1:2"; });
+  add([](Point& p) { p.request.profile = "levio-no-imu"; });
+  add([](Point& p) { p.request.seed = 2; });
+  add([](Point& p) { p.request.image_size = {320, 240}; });
+  add([](Point& p) { p.request.workload = {{vio::find_parameter("workload.window"), 6}}; });
+  add([](Point& p) { p.request.workload = {{vio::find_parameter("workload.window"), 7}}; });
+  EXPECT_EQ(keys.size(), 9u);
 }
 
-TEST(RunKey, DoesNotDependOnTheOrderOfParameters) {
-  const vio::Assignment window{vio::find_parameter("workload.window"), 6};
+TEST(RunKey, IsOfTheParametersAsTheyAre) {
+  const vio::Parameter* const window = vio::find_parameter("workload.window");
   const vio::Assignment huber{vio::find_parameter("workload.huber"), 2};
-  RunRequest a = example_request();
-  RunRequest b = example_request();
-  a.workload = {window, huber};
-  b.workload = {huber, window};
-  EXPECT_EQ(run_key(a, "", {}), run_key(b, "", {}));
+  const auto key = [](std::vector<vio::Assignment> workload) {
+    Point point = example_run();
+    point.request.workload = std::move(workload);
+    return run_key(point, {}, platform::Schema());
+  };
+  EXPECT_EQ(key({{window, 6}, huber}), key({huber, {window, 6}}));
+  EXPECT_EQ(key({{window, window->get(vio::profile_named("levio", 1))}}), key({}));
 }
 
 TEST(RunOutcome, AnEstimateThatDivergedIsAFailureAndNoFault) {
@@ -192,6 +195,10 @@ TEST(Sequence, RefusesWhatCannotBeUsed) {
   EXPECT_EQ(open_sequence(named, traces::FrameRange{1, 3}, {}).frames, 2u);
   EXPECT_NE(open_sequence(named, traces::FrameRange{1, 3}, {}).inputs,
             open_sequence(named, {}, {}).inputs);
+  EXPECT_NE(open_sequence(named, traces::FrameRange{1, 3}, {}).work,
+            open_sequence(named, traces::FrameRange{2, 4}, {}).work);  // whose images are equal
+  EXPECT_EQ(open_sequence(named, traces::FrameRange{0, 6}, {}).work,
+            open_sequence(named, {}, {}).work);
   expect_input_error([&] { open_sequence(named, {}, {{64, 48}}); }, {"--data", "64x48"});
   fs::remove_all(data.mav0("state_groundtruth_estimate0"));
   expect_input_error([&] { open_sequence(named, {}, {}); }, {"no ground truth"});
@@ -202,38 +209,41 @@ class Batch : public ::testing::Test {
   Batch() : sequence_(open_sequence({"flight", data_.root().string()}, {}, {})) {
     for (const char* profile : {"levio", "levio-no-imu"})
       for (const std::uint32_t seed : {1u, 2u, 3u}) {
-        RunRequest request = example_request();
-        request.data = sequence_.folder;
-        request.profile = profile;
-        request.seed = seed;
-        request.image_size = {32, 24};
-        runs_.push_back({&sequence_, request});
+        Point& run = runs_.emplace_back(example_run());
+        run.sequence = &sequence_;
+        run.work = sequence_.work;
+        run.request.data = sequence_.folder;
+        run.request.profile = profile;
+        run.request.seed = seed;
+        run.request.image_size = {32, 24};
       }
     runs_.push_back(runs_.front());  // the same again
   }
   std::string run(const std::string& cache, unsigned threads) {
     const std::vector<RunOutcome> outcomes =
-        run_batch(runs_, {{.length_m = 1}, RunCache(folder_ / cache), threads},
-                  [&](const BatchProgress& progress) { last_ = progress; });
+        run_outcomes(runs_, {.length_m = 1}, {.threads = threads, .cache = folder_ / cache});
     return runs_csv(runs_, outcomes, {.length_m = 1});
+  }
+  /// Of outcomes that are kept.
+  std::size_t kept(const std::string& cache) const {
+    std::size_t count = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / cache))
+      count += entry.is_regular_file() ? 1 : 0;
+    return count;
   }
 
   AslFolder data_;
   TempFolder folder_;
   Sequence sequence_;
-  std::vector<BatchRun> runs_;
-  BatchProgress last_;
+  std::vector<Point> runs_;
 };
 
 TEST_F(Batch, IsTheSameWithAnyNumberOfThreadsAndFromTheCache) {
   const std::string one = run("a", 1);
-  EXPECT_EQ(last_.done, 7u);
-  EXPECT_EQ(last_.found, 0u);
+  EXPECT_EQ(kept("a"), 6u);
   EXPECT_EQ(run("b", 3), one);
-  EXPECT_EQ(last_.found, 0u);
-  EXPECT_EQ(run("a", 2), one);
-  EXPECT_EQ(last_.done, 7u);
-  EXPECT_EQ(last_.found, 7u);
+  traces::write_file_atomically(data_.image(5), "no image");
+  EXPECT_EQ(run("a", 2), one);  // which computes nothing
 }
 
 TEST_F(Batch, StoresNothingOfARunThatFails) {
@@ -241,6 +251,51 @@ TEST_F(Batch, StoresNothingOfARunThatFails) {
   expect_input_error([&] { run("a", 1); }, {data_.image(5).filename().string()});
   EXPECT_FALSE(fs::exists(folder_ / "a"));
 }
+
+TEST(Runner, ComputesEqualKeysOnceAndCountsAllOfThem) {
+  const TempFolder folder;
+  const std::string a(64, 'a'), b(64, 'b'), c(64, 'c');
+  std::atomic<int> computed = 0;
+  std::map<std::size_t, double> taken;
+  PointBatch batch{.keys = {a, b, a, c, a}, .before = 2, .keeps_failures = false};
+  batch.compute = [&](std::size_t point) {
+    ++computed;
+    return Outcome{point == 3 ? "too small" : "", {{"x", "", "", double(point)}}};
+  };
+  batch.take = [&](std::size_t point, const Outcome& o) { taken[point] = o.figures[0].value; };
+  const Tally first = run_points(batch, {.threads = 2, .cache = folder / "cache"});
+  EXPECT_EQ(computed, 3);
+  EXPECT_EQ(first.computed, 5u);
+  EXPECT_EQ(first.done(), first.total);
+  const std::map<std::size_t, double> expected{{0, 0}, {1, 1}, {2, 0}, {3, 3}, {4, 0}};
+  EXPECT_EQ(taken, expected);
+  taken.clear();
+  const Tally second = run_points(batch, {.threads = 1, .cache = folder / "cache"});
+  EXPECT_EQ(computed, 4);  // what failed is tried again
+  EXPECT_EQ(second.found, 4u);
+  EXPECT_EQ(second.total, 7u);
+  EXPECT_EQ(taken, expected);
+}
+
+TEST(Runner, SaysHowLongItTakes) {
+  const Tally tally{.total = 110, .before = 4, .found = 6, .computed = 20};
+  EXPECT_EQ(progress_text("point", tally, 10),
+            "point 30/110, 10 of them done before, 2.0 points/s, done in 0:00:40");
+  EXPECT_EQ(progress_text("run", {.total = 32, .computed = 1}, 118.11),
+            "run 1/32, 0.0 runs/s, done in 1:01:01");
+  EXPECT_EQ(progress_text("run", {.total = 10, .found = 5}, 1), "run 5/10, 5 of them done before");
+}
+
+TEST(RunOutcome, RefusesKeptFiguresOfAnotherKind) {
+  Outcome figures = example_figures();
+  figures.figures.pop_back();
+  expect_input_error([&] { run_outcome_of(figures); }, {"cache", "path_m"});
+  figures = example_figures();
+  for (Figure& figure : figures.figures) figure.value = 1e300;
+  expect_input_error([&] { run_outcome_of(figures); }, {"cache", "sub_trajectories"});
+}
+
+TEST(RunsCsv, NeedsNoQuotes) { EXPECT_EQ(plain_cell("a,\"b\"\n"), "a  b  "); }
 
 }  // namespace
 }  // namespace leviosim::tools

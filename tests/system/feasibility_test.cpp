@@ -31,7 +31,8 @@ class Feasible : public ::testing::Test {
   }
   static Feasibility on(const std::string& name, int cores,
                         const std::vector<std::string>& overrides = {}) {
-    return study_->on(name, resolve_platform(name, overrides), cores);
+    const platform::ResolvedPlatform chip = resolve_platform(name, overrides);
+    return study_->on(FeasibilityPoint{name, chip, cores});
   }
 
   inline static std::filesystem::path folder_;

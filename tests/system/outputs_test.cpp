@@ -274,7 +274,7 @@ TEST_F(Outputs, TheCacheOfNobodyElseIsUsed) {
   fs::remove(folder_ / cache);
   expect_done(words);
   EXPECT_EQ(fs::status(folder_ / cache).permissions(), fs::perms::owner_all);
-  EXPECT_TRUE(fs::exists(folder_ / cache / "runs"));
+  EXPECT_TRUE(fs::exists(folder_ / cache / "outcomes"));
   if (::geteuid() != 0) return;  // nobody else gives folders away
   fs::create_directories(folder_ / "home/.cache/leviosim");
   ASSERT_EQ(::chown((folder_ / "home/.cache/leviosim").c_str(), 12345, 12345), 0);

@@ -7,9 +7,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/sweep/pareto.h"
-#include "tools/app/study/sweep/point_key.h"
 #include "tools/app/study/sweep/sampling.h"
-#include "tools/app/study/sweep/sweep_report.h"
 #include "traces/synthesis/rng.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -228,7 +226,7 @@ TEST_F(SweepPlans, PointsAreWhatResolvingEachOfThemGives) {
       settings.insert(plan_.base.begin(), plan_.base.end());
       std::string identity;
       try {
-        identity = identity_text(resolve(plan_, settings, inputs_, "a point"));
+        identity = text_of(resolve(plan_, settings, inputs_, "a point").identity);
       } catch (const InputError&) {
         ++impossible;
         continue;
@@ -236,7 +234,7 @@ TEST_F(SweepPlans, PointsAreWhatResolvingEachOfThemGives) {
       if (!seen.insert(identity).second) continue;
       ASSERT_LT(i, all.points.size());
       const SweepPoint point = all.points[i++];
-      EXPECT_EQ(point.key, point_key(identity));
+      EXPECT_EQ(point.key, point_key(kSweepFigures, identity));
       EXPECT_EQ(point.settings, settings);
       EXPECT_EQ(point.number, static_cast<int>(i));
     }
@@ -338,21 +336,14 @@ TEST(SweepFront, IsWhatComparingAllPairsGives) {
   EXPECT_GT(front.size(), 3u);
 }
 
-TEST(SweepReport, SaysHowLongItTakes) {
-  EXPECT_EQ(duration_text(3661.4), "1:01:01");
-  EXPECT_EQ(sweep_progress(30, 10, 110, 10),
-            "point 30/110, 10 of them done before, 2.0 points/s, done in 0:00:40");
-  EXPECT_EQ(sweep_progress(5, 5, 10, 1), "point 5/10, 5 of them done before");
-}
-
-TEST(SweepResult, ComesBackWithEveryBit) {
-  const PointResult result{"", {{"a", "ms", "so", 0.1 + 0.2}, {"b", "1", "and", 3}}};
-  const std::optional<PointResult> again = parse_point_result(to_text(result));
+TEST(Outcome, ComesBackWithEveryBit) {
+  const Outcome result{"", {{"a", "ms", "so", 0.1 + 0.2}, {"b", "1", "and", 3}}};
+  const std::optional<Outcome> again = parse_outcome(to_text(result));
   ASSERT_TRUE(again);
   EXPECT_EQ(to_text(*again), to_text(result));
   EXPECT_EQ(again->figures[0].value, 0.1 + 0.2);
   for (const char* broken : {"", "{}", "[1]", "{\"format\":\"other\"}"})
-    EXPECT_FALSE(parse_point_result(broken)) << broken;
+    EXPECT_FALSE(parse_outcome(broken)) << broken;
 }
 
 }  // namespace

@@ -7,8 +7,6 @@
 #include "sim/energy/operating_point.h"
 #include "tests/support/run_program.h"
 #include "tests/tools/well_formed.h"
-#include "tools/app/study/batch/batch_options.h"
-#include "tools/app/study/batch/run_key.h"
 #include "tools/app/study/tune/tune_plot.h"
 #include "tools/app/study/tune/tune_report.h"
 
@@ -198,19 +196,21 @@ TEST(Tuning, SaysWhatItFound) {
 TEST(RunOutcome, KeepsAllOfAClosedLoop) {
   const Example example;
   const RunOutcome& outcome = example.points[1].outcomes[0];
-  const std::optional<RunOutcome> read = parse_outcome(to_text(outcome));
-  ASSERT_TRUE(read && read->loop);
-  EXPECT_EQ(to_text(*read), to_text(outcome));
-  EXPECT_EQ(read->loop->camera.latency.p99_ns, 30'000'000);
-  EXPECT_EQ(read->loop->power_w->high, 0.015);
+  const std::optional<Outcome> kept = parse_outcome(to_text(figures_of(outcome)));
+  ASSERT_TRUE(kept);
+  const RunOutcome read = run_outcome_of(*kept);
+  ASSERT_TRUE(read.loop);
+  EXPECT_EQ(to_text(figures_of(read)), to_text(figures_of(outcome)));
+  EXPECT_EQ(read.loop->camera.latency.p99_ns, 30'000'000);
+  EXPECT_EQ(read.loop->power_w->high, 0.015);
 }
 
 TEST(RunKey, OfALoopDependsOnChipAndCamera) {
-  RunRequest request;
+  Point point{.request = {}, .work = "data inputs 1:2"};
+  RunRequest& request = point.request;
   request.platform = platform::resolve_platform("gap9");
-  const Measure how;
   std::vector<std::string> keys;
-  const auto add = [&] { keys.push_back(run_key(request, "inputs", how)); };
+  const auto add = [&] { keys.push_back(run_key(point, {}, platform::Schema())); };
   add();
   request.camera = CameraRequest{{}, Deadline::Drop};
   add();
@@ -220,7 +220,7 @@ TEST(RunKey, OfALoopDependsOnChipAndCamera) {
   add();
   request.cores = 4;
   add();
-  request.platform = platform::resolve_platform("gap9", {"supply.voltage=0.8V"});
+  request.platform = platform::resolve_platform("gap9", {"cluster.fpu.units=2"});
   add();
   request.platform = platform::resolve_platform("gap9", {"cluster.clock=369MHz"});
   add();
@@ -228,12 +228,6 @@ TEST(RunKey, OfALoopDependsOnChipAndCamera) {
   add();
   std::sort(keys.begin(), keys.end());
   EXPECT_EQ(std::unique(keys.begin(), keys.end()), keys.end());
-}
-
-TEST(BatchProgress, SaysHowLongItTakes) {
-  EXPECT_EQ(batch_progress({12, 2, 32}, 50), "run 12/32, 2 of them done before, 1:40 min left");
-  EXPECT_EQ(batch_progress({2, 2, 32}, 50), "run 2/32, 2 of them done before");
-  EXPECT_EQ(batch_progress({32, 2, 32}, 50), "run 32/32, 2 of them done before");
 }
 
 /// A folder of 6 frames without features: fast, and good enough for messages and files.

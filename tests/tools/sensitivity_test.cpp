@@ -55,7 +55,7 @@ traces::WorkTrace nothing() {
 platform::Variants gap9() { return platform::Variants(platform::resolve_platform("gap9")); }
 
 Sensitivity sweep(unsigned threads = 1) {
-  return sensitivity(gap9(), 8, example(), threads, [](int, int) {});
+  return sensitivity(gap9(), 8, example(), {.threads = threads});
 }
 
 const Swing& swing(const Sensitivity& s, const std::string& path) {
@@ -71,7 +71,7 @@ double overhead() { return gap9().config({}).cluster.core.instruction_overhead; 
 constexpr double kOffloads = 2 * 300;  // there and back
 
 TEST(Sensitivity, TheBaseIsWhatTheJobsTake) {
-  const Outcome base = time_on(gap9().config({}), 8, example());
+  const MeanTimes base = time_on(gap9().config({}), 8, example());
   EXPECT_NEAR(base.epnp.value(), (10'000 * overhead() + kOffloads) * kMsPerCycle, 1e-9);
   // programming 25, first data 16, 8 bytes per cycle, completion 8
   EXPECT_NEAR(base.eight_point.value(), (25 + 16 + 1'000 + 8 + kOffloads) * kMsPerCycle, 1e-9);
@@ -117,7 +117,7 @@ TEST(Sensitivity, CoversEveryNumberThatHasARange) {
 TEST(Sensitivity, NamesUncertainNumbersWithoutARange) {
   const platform::Variants platform(
       platform::resolve_platform("gap9", {"isa.load_use_fraction=0.3"}));
-  const Sensitivity s = sensitivity(platform, 8, nothing(), 1, [](int, int) {});
+  const Sensitivity s = sensitivity(platform, 8, nothing(), {.threads = 1});
   EXPECT_EQ(std::count(s.unbounded.begin(), s.unbounded.end(), "isa.load_use_fraction"), 1);
   EXPECT_NE(sensitivity_table(s, 8).find("without a range"), std::string::npos);
 }
@@ -127,7 +127,7 @@ TEST(Sensitivity, DoesNotDependOnTheHostsThreads) {
 }
 
 TEST(Sensitivity, WhatARunDoesNotHaveIsAbsent) {
-  const Sensitivity s = sensitivity(gap9(), 8, nothing(), 2, [](int, int) {});
+  const Sensitivity s = sensitivity(gap9(), 8, nothing(), {.threads = 2});
   EXPECT_FALSE(s.base.frame.has_value());
   EXPECT_FALSE(percent_change(s.swings[0].low.frame, s.base.frame).has_value());
   EXPECT_NE(sensitivity_table(s, 8).find("front end – on 8 cores"), std::string::npos);

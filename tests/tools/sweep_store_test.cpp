@@ -44,7 +44,7 @@ void publish(SweepStore& store, const TempFolder& folder) {
   EXPECT_FALSE(store.publish(csv).has_value());
 }
 
-PointResult result_of(double latency_ms, double l1_bytes = 1000) {
+Outcome result_of(double latency_ms, double l1_bytes = 1000) {
   return {"",
           {{"objective.latency", "ms", "of a frame", latency_ms},
            {"objective.l1_peak", "byte", "peak", l1_bytes}}};
@@ -101,7 +101,7 @@ TEST(SweepStore, AMergeTakesWhatIsMissing) {
 TEST(SweepStore, AMergeRefusesDifferentResultsOfAPointAndTakesNothing) {
   struct {
     const char* what;
-    PointResult result;
+    Outcome result;
   } const others[] = {
       {"another value", result_of(5.5)},
       {"a failure", {"too little L1", {}}},

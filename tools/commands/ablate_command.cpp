@@ -7,16 +7,15 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/study/ablate/ablation_report.h"
-#include "tools/app/study/batch/runs_csv.h"
+#include "tools/app/study/runs_csv.h"
 
 namespace leviosim::tools {
 namespace {
 
 void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
   const BatchPlan plan = make_plan(command, words);
-  const std::vector<BatchRun> runs = ablation_runs(plan);
-  const std::vector<RunOutcome> outcomes =
-      run_with_progress(plan, runs, ProgressLine::style_of_stderr(words.quiet));
+  const std::vector<Point> runs = ablation_runs(plan);
+  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
   const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, paper_accuracy());
   const std::string text = fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
                                        ablation_text(plan, rows));

@@ -71,16 +71,14 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   const BatchPlan plan = make_plan(command, words.batch);
   check_plan(plan, dimensions);
   const auto points = sample_points(dimensions, count, seed);
-  const ExplorationRuns runs = exploration_runs(plan, points);
-  const std::vector<RunOutcome> outcomes =
-      run_with_progress(plan, runs.runs, ProgressLine::style_of_stderr(words.batch.quiet));
+  const std::vector<Point> runs = exploration_runs(plan, points);
+  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
   const std::vector<ExploredPoint> explored = explored_points(plan, points, runs, outcomes);
   const std::string text = fmt::format("leviosim {}: {} points, {} native runs\n{}", version(),
-                                       points.size(), runs.runs.size(), best_text(plan, explored));
+                                       points.size(), runs.size(), best_text(plan, explored));
   publish(*plan.out, text, [&] {
     base::OutputFolder& out = *plan.out;
-    out.write("runs.csv",
-              runs_csv(runs.runs, outcomes, plan.measure, point_columns(dimensions, runs)));
+    out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
     out.write("points.csv", points_csv(dimensions, explored));
     out.write("best.md", best_markdown(plan, explored));
     out.write("scatter.svg", scatter_plot(plan, explored));

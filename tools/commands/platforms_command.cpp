@@ -67,40 +67,11 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
                std::max(a.parameters.size(), b.parameters.size()));
 }
 
-/// On all its workers, and on one of them.
-std::vector<int> teams_of(const platform::ResolvedPlatform& chip) {
-  const int workers = chip.config.cluster.workers;
-  if (workers == 1) return {1};
-  return {workers, 1};
-}
-
-std::vector<Feasibility> with_progress(
-    const RunRequest& request, const std::vector<std::string>& names,
-    const std::vector<platform::ResolvedPlatform>& chips, ProgressLine::Style style,
-    std::vector<int> (*teams)(const platform::ResolvedPlatform&)) {
-  ProgressLine line(style);
-  FeasibilityStudy study(request, [&](const Progress& p) {
-    throw_if_interrupted();
-    line.show(p.done, p.total,
-              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
-  });
-  std::vector<Feasibility> rows;
-  for (std::size_t i = 0; i < chips.size(); ++i)
-    for (const int cores : teams(chips[i])) rows.push_back(study.on(names[i], chips[i], cores));
-  return rows;
-}
-
-std::vector<int> whole_team_of(const platform::ResolvedPlatform& chip) {
-  return {chip.config.cluster.workers};
-}
-
-/// Computes the work and times it on the chips.
-std::vector<Feasibility> rows_for(const PlatformsOptions& options,
-                                  std::vector<int> (*teams)(const platform::ResolvedPlatform&)) {
+/// Computes the work and times it on the chips: on all workers of each, and, if `alone`, on one.
+std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
   const RunOptions& run = options.run;
   const std::vector<std::string> names =
       options.names.empty() ? platform::platform_names() : options.names;
-  const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
   RunOptions recording = run;
   recording.platform = "gap9";
   recording.overrides = {};
@@ -108,8 +79,21 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options,
   std::vector<platform::ResolvedPlatform> chips;
   for (const std::string& name : names)
     chips.push_back(platform::resolve_platform(name, run.overrides));
+  std::vector<FeasibilityPoint> points;
+  for (std::size_t i = 0; i < chips.size(); ++i) {
+    const int workers = chips[i].config.cluster.workers;
+    points.push_back({names[i], chips[i], workers});
+    if (alone && workers > 1) points.push_back({names[i], chips[i], 1});
+  }
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
   request.data = data_folder(run, style);
-  return with_progress(request, names, chips, style, teams);
+  ProgressLine line(style);
+  FeasibilityStudy study(request, [&](const Progress& p) {
+    throw_if_interrupted();
+    line.show(p.done, p.total,
+              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
+  });
+  return study.on(points, {.noun = "chip", .progress = style});
 }
 
 void feasibility(const PlatformsOptions& options) {
@@ -117,7 +101,7 @@ void feasibility(const PlatformsOptions& options) {
   base::OutputRequest wanted = out_request(run);
   wanted.inputs.insert(wanted.inputs.end(), options.names.begin(), options.names.end());
   std::optional<base::OutputFile> out = claimed_file(wanted);
-  const std::vector<Feasibility> rows = rows_for(options, teams_of);
+  const std::vector<Feasibility> rows = rows_for(options, true);
   publish({{out, feasibility_csv(rows), "table"}},
           fmt::format("{} on {}\n\n{}", run.profile, printable(run.data), feasibility_table(rows)));
 }
@@ -125,7 +109,7 @@ void feasibility(const PlatformsOptions& options) {
 void stages(const PlatformsOptions& options) {
   if (!options.run.out.empty())
     throw InputError("platforms stages: prints a table only; leave out --out");
-  const std::vector<Feasibility> rows = rows_for(options, whole_team_of);
+  const std::vector<Feasibility> rows = rows_for(options, false);
   print_result("{} on {}\n\n{}", options.run.profile, printable(options.run.data),
                stage_comparison(rows));
 }

@@ -1,10 +1,7 @@
 #include "tools/commands/sensitivity_command.h"
 
-#include <fmt/core.h>
-
 #include <memory>
 
-#include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_session.h"
@@ -15,15 +12,6 @@ namespace {
 
 constexpr const char* kFramesByDefault = "0:100";
 
-Sensitivity with_progress(const platform::Variants& platform, int cores,
-                          const traces::WorkTrace& trace, ProgressLine::Style style) {
-  ProgressLine line(style);
-  return sensitivity(platform, cores, trace, 0, [&](int done, int total) {
-    throw_if_interrupted();
-    line.show(done, total, [&] { return fmt::format("chip {}/{}", done, total); });
-  });
-}
-
 void run(const RunOptions& options) {
   RunRequest request = make_chip_request(options);
   std::optional<base::OutputFile> out = claimed_file(out_request(options));
@@ -33,8 +21,8 @@ void run(const RunOptions& options) {
   request.recording = &recording;
   const RunResult result = simulate_with_progress(request, style);
   const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
-  const Sensitivity found =
-      with_progress(platform::Variants(std::move(request.platform)), request.cores, trace, style);
+  const Sensitivity found = sensitivity(platform::Variants(std::move(request.platform)),
+                                        request.cores, trace, {.noun = "chip", .progress = style});
   publish({{out, sensitivity_csv(found), "table"}},
           heading(options, result) + sensitivity_table(found, result.cores));
 }

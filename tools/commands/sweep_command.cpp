@@ -7,13 +7,11 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "tools/app/cli/cache_folder.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/progress_line.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/memory_option.h"
-#include "tools/app/study/batch/run_jobs.h"
+#include "tools/app/study/runner.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_folder.h"
 #include "tools/app/study/sweep/sweep_report.h"
@@ -24,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMostJobs = 1024;
 constexpr std::int64_t kMostShards = 1'000'000;
 
 struct SweepWords {
@@ -32,8 +29,7 @@ struct SweepWords {
   std::string out;
   std::string point;
   std::string shard;
-  std::string jobs;
-  std::string cache;
+  RunnerWords runner;
   std::string memory;
   std::vector<std::string> merge;
   bool list = false;
@@ -71,44 +67,28 @@ struct Sweep {
   SweepInputs& inputs;
 };
 
-struct Tally {
-  std::int64_t stored = 0;  ///< in the file before
-  std::int64_t found = 0;   ///< in the cache
-  std::int64_t computed = 0;
-};
-
 /// What of the points is neither in the file nor in the cache.
 Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, SweepStore& store,
-                 const RunCache& cache, unsigned threads, ProgressLine::Style style) {
+                 const RunnerOptions& options) {
   const std::set<int> finished = store.finished();
   const SweepPoints& points = sweep.expansion.points;
+  PointBatch batch{.keeps_failures = false};
   std::vector<std::size_t> open;
-  for (const std::size_t i : chosen)
-    if (finished.count(static_cast<int>(i) + 1) == 0) open.push_back(i);
-  Tally tally;
-  tally.stored = static_cast<std::int64_t>(chosen.size() - open.size());
-  ProgressLine line(style);
-  JobBatch batch;
-  for (const std::size_t i : open) batch.keys.push_back(points.key(i));
-  batch.readable = [](const std::string& text) { return parse_point_result(text).has_value(); };
-  batch.compute = [&](std::size_t job) {
-    const ResolvedPoint point =
-        resolve(sweep.plan, points.settings(open[job]), sweep.inputs,
-                fmt::format("{}: point {}", sweep.plan.file, open[job] + 1));
-    const PointResult result = run_point(point);
-    return JobText{to_text(result), result.failure.empty()};
+  for (const std::size_t i : chosen) {
+    if (finished.count(static_cast<int>(i) + 1) > 0) continue;
+    throw_if_interrupted();
+    open.push_back(i);
+    batch.keys.push_back(points.key(i));
+  }
+  batch.before = chosen.size() - open.size();
+  batch.compute = [&](std::size_t i) {
+    return run_point(resolve(sweep.plan, points.settings(open[i]), sweep.inputs,
+                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)));
   };
-  batch.take = [&](std::size_t job, const std::string& text, bool found) {
-    store.put(static_cast<int>(open[job]) + 1, parse_point_result(text).value());
-    ++(found ? tally.found : tally.computed);
-    const std::int64_t before = tally.stored + tally.found;
-    line.show(before + tally.computed, static_cast<std::int64_t>(chosen.size()), [&] {
-      return sweep_progress(before + tally.computed, before,
-                            static_cast<std::int64_t>(chosen.size()), line.host_seconds());
-    });
+  batch.take = [&](std::size_t i, const Outcome& outcome) {
+    store.put(static_cast<int>(open[i]) + 1, outcome);
   };
-  run_jobs(batch, cache, threads);
-  return tally;
+  return run_points(batch, options);
 }
 
 void merge(const SweepWords& words) {
@@ -144,8 +124,8 @@ std::string expansion_text(const Expansion& expansion) {
 }
 
 void run_plan(const SweepWords& words) {
-  const ProgressLine::Style style = ProgressLine::style_of_stderr(words.quiet);
-  SweepInputs inputs(fs::absolute(words.plan).parent_path(), style, trace_memory(words.memory));
+  SweepInputs inputs(fs::absolute(words.plan).parent_path(),
+                     ProgressLine::style_of_stderr(words.quiet), trace_memory(words.memory));
   const SweepPlan plan = read_plan(words.plan, inputs);
   const Expansion expansion = expand(plan, inputs);
   if (words.list) {
@@ -158,24 +138,19 @@ void run_plan(const SweepWords& words) {
   if (words.out.empty())
     throw InputError("sweep: --out is missing; expected a folder for the results");
   const std::vector<std::size_t> chosen = chosen_points(words, expansion.points.size());
-  const unsigned threads =
-      words.jobs.empty() ? 0
-                         : static_cast<unsigned>(parse_whole("--jobs", words.jobs, 1, kMostJobs));
-  const fs::path cache_path =
-      words.cache.empty() ? cache_folder() / "sweeps" : fs::path(words.cache);
-  SweepFolder out({"--out", words.out, {words.plan}, cache_path});
+  const RunnerOptions options = runner_options(words.runner, "point", words.quiet);
+  SweepFolder out({"--out", words.out, {words.plan}, options.cache});
   if (words.force) out.empty();
   const auto begin = std::chrono::steady_clock::now();
   SweepStore store(out.path(), plan.text, expansion.points);
-  const RunCache cache(cache_path);
-  const Tally tally = run_points({plan, expansion, inputs}, chosen, store, cache, threads, style);
+  const Tally tally = run_points({plan, expansion, inputs}, chosen, store, options);
   const std::optional<std::string> elsewhere = store.publish(out.csv());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   print_result(
       "leviosim {}: {}\n{} computed in {:.1f} s, {} found in the cache, {} done before\n{}"
       "results: {}\n",
-      version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.stored,
+      version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.before,
       sweep_report(store), printable(words.out));
   if (elsewhere) throw InputError(*elsewhere);
 }
@@ -211,8 +186,7 @@ Command add_sweep_command(CLI::App& app) {
                    "put the results of folders IN together in OUT, in place of running a plan")
       ->type_name("OUT IN...")
       ->expected(2, 1'000'000);
-  add("--jobs", words->jobs, "N", "points at a time [cores of the host]");
-  add("--cache", words->cache, "DIR", "where finished points are kept and found again [user's]");
+  add_runner_options(*command, words->runner, "point");
   add_memory_option(*command, words->memory);
   command->add_flag("--force", words->force, "begin anew; finished points are found in the cache");
   command->add_flag("--quiet", words->quiet, "no progress");

@@ -12,7 +12,6 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/study/batch/batch_options.h"
 #include "tools/app/study/tune/tune_plot.h"
 #include "tools/app/study/tune/tune_report.h"
 
@@ -26,7 +25,7 @@ RunResult run_again(const TunePlan& plan, const TunePoint& point) {
     results.push_back(simulate(request_of(plan, point.fps, point.setting, plan.seeds[i]),
                                [](const Progress&) { throw_if_interrupted(); }));
     const RunOutcome outcome = outcome_of(results.back(), plan.sequence.truth, plan.measure);
-    if (to_text(outcome) != to_text(point.outcomes[i]))
+    if (to_text(figures_of(outcome)) != to_text(figures_of(point.outcomes[i])))
       throw InputError(
           "tune: run again, the chosen point gave other figures than were found in the cache of "
           "finished runs; remove it, or choose another with --cache");
@@ -53,10 +52,9 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
 
 void run(const CLI::App& command, const TuneWords& words, const Words& command_line) {
   const TunePlan plan = make_tune_plan(command, words);
-  const std::vector<BatchRun> runs = tune_runs(plan);
+  const std::vector<Point> runs = tune_runs(plan);
   const std::vector<TunePoint> points =
-      tune_points(plan, run_with_progress(runs, {plan.measure, RunCache(plan.cache), plan.threads},
-                                          ProgressLine::style_of_stderr(words.run.quiet)));
+      tune_points(plan, runs, run_outcomes(runs, plan.measure, plan.runner));
   const std::vector<Choice> all = choices(plan, points);
   const TunePoint* best = chosen(all);
   std::optional<RunResult> again;

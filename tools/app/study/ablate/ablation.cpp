@@ -5,17 +5,17 @@
 namespace leviosim::tools {
 namespace {
 
-using Figure = PaperAccuracy::Figure;
+using PaperFigure = PaperAccuracy::Figure;
 
 bool same(const traces::ImageSize& a, const traces::ImageSize& b) {
   return a.width == b.width && a.height == b.height;
 }
 
 std::optional<AblationRow::Paper> paper_value(const std::vector<PaperAccuracy>& paper,
-                                              const AblationRow& row, Figure figure) {
+                                              const AblationRow& row, PaperFigure figure) {
   std::optional<AblationRow::Paper> found;
   for (const PaperAccuracy& p : paper) {
-    if (p.sequence != row.sequence || p.profile != row.profile || p.chosen_by != Figure::ate ||
+    if (p.sequence != row.sequence || p.profile != row.profile || p.chosen_by != PaperFigure::ate ||
         p.figure != figure)
       continue;
     if (same(p.size, row.size)) return AblationRow::Paper{p.value, p.size};
@@ -24,29 +24,11 @@ std::optional<AblationRow::Paper> paper_value(const std::vector<PaperAccuracy>& 
   return found;
 }
 
-bool belongs_to(const BatchRun& run, const std::string& sequence, const traces::ImageSize& size,
-                const std::string& profile) {
-  return run.sequence->name == sequence && run.request.profile == profile &&
-         same(run.request.image_size, size);
-}
-
-/// The mean of a figure over rows; none if one of them has none.
-template <class Get>
-std::optional<double> mean_over(const std::vector<const AblationRow*>& rows, Get get) {
-  double sum = 0;
-  for (const AblationRow* row : rows) {
-    const std::optional<double> value = get(*row);
-    if (!value) return std::nullopt;
-    sum += *value;
-  }
-  return sum / static_cast<double>(rows.size());
-}
-
 std::optional<AblationRow::Paper> mean_paper(const std::vector<const AblationRow*>& rows,
                                              std::optional<AblationRow::Paper> AblationRow::*of) {
-  const std::optional<double> mean = mean_over(rows, [of](const AblationRow& r) {
-    return r.*of ? std::optional((r.*of)->value) : std::nullopt;
-  });
+  const std::optional<double> mean = mean_of(values_of(rows, [of](const AblationRow* r) {
+    return r->*of ? std::optional((r->*of)->value) : std::nullopt;
+  }));
   if (!mean) return std::nullopt;
   return AblationRow::Paper{*mean, (rows.front()->*of)->size};
 }
@@ -64,8 +46,9 @@ AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSiz
     mean.ate.failed += row.ate.failed;
     mean.relative.runs += row.relative.runs;
   }
-  mean.ate.median = mean_over(rows, [](const AblationRow& r) { return r.ate.median; });
-  mean.relative.median = mean_over(rows, [](const AblationRow& r) { return r.relative.median; });
+  mean.ate.median = mean_of(values_of(rows, [](const AblationRow* r) { return r->ate.median; }));
+  mean.relative.median =
+      mean_of(values_of(rows, [](const AblationRow* r) { return r->relative.median; }));
   // A sequence that is too short for relative errors has none to average, which is no failure.
   if (std::any_of(rows.begin(), rows.end(),
                   [](const AblationRow* row) { return row->relative.runs == 0; }))
@@ -75,30 +58,12 @@ AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSiz
   return mean;
 }
 
-}  // namespace
-
-std::vector<BatchRun> ablation_runs(const BatchPlan& plan) {
-  std::vector<BatchRun> runs;
-  for (const std::string& name : sequence_names(plan))
-    for (const traces::ImageSize& size : plan.sizes)
-      for (const std::string& profile : plan.profiles)
-        for (const Sequence& sequence : plan.sequences)
-          for (const std::uint32_t seed : plan.seeds)
-            if (sequence.name == name)
-              runs.push_back(make_run(plan, sequence, profile, size, seed));
-  return runs;
-}
-
 AblationRow row_of(const std::string& sequence, const traces::ImageSize& size,
-                   const std::string& profile, const std::vector<BatchRun>& runs,
-                   const std::vector<RunOutcome>& outcomes) {
+                   const std::string& profile, const std::vector<RunOutcome>& outcomes) {
   AblationRow row{sequence, size, profile, {}, {}, {}, {}, {}, {}};
-  std::vector<std::optional<double>> ate;
+  row.ate = spread_of(values_of(outcomes, &RunOutcome::ate_m));
   std::vector<std::optional<double>> relative;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!belongs_to(runs[i], sequence, size, profile)) continue;
-    const RunOutcome& o = outcomes[i];
-    ate.push_back(o.ate_m);
+  for (const RunOutcome& o : outcomes) {
     const bool failed = !o.failure.empty();
     if (failed || o.relative_percent) relative.push_back(o.relative_percent);
     if (failed) continue;
@@ -106,23 +71,43 @@ AblationRow row_of(const std::string& sequence, const traces::ImageSize& size,
     if (std::find(row.protocols.begin(), row.protocols.end(), o.protocol) == row.protocols.end())
       row.protocols.push_back(o.protocol);
   }
-  row.ate = spread_of(ate);
   row.relative = spread_of(relative);
   return row;
 }
 
-std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<BatchRun>& runs,
+}  // namespace
+
+std::vector<Point> ablation_runs(const BatchPlan& plan) {
+  std::vector<Point> runs;
+  std::size_t row = 0;
+  for (const std::string& name : sequence_names(plan))
+    for (const traces::ImageSize& size : plan.sizes)
+      for (const std::string& profile : plan.profiles) {
+        for (const Sequence& sequence : plan.sequences)
+          for (const std::uint32_t seed : plan.seeds) {
+            if (sequence.name != name) continue;
+            runs.push_back(make_run(plan, sequence, profile, size, seed));
+            runs.back().row = row;
+          }
+        ++row;
+      }
+  return runs;
+}
+
+std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
                                        const std::vector<RunOutcome>& outcomes,
                                        const std::vector<PaperAccuracy>& paper) {
   const std::vector<std::string> sequences = sequence_names(plan);
+  const auto of_rows =
+      by_row(runs, outcomes, sequences.size() * plan.sizes.size() * plan.profiles.size());
   std::vector<AblationRow> rows;
   for (const std::string& sequence : sequences)
     for (const traces::ImageSize& size : plan.sizes)
       for (const std::string& profile : plan.profiles) {
-        AblationRow row = row_of(sequence, size, profile, runs, outcomes);
-        row.paper_ate = paper_value(paper, row, Figure::ate);
+        AblationRow row = row_of(sequence, size, profile, of_rows[rows.size()]);
+        row.paper_ate = paper_value(paper, row, PaperFigure::ate);
         if (plan.measure.length_m == kPaperLengthM)
-          row.paper_relative = paper_value(paper, row, Figure::relative);
+          row.paper_relative = paper_value(paper, row, PaperFigure::relative);
         rows.push_back(std::move(row));
       }
   if (sequences.size() < 2) return rows;

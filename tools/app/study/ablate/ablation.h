@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tools/app/study/ablate/paper_accuracy.h"
-#include "tools/app/study/batch/batch_options.h"
-#include "tools/app/study/batch/spread.h"
+#include "tools/app/study/batch_plan.h"
+#include "tools/app/study/spread.h"
 
 namespace leviosim::tools {
 
@@ -30,17 +30,12 @@ struct AblationRow {
   std::vector<std::string> protocols;  ///< each once
 };
 
-/// In the order of rows: sequences, then sizes, then profiles; folders and seeds inside.
-std::vector<BatchRun> ablation_runs(const BatchPlan& plan);
+/// In the order of rows: sequence_names(), then sizes, then profiles; folders and seeds inside.
+std::vector<Point> ablation_runs(const BatchPlan& plan);
 
 /// A row per sequence, size and profile, and with several sequences the means over them.
-std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<BatchRun>& runs,
+std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
                                        const std::vector<RunOutcome>& outcomes,
                                        const std::vector<PaperAccuracy>& paper);
-
-/// Over the runs that are of this sequence, size and profile.
-AblationRow row_of(const std::string& sequence, const traces::ImageSize& size,
-                   const std::string& profile, const std::vector<BatchRun>& runs,
-                   const std::vector<RunOutcome>& outcomes);
 
 }  // namespace leviosim::tools

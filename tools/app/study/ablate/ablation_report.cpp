@@ -13,30 +13,30 @@ constexpr const char* kNone = "–";
 constexpr const char* kMean = "mean of them";
 constexpr const char* kDiverged = "diverged";
 
-std::string figure(std::optional<double> value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : kNone;
+std::string decimals(std::optional<double> value, int count, const char* otherwise = "") {
+  return value ? fmt::format("{:.{}f}", *value, count) : otherwise;
 }
 
-std::string median_text(const Spread& spread, int decimals) {
+std::string median_text(const Spread& spread, int count) {
   if (spread.runs == 0) return kNone;
-  return spread.median ? figure(spread.median, decimals) : kDiverged;
+  return decimals(spread.median, count, kDiverged);
 }
 
 /// With the image size if it is another.
 std::string paper_text(const std::optional<AblationRow::Paper>& paper, const AblationRow& row,
-                       int decimals) {
+                       int count) {
   if (!paper) return kNone;
-  const std::string text = figure(paper->value, decimals);
+  const std::string text = decimals(paper->value, count);
   return size_text(paper->size) == size_text(row.size)
              ? text
              : fmt::format("{} ({})", text, size_text(paper->size));
 }
 
 /// Nothing for a mean, whose rows have spreads of their own.
-std::string range_text(const AblationRow& row, const Spread& spread, int decimals) {
+std::string range_text(const AblationRow& row, const Spread& spread, int count) {
   if (row.sequence.empty() || spread.runs == 0 || !spread.low) return kNone;
-  return fmt::format("{} … {}", figure(spread.low, decimals),
-                     spread.high ? figure(spread.high, decimals) : kDiverged);
+  return fmt::format("{} … {}", decimals(spread.low, count),
+                     decimals(spread.high, count, kDiverged));
 }
 
 TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {

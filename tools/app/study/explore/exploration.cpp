@@ -1,45 +1,10 @@
 #include "tools/app/study/explore/exploration.h"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 
 #include "sim/base/interruption.h"
 
 namespace leviosim::tools {
-namespace {
-
-/// The outcomes of one point, profile and sequence.
-struct Values {
-  std::vector<std::optional<double>> ate;
-  std::vector<std::optional<double>> relative;
-};
-using Place = std::tuple<std::size_t, std::string, std::string>;
-
-std::map<Place, Values> grouped(const ExplorationRuns& runs,
-                                const std::vector<RunOutcome>& outcomes) {
-  std::map<Place, Values> groups;
-  for (std::size_t i = 0; i < runs.runs.size(); ++i) {
-    const BatchRun& run = runs.runs[i];
-    Values& values = groups[{runs.point[i], run.request.profile, run.sequence->name}];
-    values.ate.push_back(outcomes[i].ate_m);
-    values.relative.push_back(outcomes[i].relative_percent);
-  }
-  return groups;
-}
-
-std::optional<double> mean_of_medians(const std::vector<ExploredPoint::OfSequence>& sequences,
-                                      Spread ExploredPoint::OfSequence::*figure) {
-  double sum = 0;
-  for (const ExploredPoint::OfSequence& s : sequences) {
-    const std::optional<double>& median = (s.*figure).median;
-    if (!median) return std::nullopt;
-    sum += *median;
-  }
-  return sum / static_cast<double>(sequences.size());
-}
-
-}  // namespace
 
 std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point,
                                        const std::string& profile) {
@@ -50,39 +15,52 @@ std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point
   return set;
 }
 
-ExplorationRuns exploration_runs(const BatchPlan& plan,
-                                 const std::vector<std::vector<vio::Assignment>>& points) {
-  ExplorationRuns all;
-  for (std::size_t i = 0; i < points.size(); ++i)
+std::vector<Point> exploration_runs(const BatchPlan& plan, const ExplorationPoints& points) {
+  const std::vector<std::string> names = sequence_names(plan);
+  std::vector<Point> runs;
+  std::size_t first_row = 0;
+  for (const std::vector<vio::Assignment>& point : points)
     for (const std::string& profile : plan.profiles) {
       throw_if_interrupted();
-      const std::vector<vio::Assignment> set = effective(points[i], profile);
+      const std::vector<vio::Assignment> set = effective(point, profile);
       for (const Sequence& sequence : plan.sequences)
         for (const std::uint32_t seed : plan.seeds) {
-          BatchRun run = make_run(plan, sequence, profile, plan.sizes.front(), seed);
+          Point run = make_run(plan, sequence, profile, plan.sizes.front(), seed);
           run.request.workload.insert(run.request.workload.end(), set.begin(), set.end());
-          all.runs.push_back(std::move(run));
-          all.point.push_back(i);
+          run.row =
+              first_row + static_cast<std::size_t>(
+                              std::find(names.begin(), names.end(), sequence.name) - names.begin());
+          runs.push_back(std::move(run));
         }
+      first_row += names.size();
     }
-  return all;
+  return runs;
 }
 
-std::vector<ExploredPoint> explored_points(const BatchPlan& plan,
-                                           const std::vector<std::vector<vio::Assignment>>& points,
-                                           const ExplorationRuns& runs,
+std::size_t point_of_row(const BatchPlan& plan, std::size_t row) {
+  return row / (plan.profiles.size() * sequence_names(plan).size());
+}
+
+std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const ExplorationPoints& points,
+                                           const std::vector<Point>& runs,
                                            const std::vector<RunOutcome>& outcomes) {
-  const std::map<Place, Values> groups = grouped(runs, outcomes);
+  using OfSequence = ExploredPoint::OfSequence;
+  const std::vector<std::string> names = sequence_names(plan);
+  const auto rows = by_row(runs, outcomes, points.size() * plan.profiles.size() * names.size());
+  auto row = rows.begin();
   std::vector<ExploredPoint> explored;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const std::string& profile : plan.profiles) {
       ExploredPoint point{i, profile, effective(points[i], profile), {}, {}, {}};
-      for (const std::string& sequence : sequence_names(plan)) {
-        const Values& values = groups.at({i, profile, sequence});
-        point.sequences.push_back({sequence, spread_of(values.ate), spread_of(values.relative)});
+      for (const std::string& name : names) {
+        point.sequences.push_back({name, spread_of(values_of(*row, &RunOutcome::ate_m)),
+                                   spread_of(values_of(*row, &RunOutcome::relative_percent))});
+        ++row;
       }
-      point.mean_ate = mean_of_medians(point.sequences, &ExploredPoint::OfSequence::ate);
-      point.mean_relative = mean_of_medians(point.sequences, &ExploredPoint::OfSequence::relative);
+      point.mean_ate =
+          mean_of(values_of(point.sequences, [](const OfSequence& s) { return s.ate.median; }));
+      point.mean_relative = mean_of(
+          values_of(point.sequences, [](const OfSequence& s) { return s.relative.median; }));
       explored.push_back(std::move(point));
     }
   return explored;

@@ -6,16 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/study/batch/batch_options.h"
-#include "tools/app/study/batch/spread.h"
+#include "tools/app/study/batch_plan.h"
 #include "tools/app/study/explore/dimensions.h"
+#include "tools/app/study/spread.h"
 
 namespace leviosim::tools {
-
-struct ExplorationRuns {
-  std::vector<BatchRun> runs;
-  std::vector<std::size_t> point;  ///< of each run
-};
 
 /// A point with one profile.
 struct ExploredPoint {
@@ -37,13 +32,17 @@ struct ExploredPoint {
 std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point,
                                        const std::string& profile);
 
-ExplorationRuns exploration_runs(const BatchPlan& plan,
-                                 const std::vector<std::vector<vio::Assignment>>& points);
+/// Points of parameters.
+using ExplorationPoints = std::vector<std::vector<vio::Assignment>>;
 
-/// By point, then profile.
-std::vector<ExploredPoint> explored_points(const BatchPlan& plan,
-                                           const std::vector<std::vector<vio::Assignment>>& points,
-                                           const ExplorationRuns& runs,
+/// Rows are by point, profile, then sequence_names().
+std::vector<Point> exploration_runs(const BatchPlan& plan, const ExplorationPoints& points);
+/// The point of a row.
+std::size_t point_of_row(const BatchPlan& plan, std::size_t row);
+
+/// By point, then profile. @param runs  exploration_runs()
+std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const ExplorationPoints& points,
+                                           const std::vector<Point>& runs,
                                            const std::vector<RunOutcome>& outcomes);
 
 /// The best of a profile by a mean; nullptr if all diverged. The earlier one of equals.

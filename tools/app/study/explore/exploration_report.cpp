@@ -8,13 +8,7 @@
 namespace leviosim::tools {
 namespace {
 
-std::string number(std::optional<double> value) {
-  return value ? fmt::format("{:.9f}", *value) : std::string();
-}
-
-std::string cell(std::optional<double> value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : "diverged";
-}
+constexpr const char* kDiverged = "diverged";
 
 std::string set_text(const ExploredPoint& point) {
   std::vector<std::string> texts;
@@ -23,15 +17,15 @@ std::string set_text(const ExploredPoint& point) {
   return texts.empty() ? "as it is" : fmt::format("{}", fmt::join(texts, " "));
 }
 
-/// Values of the dimensions with this profile.
-std::vector<std::string> dimension_cells(const std::vector<Dimension>& dimensions,
-                                         const vio::Profile& profile) {
-  std::vector<std::string> cells;
-  for (const Dimension& d : dimensions)
-    cells.push_back(d.parameter->needs_imu && !profile.use_imu
-                        ? std::string()
-                        : vio::value_text(*d.parameter, d.parameter->get(profile)));
-  return cells;
+std::string text_of(std::optional<double> error, int decimals) {
+  return error ? fmt::format("{:.{}f}", *error, decimals) : kDiverged;
+}
+
+/// The value of a dimension with this profile.
+std::string value_of(const Dimension& d, const vio::Profile& profile) {
+  return d.parameter->needs_imu && !profile.use_imu
+             ? std::string()
+             : vio::value_text(*d.parameter, d.parameter->get(profile));
 }
 
 TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
@@ -44,10 +38,10 @@ TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& ex
                    {"set (workload.…)", kLeft}});
   const auto add = [&](const char* what, const std::string& profile, const ExploredPoint* point) {
     if (point == nullptr)
-      table.add({profile, what, "–", "diverged", "diverged", "–"});
+      table.add({profile, what, "–", kDiverged, kDiverged, "–"});
     else
-      table.add({profile, what, fmt::format("{}", point->point), cell(point->mean_ate, 3),
-                 cell(point->mean_relative, 2), set_text(*point)});
+      table.add({profile, what, fmt::format("{}", point->point), text_of(point->mean_ate, 3),
+                 text_of(point->mean_relative, 2), set_text(*point)});
   };
   for (const std::string& profile : plan.profiles) {
     for (const ExploredPoint& point : explored)
@@ -77,34 +71,45 @@ std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint
 
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored) {
-  std::string text = "point,profile";
-  for (const Dimension& d : dimensions) text += fmt::format(",{}", d.parameter->name);
-  text +=
-      ",sequence,runs,failed,ate_median_m,ate_least_m,ate_greatest_m,relative_median_percent,"
-      "relative_least_percent,relative_greatest_percent\n";
+  struct Row {
+    const ExploredPoint& point;
+    const ExploredPoint::OfSequence& at;
+    const vio::Profile& profile;
+  };
+  using R = const Row&;
+  base::CsvTable<Row> table{{"point", [](R r) { return r.point.point; }},
+                            {"profile", [](R r) { return r.point.profile; }}};
+  for (const Dimension& d : dimensions)
+    table.add(std::string(d.parameter->name), [&d](R r) { return value_of(d, r.profile); });
+  table.add("sequence", [](R r) { return r.at.sequence; });
+  table.add("runs", [](R r) { return r.at.ate.runs; });
+  table.add("failed", [](R r) { return r.at.ate.failed; });
+  const auto add_spread = [&](const std::string& name, const std::string& unit, auto figure) {
+    const auto add = [&](const char* part, auto of) {
+      table.add(name + part + unit, [=](R r) { return base::fixed(r.at.*figure.*of, 9); });
+    };
+    add("_median_", &Spread::median);
+    add("_least_", &Spread::low);
+    add("_greatest_", &Spread::high);
+  };
+  add_spread("ate", "m", &ExploredPoint::OfSequence::ate);
+  add_spread("relative", "percent", &ExploredPoint::OfSequence::relative);
+  std::string text = table.header();
   for (const ExploredPoint& point : explored) {
     vio::Profile profile = vio::profile_named(point.profile, 1);
     vio::set_parameters(point.set, profile);
-    const std::vector<std::string> cells = dimension_cells(dimensions, profile);
-    for (const ExploredPoint::OfSequence& s : point.sequences)
-      text +=
-          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", point.point, point.profile,
-                      fmt::join(cells, ","), s.sequence, s.ate.runs, s.ate.failed,
-                      number(s.ate.median), number(s.ate.low), number(s.ate.high),
-                      number(s.relative.median), number(s.relative.low), number(s.relative.high));
+    for (const ExploredPoint::OfSequence& at : point.sequences)
+      text += table.line({point, at, profile});
   }
   return text;
 }
 
-LeadingColumns point_columns(const std::vector<Dimension>& dimensions,
-                             const ExplorationRuns& runs) {
-  LeadingColumns columns{{"point"}, {}};
-  for (const Dimension& d : dimensions) columns.names.emplace_back(d.parameter->name);
-  for (std::size_t i = 0; i < runs.runs.size(); ++i) {
-    std::vector<std::string> cells = dimension_cells(dimensions, profile_of(runs.runs[i].request));
-    cells.insert(cells.begin(), fmt::format("{}", runs.point[i]));
-    columns.cells.push_back(std::move(cells));
-  }
+RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
+  using R = const FinishedRun&;
+  RunColumns columns{{"point", [&plan](R r) { return point_of_row(plan, r.point.row); }}};
+  for (const Dimension& d : dimensions)
+    columns.add(std::string(d.parameter->name),
+                [&d](R r) { return value_of(d, profile_of(r.point.request)); });
   return columns;
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/study/batch/runs_csv.h"
 #include "tools/app/study/explore/exploration.h"
+#include "tools/app/study/runs_csv.h"
 
 namespace leviosim::tools {
 
@@ -18,7 +18,7 @@ std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored);
 
-/// Point and dimensions of every run, for runs_csv().
-LeadingColumns point_columns(const std::vector<Dimension>& dimensions, const ExplorationRuns& runs);
+/// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
+RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions);
 
 }  // namespace leviosim::tools

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/interruption.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/run/recording_source.h"
@@ -39,7 +40,7 @@ class PacedSource : public TraceSource {
 
 RunResult paced(const traces::WorkTrace& work, const RunRequest& request, std::int64_t period_ns) {
   PacedSource source(work, request.platform.config, period_ns);
-  return simulate_source(request, source, [](const Progress&) {});
+  return simulate_source(request, source, [](const Progress&) { throw_if_interrupted(); });
 }
 
 /// The block at which blocks, one after the other, exceed the memory.
@@ -116,18 +117,25 @@ const traces::WorkTrace& FeasibilityStudy::work_among(int cores) {
   return *work;
 }
 
-Feasibility FeasibilityStudy::on(const std::string& name,
-                                 const platform::ResolvedPlatform& platform, int cores) {
-  const traces::WorkTrace& work = work_among(cores);
+std::vector<Feasibility> FeasibilityStudy::on(const std::vector<FeasibilityPoint>& points,
+                                              const RunnerOptions& options) {
+  for (const FeasibilityPoint& point : points) work_among(point.cores);
+  std::vector<Feasibility> rows(points.size());
+  run_all(points.size(), options, [&](std::size_t i) { rows[i] = on(points[i]); });
+  return rows;
+}
+
+Feasibility FeasibilityStudy::on(const FeasibilityPoint& point) {
+  const traces::WorkTrace& work = work_among(point.cores);
   RunRequest request;
-  request.platform = platform;
-  request.cores = cores;
+  request.platform = point.platform;
+  request.cores = point.cores;
   check_cores(work, request);
   Feasibility found;
-  found.platform = name;
-  found.cores = cores;
-  found.clock = platform.config.cluster.clock;
-  found.shares_core = platform.config.controller.shares_core;
+  found.platform = point.name;
+  found.cores = point.cores;
+  found.clock = point.platform.config.cluster.clock;
+  found.shares_core = point.platform.config.controller.shares_core;
   const RunResult leisurely = paced(work, request, kLeisurelyNs);
   add_times(leisurely, found);
   found.l1 = verdict_of_l1(leisurely);

@@ -15,6 +15,7 @@
 
 #include "sim/energy/estimate.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/study/runner.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -55,6 +56,13 @@ struct Feasibility {
   double frames_per_second() const { return 1e3 / frame_ms(); }
 };
 
+/// A chip with so many of its cores.
+struct FeasibilityPoint {
+  std::string name;  ///< as asked for
+  const platform::ResolvedPlatform& platform;
+  int cores = 0;
+};
+
 /// Work of one workload over one flight, computed when it is first asked for and then kept, for
 /// each number of cores that it is divided among.
 class FeasibilityStudy {
@@ -64,7 +72,9 @@ class FeasibilityStudy {
       : request_(std::move(request)), progress_(std::move(progress)) {}
 
   /// @throws InputError for more cores than the platform serves
-  Feasibility on(const std::string& name, const platform::ResolvedPlatform& platform, int cores);
+  Feasibility on(const FeasibilityPoint& point);
+  std::vector<Feasibility> on(const std::vector<FeasibilityPoint>& points,
+                              const RunnerOptions& options);
 
  private:
   const traces::WorkTrace& work_among(int cores);

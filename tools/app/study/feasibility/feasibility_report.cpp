@@ -6,6 +6,7 @@
 #include <array>
 #include <string_view>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/validation/references.h"
 
@@ -117,23 +118,39 @@ std::string stage_comparison(const std::vector<Feasibility>& rows) {
 }
 
 std::string feasibility_csv(const std::vector<Feasibility>& rows) {
-  std::string text =
-      "platform,cores,clock_hz,front_end_ms,worst_ms,published_ms,optimiser_ms,frames_per_s,"
-      "energy_per_frame_j,energy_low_j,energy_high_j,power_w,power_low_w,power_high_w,fits,l1_"
-      "bytes,"
-      "l1_size,l1_block,l2_bytes,l2_size,l2_block\n";
-  const auto numbers = [](const auto& e) {
-    return e ? fmt::format("{},{},{}", e->value.count(), e->low().count(), e->high().count())
-             : std::string(",,");
+  using F = const Feasibility&;
+  const auto text = [](double value) { return fmt::format("{}", value); };
+  base::CsvTable<Feasibility> table{
+      {"platform", [](F f) { return f.platform; }},
+      {"cores", [](F f) { return f.cores; }},
+      {"clock_hz", [](F f) { return f.clock; }},
+      {"front_end_ms", [=](F f) { return text(f.front_end_ms); }},
+      {"worst_ms", [=](F f) { return text(f.worst_ms); }},
+      {"published_ms", [](F f) { return published(f); }},
+      {"optimiser_ms", [=](F f) { return text(f.optimiser_ms); }},
+      {"frames_per_s", [=](F f) { return text(f.frames_per_second()); }}};
+  const auto add_end = [&](const char* name, auto figure, auto end) {
+    table.add(name, [=](F f) {
+      return f.*figure ? text(std::invoke(end, *(f.*figure)).count()) : std::string();
+    });
   };
-  for (const Feasibility& row : rows)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.platform,
-                        row.cores, row.clock.count(), row.front_end_ms, row.worst_ms,
-                        published(row), row.optimiser_ms, row.frames_per_second(),
-                        numbers(row.energy_per_frame), numbers(row.power), row.fits() ? 1 : 0,
-                        row.l1.occupied.count(), row.l1.size.count(), row.l1.block,
-                        row.l2.occupied.count(), row.l2.size.count(), row.l2.block);
-  return text;
+  using Energy = sim::Estimate<Joules>;
+  using Power = sim::Estimate<Watts>;
+  add_end("energy_per_frame_j", &Feasibility::energy_per_frame, &Energy::value);
+  add_end("energy_low_j", &Feasibility::energy_per_frame, &Energy::low);
+  add_end("energy_high_j", &Feasibility::energy_per_frame, &Energy::high);
+  add_end("power_w", &Feasibility::power, &Power::value);
+  add_end("power_low_w", &Feasibility::power, &Power::low);
+  add_end("power_high_w", &Feasibility::power, &Power::high);
+  table.add("fits", [](F f) { return f.fits() ? 1 : 0; });
+  const auto add_memory = [&](const std::string& name, auto of) {
+    table.add(name + "_bytes", [=](F f) { return (f.*of).occupied; });
+    table.add(name + "_size", [=](F f) { return (f.*of).size; });
+    table.add(name + "_block", [=](F f) { return (f.*of).block; });
+  };
+  add_memory("l1", &Feasibility::l1);
+  add_memory("l2", &Feasibility::l2);
+  return table.text(rows);
 }
 
 }  // namespace leviosim::tools

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "sim/base/check.h"
-#include "sim/base/parallel_for.h"
 #include "sim/chip/accelerator.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/result/summary.h"
@@ -79,7 +77,8 @@ double largest(std::optional<double> a, std::optional<double> b) {
 }
 
 std::vector<Swing> collect(const platform::ResolvedPlatform& platform,
-                           const std::vector<Trial>& trials, const std::vector<Outcome>& outcomes) {
+                           const std::vector<Trial>& trials,
+                           const std::vector<MeanTimes>& outcomes) {
   std::vector<Swing> swings;
   for (const platform::Parameter& parameter : platform.parameters) {
     if (!is_swept(parameter)) continue;
@@ -94,7 +93,7 @@ std::vector<Swing> collect(const platform::ResolvedPlatform& platform,
 
 }  // namespace
 
-Outcome time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace) {
+MeanTimes time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace) {
   soc::JobTimer timer(chip, workers);
   Average frame;
   Average epnp;
@@ -124,30 +123,25 @@ std::optional<double> percent_change(std::optional<double> value, std::optional<
   return 100 * (*value / *base - 1);
 }
 
-double effect_on_frame(const Swing& swing, const Outcome& base) {
+double effect_on_frame(const Swing& swing, const MeanTimes& base) {
   return largest(percent_change(swing.low.frame, base.frame),
                  percent_change(swing.high.frame, base.frame));
 }
 
-double effect_on_iteration(const Swing& swing, const Outcome& base) {
+double effect_on_iteration(const Swing& swing, const MeanTimes& base) {
   return largest(percent_change(swing.low.iteration, base.iteration),
                  percent_change(swing.high.iteration, base.iteration));
 }
 
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
-                        const traces::WorkTrace& trace, unsigned threads,
-                        const std::function<void(int, int)>& progress) {
+                        const traces::WorkTrace& trace, const RunnerOptions& options) {
   const std::vector<Trial> trials = trials_of(platform.platform());
-  std::vector<Outcome> outcomes(trials.size());
-  std::mutex mutex;
-  int done = 0;
-  traces::parallel_for(trials.size(), threads, [&](std::size_t i) {
+  std::vector<MeanTimes> outcomes(trials.size());
+  run_all(trials.size(), options, [&](std::size_t i) {
     std::vector<platform::Change> changes;
     if (trials[i].parameter != nullptr)
       changes.push_back({trials[i].parameter->path, end_of(trials[i])});
     outcomes[i] = time_on(platform.config(changes), workers, trace);
-    const std::lock_guard<std::mutex> lock(mutex);
-    progress(++done, static_cast<int>(trials.size()));
   });
 
   Sensitivity result;

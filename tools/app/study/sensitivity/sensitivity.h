@@ -7,18 +7,18 @@
 // cost that is known only in sum.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "platform_models/loader/variants.h"
+#include "tools/app/study/runner.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
 
 /// Mean times on one chip, in ms; absent if the run had no such job.
-struct Outcome {
+struct MeanTimes {
   std::optional<double> frame;        ///< front end, all frames but the first
   std::optional<double> epnp;         ///< … from EPnP
   std::optional<double> eight_point;  ///< … from the 8-point algorithm
@@ -26,17 +26,17 @@ struct Outcome {
 };
 
 /// Frame by frame, without a camera and without queues. @param workers  cores of the team
-Outcome time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace);
+MeanTimes time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace);
 
 /// One number at both ends of its range.
 struct Swing {
   platform::Parameter parameter;
-  Outcome low;
-  Outcome high;
+  MeanTimes low;
+  MeanTimes high;
 };
 
 struct Sensitivity {
-  Outcome base;
+  MeanTimes base;
   std::vector<Swing> swings;           ///< the largest effect first
   std::vector<std::string> unbounded;  ///< uncertain numbers without a range
 };
@@ -45,13 +45,10 @@ struct Sensitivity {
 std::optional<double> percent_change(std::optional<double> value, std::optional<double> base);
 
 /// Largest absolute change of the frame time at either end, in per cent.
-double effect_on_frame(const Swing& swing, const Outcome& base);
-double effect_on_iteration(const Swing& swing, const Outcome& base);
+double effect_on_frame(const Swing& swing, const MeanTimes& base);
+double effect_on_iteration(const Swing& swing, const MeanTimes& base);
 
-/// @param threads   of the host; 0 for all. The result does not depend on it.
-/// @param progress  (chips timed, all chips); called from several threads, one at a time
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
-                        const traces::WorkTrace& trace, unsigned threads,
-                        const std::function<void(int, int)>& progress);
+                        const traces::WorkTrace& trace, const RunnerOptions& options);
 
 }  // namespace leviosim::tools

@@ -1,10 +1,10 @@
 #include "tools/app/study/sensitivity/sensitivity_report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
@@ -14,16 +14,16 @@ constexpr auto kLeft = TextTable::Align::Left;
 constexpr double kShown = 0.005;  ///< per cent; below, 0.00 would be printed
 constexpr int kWidth = 100;
 
-struct OutcomeColumn {
+struct TimeColumn {
   const char* title;
   const char* key;
-  std::optional<double> Outcome::*of;
+  std::optional<double> MeanTimes::*of;
 };
 constexpr std::array kColumns{
-    OutcomeColumn{"frame", "frame", &Outcome::frame},
-    OutcomeColumn{"EPnP", "epnp", &Outcome::epnp},
-    OutcomeColumn{"8-point", "eight_point", &Outcome::eight_point},
-    OutcomeColumn{"optimiser", "iteration", &Outcome::iteration},
+    TimeColumn{"frame", "frame", &MeanTimes::frame},
+    TimeColumn{"EPnP", "epnp", &MeanTimes::epnp},
+    TimeColumn{"8-point", "eight_point", &MeanTimes::eight_point},
+    TimeColumn{"optimiser", "iteration", &MeanTimes::iteration},
 };
 
 std::string ms(std::optional<double> value) {
@@ -31,16 +31,12 @@ std::string ms(std::optional<double> value) {
 }
 
 /// "-1.2 … +3.4", what the ends of the range do.
-std::string change_text(const Swing& swing, const Outcome& base,
-                        std::optional<double> Outcome::*of) {
+std::string change_text(const Swing& swing, const MeanTimes& base,
+                        std::optional<double> MeanTimes::*of) {
   const auto low = percent_change(swing.low.*of, base.*of);
   const auto high = percent_change(swing.high.*of, base.*of);
   if (!low || !high) return "–";
   return fmt::format("{:+.2f} … {:+.2f}", *low, *high);
-}
-
-std::string number(std::optional<double> value) {
-  return value ? fmt::format("{:.6f}", *value) : std::string();
 }
 
 std::string list_line(const std::string& title, const std::vector<std::string>& names) {
@@ -53,7 +49,7 @@ std::string list_line(const std::string& title, const std::vector<std::string>& 
 std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
   std::vector<TextTable::Column> columns{
       {"number", kLeft}, {"confidence", kLeft}, {"value"}, {"range", kLeft}};
-  for (const OutcomeColumn& column : kColumns) columns.push_back({column.title});
+  for (const TimeColumn& column : kColumns) columns.push_back({column.title});
   TextTable table(std::move(columns));
   std::vector<std::string> without_effect;
   for (const Swing& swing : sensitivity.swings) {
@@ -65,11 +61,11 @@ std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
     }
     std::vector<std::string> cells{p.path, p.confidence, fmt::format("{} {}", p.value, p.unit),
                                    fmt::format("{:g} … {:g}", p.range->low, p.range->high)};
-    for (const OutcomeColumn& column : kColumns)
+    for (const TimeColumn& column : kColumns)
       cells.push_back(change_text(swing, sensitivity.base, column.of));
     table.add(std::move(cells));
   }
-  const Outcome& base = sensitivity.base;
+  const MeanTimes& base = sensitivity.base;
   return fmt::format(
              "mean times with all numbers as they are: front end {} on {} cores (EPnP {}, 8-point "
              "{}), optimiser {} for an iteration\n"
@@ -81,25 +77,28 @@ std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
 }
 
 std::string sensitivity_csv(const Sensitivity& sensitivity) {
-  std::string text = "number,confidence,unit,value,low,high";
-  for (const OutcomeColumn& column : kColumns)
-    text += fmt::format(",{0}_base_ms,{0}_low_ms,{0}_high_ms,{0}_low_percent,{0}_high_percent",
-                        column.key);
-  text += '\n';
-  for (const Swing& swing : sensitivity.swings) {
-    const platform::Parameter& p = swing.parameter;
-    text += fmt::format("{},{},{},{},{},{}", p.path, p.confidence, p.unit, p.value, p.range->low,
-                        p.range->high);
-    for (const OutcomeColumn& column : kColumns) {
-      const auto base = sensitivity.base.*column.of;
-      text += fmt::format(",{},{},{},{},{}", number(base), number(swing.low.*column.of),
-                          number(swing.high.*column.of),
-                          number(percent_change(swing.low.*column.of, base)),
-                          number(percent_change(swing.high.*column.of, base)));
-    }
-    text += '\n';
+  using S = const Swing&;
+  base::CsvTable<Swing> table{
+      {"number", [](S s) { return s.parameter.path; }},
+      {"confidence", [](S s) { return s.parameter.confidence; }},
+      {"unit", [](S s) { return s.parameter.unit; }},
+      {"value", [](S s) { return s.parameter.value; }},
+      {"low", [](S s) { return fmt::format("{}", s.parameter.range->low); }},
+      {"high", [](S s) { return fmt::format("{}", s.parameter.range->high); }}};
+  for (const TimeColumn& column : kColumns) {
+    const auto of = column.of;
+    const std::optional<double> base_ms = sensitivity.base.*of;
+    const auto add = [&](const char* name, auto value) {
+      table.add(fmt::format("{}_{}", column.key, name),
+                [=](S s) { return base::fixed(value(s), 6); });
+    };
+    add("base_ms", [=](S) { return base_ms; });
+    add("low_ms", [=](S s) { return s.low.*of; });
+    add("high_ms", [=](S s) { return s.high.*of; });
+    add("low_percent", [=](S s) { return percent_change(s.low.*of, base_ms); });
+    add("high_percent", [=](S s) { return percent_change(s.high.*of, base_ms); });
   }
-  return text;
+  return table.text(sensitivity.swings);
 }
 
 }  // namespace leviosim::tools

@@ -42,7 +42,7 @@ class PointFamily {
   /// The identity without what the numbers say. Points of families with another are others.
   const std::string& outline() const { return outline_; }
 
-  /// As identity_text() of the point.
+  /// As text_of() the identity of the point.
   std::string identity(std::span<const ValueId> values) const;
   PointParameter parameter(std::size_t key, std::span<const ValueId> values) const;
 

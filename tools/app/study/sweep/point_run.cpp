@@ -13,8 +13,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr const char* kFormat = "leviosim sweep point 1";
-
 /// Parts of names of statistics that a sweep leaves to run folders: a thousand figures per point
 /// that add up to others.
 constexpr std::array kLeftOut{".ops.", ".code.", ".account.", ".block.", ".domain."};
@@ -37,7 +35,7 @@ double l1_peak(const RunResult& run) {
   return static_cast<double>(peak.count());
 }
 
-void add_objectives(const RunResult& run, bool ate_holds, std::vector<SweepFigure>& figures) {
+void add_objectives(const RunResult& run, bool ate_holds, std::vector<Figure>& figures) {
   const auto add = [&](std::size_t i, const char* description, double value) {
     figures.push_back({kObjectives[i].figure, kObjectives[i].unit, description, value});
   };
@@ -49,7 +47,7 @@ void add_objectives(const RunResult& run, bool ate_holds, std::vector<SweepFigur
   if (run.ate && ate_holds) add(3, "RMSE of the trajectory", run.ate->translation.rmse);
 }
 
-void add_comparison(const Replay& replay, std::vector<SweepFigure>& figures) {
+void add_comparison(const Replay& replay, std::vector<Figure>& figures) {
   const auto differs = [](const FrameComparison& f) { return !f.computes_the_same(); };
   const auto count = std::count_if(replay.frames.begin(), replay.frames.end(), differs);
   figures.push_back({"replay.differing_frames", "1",
@@ -61,7 +59,7 @@ void add_comparison(const Replay& replay, std::vector<SweepFigure>& figures) {
       {"replay.first_differing_frame", "1", "first of them", static_cast<double>(first->frame)});
 }
 
-void add_statistics(const RunResult& run, bool ate_holds, std::vector<SweepFigure>& figures) {
+void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& figures) {
   const Json document = statistics(run);
   for (const Json& entry : document.at("statistics")) {
     std::string name = entry.at("name").get<std::string>();
@@ -73,56 +71,31 @@ void add_statistics(const RunResult& run, bool ate_holds, std::vector<SweepFigur
   }
 }
 
-PointResult computed(const ResolvedPoint& point) {
+Outcome computed(const ResolvedPoint& point) {
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
-  PointResult result;
+  Outcome outcome;
   if (point.trace == nullptr) {
     const RunResult run = simulate(point.request, progress);
-    add_objectives(run, true, result.figures);
-    add_statistics(run, true, result.figures);
-    return result;
+    add_objectives(run, true, outcome.figures);
+    add_statistics(run, true, outcome.figures);
+    return outcome;
   }
   const Replay replayed = replay(*point.trace, point.request, progress);
   const bool same = std::all_of(replayed.frames.begin(), replayed.frames.end(),
                                 [](const FrameComparison& f) { return f.computes_the_same(); });
-  add_objectives(replayed.run, same, result.figures);
-  add_comparison(replayed, result.figures);
-  add_statistics(replayed.run, same, result.figures);
-  return result;
+  add_objectives(replayed.run, same, outcome.figures);
+  add_comparison(replayed, outcome.figures);
+  add_statistics(replayed.run, same, outcome.figures);
+  return outcome;
 }
 
 }  // namespace
 
-PointResult run_point(const ResolvedPoint& point) {
+Outcome run_point(const ResolvedPoint& point) {
   try {
     return computed(point);
   } catch (const InputError& error) {
     return {error.what(), {}};
-  }
-}
-
-std::string to_text(const PointResult& result) {
-  Json json;
-  json["format"] = kFormat;
-  json["failure"] = result.failure;
-  json["figures"] = Json::array();
-  for (const SweepFigure& f : result.figures)
-    json["figures"].push_back(Json::array({f.name, f.unit, f.description, f.value}));
-  return json_text(json) + '\n';
-}
-
-std::optional<PointResult> parse_point_result(std::string_view text) {
-  try {
-    const Json json = Json::parse(text);
-    if (json.at("format") != kFormat) return std::nullopt;
-    PointResult result;
-    result.failure = json.at("failure").get<std::string>();
-    for (const Json& f : json.at("figures"))
-      result.figures.push_back({f.at(0).get<std::string>(), f.at(1).get<std::string>(),
-                                f.at(2).get<std::string>(), f.at(3).get<double>()});
-    return result;
-  } catch (const Json::exception&) {
-    return std::nullopt;
   }
 }
 

@@ -1,27 +1,12 @@
-// The result of one point: what a run or a replay says, as a list of figures.
+// What a sweep keeps of a point: all that a run or a replay says, as a list of figures.
 #pragma once
 
 #include <array>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "tools/app/study/sweep/points.h"
+#include "tools/app/study/outcome.h"
+#include "tools/app/study/sweep/resolve.h"
 
 namespace leviosim::tools {
-
-struct SweepFigure {
-  std::string name;
-  std::string unit;
-  std::string description;
-  double value = 0;
-};
-
-struct PointResult {
-  std::string failure;  ///< why the point cannot be run to its end, such as too little L1
-  std::vector<SweepFigure> figures;
-};
 
 /// What sweeps are judged by, first of all figures; less is better. A figure is missing where it
 /// does not exist: energy of chips without energy figures, the error without ground truth or where
@@ -41,11 +26,6 @@ inline constexpr std::array kObjectives{
 
 /// Computes the point, or times its recorded work. A chip too small for the work is a failure.
 /// @throws Interrupted
-PointResult run_point(const ResolvedPoint& point);
-
-/// As JSON with every bit of the numbers.
-std::string to_text(const PointResult& result);
-/// Nothing for what to_text() never wrote.
-std::optional<PointResult> parse_point_result(std::string_view text);
+Outcome run_point(const ResolvedPoint& point);
 
 }  // namespace leviosim::tools

@@ -9,7 +9,7 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
-#include "tools/app/study/sweep/point_key.h"
+#include "tools/app/study/point.h"
 
 namespace leviosim::tools {
 
@@ -49,7 +49,7 @@ SweepRow SweepPoints::settings(std::size_t i) const { return settings_of(values_
 
 std::string SweepPoints::key(std::size_t i) const {
   const std::vector<ValueId> values = values_of(rows_[i]);
-  return point_key(family_of(values).identity(values));
+  return point_key(kSweepFigures, family_of(values).identity(values));
 }
 
 SweepPoint SweepPoints::operator[](std::size_t i) const {
@@ -58,7 +58,7 @@ SweepPoint SweepPoints::operator[](std::size_t i) const {
   SweepPoint point{static_cast<int>(i) + 1, settings_of(values), {}, {}};
   for (std::size_t k = 0; k < values.size(); ++k)
     point.parameters.push_back(family.parameter(k, values));
-  point.key = point_key(family.identity(values));
+  point.key = point_key(kSweepFigures, family.identity(values));
   return point;
 }
 

@@ -6,12 +6,16 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/app/study/sweep/point_family.h"
 #include "tools/app/study/sweep/sampling.h"
 
 namespace leviosim::tools {
+
+/// What a sweep keeps of a point, for point_key().
+inline constexpr std::string_view kSweepFigures = "figures of a sweep";
 
 struct SweepPoint {
   int number = 0;                          ///< from 1

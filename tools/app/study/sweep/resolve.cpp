@@ -37,6 +37,7 @@ class Resolver {
       if (what.starts_with(place_.where)) throw;
       place_.fail(what);
     }
+    point_.identity = identity_of(point_, point_.chip->schema());
     return std::move(point_);
   }
 
@@ -54,10 +55,6 @@ class Resolver {
     return found;
   }
 
-  void add(std::string key, std::string text) {
-    point_.identity.push_back({std::move(key), std::move(text)});
-  }
-
   void take_chip(platform::PlatformFile& file) {
     point_.chip = &file;
     point_.overrides = with_prefix(kChipPrefix, false);
@@ -66,10 +63,6 @@ class Resolver {
     point_.request.cores =
         has("cores") ? static_cast<int>(parse_whole("cores", text("cores"), 1, cluster.max_workers))
                      : cluster.workers;
-    add("cores", fmt::format("cores {}\n", point_.request.cores));
-    for (const platform::CanonicalLine& line :
-         canonical_lines(file.schema(), point_.request.platform))
-      add(line.path.empty() ? "" : kChipPrefix + line.path, line.text);
   }
 
   void take_recording() {
@@ -81,7 +74,7 @@ class Resolver {
                         name));
     SweepInputs::Trace& trace = inputs_.trace(text("trace"), place_);
     point_.trace = trace.work.get();
-    add("", fmt::format("trace {}\n", trace.sha256));
+    point_.work = fmt::format("trace {}", trace.sha256);
     take_chip(has("platform") ? inputs_.platform(text("platform"), place_) : trace.platform);
     check_cores(*trace.work, point_.request);
   }
@@ -98,13 +91,8 @@ class Resolver {
     request.seed = static_cast<std::uint32_t>(
         parse_whole("seed", text("seed", "1"), 0, std::numeric_limits<std::uint32_t>::max()));
     request.workload = parse_workload_overrides(with_prefix(vio::kParameterPrefix, true));
-    add("", fmt::format("data {}\nsize {}x{}\n", data.sha256, request.image_size.width,
-                        request.image_size.height));
-    add("seed", fmt::format("seed {}\n", request.seed));
-    add("", fmt::format("profile {}\n", request.profile));
-    const vio::Profile profile = profile_of(request);
-    for (const vio::Parameter& p : vio::parameters())
-      add(std::string(p.name), fmt::format("{} {}\n", p.name, value_text(p, p.get(profile))));
+    profile_of(request);  // refuses parameters that contradict each other
+    point_.work = data.work;
     take_chip(inputs_.platform(text("platform"), place_));
   }
 
@@ -120,12 +108,6 @@ class Resolver {
 ResolvedPoint resolve(const SweepPlan& plan, const SweepRow& settings, SweepInputs& inputs,
                       const std::string& where) {
   return Resolver(plan, settings, inputs, where).resolve();
-}
-
-std::string identity_text(const ResolvedPoint& point) {
-  std::string text;
-  for (const IdentityLine& line : point.identity) text += line.text;
-  return text;
 }
 
 }  // namespace leviosim::tools

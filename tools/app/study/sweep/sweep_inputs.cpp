@@ -8,7 +8,7 @@
 #include "sim/base/sha256.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_folder.h"
-#include "tools/app/study/batch/sequence.h"
+#include "tools/app/study/sequence.h"
 #include "traces/datasets/asl_reader.h"
 
 namespace leviosim::tools {
@@ -68,7 +68,8 @@ const SweepInputs::Data& SweepInputs::data(const std::string& name, const std::s
     std::optional<traces::FrameRange> range;
     if (!frames.empty()) range = traces::parse_frame_range(frames);
     const traces::Dataset data = traces::open_asl(folder, {.frames = range});
-    return data_.emplace(key, Data{folder.string(), digest_of(data), data.camera}).first->second;
+    return data_.emplace(key, Data{folder.string(), work_of(data, digest_of(data)), data.camera})
+        .first->second;
   });
 }
 

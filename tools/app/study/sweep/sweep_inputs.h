@@ -27,7 +27,7 @@ class SweepInputs {
   };
   struct Data {
     std::string folder;
-    std::string sha256;  ///< of all that is read
+    std::string work;  ///< work_of() the frames
     traces::CameraModel camera;
   };
 

@@ -78,20 +78,4 @@ std::string sweep_report(SweepStore& store) {
   return text + " and as good in the others\n" + front_table(store, front, known);
 }
 
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<std::int64_t>(seconds + 0.5);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
-std::string sweep_progress(std::int64_t done, std::int64_t found, std::int64_t total,
-                           double host_seconds) {
-  std::string text = fmt::format("point {}/{}", done, total);
-  if (found > 0) text += fmt::format(", {} of them done before", found);
-  const auto computed = static_cast<double>(done - found);
-  if (computed > 0 && host_seconds > 0)
-    text += fmt::format(", {:.1f} points/s, done in {}", computed / host_seconds,
-                        duration_text(static_cast<double>(total - done) * host_seconds / computed));
-  return text;
-}
-
 }  // namespace leviosim::tools

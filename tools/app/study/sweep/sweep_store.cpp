@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "platform_models/loader/dimension.h"
+#include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/study/sweep/pareto.h"
-#include "tools/app/study/sweep/point_key.h"
 #include "tools/app/study/sweep/sweep_schema.h"
 
 namespace leviosim::tools {
@@ -44,11 +44,6 @@ std::string literal(const std::string& text) {
   std::string sql = "'";
   for (const char c : text) sql += c == '\'' ? std::string("''") : std::string(1, c);
   return sql + '\'';
-}
-
-/// As RFC 4180 asks for.
-std::string cell(const std::string& text) {
-  return text.find_first_of(",\"\n\r") == std::string::npos ? text : quoted(text);
 }
 
 bool is_objective(const std::string& name) {
@@ -144,13 +139,13 @@ std::int64_t SweepStore::planned() {
   return select.whole(0);
 }
 
-void SweepStore::put(int point, const PointResult& result) {
+void SweepStore::put(int point, const Outcome& result) {
   Transaction transaction(database_);
   write(point, result);
   transaction.commit();
 }
 
-void SweepStore::write(int point, const PointResult& result) {
+void SweepStore::write(int point, const Outcome& result) {
   Statement outcome(database_, "INSERT OR IGNORE INTO outcomes VALUES(?, ?) RETURNING point");
   outcome.bind(1, std::int64_t{point}).bind(2, std::string_view(result.failure));
   const bool is_new = outcome.step();
@@ -161,7 +156,7 @@ void SweepStore::write(int point, const PointResult& result) {
   Statement value(database_,
                   "INSERT INTO figure_values SELECT ?, figure, ?, ? FROM figures WHERE name = ?");
   std::int64_t place = 0;
-  for (const SweepFigure& f : result.figures) {
+  for (const Figure& f : result.figures) {
     figure.bind(1, std::string_view(f.name)).bind(2, std::string_view(f.unit));
     figure.bind(3, std::string_view(f.description)).run();
     value.bind(1, std::int64_t{point}).bind(2, place++);
@@ -169,10 +164,10 @@ void SweepStore::write(int point, const PointResult& result) {
   }
 }
 
-std::optional<PointResult> SweepStore::result_of(int point) {
+std::optional<Outcome> SweepStore::result_of(int point) {
   Statement outcome(database_, "SELECT failure FROM outcomes WHERE point = ?");
   if (!outcome.bind(1, std::int64_t{point}).step()) return std::nullopt;
-  PointResult result{outcome.text(0), {}};
+  Outcome result{outcome.text(0), {}};
   Statement figures(database_,
                     "SELECT name, unit, description, value FROM figure_values JOIN figures USING "
                     "(figure) WHERE point = ? ORDER BY place");
@@ -189,8 +184,8 @@ void SweepStore::merge(SweepStore& other) {
                                      (folder_ / kSweepFile).string()));
   Transaction transaction(database_);
   for (const int point : other.finished()) {
-    const PointResult theirs = other.result_of(point).value();
-    const std::optional<PointResult> ours = result_of(point);
+    const Outcome theirs = other.result_of(point).value();
+    const std::optional<Outcome> ours = result_of(point);
     if (!ours)
       write(point, theirs);
     else if (to_text(*ours) != to_text(theirs))
@@ -274,23 +269,25 @@ void SweepStore::make_views(const std::vector<std::string>& parameters,
 
 std::string SweepStore::csv(const std::vector<std::string>& parameters,
                             const std::vector<std::string>& figures) {
-  std::string text = "point,status";
-  for (const std::string& name : parameters) text += ',' + cell(name);
-  for (const std::string& name : figures) text += ',' + cell(name);
-  text += ",failure\n";
+  std::vector<base::Cell> cells{"point", "status"};
+  cells.insert(cells.end(), parameters.begin(), parameters.end());
+  cells.insert(cells.end(), figures.begin(), figures.end());
+  cells.emplace_back("failure");
+  std::string text = base::csv_line(cells);
   Statement row(database_, "SELECT * FROM wide WHERE status <> 'open' ORDER BY point");
   Statement value(database_, "SELECT text FROM parameters WHERE point = ? ORDER BY place");
   while (row.step()) {
-    text += fmt::format("{},{}", row.whole(0), row.text(1));
+    cells = {row.text(0), row.text(1)};
     value.bind(1, row.whole(0));
-    while (value.step()) text += ',' + cell(value.text(0));
+    while (value.step()) cells.emplace_back(value.text(0));
     value.reset();
     const auto first = static_cast<int>(3 + parameters.size());
     for (int k = 0; k < static_cast<int>(figures.size()); ++k) {
       const std::optional<double> figure = row.number(first + k);
-      text += ',' + (figure ? platform::number_text(*figure) : std::string());
+      cells.emplace_back(figure ? platform::number_text(*figure) : std::string());
     }
-    text += ',' + cell(row.text(2)) + '\n';
+    cells.emplace_back(row.text(2));
+    text += base::csv_line(cells);
   }
   return text;
 }

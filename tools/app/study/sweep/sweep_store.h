@@ -12,6 +12,7 @@
 
 #include "sim/base/output_file.h"
 #include "tools/app/study/sweep/point_run.h"
+#include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sqlite.h"
 
 namespace leviosim::tools {
@@ -36,7 +37,7 @@ class SweepStore {
   explicit SweepStore(const std::filesystem::path& folder);
 
   std::set<int> finished();
-  void put(int point, const PointResult& result);
+  void put(int point, const Outcome& result);
 
   /// Takes over all that another has finished. @throws InputError if it is of another sweep, or if
   /// both have a point with different results
@@ -64,8 +65,8 @@ class SweepStore {
   Keys keys();
   bool holds(const SweepPoints& points);
   void plan(const SweepPoints& points);
-  std::optional<PointResult> result_of(int point);
-  void write(int point, const PointResult& result);
+  std::optional<Outcome> result_of(int point);
+  void write(int point, const Outcome& result);
   std::vector<std::string> figure_names();
   void write_front();
   void make_views(const std::vector<std::string>& parameters,

@@ -12,7 +12,6 @@
 #include "sim/energy/operating_point.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
-#include "tools/app/study/batch/batch_options.h"
 #include "traces/datasets/asl_reader.h"
 
 namespace leviosim::tools {
@@ -166,8 +165,7 @@ void add_tune_options(CLI::App& command, TuneWords& words) {
       "what becomes of a frame that finds the front end busy [drop]");
   add("--miss-rate", words.miss_rate, "SHARE", "of frames that may be dropped or late [0.05]");
   add("--ate", words.ate, "M", "absolute trajectory error that is accepted, in metres [0.2]");
-  add("--jobs", words.jobs, "N", "runs at a time [cores of the host]");
-  add("--cache", words.cache, "DIR", "where finished runs are kept and found again [user's cache]");
+  add_runner_options(command, words.runner, "run");
   add_out_options(command, words.run);
 }
 
@@ -189,11 +187,10 @@ TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
   plan.miss_rate = parse_miss_rate(words.miss_rate);
   plan.ate_m = parse_positive("--ate", words.ate);
   if (!words.fps.empty()) plan.fps = parse_rates(words.fps);
-  plan.cache = words.cache.empty() ? default_run_cache() : std::filesystem::path(words.cache);
-  plan.threads = parse_jobs(words.jobs);
+  plan.runner = runner_options(words.runner, "run", words.run.quiet);
   if (!words.run.out.empty())
     plan.out = std::make_shared<base::OutputFolder>(out_request(words.run));
-  plan.request.data = data_folder(words.run, ProgressLine::style_of_stderr(words.run.quiet));
+  plan.request.data = data_folder(words.run, plan.runner.progress);
   plan.recorded_hz = checked_recorded_rate(plan.request, plan.fps);
   if (plan.fps.empty()) plan.fps = {plan.recorded_hz};
   plan.sequence = open_sequence({words.run.data, plan.request.data}, plan.request.frames,

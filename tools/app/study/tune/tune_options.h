@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,7 +9,8 @@
 
 #include "sim/base/output_folder.h"
 #include "tools/app/run/run_options.h"
-#include "tools/app/study/batch/run_batch.h"
+#include "tools/app/study/run_outcome.h"
+#include "tools/app/study/sequence.h"
 
 namespace leviosim::tools {
 
@@ -22,8 +22,7 @@ struct TuneWords {
   std::string deadline = "drop";
   std::string miss_rate = "0.05";
   std::string ate = "0.2";
-  std::string jobs;
-  std::string cache;
+  RunnerWords runner;
 };
 
 /// What a clock comes with.
@@ -45,8 +44,7 @@ struct TunePlan {
   double miss_rate = 0;  ///< share of missed frames that is allowed
   double ate_m = 0;      ///< error that is allowed
   Measure measure;
-  std::filesystem::path cache;              ///< folder
-  unsigned threads = 0;                     ///< 0: as many as the host has
+  RunnerOptions runner;
   std::shared_ptr<base::OutputFolder> out;  ///< if results are to be written
 };
 

@@ -7,11 +7,9 @@
 #include <array>
 
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/batch/batch_options.h"
-#include "tools/app/study/batch/run_key.h"
-#include "tools/app/study/batch/runs_csv.h"
+#include "tools/app/study/batch_plan.h"
+#include "tools/app/study/runs_csv.h"
 
 namespace leviosim::tools {
 namespace {
@@ -74,12 +72,6 @@ Json banded_json(const std::optional<Banded>& figure) {
   return figure ? Json(figure->value) : Json(nullptr);
 }
 
-std::string optional_cells(const std::optional<Banded>& figure) {
-  if (!figure) return ",,";
-  return fmt::format("{:.9f},{:.9f},{:.9f}", figure->value * 1e3, figure->low * 1e3,
-                     figure->high * 1e3);
-}
-
 struct LatencyColumn {
   double (*of)(const LoopOutcome&);
 };
@@ -102,20 +94,67 @@ std::string notes(const TunePlan& plan) {
   return text;
 }
 
-/// All cells of a run but the last.
-std::string csv_line(const TunePlan& plan, const TunePoint& point, std::size_t seed) {
-  const RunOutcome& outcome = point.outcomes[seed];
-  const LoopOutcome& loop = *outcome.loop;
-  const CameraFigures& c = loop.camera;
-  return fmt::format(
-      "{:g},{:g},{},{},{},{},{},{},{},{},{:.6f},{},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{}",
-      point.fps, megahertz(point.setting.clock),
-      point.setting.voltage ? fmt::format("{:g}", point.setting.voltage->count()) : "",
-      info_of(plan.deadline).name, plan.seeds[seed], c.arrived, c.processed, c.dropped, c.late,
-      c.missed(), c.share_of(c.missed()), c.waited, c.most_found, c.latency.p50_ns,
-      c.latency.p95_ns, c.latency.p99_ns, c.latency.max_ns, optional_cells(loop.power_w),
-      optional_cells(loop.frame_j), outcome.ate_m ? fmt::format("{:.9f}", *outcome.ate_m) : "",
-      outcome.matched, outcome.completion, outcome.path_m, csv_cell(outcome.failure));
+/// A row of runs.csv.
+struct Run {
+  const TunePoint& point;
+  const RunOutcome& outcome;
+  std::uint32_t seed;
+};
+
+base::CsvTable<Run> runs_table(const TunePlan& plan) {
+  using base::fixed;
+  base::CsvTable<Run> table;
+  const auto general = [](double value) { return fmt::format("{:g}", value); };
+  const auto add_of_point = [&](const char* name, auto of) {
+    table.add(name, [of](const Run& r) { return base::Cell(of(r.point)); });
+  };
+  const auto add_of_camera = [&](const char* name, auto of) {
+    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome.loop->camera)); });
+  };
+  const auto add = [&](const char* name, auto of) {
+    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome)); });
+  };
+  using P = const TunePoint&;
+  using C = const CameraFigures&;
+  using O = const RunOutcome&;
+  add_of_point("fps", [=](P p) { return general(p.fps); });
+  add_of_point("clock_mhz", [=](P p) { return general(megahertz(p.setting.clock)); });
+  add_of_point("voltage", [=](P p) {
+    return p.setting.voltage ? general(p.setting.voltage->count()) : std::string();
+  });
+  add("deadline", [&plan](O) { return info_of(plan.deadline).name; });
+  table.add("seed", [](const Run& r) { return r.seed; });
+  add_of_camera("arrived", [](C c) { return c.arrived; });
+  add_of_camera("processed", [](C c) { return c.processed; });
+  add_of_camera("dropped", [](C c) { return c.dropped; });
+  add_of_camera("late", [](C c) { return c.late; });
+  add_of_camera("missed", [](C c) { return c.missed(); });
+  add_of_camera("missed_share", [](C c) { return fixed(c.share_of(c.missed()), 6); });
+  add_of_camera("waited", [](C c) { return c.waited; });
+  add_of_camera("most_found", [](C c) { return c.most_found; });
+  add_of_camera("latency_p50_ns", [](C c) { return c.latency.p50_ns; });
+  add_of_camera("latency_p95_ns", [](C c) { return c.latency.p95_ns; });
+  add_of_camera("latency_p99_ns", [](C c) { return c.latency.p99_ns; });
+  add_of_camera("latency_worst_ns", [](C c) { return c.latency.max_ns; });
+  const auto add_milli = [&](const char* name, auto figure, double Banded::*part) {
+    add(name, [=](O o) {
+      const std::optional<Banded>& banded = *o.loop.*figure;
+      return banded ? fixed(*banded.*part * 1e3, 9) : base::Cell();
+    });
+  };
+  add_milli("power_mw", &LoopOutcome::power_w, &Banded::value);
+  add_milli("power_low_mw", &LoopOutcome::power_w, &Banded::low);
+  add_milli("power_high_mw", &LoopOutcome::power_w, &Banded::high);
+  add_milli("frame_mj", &LoopOutcome::frame_j, &Banded::value);
+  add_milli("frame_low_mj", &LoopOutcome::frame_j, &Banded::low);
+  add_milli("frame_high_mj", &LoopOutcome::frame_j, &Banded::high);
+  add("ate_rmse_m", [](O o) { return fixed(o.ate_m, 9); });
+  add("matched", [](O o) { return o.matched; });
+  add("completion", [](O o) { return fixed(o.completion, 9); });
+  add("path_m", [](O o) { return fixed(o.path_m, 9); });
+  add("failure", [](O o) { return plain_cell(o.failure); });
+  add_of_point("point_is_enough", [&plan](P p) { return int{is_enough(p, plan)}; });
+  return table;
 }
 
 }  // namespace
@@ -147,15 +186,11 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  std::string text =
-      "fps,clock_mhz,voltage,deadline,seed,arrived,processed,dropped,late,missed,missed_share,"
-      "waited,most_found,latency_p50_ns,latency_p95_ns,latency_p99_ns,latency_worst_ns,power_mw,"
-      "power_low_mw,power_high_mw,frame_mj,frame_low_mj,frame_high_mj,ate_rmse_m,matched,"
-      "completion,path_m,failure,point_is_enough\n";
+  std::vector<Run> runs;
   for (const TunePoint& point : points)
     for (std::size_t i = 0; i < plan.seeds.size(); ++i)
-      text += csv_line(plan, point, i) + fmt::format(",{}\n", int{is_enough(point, plan)});
-  return text;
+      runs.push_back({point, point.outcomes[i], plan.seeds[i]});
+  return runs_table(plan).text(runs);
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
@@ -172,13 +207,7 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
 
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line) {
-  Json document;
-  document["format"] = "leviosim tune manifest";
-  document["version"] = 1;
-  document["program"]["version"] = version();
-  document["program"]["revision"] = revision();
-  document["program"]["estimator"] = results_version();
-  document["command_line"] = command_line;
+  Json document = study_manifest("leviosim tune manifest", command_line);
   document["profile"] = plan.request.profile;
   document["seeds"] = plan.seeds;
   document["platform"]["name"] = plan.options.platform;

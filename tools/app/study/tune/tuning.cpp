@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "sim/base/check.h"
 #include "tools/app/run/workload_overrides.h"
 
 namespace leviosim::tools {
@@ -30,19 +29,17 @@ std::string quoted(const std::string& word) {
 }  // namespace
 
 double TunePoint::median(double (*of)(const LoopOutcome&)) const {
-  std::vector<std::optional<double>> values;
-  for (const RunOutcome& outcome : outcomes) values.push_back(of(*outcome.loop));
-  return *spread_of(values).median;
+  return *spread_of(values_of(outcomes, [of](const RunOutcome& o) { return of(*o.loop); })).median;
 }
 
 std::optional<Banded> TunePoint::median(std::optional<Banded> LoopOutcome::*of) const {
   const auto part = [&](double Banded::*end) {
-    std::vector<std::optional<double>> values;
-    for (const RunOutcome& outcome : outcomes) {
-      const std::optional<Banded>& figure = *outcome.loop.*of;
-      values.push_back(figure ? std::optional(*figure.*end) : std::nullopt);
-    }
-    return spread_of(values).median;
+    return spread_of(values_of(outcomes,
+                               [=](const RunOutcome& outcome) {
+                                 const std::optional<Banded>& figure = *outcome.loop.*of;
+                                 return figure ? std::optional(*figure.*end) : std::nullopt;
+                               }))
+        .median;
   };
   const auto value = part(&Banded::value);
   if (!value) return std::nullopt;
@@ -58,12 +55,10 @@ double TunePoint::drop_rate() const {
 }
 
 Spread TunePoint::ate() const {
-  std::vector<std::optional<double>> values;
-  for (const RunOutcome& outcome : outcomes) {
+  return spread_of(values_of(outcomes, [](const RunOutcome& outcome) {
     const bool diverged = !outcome.ate_m || *outcome.ate_m > outcome.path_m;
-    values.push_back(diverged ? std::nullopt : outcome.ate_m);
-  }
-  return spread_of(values);
+    return diverged ? std::nullopt : outcome.ate_m;
+  }));
 }
 
 double TunePoint::completion() const {
@@ -82,26 +77,28 @@ RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& sett
   return request;
 }
 
-std::vector<BatchRun> tune_runs(const TunePlan& plan) {
-  std::vector<BatchRun> runs;
+std::vector<Point> tune_runs(const TunePlan& plan) {
+  std::vector<Point> runs;
+  std::size_t row = 0;
   for (const double fps : plan.fps)
-    for (const ClockSetting& setting : plan.clocks)
+    for (const ClockSetting& setting : plan.clocks) {
       for (const std::uint32_t seed : plan.seeds)
-        runs.push_back({&plan.sequence, request_of(plan, fps, setting, seed)});
+        runs.push_back({.request = request_of(plan, fps, setting, seed),
+                        .work = plan.sequence.work,
+                        .sequence = &plan.sequence,
+                        .row = row});
+      ++row;
+    }
   return runs;
 }
 
-std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<RunOutcome>& outcomes) {
-  const std::size_t seeds = plan.seeds.size();
-  check_equal(outcomes.size(), plan.fps.size() * plan.clocks.size() * seeds, "an outcome per run");
-  auto first = outcomes.begin();
+std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<Point>& runs,
+                                   const std::vector<RunOutcome>& outcomes) {
+  auto row = by_row(runs, outcomes, plan.fps.size() * plan.clocks.size());
   std::vector<TunePoint> points;
   for (const double fps : plan.fps)
-    for (const ClockSetting& setting : plan.clocks) {
-      const auto last = first + static_cast<std::ptrdiff_t>(seeds);
-      points.push_back({fps, setting, {first, last}});
-      first = last;
-    }
+    for (const ClockSetting& setting : plan.clocks)
+      points.push_back({fps, setting, std::move(row[points.size()])});
   return points;
 }
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tools/app/study/batch/spread.h"
+#include "tools/app/study/spread.h"
 #include "tools/app/study/tune/tune_options.h"
 
 namespace leviosim::tools {
@@ -33,10 +33,11 @@ RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& sett
                       std::uint32_t seed);
 
 /// By frame rate, clock, then seed; the sequence of the plan must outlive them.
-std::vector<BatchRun> tune_runs(const TunePlan& plan);
+std::vector<Point> tune_runs(const TunePlan& plan);
 
-/// @param outcomes  of tune_runs()
-std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<RunOutcome>& outcomes);
+/// @param runs  tune_runs()
+std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<Point>& runs,
+                                   const std::vector<RunOutcome>& outcomes);
 
 /// Whether it misses no more frames and errs no more than the plan allows.
 bool is_enough(const TunePoint& point, const TunePlan& plan);

@@ -1,4 +1,4 @@
-#include "tools/app/study/batch/spread.h"
+#include "tools/app/study/spread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +23,15 @@ Spread spread_of(const std::vector<std::optional<double>>& values) {
   spread.low = finite(sorted.front());
   spread.high = finite(sorted.back());
   return spread;
+}
+
+std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
+  double sum = 0;
+  for (const std::optional<double>& value : values) {
+    if (!value) return std::nullopt;
+    sum += *value;
+  }
+  return sum / static_cast<double>(values.size());
 }
 
 }  // namespace leviosim::tools

@@ -1,4 +1,4 @@
-// A recorded or rendered flight as an input of batches.
+// A recorded or rendered flight as an input of studies.
 #pragma once
 
 #include <optional>
@@ -17,6 +17,7 @@ struct Sequence {
   std::size_t frames = 0;
   double path_m = 0;           ///< of the truth over these frames
   traces::Trajectory truth{};  ///< T_world_body
+  std::string work{};          ///< work_of() the frames
 };
 
 /// "DIR" or "NAME=DIR"; without name, the folder's.
@@ -29,6 +30,9 @@ NamedFolder parse_named_folder(const std::string& text);
 
 /// All that is read from a folder as one SHA-256. @throws InputError for files that cannot be read
 std::string digest_of(const traces::Dataset& data);
+
+/// What a run over these frames reads, for Point::work. @param digest  digest_of(data)
+std::string work_of(const traces::Dataset& data, const std::string& digest);
 
 /// @throws InputError for folders that cannot be read, have no ground truth, or cannot be prepared
 ///         for one of the sizes

@@ -1,4 +1,4 @@
-#include "tools/app/study/batch/batch_options.h"
+#include "tools/app/study/batch_plan.h"
 
 #include <fmt/core.h>
 
@@ -12,12 +12,9 @@
 #include "tools/app/run/run_options.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
-#include "tools/app/study/batch/run_key.h"
 
 namespace leviosim::tools {
 namespace {
-
-constexpr std::int64_t kMostJobs = 1024;
 
 void add_list(CLI::App& command, const char* name, std::vector<std::string>& values,
               const char* type, const char* help, bool split) {
@@ -67,13 +64,12 @@ std::vector<vio::Assignment> workload_of(const std::vector<std::string>& overrid
 }
 
 /// Digests of what is read are kept with the folder's name for the messages.
-std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan,
-                               ProgressLine::Style style) {
+std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan) {
   std::vector<Sequence> sequences;
   for (const std::string& word : words.data) {
     throw_if_interrupted();
     NamedFolder named = parse_named_folder(word);
-    if (named.folder == "synthetic") named.folder = cached_flight(style).string();
+    if (named.folder == "synthetic") named.folder = cached_flight(plan.runner.progress).string();
     sequences.push_back(open_sequence(named, plan.frames, plan.sizes));
     for (std::size_t i = 0; i + 1 < sequences.size(); ++i)
       if (sequences[i].inputs == sequences.back().inputs)
@@ -100,8 +96,7 @@ void add_batch_options(CLI::App& command, BatchWords& words) {
   add("--frames", words.frames, "A:B", "frames, B exclusive [all]");
   add("--align", words.align, "KIND", "se3, sim3, posyaw or none [se3]");
   add("--relative", words.relative, "M", "length of sub-trajectories in metres [40]");
-  add("--jobs", words.jobs, "N", "runs at a time [cores of the host]");
-  add("--cache", words.cache, "DIR", "where finished runs are kept and found again [user's cache]");
+  add_runner_options(command, words.runner, "run");
   add("--out", words.out, "DIR", "folder for the results; must be new or empty");
   command.add_flag("--force", words.force, "replace the results of an earlier batch");
   command.add_flag("--quiet", words.quiet, "no progress");
@@ -118,20 +113,19 @@ BatchPlan make_plan(const CLI::App& command, const BatchWords& words) {
   if (!words.frames.empty()) plan.frames = traces::parse_frame_range(words.frames);
   plan.measure = {traces::parse_alignment(words.align),
                   parse_positive("--relative", words.relative)};
-  plan.cache = words.cache.empty() ? default_run_cache().string() : words.cache;
-  plan.threads = parse_jobs(words.jobs);
+  plan.runner = runner_options(words.runner, "run", words.quiet);
   base::OutputRequest wanted{.option = "--out", .path = words.out, .replace = words.force};
   for (const std::string& word : words.data)
     for (const std::filesystem::path& input : data_inputs(parse_named_folder(word).folder))
       wanted.inputs.push_back(input);
   plan.out = std::make_shared<base::OutputFolder>(std::move(wanted));
-  plan.sequences = open_all(words, plan, ProgressLine::style_of_stderr(words.quiet));
+  plan.sequences = open_all(words, plan);
   return plan;
 }
 
-BatchRun make_run(const BatchPlan& plan, const Sequence& sequence, const std::string& profile,
-                  const traces::ImageSize& size, std::uint32_t seed) {
-  BatchRun run{&sequence, {}};
+Point make_run(const BatchPlan& plan, const Sequence& sequence, const std::string& profile,
+               const traces::ImageSize& size, std::uint32_t seed) {
+  Point run{.request = {}, .work = sequence.work, .sequence = &sequence};
   run.request.data = sequence.folder;
   run.request.profile = profile;
   run.request.frames = plan.frames;
@@ -142,33 +136,8 @@ BatchRun make_run(const BatchPlan& plan, const Sequence& sequence, const std::st
   return run;
 }
 
-std::string batch_progress(const BatchProgress& progress, double host_seconds) {
-  std::string text = fmt::format("run {}/{}, {} of them done before", progress.done, progress.total,
-                                 progress.found);
-  const std::size_t computed = progress.done - progress.found;
-  const std::size_t left = progress.total - progress.done;
-  if (computed == 0 || left == 0) return text;
-  const auto seconds = static_cast<std::int64_t>(host_seconds * static_cast<double>(left) /
-                                                 static_cast<double>(computed));
-  return text + fmt::format(", {}:{:02} min left", seconds / 60, seconds % 60);
-}
-
-std::vector<RunOutcome> run_with_progress(const std::vector<BatchRun>& runs,
-                                          const BatchOptions& options, ProgressLine::Style style) {
-  ProgressLine line(style);
-  return run_batch(runs, options, [&](const BatchProgress& p) {
-    line.show(static_cast<std::int64_t>(p.done), static_cast<std::int64_t>(p.total),
-              [&] { return batch_progress(p, line.host_seconds()); });
-  });
-}
-
-std::vector<RunOutcome> run_with_progress(const BatchPlan& plan, const std::vector<BatchRun>& runs,
-                                          ProgressLine::Style style) {
-  return run_with_progress(runs, {plan.measure, RunCache(plan.cache), plan.threads}, style);
-}
-
-unsigned parse_jobs(const std::string& text) {
-  return text.empty() ? 0 : static_cast<unsigned>(parse_whole("--jobs", text, 1, kMostJobs));
+std::vector<RunOutcome> run_outcomes(const BatchPlan& plan, const std::vector<Point>& points) {
+  return run_outcomes(points, plan.measure, plan.runner);
 }
 
 std::vector<std::string> sequence_names(const BatchPlan& plan) {
@@ -178,14 +147,19 @@ std::vector<std::string> sequence_names(const BatchPlan& plan) {
   return names;
 }
 
-Json batch_manifest(const BatchPlan& plan, const Words& command_line) {
+Json study_manifest(const std::string& format, const Words& command_line) {
   Json document;
-  document["format"] = "leviosim batch manifest";
+  document["format"] = format;
   document["version"] = 1;
   document["program"]["version"] = version();
   document["program"]["revision"] = revision();
   document["program"]["estimator"] = results_version();
   document["command_line"] = command_line;
+  return document;
+}
+
+Json batch_manifest(const BatchPlan& plan, const Words& command_line) {
+  Json document = study_manifest("leviosim batch manifest", command_line);
   document["profiles"] = plan.profiles;
   for (const traces::ImageSize& size : plan.sizes) document["sizes"].push_back(size_text(size));
   document["seeds"] = plan.seeds;

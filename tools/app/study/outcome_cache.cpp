@@ -1,4 +1,4 @@
-#include "tools/app/study/batch/run_cache.h"
+#include "tools/app/study/outcome_cache.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -20,19 +20,19 @@ constexpr std::uint64_t kLargestFile = 64 << 20;
 
 /// The first line of a file, by which it is known to be what was stored under the key.
 std::string header_of(const std::string& key, const std::string& text) {
-  return fmt::format("leviosim cache 1 {} {}\n", key, base::sha256_of(text));
+  return fmt::format("leviosim cache 2 {} {}\n", key, base::sha256_of(text));
 }
 
 }  // namespace
 
-fs::path default_run_cache() { return cache_folder() / "runs"; }
+fs::path default_outcome_cache() { return cache_folder() / "outcomes"; }
 
 /// Folders of a few files each, also after a million runs.
-fs::path RunCache::file_of(const std::string& key) const {
+fs::path OutcomeCache::file_of(const std::string& key) const {
   return folder_ / key.substr(0, 2) / (key + ".json");
 }
 
-std::optional<std::string> RunCache::find_text(const std::string& key) const {
+std::optional<std::string> OutcomeCache::find_text(const std::string& key) const {
   const std::optional<std::string> bytes = base::try_read_file(file_of(key), kLargestFile);
   if (!bytes) return std::nullopt;
   const std::size_t end = bytes->find('\n');
@@ -42,7 +42,13 @@ std::optional<std::string> RunCache::find_text(const std::string& key) const {
   return text;
 }
 
-void RunCache::store_text(const std::string& key, const std::string& text) const {
+std::optional<Outcome> OutcomeCache::find(const std::string& key) const {
+  const std::optional<std::string> text = find_text(key);
+  return text ? parse_outcome(*text) : std::nullopt;
+}
+
+void OutcomeCache::store(const std::string& key, const Outcome& outcome) const {
+  const std::string text = to_text(outcome);
   const fs::path file = file_of(key);
   const auto fail = [&](int error) {
     throw InputError(fmt::format("{}: cannot be written: {}", file.string(), base::reason(error)));
@@ -58,15 +64,6 @@ void RunCache::store_text(const std::string& key, const std::string& text) const
     fault = fresh.place(file);
   }
   if (fault != 0 && fault != EEXIST) fail(fault);  // another process was faster
-}
-
-std::optional<RunOutcome> RunCache::find(const std::string& key) const {
-  const std::optional<std::string> text = find_text(key);
-  return text ? parse_outcome(*text) : std::nullopt;
-}
-
-void RunCache::store(const std::string& key, const RunOutcome& outcome) const {
-  store_text(key, to_text(outcome));
 }
 
 }  // namespace leviosim::tools

@@ -1,4 +1,5 @@
-// What the commands that make many runs have in common: options, the runs, the manifest.
+// What studies of accuracy have in common, which make native runs of many profiles, image sizes and
+// seeds over sequences: options, points, the manifest.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,9 +9,9 @@
 
 #include "sim/base/output_folder.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/cli/progress_line.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/study/batch/run_batch.h"
+#include "tools/app/study/run_outcome.h"
+#include "tools/app/study/sequence.h"
 
 namespace leviosim::tools {
 
@@ -24,8 +25,7 @@ struct BatchWords {
   std::string frames;
   std::string align = "se3";
   std::string relative = "40";
-  std::string jobs;
-  std::string cache;
+  RunnerWords runner;
   std::string out;
   bool force = false;
   bool quiet = false;
@@ -41,8 +41,7 @@ struct BatchPlan {
   std::optional<traces::FrameRange> frames;
   Measure measure;
   std::shared_ptr<base::OutputFolder> out;  ///< for the results
-  std::string cache;                        ///< folder
-  unsigned threads = 0;                     ///< 0: as many as the host has
+  RunnerOptions runner;
 };
 
 void add_batch_options(CLI::App& command, BatchWords& words);
@@ -50,26 +49,18 @@ void add_batch_options(CLI::App& command, BatchWords& words);
 /// @throws InputError naming the option
 BatchPlan make_plan(const CLI::App& command, const BatchWords& words);
 
-/// A run of the plan, with its parameters; the sequence must outlive it.
-BatchRun make_run(const BatchPlan& plan, const Sequence& sequence, const std::string& profile,
-                  const traces::ImageSize& size, std::uint32_t seed);
+/// A run of the plan; its sequence must outlive it.
+Point make_run(const BatchPlan& plan, const Sequence& sequence, const std::string& profile,
+               const traces::ImageSize& size, std::uint32_t seed);
 
-/// run_batch() with progress on stderr. @throws InputError, Interrupted
-std::vector<RunOutcome> run_with_progress(const std::vector<BatchRun>& runs,
-                                          const BatchOptions& options, ProgressLine::Style style);
-/// The same with the options of the plan.
-std::vector<RunOutcome> run_with_progress(const BatchPlan& plan, const std::vector<BatchRun>& runs,
-                                          ProgressLine::Style style);
-
-/// "run 12/124, 3 of them done before, 2:10 min left": as long as those that were computed took on
-/// average.
-std::string batch_progress(const BatchProgress& progress, double host_seconds);
-
-/// The number that --jobs names, 0 for what is not given. @throws InputError
-unsigned parse_jobs(const std::string& text);
+/// run_outcomes() as the plan says.
+std::vector<RunOutcome> run_outcomes(const BatchPlan& plan, const std::vector<Point>& points);
 
 /// Names of the sequences, each once, in the order in which they were given.
 std::vector<std::string> sequence_names(const BatchPlan& plan);
+
+/// What every manifest of a study begins with. @param format  "leviosim batch manifest"
+Json study_manifest(const std::string& format, const Words& command_line);
 
 /// The content of manifest.json. Nothing in it depends on the host or on what was found again.
 Json batch_manifest(const BatchPlan& plan, const Words& command_line);

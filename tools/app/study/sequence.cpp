@@ -1,4 +1,4 @@
-#include "tools/app/study/batch/sequence.h"
+#include "tools/app/study/sequence.h"
 
 #include <fmt/core.h>
 
@@ -57,6 +57,11 @@ std::string digest_of(const traces::Dataset& data) {
   return all.hex();
 }
 
+/// Frames may be equal, but not their times.
+std::string work_of(const traces::Dataset& data, const std::string& digest) {
+  return fmt::format("data {} {}:{}", digest, data.frames.front().t_ns, data.frames.back().t_ns);
+}
+
 Sequence open_sequence(const NamedFolder& named, const std::optional<traces::FrameRange>& frames,
                        const std::vector<traces::ImageSize>& sizes) {
   const traces::Dataset data = traces::open_asl(named.folder, {.frames = frames});
@@ -73,8 +78,10 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
       throw InputError(fmt::format("--data {}: {}", named.folder, error.what()));
     }
   }
-  return {named.name,         named.folder,           digest_of(data),
-          data.frames.size(), path_over_frames(data), traces::to_trajectory(data.ground_truth)};
+  const std::string digest = digest_of(data);
+  return {named.name,           named.folder,           digest,
+          data.frames.size(),   path_over_frames(data), traces::to_trajectory(data.ground_truth),
+          work_of(data, digest)};
 }
 
 }  // namespace leviosim::tools

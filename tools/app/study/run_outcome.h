@@ -1,13 +1,15 @@
-// What is kept of one run of a batch: how far its trajectory lies from the truth, and of a closed
-// loop on a chip what became of its frames and what it took. Small, and the same whether it has
-// just been computed or was found in the cache.
+// What studies of accuracy keep of a run: how far its trajectory lies from the truth, and of a
+// closed loop on a chip what became of its frames and what it took.
 #pragma once
 
 #include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "tools/app/result/camera_figures.h"
+#include "tools/app/study/outcome.h"
+#include "tools/app/study/point.h"
+#include "tools/app/study/runner.h"
 #include "traces/trajectories/alignment.h"
 #include "traces/trajectories/trajectory.h"
 
@@ -57,9 +59,21 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
 /// All of a run, which was not evaluated.
 RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, const Measure& how);
 
-/// As JSON with every bit of the numbers.
-std::string to_text(const RunOutcome& outcome);
-/// Nothing for what to_text() never wrote, such as a file that was cut off.
-std::optional<RunOutcome> parse_outcome(std::string_view text);
+/// As it is kept, and back.
+Outcome figures_of(const RunOutcome& outcome);
+RunOutcome run_outcome_of(const Outcome& figures);
+
+/// What the outcome of a run is kept under.
+std::string run_key(const Point& point, const Measure& how, const platform::Schema& schema);
+
+/// Runs the points, each of which has a sequence. @returns outcomes in their order
+/// @throws InputError for data that cannot be used, Interrupted
+std::vector<RunOutcome> run_outcomes(const std::vector<Point>& points, const Measure& how,
+                                     const RunnerOptions& options);
+
+/// The outcomes of each row of a study's table, in the order of the points.
+std::vector<std::vector<RunOutcome>> by_row(const std::vector<Point>& points,
+                                            const std::vector<RunOutcome>& outcomes,
+                                            std::size_t rows);
 
 }  // namespace leviosim::tools

@@ -1,0 +1,35 @@
+// How outcomes are condensed: a figure over several runs that differ by their random draws or
+// texture worlds, and over several sequences.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace leviosim::tools {
+
+/// Median, least and greatest. A run that failed counts as infinitely bad, so what it makes
+/// infinite does not exist here.
+struct Spread {
+  std::size_t runs = 0;
+  std::size_t failed = 0;
+  std::optional<double> median;
+  std::optional<double> low;
+  std::optional<double> high;
+};
+
+/// @param values  of the runs; nothing for one that failed
+Spread spread_of(const std::vector<std::optional<double>>& values);
+
+/// The values of a figure. @param of  figure of an outcome
+template <class Outcomes, class Of>
+std::vector<std::optional<double>> values_of(const Outcomes& outcomes, const Of& of) {
+  std::vector<std::optional<double>> values;
+  for (const auto& outcome : outcomes) values.push_back(std::invoke(of, outcome));
+  return values;
+}
+
+/// None if one of them does not exist.
+std::optional<double> mean_of(const std::vector<std::optional<double>>& values);
+
+}  // namespace leviosim::tools
