@@ -10,6 +10,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/commands/ablate_command.h"
 #include "tools/commands/calibrate_command.h"
+#include "tools/commands/compare_command.h"
 #include "tools/commands/eval_command.h"
 #include "tools/commands/explore_command.h"
 #include "tools/commands/flow_command.h"
@@ -48,7 +49,7 @@ int run_program(const Words& words) {
          add_explore_command(app, words), add_validate_command(app, words),
          add_calibrate_command(app), add_sensitivity_command(app), add_microbench_command(app),
          add_replay_command(app, words), add_trace_command(app), add_tune_command(app, words),
-         add_sweep_command(app), add_flow_command(app, words)},
+         add_sweep_command(app), add_flow_command(app, words), add_compare_command(app)},
         words);
     flush_results();
     throw_if_interrupted();

@@ -8,6 +8,7 @@
 #include "sim/base/input_file.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/run/replay_report.h"
@@ -80,7 +81,9 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   wanted.inputs.push_back(trace_file(options.trace));
   base::OutputFolder out(std::move(wanted));
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
-  const RunRequest request = request_for(trace, options);
+  RunRequest request = request_for(trace, options);
+  CycleParts parts(request.platform.config, request.cores);
+  request.observer = &parts;
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = manifest_of(trace, options, words);
@@ -89,6 +92,7 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
           [&] {
             write_run_folder(out, result.run, manifest, platform::to_yaml(request.platform));
             out.write(kReplayFile, replay_csv(result));
+            out.write(kCyclesFile, cycles_csv(parts.stages()));
           });
 }
 

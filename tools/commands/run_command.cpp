@@ -7,6 +7,7 @@
 
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_folder.h"
@@ -38,11 +39,14 @@ void run(const CLI::App& command, const RunOptions& options, const Words& words)
   out.reserve(expected_bytes(request, options.record));
   WorkRecording recording(request.cores);
   if (options.record) request.recording = &recording;
+  CycleParts parts(request.platform.config, request.cores);
+  if (!request.native) request.observer = &parts;
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
   publish(out, heading(options, result) + report(result), [&] {
     write_run_folder(out, result, manifest,
                      request.native ? std::string() : platform::to_yaml(request.platform));
+    if (!request.native) out.write(kCyclesFile, cycles_csv(parts.stages()));
     if (!options.record) return;
     complete(recording.info, options, request, manifest);
     out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
