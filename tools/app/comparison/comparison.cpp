@@ -78,12 +78,22 @@ class Comparer {
     compare_work(path, c);
     const StageParts* in_a = a_.stage_parts(name.name);
     const StageParts* in_b = b_.stage_parts(name.name);
-    if (!a_.cycles.empty() && !b_.cycles.empty() && (in_a != nullptr || in_b != nullptr)) {
-      c.mechanisms = split_by_mechanism(in_a, in_b, frames(a_), frames(b_));
-      c.places = split_by_place(in_a, in_b, frames(a_), frames(b_));
-      c.causes = split_by_cause(in_a, in_b, frames(a_), frames(b_));
-    }
+    if (!a_.cycles.empty() && !b_.cycles.empty() && (in_a != nullptr || in_b != nullptr))
+      split(in_a, in_b, c);
     return c;
+  }
+
+  /// A baseline has the larger parts only; the same parts of the other run then stand together.
+  void split(const StageParts* in_a, const StageParts* in_b, StageComparison& c) const {
+    StageParts like_b;
+    StageParts like_a;
+    if (in_a != nullptr && in_b != nullptr && is_folded(*in_b))
+      in_a = &(like_b = folded_like(*in_a, *in_b));
+    if (in_a != nullptr && in_b != nullptr && is_folded(*in_a))
+      in_b = &(like_a = folded_like(*in_b, *in_a));
+    c.mechanisms = split_by_mechanism(in_a, in_b, frames(a_), frames(b_));
+    c.places = split_by_place(in_a, in_b, frames(a_), frames(b_));
+    c.causes = split_by_cause(in_a, in_b, frames(a_), frames(b_));
   }
 
   /// The offload is a stage of the frame too.
@@ -136,6 +146,11 @@ class Comparer {
   }
 
  private:
+  static bool is_folded(const StageParts& stage) {
+    return std::any_of(stage.parts.begin(), stage.parts.end(),
+                       [](const CyclePart& part) { return part.mechanism == "other"; });
+  }
+
   static double frames(const RunRecord& run) {
     return run.value("frames.count").value_or(static_cast<double>(run.facts.frames));
   }
@@ -148,16 +163,13 @@ class Comparer {
   }
 
   void compare_work(const std::string& path, StageComparison& c) const {
-    c.operations = {"operations", "1", std::nullopt, std::nullopt};
-    c.same_work = c.calls.a == c.calls.b;
+    c.operations = of("operations", "1", path + "operations");
+    c.same_work = c.calls.a == c.calls.b && c.operations.a == c.operations.b;
     const std::string ops = path + "ops.";
     for (const Statistic& s : a_.statistics) {
       if (s.name.rfind(ops, 0) != 0) continue;
       const auto in_b = b_.value(s.name);
-      c.operations.a = c.operations.a.value_or(0) + s.value.value_or(0);
-      if (!in_b) continue;
-      c.operations.b = c.operations.b.value_or(0) + *in_b;
-      if (in_b != s.value) c.same_work = false;
+      if (in_b && in_b != s.value) c.same_work = false;
     }
   }
 

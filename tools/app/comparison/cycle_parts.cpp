@@ -45,6 +45,23 @@ constexpr std::array kOfTheTeam{
     TeamMechanism{"rounding", &sim::Account::rounding},
 };
 
+constexpr std::string_view kOther = "other";
+
+template <class Keep>
+StageParts folded_unless(const StageParts& stage, Keep&& keep) {
+  StageParts result{stage.stage, stage.on_controller, stage.cycles, {}};
+  CyclePart other{"", std::string(kOther), "", 0, 0};
+  for (const CyclePart& part : stage.parts) {
+    if (part.mechanism != kOther && keep(part))
+      result.parts.push_back(part);
+    else
+      other.cycles += part.cycles;
+  }
+  other.cycles = rounded_part(other.cycles);
+  if (other.cycles != 0) result.parts.push_back(other);
+  return result;
+}
+
 /// The parts of one stage, in core-cycles over the cores.
 class PartList {
  public:
@@ -188,6 +205,21 @@ std::vector<StageParts> CycleParts::stages() const {
   offload.add("", "offload", "", cycles);
   if (offload_cycles_ != 0) result.push_back({kOffloadStage, false, cycles, offload.take()});
   return result;
+}
+
+StageParts folded(const StageParts& stage, double least_share) {
+  return folded_unless(stage, [&](const CyclePart& part) {
+    return std::abs(part.cycles) >= least_share * stage.cycles;
+  });
+}
+
+StageParts folded_like(const StageParts& stage, const StageParts& other) {
+  return folded_unless(stage, [&](const CyclePart& part) {
+    return std::any_of(other.parts.begin(), other.parts.end(), [&](const CyclePart& p) {
+      return p.where == part.where && p.mechanism == part.mechanism &&
+             p.operation == part.operation;
+    });
+  });
 }
 
 std::string cycles_csv(const std::vector<StageParts>& stages) {

@@ -51,6 +51,7 @@ inline constexpr std::array kMechanisms{
     Mechanism{"transfer", "waiting for the DMA"},
     Mechanism{"rounding", "ends moved to clock edges, banks of the serial part"},
     Mechanism{"offload", "calling the cluster, and its answer"},
+    Mechanism{"other", "smaller parts, of a baseline"},
 };
 /// Empty if there is no such key.
 std::string_view describe_mechanism(std::string_view key);
@@ -108,6 +109,11 @@ class CycleParts : public RunObserver {
   std::vector<Stage> stages_;
   std::int64_t offload_cycles_ = 0;
 };
+
+/// The same with parts below a share of the stage's cycles made one, the mechanism "other".
+StageParts folded(const StageParts& stage, double least_share);
+/// The same with all parts made one that another stage does not have.
+StageParts folded_like(const StageParts& stage, const StageParts& other);
 
 /// A row per part: stage,runs_on,where,mechanism,operation,cycles,count.
 std::string cycles_csv(const std::vector<StageParts>& stages);

@@ -96,6 +96,18 @@ void add_frame_statistics(const std::filesystem::path& file, const std::string& 
       {"frame.missed_share", "1", "frames without a pose within a period of the camera", missed});
 }
 
+void add_operations(RunRecord& record) {
+  for (const StageName& stage : record.stages) {
+    const std::string ops = fmt::format("stages.{}.ops.", stage.key);
+    std::optional<double> sum;
+    for (const Statistic& s : record.statistics)
+      if (s.value && s.name.rfind(ops, 0) == 0) sum = sum.value_or(0) + *s.value;
+    if (sum)
+      record.statistics.push_back({fmt::format("stages.{}.operations", stage.key), "1",
+                                   "operations of all kinds, of all calls", sum});
+  }
+}
+
 void add_memory_statistics(RunRecord& record) {
   std::optional<double> l1;
   for (const StageName& stage : record.stages) {

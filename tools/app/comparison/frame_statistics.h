@@ -15,6 +15,9 @@ namespace leviosim::tools {
 void add_frame_statistics(const std::filesystem::path& file, const std::string& frames_csv,
                           RunRecord& record);
 
+/// stages.*.operations: of all kinds.
+void add_operations(RunRecord& record);
+
 /// memory.l1.peak and memory.l2.peak from the statistics of stages and of L2.
 void add_memory_statistics(RunRecord& record);
 

@@ -148,6 +148,7 @@ RunRecord record_of(const std::string& where, const Json& manifest, const Json& 
   name_stages(record);
   add_frame_statistics(where + "/frames.csv", frames_csv, record);
   add_memory_statistics(record);
+  add_operations(record);
   return record;
 }
 
