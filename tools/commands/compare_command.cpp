@@ -44,15 +44,14 @@ void run(const CLI::App& command, const CompareOptions& options) {
   require(command, "RUN", "two or more run folders or work traces");
   const ReportFormat format = parse_report_format(options.format);
   const Allowed allowed = parse_allowed(options.allow);
+  if (format == ReportFormat::csv && options.runs.size() > 2)
+    throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
   const std::vector<RunRecord> runs = records(options);
-  std::vector<std::vector<std::string>> notes;
+  std::vector<Comparison> comparisons;
   for (std::size_t i = 1; i < runs.size(); ++i)
-    notes.push_back(check_comparable(runs.front(), runs[i], allowed));
-  for (std::size_t i = 1; i < runs.size(); ++i) {
-    if (i > 1 && (format == ReportFormat::text || format == ReportFormat::markdown))
-      print_result("\n");
-    print_result("{}", comparison_report(compare(runs.front(), runs[i], notes[i - 1]), format));
-  }
+    comparisons.push_back(
+        compare(runs.front(), runs[i], check_comparable(runs.front(), runs[i], allowed)));
+  print_result("{}", comparison_report(comparisons, format));
 }
 
 }  // namespace

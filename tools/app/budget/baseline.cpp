@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "sim/base/error.h"
@@ -12,7 +13,7 @@ namespace leviosim::tools {
 namespace {
 
 constexpr const char* kFormat = "leviosim baseline";
-constexpr double kLeastShare = 0.005;
+constexpr double kLeastShare = 0.01;
 
 /// The stage with the highest peak of L1; null if there is none.
 const StageName* fullest_stage(const RunRecord& run) {
@@ -32,8 +33,10 @@ std::set<std::string> names_in_baseline(const RunRecord& run, const Budget* budg
                               "energy.total"};
   for (const FigurePhrase& p : run_phrases()) names.emplace(p.statistic);
   for (const StageName& stage : run.stages)
-    for (const FigurePhrase& p : stage_phrases())
-      names.insert(fmt::format(fmt::runtime(p.statistic), stage.key));
+    for (const char* statistic :
+         {"stages.{}.calls", "stages.{}.operations", "stages.{}.cycles.single.mean",
+          "stages.{}.cycles.parallel.mean", "stages.{}.memory.parallel", "energy.{}.call"})
+      names.insert(fmt::format(fmt::runtime(statistic), stage.key));
   if (budget != nullptr)
     for (const BudgetSection* section : sections_for(*budget, run))
       for (const Limit& limit : section->limits)
@@ -46,6 +49,14 @@ std::set<std::string> names_in_baseline(const RunRecord& run, const Budget* budg
     if (matches("memory.l2.*.bytes", s.name)) names.insert(s.name);
   }
   return names;
+}
+
+/// The shortest text; whole numbers without a fraction.
+Json number_json(std::optional<double> value) {
+  constexpr double kExact = 9007199254740992;  // 2^53
+  if (value && *value == std::floor(*value) && std::abs(*value) < kExact)
+    return static_cast<std::int64_t>(*value);
+  return value_of(value);
 }
 
 /// What a part is in one word: "issue f32_fma".
@@ -62,7 +73,7 @@ Json part_json(const CyclePart& part) {
 std::string stage_lines(const StageName& name, const StageParts& stage) {
   std::string text = fmt::format(
       "  {{\"name\": {}, \"key\": {}, \"controller\": {}, \"cycles\": {},", json_text(stage.stage),
-      json_text(name.key), stage.on_controller, json_text(stage.cycles));
+      json_text(name.key), stage.on_controller, json_text(number_json(stage.cycles)));
   text += " \"parts\": {";
   const StageParts kept = folded(stage, kLeastShare);
   std::vector<std::string> places;
@@ -131,8 +142,9 @@ std::string baseline_text(const RunRecord& run, const Budget* budget) {
   std::string statistics;
   for (const Statistic& s : run.statistics)
     if (names.count(s.name) > 0)
-      statistics += fmt::format("{}  {}: [{}, {}]", statistics.empty() ? "\n" : ",\n",
-                                json_text(s.name), json_text(value_of(s.value)), json_text(s.unit));
+      statistics +=
+          fmt::format("{}  {}: [{}, {}]", statistics.empty() ? "\n" : ",\n", json_text(s.name),
+                      json_text(number_json(s.value)), json_text(s.unit));
   std::string stages;
   for (const StageParts& parts : run.cycles) {
     StageName name;  // without a key: what is no stage

@@ -1,7 +1,7 @@
 // A baseline: what a budget needs of an earlier run, in a few kilobytes of JSON with a figure on a
-// line, made for version control. It holds the facts of the run, the figures that limits name by
-// phrases (figures.h), the blocks at the highest peak of L1, and the larger parts of every stage's
-// cycles; parts below half a per cent of a stage are one.
+// line, made for version control. It holds the facts of the run, the figures that most limits are
+// about, those that a budget names, the blocks at the highest peak of L1, and the larger parts of
+// every stage's cycles; parts below one per cent of a stage are one.
 #pragma once
 
 #include <string>

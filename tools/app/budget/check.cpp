@@ -12,6 +12,9 @@
 namespace leviosim::tools {
 namespace {
 
+/// No limit is missed by the conversion of its unit: 30 ms are not exactly 3e7 ns.
+constexpr double kRounding = 1e-12;
+
 /// What a relative limit comes to.
 std::optional<double> relative_bound(const Limit& limit, const Statistic& statistic,
                                      double baseline) {
@@ -40,7 +43,10 @@ Finding hold(const Limit& limit, const FigureOf& figure, const RunRecord* baseli
   } else {
     f.bound = bound_in(limit, f.unit);
   }
-  if (f.value && f.bound) f.met = limit.bound.at_most ? *f.value <= *f.bound : *f.value >= *f.bound;
+  if (f.value && f.bound) {
+    const double over = limit.bound.at_most ? *f.value - *f.bound : *f.bound - *f.value;
+    f.met = over <= kRounding * std::abs(*f.bound);
+  }
   return f;
 }
 
@@ -51,10 +57,9 @@ bool is_idle(const Finding& f) { return !f.value && (!f.limit->bound.relative ||
 }  // namespace
 
 std::string Finding::title() const {
-  std::string text = limit->text;
-  if (!stage.empty() && !limit->stage.empty()) text = stage + ": " + text;
-  if (limit->figure.find('*') != std::string::npos) text += " (" + statistic + ")";
-  return text;
+  if (!limit->stage.empty()) return stage + ": " + limit->text;
+  if (limit->figure.find('*') == std::string::npos) return limit->text;
+  return statistic + limit->text.substr(limit->figure.size());
 }
 
 std::string Finding::excess() const {

@@ -25,7 +25,7 @@ struct Finding {
   std::string where;             ///< stage, fork, block; of what is not met
   std::vector<std::string> why;  ///< parts that explain it, the largest first
 
-  /// What is held: "8-point RANSAC: cycles <= +3 %", with the statistic where a pattern names it.
+  /// What is held: "8-point RANSAC: cycles <= +3 %", with the statistic in place of a pattern.
   std::string title() const;
   /// By how much: "10259.8 kcycles, 5.84 % above 9693.3 kcycles".
   std::string excess() const;

@@ -7,6 +7,7 @@
 
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/figures.h"
+#include "tools/app/comparison/comparison_report.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr int kWidth = 80;
 constexpr int kIndent = 9;
+constexpr int kWidest = 44;  // limit in the table
 
 std::string wrapped(const std::string& label, const std::string& words) {
   if (words.empty()) return {};
@@ -51,8 +53,8 @@ std::string check_text(const CheckResult& result) {
   constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
-    table.add({f.met ? "met" : "NOT MET", f.title(), f.value ? figure_text(*f.value, f.unit) : "–",
-               margin(f)});
+    table.add({f.met ? "met" : "NOT MET", shortened(f.title(), kWidest),
+               f.value ? figure_text(*f.value, f.unit) : "–", margin(f)});
   text += table.str();
   for (const Finding& f : result.findings)
     if (!f.met)

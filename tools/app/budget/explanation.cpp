@@ -55,6 +55,7 @@ class Explainer {
       explain_frame(f);
     else
       explain_stage(f, f.stage);
+    if (has_baseline_ && f.why.empty()) f.why.emplace_back("its cycles are those of the baseline");
   }
 
  private:
@@ -86,8 +87,8 @@ class Explainer {
     const double whole = s->mechanisms->b.value_or(0);
     for (const Leaf& leaf : leaves_by_difference(*s->mechanisms)) {
       if (f.why.size() == kMostReasons || whole == 0) break;
-      f.why.push_back(
-          fmt::format("{} is {:.1f} % of it", leaf.name, 100 * leaf.difference / whole));
+      f.why.push_back(fmt::format("{} is {:.1f} % of it", part_label(leaf.name),
+                                  100 * leaf.difference / whole));
     }
   }
 

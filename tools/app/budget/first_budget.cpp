@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -32,7 +33,9 @@ constexpr std::array kOfTheRun{
 /// Not below the value, though it is rounded.
 std::string rounded_up(double value, int decimals) {
   const double scale = std::pow(10, decimals);
-  return fmt::format("{:.{}f}", std::ceil(value * scale - 1e-6) / scale, decimals);
+  // A share of what is exact as written must not grow by a digit; no negative zero.
+  const double digits = std::max(0.0, std::ceil(value * scale - 1e-6));
+  return fmt::format("{:.{}f}", digits / scale, decimals);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ Limit parse_limit(const std::string& text, const platform::Place& place) {
                     "'frame latency p99 <= 45 ms' or 'cycles <= +3 %'",
                     text));
   Limit limit;
-  limit.text = text;
+  limit.text = platform::trim(text);
   limit.figure = platform::trim(std::string_view(text).substr(0, at));
   limit.bound.at_most = at == at_most;
   std::string_view value = platform::trim(std::string_view(text).substr(at + 2));

@@ -73,6 +73,9 @@ struct Comparison {
 /// @param a,b    outlive the comparison
 /// @param notes  of check_comparable()
 Comparison compare(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes = {});
+Comparison compare(RunRecord&&, const RunRecord&, std::vector<std::string> = {}) = delete;
+Comparison compare(const RunRecord&, RunRecord&&, std::vector<std::string> = {}) = delete;
+Comparison compare(RunRecord&&, RunRecord&&, std::vector<std::string> = {}) = delete;
 
 /// A part of a tree that has no parts itself, named with the parts that it is in.
 struct Leaf {

@@ -56,17 +56,6 @@ std::string signed_kilocycles(double cycles) {
   return std::abs(cycles) < kLeastShown ? "0.0" : fmt::format("{:+.1f}", cycles / kKilo);
 }
 
-std::string cut(const std::string& text, int width) {
-  if (display_width(text) <= width) return text;
-  std::string shorter;
-  for (const char c : text) {
-    const bool begins = (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
-    if (begins && display_width(shorter) >= width - 1) break;
-    shorter += c;
-  }
-  return shorter + "…";
-}
-
 /// Renders the tables of one report.
 class Writer {
  public:
@@ -141,7 +130,7 @@ class Writer {
     TextTable one({{"stage on one core", kLeft}, {"A"}, {"B"}, {"change"}});
     bool any_single = false;
     for (const StageComparison& s : c_.stages) {
-      const std::string name = cut(s.stage.name, 20);
+      const std::string name = shortened(s.stage.name, 20);
       all.add({name, pair(s.calls, 0), kilocycles(s.parallel.a), kilocycles(s.parallel.b),
                percent(s.parallel.percent()), number(s.share.a, 1), number(s.share.b, 1)});
       if (s.single.a == s.single.b) continue;
@@ -174,7 +163,7 @@ class Writer {
     for (const StageComparison& s : c_.stages) {
       if (!s.mechanisms || !is_worth_showing(*s.mechanisms)) continue;
       any = true;
-      row(cut(s.stage.name, 40), *s.mechanisms);
+      row(shortened(s.stage.name, 40), *s.mechanisms);
       add_cause(t, "of it work", s.causes.work);
       add_cause(t, "of it price of an operation", s.causes.price);
       add_cause(t, "of it cores, memory, DMA", s.causes.meeting);
@@ -207,9 +196,8 @@ class Writer {
         continue;
       }
       ++shown;
-      const std::string_view meaning = describe_mechanism(leaf.name);
-      const std::string name = meaning.empty() ? leaf.name : std::string(meaning);
-      t.add({"    " + cut(name, 44), "", "", signed_kilocycles(leaf.difference)});
+      t.add({"    " + shortened(part_label(leaf.name), 44), "", "",
+             signed_kilocycles(leaf.difference)});
     }
     if (std::abs(others) >= kLeastShown)
       t.add({"    all others", "", "", signed_kilocycles(others)});
@@ -226,8 +214,10 @@ class Writer {
       return;
     for (const Quantity& place : whole.parts)
       if (differs(place))
-        t.add({"    in " + cut(place.name, 41), kilocycles(place.a), kilocycles(place.b),
-               signed_kilocycles(place.b.value_or(0) - place.a.value_or(0))});
+        t.add(
+            {place.name == kWholeTeam ? "    " + place.name : "    in " + shortened(place.name, 41),
+             kilocycles(place.a), kilocycles(place.b),
+             signed_kilocycles(place.b.value_or(0) - place.a.value_or(0))});
   }
 
   void blocks() {
@@ -235,7 +225,7 @@ class Writer {
     title("blocks at a peak that differ [kB]");
     TextTable t({{"owner: block", kLeft}, {"A"}, {"B"}, {"difference"}});
     for (const Quantity& q : c_.blocks)
-      t.add({cut(q.name, 44), kilocycles(q.a), kilocycles(q.b),
+      t.add({shortened(q.name, 44), kilocycles(q.a), kilocycles(q.b),
              fmt::format("{:+.1f}", (q.b.value_or(0) - q.a.value_or(0)) / kKilo)});
     table(t);
   }
@@ -246,7 +236,7 @@ class Writer {
     title(name);
     TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}, {"change"}});
     const auto row = [&](const Quantity& q) {
-      t.add({cut(q.name, 24), number(q.a, 4), number(q.b, 4),
+      t.add({shortened(q.name, 24), number(q.a, 4), number(q.b, 4),
              q.difference() ? fmt::format("{:+.4f}", *q.difference()) : "–", percent(q.percent())});
     };
     for (const Quantity& part : whole.parts)
@@ -261,6 +251,22 @@ class Writer {
 };
 
 }  // namespace
+
+std::string shortened(const std::string& text, int width) {
+  if (display_width(text) <= width) return text;
+  std::string shorter;
+  for (const char c : text) {
+    const bool begins = (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
+    if (begins && display_width(shorter) >= width - 1) break;
+    shorter += c;
+  }
+  return shorter + "…";
+}
+
+std::string part_label(const std::string& name) {
+  const std::string_view meaning = describe_mechanism(name);
+  return meaning.empty() ? name : std::string(meaning);
+}
 
 ReportFormat parse_report_format(const std::string& name) {
   std::vector<std::string> names;
@@ -294,7 +300,8 @@ std::vector<std::string> reasons(const StageComparison& stage, std::size_t most)
   const double whole = *stage.mechanisms->a;
   for (const Leaf& leaf : leaves_by_difference(*stage.mechanisms)) {
     if (list.size() == most || std::abs(leaf.difference) < kLeastShare * whole) break;
-    list.push_back(fmt::format("{} {:+.2f} %", leaf.name, 100 * leaf.difference / whole));
+    list.push_back(
+        fmt::format("{} {:+.2f} %", part_label(leaf.name), 100 * leaf.difference / whole));
   }
   return list;
 }
@@ -310,6 +317,18 @@ std::string comparison_report(const Comparison& comparison, ReportFormat format)
     default:
       return Writer(comparison, false).str();
   }
+}
+
+std::string comparison_report(const std::vector<Comparison>& comparisons, ReportFormat format) {
+  if (format == ReportFormat::json && comparisons.size() > 1) {
+    Json list = Json::array();
+    for (const Comparison& c : comparisons) list.push_back(comparison_json(c));
+    return json_text(list, 2) + '\n';
+  }
+  std::string text;
+  for (const Comparison& c : comparisons)
+    text += (text.empty() ? "" : "\n") + comparison_report(c, format);
+  return text;
 }
 
 }  // namespace leviosim::tools

@@ -70,6 +70,14 @@ const CyclePart* find(const StageParts* stage, const CyclePart& like) {
   return it == stage->parts.end() ? nullptr : &*it;
 }
 
+/// How often what a part prices occurs in a run, which may charge nothing for it by this mechanism.
+double count_of(const StageParts* stage, const CyclePart& like) {
+  if (stage == nullptr || like.operation.empty()) return 0;
+  for (const CyclePart& p : stage->parts)
+    if (p.operation == like.operation && p.where == like.where && p.count != 0) return p.count;
+  return 0;
+}
+
 /// Of one part; counts and cycles are those of a frame.
 Causes causes_of(double count_a, double cycles_a, double count_b, double cycles_b) {
   const double difference = cycles_b - cycles_a;
@@ -95,11 +103,11 @@ Causes split_by_cause(const StageParts* a, const StageParts* b, double frames_a,
   Causes sum;
   const auto per = [](double value, double frames) { return frames == 0 ? 0 : value / frames; };
   const auto add = [&](const CyclePart* in_a, const CyclePart* in_b) {
-    static const CyclePart kNothing;
-    const CyclePart& pa = in_a != nullptr ? *in_a : kNothing;
-    const CyclePart& pb = in_b != nullptr ? *in_b : kNothing;
-    sum += causes_of(per(pa.count, frames_a), per(pa.cycles, frames_a), per(pb.count, frames_b),
-                     per(pb.cycles, frames_b));
+    const CyclePart& any = in_a != nullptr ? *in_a : *in_b;
+    const double cycles_a = in_a != nullptr ? in_a->cycles : 0;
+    const double cycles_b = in_b != nullptr ? in_b->cycles : 0;
+    sum += causes_of(per(count_of(a, any), frames_a), per(cycles_a, frames_a),
+                     per(count_of(b, any), frames_b), per(cycles_b, frames_b));
   };
   for (const CyclePart& p : (a != nullptr ? *a : kNone).parts) add(&p, find(b, p));
   for (const CyclePart& p : (b != nullptr ? *b : kNone).parts)
