@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <random>
+
 #include "tests/tools/example_run.h"
 #include "tests/tools/junit_schema.h"
 #include "tests/traces/test_folder.h"
@@ -247,6 +250,48 @@ TEST(Baseline, RefusesWhatIsNone) {
        {std::string(), std::string("{}"), std::string("[]"), text.substr(0, text.size() / 2),
         std::string("{\"format\": \"leviosim baseline\", \"version\": 2}")})
     expect_input_error([&] { parse_baseline("base.json", bad); }, {"base.json"});
+}
+
+/// Bytes changed, removed and doubled at random: every text is read or refused with its name.
+TEST(Baseline, NoTextIsTooBroken) {
+  std::mt19937 random(5);
+  const RunRecord run = record();
+  struct Reader {
+    std::string text;
+    std::function<void(const std::string&)> read;
+  };
+  const Reader readers[] = {
+      {"budgets:\n  - platform: gap9\n    owner: x\n    limits:\n      - L1 peak <= 110 kB\n"
+       "      - stage: \"feat*\"\n        limit: cycles <= +3 %\n",
+       [&](const std::string& text) { check_budget(run, parse_budget("f", text), &run); }},
+      {baseline_text(run, nullptr),
+       [&](const std::string& text) {
+         const RunRecord baseline = parse_baseline("f", text);
+         check_budget(run, of_stage("*", "cycles <= -1 %"), &baseline);
+       }},
+      {cycles_csv(run.cycles), [](const std::string& text) { parse_cycles("f", text); }}};
+  for (const Reader& reader : readers)
+    for (int round = 0; round < 400; ++round) {
+      std::string text = reader.text;
+      for (int change = 0; change < 3 && !text.empty(); ++change) {
+        const std::size_t at = random() % text.size();
+        switch (random() % 3) {
+          case 0:
+            text[at] = static_cast<char>(random());
+            break;
+          case 1:
+            text.erase(at, random() % 40);
+            break;
+          default:
+            text.insert(at, text.substr(random() % text.size(), random() % 40));
+        }
+      }
+      try {
+        reader.read(text);
+      } catch (const InputError& error) {
+        EXPECT_NE(error.what(), std::string());
+      }
+    }
 }
 
 }  // namespace

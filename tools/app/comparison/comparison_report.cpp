@@ -281,7 +281,7 @@ ReportFormat parse_report_format(const std::string& name) {
 std::string work_line(const Comparison& comparison) {
   if (comparison.stages.empty()) return "work: not counted in a native run";
   if (comparison.same_work())
-    return "work: the same operations and calls in all stages; only their price differs";
+    return "work: the same operations and calls in all stages; what differs is their cost";
   std::vector<std::string> changes;
   for (const StageComparison& s : comparison.stages) {
     if (s.same_work) continue;

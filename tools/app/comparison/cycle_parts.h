@@ -51,7 +51,7 @@ inline constexpr std::array kMechanisms{
     Mechanism{"transfer", "waiting for the DMA"},
     Mechanism{"rounding", "ends moved to clock edges, banks of the serial part"},
     Mechanism{"offload", "calling the cluster, and its answer"},
-    Mechanism{"other", "smaller parts, of a baseline"},
+    Mechanism{"other", "small parts of a baseline"},
 };
 /// Empty if there is no such key.
 std::string_view describe_mechanism(std::string_view key);
