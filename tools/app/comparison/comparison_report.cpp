@@ -16,6 +16,7 @@ namespace leviosim::tools {
 namespace {
 
 constexpr std::size_t kMostParts = 6;
+constexpr std::size_t kMostBlocks = 12;
 constexpr int kWidth = 80;
 constexpr double kKilo = 1e3;
 constexpr auto kLeft = TextTable::Align::Left;
@@ -76,7 +77,21 @@ class Writer {
   void title(const std::string& name) {
     text_ += markdown_ ? fmt::format("\n### {}\n\n", name) : fmt::format("\n{}\n", name);
   }
-  void table(const TextTable& t) { text_ += markdown_ ? t.markdown() : t.str(); }
+  void table(const TextTable& t) { text_ += markdown_ ? with_dots(t.markdown()) : t.str(); }
+  /// Blanks at the begin of a cell, which say what is part of what, are lost in Markdown.
+  static std::string with_dots(std::string text) {
+    constexpr std::string_view kBegin = "| ";
+    for (std::size_t at = 0; at != std::string::npos && at < text.size();) {
+      std::size_t cell = at + kBegin.size();
+      while (text.compare(cell, 2, "  ") == 0 && text[cell + 2] != '|') {
+        text.replace(cell, 2, "· ");
+        cell += std::string_view("· ").size();
+      }
+      at = text.find('\n', cell);
+      if (at != std::string::npos) ++at;
+    }
+    return text;
+  }
   void line(const std::string& words) {
     std::vector<std::string> items;
     for (std::size_t begin = 0; begin <= words.size();) {
@@ -220,14 +235,23 @@ class Writer {
              signed_kilocycles(place.b.value_or(0) - place.a.value_or(0))});
   }
 
+  /// The largest differences; all are in JSON and CSV.
   void blocks() {
     if (c_.blocks.empty()) return;
+    std::vector<Quantity> sorted = c_.blocks;
+    const auto size = [](const Quantity& q) { return std::abs(q.b.value_or(0) - q.a.value_or(0)); };
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](const Quantity& x, const Quantity& y) { return size(x) > size(y); });
     title("blocks at a peak that differ [kB]");
     TextTable t({{"owner: block", kLeft}, {"A"}, {"B"}, {"difference"}});
-    for (const Quantity& q : c_.blocks)
+    for (std::size_t i = 0; i < std::min(sorted.size(), kMostBlocks); ++i) {
+      const Quantity& q = sorted[i];
       t.add({shortened(q.name, 44), kilocycles(q.a), kilocycles(q.b),
              fmt::format("{:+.1f}", (q.b.value_or(0) - q.a.value_or(0)) / kKilo)});
+    }
     table(t);
+    if (sorted.size() > kMostBlocks)
+      line(fmt::format("… and {} more with --format json", sorted.size() - kMostBlocks));
   }
 
   void energy(const std::string& name, const Quantity& whole) {
