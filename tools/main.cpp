@@ -1,4 +1,5 @@
-// The leviosim command. Exit status: 0 if done, 2 for bad input, with one message on stderr, 130
+// The leviosim command. Exit status: 0 if done, 1 if a limit that the user
+// set was not met, 2 for bad input, with one message on stderr, 130
 // and 143 where it was interrupted. Faults of leviosim itself abort.
 #include <fmt/core.h>
 
@@ -6,10 +7,14 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/commands/ablate_command.h"
+#include "tools/commands/budget_command.h"
 #include "tools/commands/calibrate_command.h"
+#include "tools/commands/check_command.h"
+#include "tools/commands/compare_command.h"
 #include "tools/commands/eval_command.h"
 #include "tools/commands/explore_command.h"
 #include "tools/commands/flow_command.h"
@@ -28,12 +33,23 @@
 namespace leviosim::tools {
 namespace {
 
+constexpr int kLimitNotMet = 1;
 constexpr int kBadInput = 2;
 constexpr int kSignalled = 128;  // and its number; seen if the signal does not end the process
 
 int fail(const std::exception& error) {
   print_error(error.what());
   return kBadInput;
+}
+
+/// What was printed may be refused only now.
+int end_after_report() {
+  try {
+    flush_results();
+    return kLimitNotMet;
+  } catch (const InputError& error) {
+    return fail(error);
+  }
 }
 
 int run_program(const Words& words) {
@@ -48,7 +64,8 @@ int run_program(const Words& words) {
          add_explore_command(app, words), add_validate_command(app, words),
          add_calibrate_command(app), add_sensitivity_command(app), add_microbench_command(app),
          add_replay_command(app, words), add_trace_command(app), add_tune_command(app, words),
-         add_sweep_command(app), add_flow_command(app, words)},
+         add_sweep_command(app), add_flow_command(app, words), add_compare_command(app),
+         add_check_command(app), add_budget_command(app)},
         words);
     flush_results();
     throw_if_interrupted();
@@ -57,6 +74,8 @@ int run_program(const Words& words) {
     return fail(error);
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(error);
+  } catch (const LimitNotMet&) {
+    return end_after_report();
   } catch (const Interrupted& stop) {
     return kSignalled + stop.signal();
   }

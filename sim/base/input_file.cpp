@@ -29,6 +29,9 @@ constexpr std::array kKinds{
     InputKindInfo{InputKind::image, "an image", 64 * kMiB},
     InputKindInfo{InputKind::work_trace, "a work trace", 4096 * kMiB},
     InputKindInfo{InputKind::cached_result, "a cached result", 16 * kMiB},
+    InputKindInfo{InputKind::run_file, "a file of a run folder", 64 * kMiB},
+    InputKindInfo{InputKind::budget, "a budget file", 1 * kMiB},
+    InputKindInfo{InputKind::baseline, "a baseline", 4 * kMiB},
 };
 
 std::string reason_of(int error) { return std::system_category().message(error); }

@@ -10,7 +10,18 @@
 
 namespace leviosim::base {
 
-enum class InputKind { platform, plan, sensor, table, image, work_trace, cached_result };
+enum class InputKind {
+  platform,
+  plan,
+  sensor,
+  table,
+  image,
+  work_trace,
+  cached_result,
+  run_file,
+  budget,
+  baseline
+};
 
 struct InputKindInfo {
   InputKind kind;

@@ -6,8 +6,10 @@
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "tools/app/budget/gate.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/run/replay_report.h"
@@ -21,6 +23,7 @@ namespace {
 struct ReplayOptions : RunOptions {
   std::string trace;
   std::string memory;
+  GateOptions gate;
 };
 
 /// Of a run folder its trace is taken.
@@ -75,12 +78,15 @@ Manifest manifest_of(const traces::WorkTrace& trace, const RunOptions& options,
 void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   require(command, "TRACE", "the work.trace of a run with --record, or its folder");
   require(command, "--out", "a folder for the results");
+  const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   base::OutputRequest wanted = out_request(options);
   wanted.inputs.push_back(trace_file(options.trace));
   base::OutputFolder out(std::move(wanted));
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
-  const RunRequest request = request_for(trace, options);
+  RunRequest request = request_for(trace, options);
+  CycleParts parts(request.platform.config, request.cores);
+  request.observer = &parts;
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = manifest_of(trace, options, words);
@@ -89,7 +95,9 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
           [&] {
             write_run_folder(out, result.run, manifest, platform::to_yaml(request.platform));
             out.write(kReplayFile, replay_csv(result));
+            out.write(kCyclesFile, cycles_csv(parts.stages()));
           });
+  if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result.run, parts.stages()));
 }
 
 }  // namespace
@@ -103,6 +111,7 @@ Command add_replay_command(CLI::App& app, const Words& words) {
   add_memory_option(*command, options->memory);
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
+  add_gate_options(*command, options->gate);
   return {command, [=, &words] { run(*command, *options, words); }};
 }
 

@@ -5,8 +5,10 @@
 
 #include <memory>
 
+#include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_folder.h"
@@ -30,31 +32,41 @@ void complete(traces::WorkTraceInfo& info, const RunOptions& options, const RunR
     info.inputs.emplace_back(input.name, input.sha256);
 }
 
-void run(const CLI::App& command, const RunOptions& options, const Words& words) {
+struct GatedRunOptions : RunOptions {
+  GateOptions gate;
+};
+
+void run(const CLI::App& command, const GatedRunOptions& options, const Words& words) {
   RunRequest request = make_request(command, options);
+  const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   base::OutputFolder out(out_request(options));
   request.data = data_folder(options, style);
   out.reserve(expected_bytes(request, options.record));
   WorkRecording recording(request.cores);
   if (options.record) request.recording = &recording;
+  CycleParts parts(request.platform.config, request.cores);
+  if (!request.native) request.observer = &parts;
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
   publish(out, heading(options, result) + report(result), [&] {
     write_run_folder(out, result, manifest,
                      request.native ? std::string() : platform::to_yaml(request.platform));
+    if (!request.native) out.write(kCyclesFile, cycles_csv(parts.stages()));
     if (!options.record) return;
     complete(recording.info, options, request, manifest);
     out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
   });
+  if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result, parts.stages()));
 }
 
 }  // namespace
 
 Command add_run_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand("run", "Run the workload on a chip, or natively");
-  const auto options = std::make_shared<RunOptions>();
+  const auto options = std::make_shared<GatedRunOptions>();
   add_run_options(*command, *options);
+  add_gate_options(*command, options->gate);
   return {command, [=, &words] { run(*command, *options, words); }};
 }
 

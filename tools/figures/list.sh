@@ -168,3 +168,27 @@ cut 'table stage stage call "kcycles, 1 core" "kcycles, 8 cores" speed-up ms'
 figure profiles
 shows 'leviosim workload'
 cut 'sed -n "/^profiles/,/^$/p" | sed "/^$/d"'
+
+figure compare
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim compare recorded -p cluster.fpu.dividers=2'
+cut 'sed -n "1,/^work:/p; /^why/,\$p"'
+
+figure check
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded
+leviosim budget record recorded >baseline.json
+cat >budgets.yaml <<YAML
+budgets:
+  - platform: gap9
+    owner: front end
+    limits:
+      - frame latency p99 <= 50 ms
+      - L1 peak <= 110 kB
+      - stage: "*RANSAC"
+        limit: cycles <= +3 %
+        reason: room for the next camera
+YAML'
+shows 'leviosim check recorded -p isa.ops.f32_fma.issue=1.8 --budget budgets.yaml \
+      --baseline baseline.json || echo "exit status $?"'

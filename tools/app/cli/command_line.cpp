@@ -75,6 +75,8 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands, const 
   refuse_empty_values(words);
   // Unknown words are collected instead of refused, so that they can be answered with a suggestion.
   app.allow_extras();
+  // One command: after it, a folder may be called "run".
+  app.require_subcommand(0, 1);
   for (const Command& command : commands) command.app->allow_extras();
   try {
     app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front

@@ -1,0 +1,240 @@
+// check, budget, and --budget as users and CI servers meet them; the project's own budgets.
+#include <gtest/gtest.h>
+
+#include "tests/support/paths.h"
+#include "tests/support/run_program.h"
+#include "tests/support/suite_folder.h"
+#include "tests/tools/junit_schema.h"
+#include "tools/app/budget/baseline.h"
+#include "tools/app/budget/budget.h"
+#include "tools/app/report/statistic_list.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::expect_refused;
+using testing::junit_fault;
+using testing::ProgramResult;
+using testing::run_program;
+using tests::SuiteFolder;
+
+/// One second of flight, recorded once, with its baseline and a first budget.
+class Check : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new SuiteFolder("check");
+    traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
+    ProgramResult result = program({"run", "--platform", "gap9", "--data", path("flight"), "--out",
+                                    path("run"), "--record", "--quiet"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    result = program({"budget", "record", path("run")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    write("baseline.json", result.out);
+    result = program({"budget", "init", path("run"), "--margin", "3 %"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    write("budgets.yaml", result.out);
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
+  static ProgramResult program(const std::vector<std::string>& words) {
+    return run_program(folder_->path(), words);
+  }
+  static std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(*folder_ / name) << text;
+    return path(name);
+  }
+  static void expect_holds(const std::string& text, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts)
+      EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in:\n" << text;
+  }
+
+  inline static SuiteFolder* folder_ = nullptr;
+};
+
+TEST_F(Check, AFirstBudgetIsMetByItsRunAndItsTrace) {
+  for (const char* run : {"run", "run/work.trace"}) {
+    const ProgramResult result =
+        program({"check", path(run), "--budget", path("budgets.yaml"), "--quiet"});
+    EXPECT_EQ(result.status, 0) << result.out << result.err;
+    expect_holds(result.out, {"0 not met"});
+  }
+}
+
+TEST_F(Check, AStageThatBecameSlowerEndsWithStatusOneAndSaysWhy) {
+  const std::string budget = write("slower.yaml",
+                                   "budgets:\n  - limits:\n      - stage: frame matching\n"
+                                   "        limit: cycles <= +3 %\n        owner: vision\n");
+  fs::remove(path("junit.xml"));
+  const ProgramResult result =
+      program({"check", path("run"), "-p", "isa.ops.popcount.issue=2", "--quiet", "--budget",
+               budget, "--baseline", path("baseline.json"), "--junit", path("junit.xml"),
+               "--annotations", "github"});
+  EXPECT_EQ(result.status, 1) << result.out << result.err;
+  EXPECT_EQ(result.err, "");
+  expect_holds(result.out, {"1 not met", "where: frame matching, ", "why: issue: popcount +",
+                            "owner: vision", "::error file=", "line=3,"});
+  const std::string junit = traces::read_text_file(path("junit.xml"));
+  EXPECT_EQ(junit_fault(junit), "");
+  expect_holds(junit, {"failures=\"1\"", "popcount"});
+}
+
+TEST_F(Check, RunAndReplayHoldABudgetToo) {
+  const std::string tight = write("tight.yaml", "budgets:\n  - limits: [L1 peak <= 1 kB]\n");
+  for (const bool replay : {false, true}) {
+    std::vector<std::string> words =
+        replay ? std::vector<std::string>{"replay", path("run")}
+               : std::vector<std::string>{"run", "--platform", "gap9", "--data", path("flight")};
+    const std::string out = path(replay ? "replayed" : "again");
+    words.insert(words.end(), {"--out", out, "--quiet", "--budget", tight});
+    const ProgramResult result = program(words);
+    EXPECT_EQ(result.status, 1) << result.err;
+    expect_holds(result.out, {"results: ", "NOT MET", "L1 peak <= 1 kB"});
+    EXPECT_TRUE(fs::exists(out + "/stats.json"));  // the run itself is fine
+    words.insert(words.end(), {"--force", "--baseline", path("baseline.json")});
+    words[words.size() - 4] = path("budgets.yaml");
+    EXPECT_EQ(program(words).status, 0);
+  }
+}
+
+TEST_F(Check, JsonHoldsAllFindings) {
+  const ProgramResult result =
+      program({"check", path("run"), "--budget", path("budgets.yaml"), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  EXPECT_EQ(json.at("not_met"), 0);
+  EXPECT_EQ(json.at("findings").size(), json.at("limits").get<std::size_t>());
+}
+
+TEST_F(Check, ABaselineIsAFewKilobytesAndARunServesAsOne) {
+  EXPECT_LT(fs::file_size(path("baseline.json")), 16'000u);
+  const std::string budget =
+      write("same.yaml", "budgets:\n  - limits:\n      - frame latency p99 <= +0 %\n");
+  for (const char* baseline : {"baseline.json", "run", "run/work.trace"})
+    EXPECT_EQ(
+        program({"check", path("run"), "--budget", budget, "--baseline", path(baseline), "--quiet"})
+            .status,
+        0)
+        << baseline;
+}
+
+TEST_F(Check, RefusesBadInput) {
+  const std::string budget = path("budgets.yaml");
+  expect_refused(program({"check"}), {"RUN is missing"});
+  expect_refused(program({"check", path("run")}), {"--budget is missing", "budget init"});
+  expect_refused(program({"check", path("run"), "--budget", path("none.yaml")}), {"none.yaml"});
+  expect_refused(program({"check", path("none"), "--budget", budget}), {"none", "does not exist"});
+  expect_refused(program({"check", path("run"), "--budget", budget, "--annotations", "gitea"}),
+                 {"--annotations 'gitea'", "github or gitlab"});
+  expect_refused(program({"check", path("run"), "--budget", budget, "--baseline", budget}),
+                 {"budgets.yaml"});
+  expect_refused(
+      program({"check", path("run"), "--budget", budget, "--baseline", write("no.json", "{}")}),
+      {"no.json", "no baseline"});
+  expect_refused(program({"check", path("run"), "--budget", budget, "--junit", budget}),
+                 {"--junit"});
+  expect_refused(program({"run", "--platform", "gap9", "--data", path("flight"), "--out",
+                          path("never"), "--budget", path("none.yaml")}),
+                 {"none.yaml"});
+  EXPECT_FALSE(fs::exists(path("never")));
+  expect_refused(program({"budget", "recrod", path("run")}), {"did you mean 'record'"});
+  expect_refused(program({"budget", "init", path("run"), "--margin", "5"}), {"--margin '5'"});
+  std::string other = traces::read_text_file(path("baseline.json"));
+  other.replace(other.find("\"seed\":1"), 8, "\"seed\":2");
+  expect_refused(
+      program({"check", path("run"), "--budget", budget, "--baseline", write("seed.json", other)}),
+      {"cannot be compared", "--allow seed"});
+}
+
+/// Lines of an example that call the program.
+std::string commands_of(const std::string& file) {
+  std::istringstream lines(traces::read_text_file((tests::source_folder() / ("tools/ci/" + file))));
+  std::string commands;
+  for (std::string line; std::getline(lines, line);)
+    if (const auto begin = line.find_first_not_of(' ');
+        begin != std::string::npos && line.compare(begin, 9, "leviosim ") == 0)
+      commands += line.substr(begin) + '\n';
+  return commands;
+}
+
+/// As a CI server runs them, in a folder with a budget and a baseline. @returns exit status
+int run_script(const fs::path& folder, const std::string& commands) {
+  const fs::path bin = folder / "bin";
+  fs::create_directories(bin);
+  fs::remove(bin / "leviosim");
+  fs::create_symlink(tests::program_path(), bin / "leviosim");
+  std::ofstream(folder / "script.sh") << "set -eu\ncd '" << folder.string() << "'\nPATH='"
+                                      << bin.string() << "':$PATH\nexport DATA=../flight\n"
+                                      << commands;
+  const int status = std::system(
+      fmt::format("sh {} >{} 2>&1", (folder / "script.sh").string(), (folder / "log").string())
+          .c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(Check, TheExamplesForServersWork) {
+  for (const char* file : {"github.yml", "gitlab.yml"}) {
+    const std::string commands = commands_of(file);
+    ASSERT_NE(commands.find("leviosim check"), std::string::npos) << file;
+    const fs::path folder = *folder_ / (std::string(file) + ".d");
+    fs::create_directories(folder);
+    fs::copy(path("baseline.json"), folder / "baseline.json");
+    fs::copy(path("budgets.yaml"), folder / "budgets.yaml");
+    EXPECT_EQ(run_script(folder, commands), 0) << traces::read_text_file(folder / "log");
+    EXPECT_EQ(junit_fault(traces::read_text_file(folder / "junit.xml")), "");
+    fs::remove_all(folder / "run");
+    fs::remove(folder / "junit.xml");
+    std::ofstream(folder / "budgets.yaml") << "budgets:\n  - limits: [L1 peak <= 1 kB]\n";
+    EXPECT_EQ(run_script(folder, commands), 1) << traces::read_text_file(folder / "log");
+  }
+}
+
+/// The relative limits of the project's own budgets on one second of flight.
+TEST_F(Check, TheProjectsGateSeesACostThatRoseByFourPerCent) {
+  const std::string budget = (tests::source_folder() / ("tools/ci/budgets.yaml")).string();
+  const ProgramResult recorded = program({"budget", "record", path("run"), "--budget", budget});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  const std::string baseline = write("own.json", recorded.out);
+  const auto check = [&](const std::string& override) {
+    return program({"check", path("run"), "-p", override, "--quiet", "--budget", budget,
+                    "--baseline", baseline, "--json"});
+  };
+  const auto misses = [](const ProgramResult& result) {
+    std::map<std::string, std::string> why;  // limit → first reason
+    const Json json = Json::parse(result.out);
+    for (const Json& f : json.at("findings"))
+      if (!f.at("met").get<bool>() && f.contains("stage"))
+        why[f.at("stage").get<std::string>() + ": " + f.at("limit").get<std::string>()] =
+            f.at("why").at(0).get<std::string>();
+    return why;
+  };
+  const ProgramResult same = check("isa.ops.popcount.issue=1");
+  EXPECT_EQ(same.status, 0) << same.out << same.err;
+  const ProgramResult popcount = check("isa.ops.popcount.issue=1.04");
+  EXPECT_EQ(popcount.status, 1) << popcount.err;
+  const auto matching = misses(popcount);
+  ASSERT_EQ(matching.count("frame matching: cycles <= +0.1 %"), 1u) << popcount.out;
+  EXPECT_EQ(matching.at("frame matching: cycles <= +0.1 %").rfind("issue: popcount +", 0), 0u);
+  EXPECT_EQ(matching.count("feature extraction: cycles <= +0.1 %"), 0u);
+  const ProgramResult fma = check("isa.ops.f32_fma.issue=1.04");
+  EXPECT_EQ(fma.status, 1) << fma.err;
+  EXPECT_EQ(misses(fma).count("frame matching: cycles <= +0.1 %"), 0u) << fma.out;
+}
+
+TEST(ProjectBudgets, HaveBaselinesOfBothProfiles) {
+  const Budget budget = read_budget((tests::source_folder() / ("tools/ci/budgets.yaml")).string());
+  for (const char* profile : {"levio", "next"}) {
+    const std::string file = fmt::format("tools/ci/{}-gap9.json", profile);
+    const RunRecord baseline =
+        parse_baseline(file, traces::read_text_file(tests::source_folder() / file));
+    EXPECT_EQ(baseline.facts.profile, profile);
+    EXPECT_FALSE(sections_for(budget, baseline).empty());
+  }
+}
+
+}  // namespace
+}  // namespace leviosim::tools

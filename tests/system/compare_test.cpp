@@ -1,0 +1,240 @@
+// Comparisons of a recorded flight on pairs of chips: parts add up, refusals name what differs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/run_program.h"
+#include "tests/support/suite_folder.h"
+#include "tools/app/comparison/comparability.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/record_source.h"
+#include "tools/app/report/text_table.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::expect_refused;
+using testing::ProgramResult;
+using testing::run_program;
+using tests::SuiteFolder;
+using traces::testing::expect_input_error;
+
+/// One second of flight, recorded once for all tests.
+class Compare : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new SuiteFolder("compare");
+    traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
+    const ProgramResult result =
+        run_program(folder_->path(), {"run", "--platform", "gap9", "--data", path("flight"),
+                                      "--out", path("run"), "--record", "--quiet"});
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
+  static ProgramResult program(const std::vector<std::string>& words) {
+    return run_program(folder_->path(), words);
+  }
+  static RunRecord replayed(const std::vector<std::string>& overrides) {
+    RecordOptions options;
+    options.overrides = overrides;
+    options.quiet = true;
+    return replay_record(path("run/work.trace"), options);
+  }
+  /// A copy of the run folder with another text in a file of it.
+  static std::string changed_run(const std::string& file, const std::string& before,
+                                 const std::string& after) {
+    const std::string copy = path("changed");
+    fs::remove_all(copy);
+    fs::copy(path("run"), copy);
+    std::string text = traces::read_text_file(copy + '/' + file);
+    const auto at = text.find(before);
+    EXPECT_NE(at, std::string::npos) << before;
+    text.replace(at, before.size(), after);
+    std::ofstream(copy + '/' + file) << text;
+    return copy;
+  }
+
+  inline static SuiteFolder* folder_ = nullptr;
+};
+
+double difference(const Quantity& q) { return q.b.value_or(0) - q.a.value_or(0); }
+
+/// The parts but for the rest explain the difference of the whole within 0.1 % of it. Rows are
+/// rounded to a thousandth of a cycle of all calls.
+void expect_adds_up(const Quantity& whole, const std::string& what) {
+  double sum = 0;
+  for (const Quantity& part : whole.parts)
+    if (part.name != "rest") sum += difference(part);
+  EXPECT_NEAR(sum, difference(whole), 1e-3 * std::abs(difference(whole)) + 0.1) << what;
+}
+
+/// A value for each of some parameters, drawn anew for every chip.
+std::vector<std::string> random_chip(std::mt19937& random) {
+  const auto draw = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  const auto tenths = [&](int least, int n) {
+    return fmt::format("{:.1f}", (least + draw(n)) / 10.0);
+  };
+  const std::vector<std::string> all{fmt::format("cluster.fpu.units={}", 1 << draw(4)),
+                                     fmt::format("cluster.fpu.dividers={}", 1 + draw(4)),
+                                     fmt::format("cluster.l1.banks={}", 8 << draw(3)),
+                                     fmt::format("cluster.dma.bytes_per_cycle={}", 4 + 4 * draw(2)),
+                                     fmt::format("cluster.events.offload={}", 100 + 50 * draw(8)),
+                                     "isa.instruction_overhead=" + tenths(10, 7),
+                                     "isa.load_use_fraction=" + tenths(0, 6),
+                                     "isa.ops.f32_fma.issue=" + tenths(10, 20),
+                                     "isa.ops.load_stream.issue=" + tenths(10, 10),
+                                     "isa.ops.call.issue=" + tenths(20, 200)};
+  std::vector<std::string> some;
+  for (const std::string& override : all)
+    if (draw(2) == 0) some.push_back(override);
+  return some;
+}
+
+TEST_F(Compare, PartsAddUpForRandomPairsOfChips) {
+  std::mt19937 random(7);
+  int differing = 0;
+  for (int pair = 0; pair < 20; ++pair) {
+    const RunRecord a = replayed(random_chip(random));
+    const RunRecord b = replayed(random_chip(random));
+    const Comparison c = compare(a, b, check_comparable(a, b, {}));
+    EXPECT_TRUE(c.same_work());
+    ASSERT_FALSE(c.stages.empty());
+    expect_adds_up(c.frame, "frame");
+    if (difference(c.frame) != 0) ++differing;
+    for (const StageComparison& s : c.stages) {
+      // Stages that never ran have nothing to compare.
+      if (!s.mechanisms) continue;
+      const std::string what = fmt::format("pair {}, {}", pair, s.stage.name);
+      expect_adds_up(*s.mechanisms, what);
+      expect_adds_up(*s.places, what);
+      for (const Quantity& mechanism : s.mechanisms->parts)
+        if (!mechanism.parts.empty()) expect_adds_up(mechanism, what + ", " + mechanism.name);
+      EXPECT_NEAR(s.causes.total(), difference(*s.mechanisms), 1e-6) << what;
+      EXPECT_NEAR(s.causes.work, 0, 1e-6) << what;
+    }
+  }
+  EXPECT_GT(differing, 15);
+}
+
+TEST_F(Compare, WhatCostsMoreIsNamed) {
+  const RunRecord a = replayed({});
+  const RunRecord b = replayed({"isa.ops.popcount.issue=3"});
+  const Comparison c = compare(a, b);
+  for (const StageComparison& s : c.stages) {
+    if (s.stage.name != "frame matching") continue;
+    ASSERT_TRUE(s.mechanisms.has_value());
+    EXPECT_EQ(leaves_by_difference(*s.mechanisms).front().name, "issue: popcount");
+    EXPECT_GT(s.causes.price, 10 * std::abs(s.causes.meeting));
+    return;
+  }
+  FAIL() << "no such stage";
+}
+
+TEST_F(Compare, OneUnitLessIsWaitedFor) {
+  const RunRecord a = replayed({});
+  const RunRecord b = replayed({"cluster.fpu.units=1"});
+  const Comparison c = compare(a, b);
+  for (const StageComparison& s : c.stages)
+    if (s.stage.name == "8-point RANSAC" && s.calls.a.value_or(0) > 0) {
+      EXPECT_EQ(leaves_by_difference(*s.mechanisms).front().name, "fpu");
+      EXPECT_EQ(s.causes.price, 0);
+    }
+  EXPECT_NE(work_line(c).find("the same"), std::string::npos);
+}
+
+TEST_F(Compare, TheFolderOfARunSaysWhatItsReplaySays) {
+  const RunRecord run = read_run_folder(path("run"));
+  const RunRecord again = replayed({});
+  const Comparison c = compare(run, again);
+  for (const Quantity& q : c.figures) EXPECT_EQ(q.a, q.b) << q.name;
+  EXPECT_EQ(difference(c.frame), 0);
+  EXPECT_TRUE(c.blocks.empty());
+}
+
+TEST_F(Compare, ACsvOfPartsIsReadBackAsItWas) {
+  const RunRecord run = replayed({});
+  const std::string text = cycles_csv(run.cycles);
+  EXPECT_EQ(text, traces::read_text_file(path("run/cycles.csv")));
+  EXPECT_EQ(cycles_csv(parse_cycles("cycles.csv", text)), text);
+}
+
+TEST_F(Compare, TextFitsEightyColumns) {
+  const RunRecord a = replayed({});
+  const RunRecord b = replayed({"isa.instruction_overhead=1.6"});
+  const Comparison c = compare(a, b);
+  const std::string text = comparison_report(c, ReportFormat::text);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(display_width(line), 80) << line;
+}
+
+TEST_F(Compare, TheProgramPrintsAllFormats) {
+  for (const char* format : {"text", "markdown", "json", "csv"}) {
+    const ProgramResult result = program(
+        {"compare", path("run"), "-p", "cluster.fpu.dividers=2", "--quiet", "--format", format});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("cluster.fpu.dividers=2"),
+              format == std::string("csv") ? 0u : std::string::npos);
+    if (format == std::string("json")) {
+      const Json json = Json::parse(result.out);
+      EXPECT_EQ(json.at("same_work"), true);
+      EXPECT_FALSE(json.at("stages").at(0).at("by_mechanism").at("parts").empty());
+    }
+  }
+}
+
+TEST_F(Compare, RefusesOtherInputsUnlessTheyAreMeant) {
+  struct Row {
+    const char* before;
+    const char* after;
+    const char* key;
+  };
+  for (const Row& row :
+       {Row{"\"seed\": 1", "\"seed\": 2", "seed"}, Row{"\"width\": 160", "\"width\": 320", "size"},
+        Row{"\"profile\": \"levio\"", "\"profile\": \"next\"", "profile"},
+        Row{"\"first_frame\": 0", "\"first_frame\": 3", "frames"},
+        Row{"\"sha256\": \"", "\"sha256\": \"0", "data"}}) {
+    const std::string other = changed_run("manifest.json", row.before, row.after);
+    expect_refused(program({"compare", path("run"), other}),
+                   {"cannot be compared", std::string("--allow ") + row.key});
+    const ProgramResult allowed = program({"compare", path("run"), other, "--allow", row.key});
+    EXPECT_EQ(allowed.status, 0) << allowed.err;
+    EXPECT_NE(allowed.out.find("note: other"), std::string::npos) << allowed.out;
+  }
+}
+
+TEST_F(Compare, NotesOtherVersions) {
+  const std::string other =
+      changed_run("manifest.json", "\"version\": \"0.1.0\"", "\"version\": \"0.0.9\"");
+  const ProgramResult result = program({"compare", path("run"), other});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("note: program:"), std::string::npos) << result.out;
+}
+
+TEST_F(Compare, RefusesWhatIsNoRun) {
+  expect_refused(program({"compare"}), {"RUN is missing"});
+  expect_refused(program({"compare", path("run")}), {"only", "--platform"});
+  expect_refused(program({"compare", path("run"), path("nowhere")}), {"nowhere", "does not exist"});
+  expect_refused(program({"compare", path("run"), path("flight")}), {"no run folder"});
+  expect_refused(program({"compare", path("run"), path("run"), "--allow", "sed"}),
+                 {"--allow 'sed'", "did you mean 'seed'"});
+  expect_refused(program({"compare", path("run"), path("run"), "--format", "jsn"}),
+                 {"did you mean 'json'"});
+  expect_refused(program({"compare", path("run"), changed_run("stats.json", "{", "[")}),
+                 {"stats.json"});
+  expect_refused(program({"compare", path("run"),
+                          changed_run("manifest.json", "\"seed\": 1", "\"seed\": \"x\"")}),
+                 {"manifest.json"});
+  expect_refused(program({"compare", path("run"), changed_run("cycles.csv", ",issue,", ",isue,")}),
+                 {"cycles.csv", "mechanism"});
+}
+
+}  // namespace
+}  // namespace leviosim::tools

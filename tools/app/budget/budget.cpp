@@ -1,0 +1,155 @@
+#include "tools/app/budget/budget.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "platform_models/loader/yaml_entries.h"
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "sim/base/nearest.h"
+#include "tools/app/budget/figures.h"
+
+namespace leviosim::tools {
+namespace {
+
+using platform::Place;
+using platform::YamlEntry;
+using platform::YamlNode;
+
+class BudgetReader {
+ public:
+  explicit BudgetReader(const std::string& file) { budget_.file = file; }
+
+  Budget read(const std::string& text) {
+    bool any = false;
+    for (const YamlEntry& entry : entries(platform::parse_yaml(budget_.file, text), "")) {
+      if (entry.key != "budgets") unknown(entry, "", {"budgets"});
+      any = true;
+      for (const YamlNode& node : items(entry, "")) read_section(node);
+    }
+    if (!any || budget_.sections.empty())
+      throw InputError(
+          fmt::format("{}: has no budgets; expected a list of them under 'budgets'", budget_.file));
+    return std::move(budget_);
+  }
+
+ private:
+  std::vector<YamlEntry> entries(const YamlNode& node, const std::string& path) const {
+    return platform::entries_of(node, budget_.file, path);
+  }
+  Place place(const YamlEntry& entry, const std::string& path) const {
+    return platform::place_of(budget_.file, entry.line, platform::joined(path, entry.key));
+  }
+  [[noreturn]] void unknown(const YamlEntry& entry, const std::string& path,
+                            const std::vector<std::string>& known) const {
+    place(entry, path)
+        .fail(fmt::format("unknown key{}; expected {}", platform::did_you_mean(entry.key, known),
+                          fmt::join(known, ", ")));
+  }
+  std::vector<YamlNode> items(const YamlEntry& entry, const std::string& path) const {
+    if (!entry.value.is_sequence())
+      place(entry, path)
+          .fail(fmt::format("is {}; expected a list", platform::kind_of(entry.value)));
+    return entry.value.items();
+  }
+  std::string text(const YamlEntry& entry, const std::string& path) const {
+    return platform::scalar(entry.value, place(entry, path));
+  }
+
+  void read_section(const YamlNode& node) {
+    BudgetSection section;
+    std::string reason;
+    std::string owner;
+    for (const YamlEntry& entry : entries(node, "budgets")) {
+      if (entry.key == "name")
+        section.name = text(entry, "budgets");
+      else if (entry.key == "platform")
+        section.platform = text(entry, "budgets");
+      else if (entry.key == "profile")
+        section.profile = text(entry, "budgets");
+      else if (entry.key == "reason")
+        reason = text(entry, "budgets");
+      else if (entry.key == "owner")
+        owner = text(entry, "budgets");
+      else if (entry.key == "limits")
+        for (const YamlNode& limit : items(entry, "budgets"))
+          section.limits.push_back(read_limit(limit));
+      else
+        unknown(entry, "budgets", {"name", "platform", "profile", "reason", "owner", "limits"});
+    }
+    if (section.limits.empty())
+      platform::place_of(budget_.file, node.line(), "budgets")
+          .fail("has no limits; expected 'limits' with at least one");
+    if (section.name.empty()) section.name = section.profile + " on " + section.platform;
+    for (Limit& limit : section.limits) {
+      if (limit.reason.empty()) limit.reason = reason;
+      if (limit.owner.empty()) limit.owner = owner;
+    }
+    budget_.sections.push_back(std::move(section));
+  }
+
+  /// A text, or a map with it.
+  Limit read_limit(const YamlNode& node) const {
+    const Place here = platform::place_of(budget_.file, node.line(), "limits");
+    Limit limit;
+    if (node.is_scalar()) {
+      limit = parse_limit(node.scalar(), here);
+    } else {
+      std::string stage;
+      std::string reason;
+      std::string owner;
+      for (const YamlEntry& entry : entries(node, "limits")) {
+        if (entry.key == "limit")
+          limit = parse_limit(text(entry, "limits"), place(entry, "limits"));
+        else if (entry.key == "stage")
+          stage = text(entry, "limits");
+        else if (entry.key == "reason")
+          reason = text(entry, "limits");
+        else if (entry.key == "owner")
+          owner = text(entry, "limits");
+        else
+          unknown(entry, "limits", {"limit", "stage", "reason", "owner"});
+      }
+      if (limit.text.empty()) here.fail("has no 'limit'");
+      limit.stage = stage;
+      limit.reason = reason;
+      limit.owner = owner;
+    }
+    limit.file = budget_.file;
+    limit.line = node.line();
+    check_figure(limit);
+    return limit;
+  }
+
+  Budget budget_;
+};
+
+}  // namespace
+
+Budget parse_budget(const std::string& file, const std::string& text) {
+  return BudgetReader(file).read(text);
+}
+
+Budget read_budget(const std::string& file) {
+  return parse_budget(file, base::read_file(file, base::InputKind::budget));
+}
+
+std::vector<const BudgetSection*> sections_for(const Budget& budget, const RunRecord& run) {
+  std::vector<const BudgetSection*> found;
+  std::vector<std::string> all;
+  for (const BudgetSection& section : budget.sections) {
+    all.push_back(fmt::format("{} on {}", section.profile, section.platform));
+    if (matches(section.platform, run.facts.platform) &&
+        matches(section.profile, run.facts.profile))
+      found.push_back(&section);
+  }
+  if (found.empty())
+    throw InputError(fmt::format(
+        "{}: has no budget for {} on {}; there are those for {}", budget.file, run.facts.profile,
+        run.facts.platform.empty() ? "the host" : run.facts.platform, fmt::join(all, ", ")));
+  return found;
+}
+
+}  // namespace leviosim::tools

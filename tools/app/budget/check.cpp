@@ -1,0 +1,103 @@
+#include "tools/app/budget/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "platform_models/loader/yaml_entries.h"
+#include "tools/app/budget/explanation.h"
+#include "tools/app/budget/figures.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// No limit is missed by the conversion of its unit: 30 ms are not exactly 3e7 ns.
+constexpr double kRounding = 1e-12;
+
+/// What a relative limit comes to.
+std::optional<double> relative_bound(const Limit& limit, const Statistic& statistic,
+                                     double baseline) {
+  const double number = bound_in(limit, statistic.unit);
+  return is_percent_of_baseline(limit.bound) ? baseline * (1 + number / 100) : baseline + number;
+}
+
+Finding hold(const Limit& limit, const FigureOf& figure, const RunRecord* baseline) {
+  Finding f;
+  f.limit = &limit;
+  f.statistic = figure.statistic->name;
+  f.stage = figure.stage;
+  f.unit = figure.statistic->unit;
+  f.value = figure.statistic->value;
+  if (limit.bound.relative) {
+    const platform::Place place = platform::place_of(limit.file, limit.line, "");
+    if (baseline == nullptr)
+      place.fail(fmt::format("'{}' is relative to a baseline; expected --baseline", limit.text));
+    if (baseline->find(f.statistic) == nullptr)
+      place.fail(
+          fmt::format("{} has no {}; record it with this budget: leviosim budget record RUN "
+                      "--budget {}",
+                      baseline->name, f.statistic, limit.file));
+    f.baseline = baseline->value(f.statistic);
+    if (f.baseline) f.bound = relative_bound(limit, *figure.statistic, *f.baseline);
+  } else {
+    f.bound = bound_in(limit, f.unit);
+  }
+  if (f.value && f.bound) {
+    const double over = limit.bound.at_most ? *f.value - *f.bound : *f.bound - *f.value;
+    f.met = over <= kRounding * std::abs(*f.bound);
+  }
+  return f;
+}
+
+/// Where a figure has no value in the run nor in the baseline, such as that of a stage without
+/// calls, a limit for several of them says nothing about it.
+bool is_idle(const Finding& f) { return !f.value && (!f.limit->bound.relative || !f.baseline); }
+
+}  // namespace
+
+std::string Finding::title() const {
+  if (!limit->stage.empty()) return stage + ": " + limit->text;
+  if (limit->figure.find('*') == std::string::npos) return limit->text;
+  return statistic + limit->text.substr(limit->figure.size());
+}
+
+std::string Finding::excess() const {
+  if (!value) return "the run has no value of it";
+  const std::string found = figure_text(*value, unit);
+  if (!bound) return found + ", but the baseline has no value of it";
+  const double over = *value - *bound;
+  const std::string limit_text = figure_text(*bound, unit);
+  const char* side = over > 0 ? "above" : over < 0 ? "below" : "at";
+  std::string text = over == 0     ? fmt::format("{}, at the limit", found)
+                     : *bound == 0 ? fmt::format("{}, {} {}", found, side, limit_text)
+                                   : fmt::format("{}, {:.2f} % {} {}", found,
+                                                 100 * std::abs(over / *bound), side, limit_text);
+  if (baseline && *baseline != 0)
+    text += fmt::format("; {:+.2f} % of the baseline's {}", 100 * (*value - *baseline) / *baseline,
+                        figure_text(*baseline, unit));
+  return text;
+}
+
+std::size_t CheckResult::missed() const {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return !f.met; }));
+}
+
+CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline) {
+  CheckResult result{run.name, budget.file, baseline == nullptr ? "" : baseline->name, {}};
+  for (const BudgetSection* section : sections_for(budget, run))
+    for (const Limit& limit : section->limits) {
+      const std::vector<FigureOf> figures = figures_of(limit, run);
+      for (const FigureOf& figure : figures) {
+        Finding finding = hold(limit, figure, baseline);
+        if (figures.size() > 1 && is_idle(finding)) continue;
+        finding.section = section;
+        result.findings.push_back(std::move(finding));
+      }
+    }
+  if (result.missed() > 0) explain(result, run, baseline);
+  return result;
+}
+
+}  // namespace leviosim::tools

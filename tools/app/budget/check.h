@@ -1,0 +1,48 @@
+// Holds a run against the limits of a budget: what was found, by how much a limit is missed, where,
+// and why.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/app/budget/budget.h"
+#include "tools/app/comparison/run_record.h"
+
+namespace leviosim::tools {
+
+/// One limit on one statistic.
+struct Finding {
+  const Limit* limit;
+  const BudgetSection* section;
+  std::string statistic;
+  std::string stage;  ///< its name; empty: the run as a whole
+  std::string unit;   ///< of the statistic, as the values
+  std::optional<double> value;
+  std::optional<double> bound;     ///< absent if the baseline has no value
+  std::optional<double> baseline;  ///< where the bound is relative to it
+  bool met = false;
+  std::string where;             ///< stage, fork, block; of what is not met
+  std::vector<std::string> why;  ///< parts that explain it, the largest first
+
+  /// What is held: "8-point RANSAC: cycles <= +3 %", with the statistic in place of a pattern.
+  std::string title() const;
+  /// By how much: "10259.8 kcycles, 5.84 % above 9693.3 kcycles".
+  std::string excess() const;
+};
+
+struct CheckResult {
+  std::string run;
+  std::string budget;    ///< file
+  std::string baseline;  ///< empty: none
+  std::vector<Finding> findings;
+
+  std::size_t missed() const;
+};
+
+/// @param budget    outlives the result
+/// @param baseline  comparable with the run; may be null if no limit is relative
+/// @throws InputError for limits that cannot be held: unknown figures, units, a missing baseline
+CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,136 @@
+#include "tools/app/budget/ci_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "sim/base/printable_text.h"
+#include "sim/base/sha256.h"
+#include "tools/app/report/statistic_list.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// Text for an attribute or an element. Control characters, which XML has no form for, are escaped
+/// as everywhere (printable()).
+std::string xml(const std::string& raw) {
+  std::string text;
+  for (const char c : printable(raw)) switch (c) {
+      case '&':
+        text += "&amp;";
+        break;
+      case '<':
+        text += "&lt;";
+        break;
+      case '>':
+        text += "&gt;";
+        break;
+      case '"':
+        text += "&quot;";
+        break;
+      default:
+        text += c;
+    }
+  return text;
+}
+
+std::string test_case(const Finding& f) {
+  const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"",
+                                       xml(f.section->name), xml(f.title()));
+  if (f.met) return head + "/>\n";
+  std::string body;
+  body += xml(fmt::format("{}:{}", f.limit->file, f.limit->line)) + '\n';
+  if (!f.where.empty()) body += "where: " + xml(f.where) + '\n';
+  for (const std::string& reason : f.why) body += "why: " + xml(reason) + '\n';
+  if (!f.limit->reason.empty()) body += "reason: " + xml(f.limit->reason) + '\n';
+  if (!f.limit->owner.empty()) body += "owner: " + xml(f.limit->owner) + '\n';
+  return fmt::format(
+      "{}>\n      <failure type=\"limit\" message=\"{}\">{}</failure>\n"
+      "    </testcase>\n",
+      head, xml(f.excess()), body);
+}
+
+/// Findings stand in the order of the sections.
+template <class F>
+void for_each_section(const CheckResult& result, F&& f) {
+  for (std::size_t begin = 0; begin < result.findings.size();) {
+    std::size_t end = begin;
+    std::size_t missed = 0;
+    std::string cases;
+    for (; end < result.findings.size() &&
+           result.findings[end].section == result.findings[begin].section;
+         ++end) {
+      if (!result.findings[end].met) ++missed;
+      cases += test_case(result.findings[end]);
+    }
+    f(*result.findings[begin].section, end - begin, missed, cases);
+    begin = end;
+  }
+}
+
+/// All of it in one text.
+std::string message(const Finding& f) {
+  std::string text = f.excess();
+  if (!f.where.empty()) text += ". Where: " + f.where;
+  if (!f.why.empty()) text += fmt::format(". Why: {}", fmt::join(f.why, "; "));
+  if (!f.limit->reason.empty()) text += ". Reason of the limit: " + f.limit->reason;
+  if (!f.limit->owner.empty()) text += ". Owner: " + f.limit->owner;
+  return printable(text);
+}
+
+}  // namespace
+
+std::string junit_xml(const CheckResult& result) {
+  std::string suites;
+  for_each_section(result, [&](const BudgetSection& section, std::size_t tests, std::size_t missed,
+                               const std::string& cases) {
+    suites += fmt::format(
+        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\" "
+        "time=\"0\">\n{}  </testsuite>\n",
+        xml(section.name), tests, missed, cases);
+  });
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuites name=\"leviosim check\" tests=\"{}\" failures=\"{}\" errors=\"0\" "
+      "time=\"0\">\n{}</testsuites>\n",
+      result.findings.size(), result.missed(), suites);
+}
+
+std::string github_annotations(const CheckResult& result) {
+  const auto escaped = [](const std::string& text, bool property) {
+    std::string out;
+    for (const char c : text) {
+      const bool special =
+          c == '%' || c == '\r' || c == '\n' || (property && (c == ':' || c == ','));
+      out += special ? fmt::format("%{:02X}", static_cast<unsigned char>(c)) : std::string(1, c);
+    }
+    return out;
+  };
+  std::string text;
+  for (const Finding& f : result.findings)
+    if (!f.met)
+      text += fmt::format("::error file={},line={},title={}::{}\n",
+                          escaped(printable(f.limit->file), true), f.limit->line,
+                          escaped(printable(f.title()), true), escaped(message(f), false));
+  return text;
+}
+
+std::string gitlab_report(const CheckResult& result) {
+  Json list = Json::array();
+  for (const Finding& f : result.findings) {
+    if (f.met) continue;
+    Json& entry = list.emplace_back(Json::object());
+    std::string description = f.title() + ": " + f.excess();
+    if (!f.where.empty()) description += "; " + f.where;
+    for (const std::string& reason : f.why) description += "; " + reason;
+    entry["description"] = printable(description);
+    entry["check_name"] = "leviosim budget";
+    // Of the limit, not of what was found: the same fault of two commits is the same one.
+    entry["fingerprint"] = base::sha256_of(f.section->name + '\n' + f.title());
+    entry["severity"] = "major";
+    entry["location"]["path"] = f.limit->file;
+    entry["location"]["lines"]["begin"] = f.limit->line;
+  }
+  return json_text(list, 2) + '\n';
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,203 @@
+#include "tools/app/budget/figures.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/yaml_entries.h"
+#include "sim/base/error.h"
+#include "sim/base/nearest.h"
+
+namespace leviosim::tools {
+namespace {
+
+using platform::Unit;
+
+constexpr std::array kOfTheRun{
+    FigurePhrase{"frame latency mean", "frame.latency.mean", "ns"},
+    FigurePhrase{"frame latency p50", "frame.latency.p50", "ns"},
+    FigurePhrase{"frame latency p95", "frame.latency.p95", "ns"},
+    FigurePhrase{"frame latency p99", "frame.latency.p99", "ns"},
+    FigurePhrase{"frame latency worst", "frame.latency.worst", "ns"},
+    FigurePhrase{"frame cycles", "frame.cycles.parallel.mean", "cycles"},
+    FigurePhrase{"frame cycles on one core", "frame.cycles.single.mean", "cycles"},
+    FigurePhrase{"missed", "frame.missed_share", "1"},
+    FigurePhrase{"L1 peak", "memory.l1.peak", "byte"},
+    FigurePhrase{"L2 peak", "memory.l2.peak", "byte"},
+    FigurePhrase{"energy per frame", "energy.frame", "mJ"},
+    FigurePhrase{"mean power", "energy.mean_power", "mW"},
+    FigurePhrase{"ATE", "accuracy.ate.rmse", "m"},
+    FigurePhrase{"rotation error", "accuracy.rotation.rmse", "deg"},
+    FigurePhrase{"completion", "accuracy.completion", "1"},
+};
+constexpr std::array kOfAStage{
+    FigurePhrase{"cycles", "stages.{}.cycles.parallel.mean", "cycles"},
+    FigurePhrase{"cycles on one core", "stages.{}.cycles.single.mean", "cycles"},
+    FigurePhrase{"worst cycles", "stages.{}.cycles.parallel.worst", "cycles"},
+    FigurePhrase{"time", "stages.{}.time.parallel.mean", "ms"},
+    FigurePhrase{"speed-up", "stages.{}.speedup", "1"},
+    FigurePhrase{"calls", "stages.{}.calls", "1"},
+    FigurePhrase{"operations", "stages.{}.operations", "1"},
+    FigurePhrase{"memory peak", "stages.{}.memory.parallel", "byte"},
+    FigurePhrase{"energy per call", "energy.{}.call", "uJ"},
+};
+
+constexpr std::array kCycleUnits{Unit{"cycles", 1}, Unit{"kcycles", 1e3}, Unit{"Mcycles", 1e6}};
+constexpr std::array kCoreCycleUnits{Unit{"core-cycles", 1}};
+constexpr std::array kEnergyUnits{Unit{"J", 1}, Unit{"mJ", 1e-3}, Unit{"uJ", 1e-6},
+                                  Unit{"nJ", 1e-9}};
+constexpr std::array kLengthUnits{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}};
+constexpr std::array kAngleUnits{Unit{"deg", 1}};
+constexpr std::array kAngleRateUnits{Unit{"deg/m", 1}};
+constexpr std::array kPercentUnits{Unit{"%", 1}};
+constexpr std::array kFrameRateUnits{Unit{"1/s", 1}, Unit{"frames/s", 1}};
+constexpr std::array kPixelUnits{Unit{"px", 1}};
+constexpr std::array kNumberUnits{Unit{"", 1}, Unit{"%", 1e-2}};  // counts, ratios and shares
+
+/// How limits on a statistic may be written, by its unit.
+struct StatisticUnit {
+  std::string_view name;
+  std::span<const Unit> units;
+  double factor;  ///< base units in one of it
+  double shown;   ///< of it in what people read
+  std::string_view shown_unit;
+  int decimals;
+};
+constexpr std::array kStatisticUnits{
+    StatisticUnit{"cycles", kCycleUnits, 1, 1e3, "kcycles", 1},
+    StatisticUnit{"core-cycles", kCoreCycleUnits, 1, 1, "core-cycles", 0},
+    StatisticUnit{"ns", platform::kTimeUnits, 1e-9, 1e6, "ms", 3},
+    StatisticUnit{"ms", platform::kTimeUnits, 1e-3, 1, "ms", 3},
+    StatisticUnit{"byte", platform::kSizeUnits, 1, 1e3, "kB", 1},
+    StatisticUnit{"mJ", kEnergyUnits, 1e-3, 1, "mJ", 4},
+    StatisticUnit{"uJ", kEnergyUnits, 1e-6, 1, "uJ", 2},
+    StatisticUnit{"mW", platform::kPowerUnits, 1e-3, 1, "mW", 2},
+    StatisticUnit{"Hz", platform::kFrequencyUnits, 1, 1e6, "MHz", 2},
+    StatisticUnit{"V", platform::kVoltageUnits, 1, 1, "V", 3},
+    StatisticUnit{"m", kLengthUnits, 1, 1, "m", 4},
+    StatisticUnit{"deg", kAngleUnits, 1, 1, "deg", 3},
+    StatisticUnit{"deg/m", kAngleRateUnits, 1, 1, "deg/m", 4},
+    StatisticUnit{"%", kPercentUnits, 1, 1, "%", 3},
+    StatisticUnit{"1/s", kFrameRateUnits, 1, 1, "frames/s", 2},
+    StatisticUnit{"px", kPixelUnits, 1, 1, "px", 0},
+    StatisticUnit{"1", kNumberUnits, 1, 1, "", 4},
+};
+
+const StatisticUnit* find_unit(std::string_view name) {
+  const auto it = std::find_if(kStatisticUnits.begin(), kStatisticUnits.end(),
+                               [&](const StatisticUnit& u) { return u.name == name; });
+  return it == kStatisticUnits.end() ? nullptr : &*it;
+}
+
+[[noreturn]] void fail(const Limit& limit, const std::string& message) {
+  platform::place_of(limit.file, limit.line, "").fail(message);
+}
+
+std::span<const FigurePhrase> phrases_for(const Limit& limit) {
+  return limit.stage.empty() ? run_phrases() : stage_phrases();
+}
+
+const FigurePhrase* find_phrase(const Limit& limit) {
+  const auto phrases = phrases_for(limit);
+  const auto it = std::find_if(phrases.begin(), phrases.end(),
+                               [&](const FigurePhrase& p) { return p.phrase == limit.figure; });
+  return it == phrases.end() ? nullptr : &*it;
+}
+
+/// Names of statistics have dots, phrases have none.
+bool is_statistic(const std::string& figure) {
+  return figure.find('.') != std::string::npos || figure.find('*') != std::string::npos;
+}
+
+std::vector<std::string> phrase_names(std::span<const FigurePhrase> phrases) {
+  std::vector<std::string> names;
+  for (const FigurePhrase& p : phrases) names.emplace_back(p.phrase);
+  return names;
+}
+
+std::vector<FigureOf> figures_of_stages(const Limit& limit, const FigurePhrase& phrase,
+                                        const RunRecord& run) {
+  std::vector<FigureOf> found;
+  std::vector<std::string> names;
+  for (const StageName& stage : run.stages) {
+    names.push_back(stage.name);
+    if (!matches(limit.stage, stage.name) && !matches(limit.stage, stage.key)) continue;
+    const std::string name = fmt::format(fmt::runtime(phrase.statistic), stage.key);
+    if (const Statistic* statistic = run.find(name)) found.push_back({statistic, stage.name});
+  }
+  if (found.empty())
+    fail(limit, fmt::format("no stage '{}' with '{}' in {}; its stages are {}{}", limit.stage,
+                            limit.figure, run.name, fmt::join(names, ", "),
+                            platform::did_you_mean(limit.stage, names)));
+  return found;
+}
+
+/// Of a name "stages.KEY.…".
+std::string stage_in(const std::string& statistic, const RunRecord& run) {
+  for (const StageName& stage : run.stages)
+    for (const char* prefix : {"stages.", "energy."})
+      if (statistic.rfind(prefix + stage.key + '.', 0) == 0) return stage.name;
+  return {};
+}
+
+}  // namespace
+
+std::span<const FigurePhrase> run_phrases() { return kOfTheRun; }
+std::span<const FigurePhrase> stage_phrases() { return kOfAStage; }
+
+void check_figure(const Limit& limit) {
+  if (const FigurePhrase* phrase = find_phrase(limit)) {
+    bound_in(limit, phrase->unit);
+    return;
+  }
+  if (limit.stage.empty() && is_statistic(limit.figure)) return;  // the run knows
+  const std::vector<std::string> known = phrase_names(phrases_for(limit));
+  fail(limit, fmt::format("unknown figure '{}'{}; expected {}{}", limit.figure,
+                          platform::did_you_mean(limit.figure, known), fmt::join(known, ", "),
+                          limit.stage.empty() ? ", or the name of a statistic" : ""));
+}
+
+std::vector<FigureOf> figures_of(const Limit& limit, const RunRecord& run) {
+  const FigurePhrase* phrase = find_phrase(limit);
+  if (phrase != nullptr && !limit.stage.empty()) return figures_of_stages(limit, *phrase, run);
+  const std::string pattern = phrase != nullptr ? std::string(phrase->statistic) : limit.figure;
+  std::vector<FigureOf> found;
+  for (const Statistic& s : run.statistics)
+    if (matches(pattern, s.name)) found.push_back({&s, stage_in(s.name, run)});
+  if (!found.empty()) return found;
+  std::vector<std::string> names;
+  for (const Statistic& s : run.statistics) names.push_back(s.name);
+  fail(limit, fmt::format("{} has no statistic '{}'{}", run.name, pattern,
+                          platform::did_you_mean(pattern, names)));
+}
+
+bool is_percent_of_baseline(const Bound& bound) { return bound.relative && bound.unit == "%"; }
+
+double bound_in(const Limit& limit, std::string_view statistic_unit) {
+  const Bound& bound = limit.bound;
+  if (is_percent_of_baseline(bound)) return bound.number;
+  const StatisticUnit* known = find_unit(statistic_unit);
+  if (known == nullptr)
+    fail(limit, fmt::format("'{}': a statistic in {} can only be held against a baseline, in %",
+                            limit.text, statistic_unit));
+  for (const Unit& unit : known->units)
+    if (unit.name == bound.unit) return bound.number * unit.factor / known->factor;
+  std::vector<std::string> names;
+  for (const Unit& unit : known->units) names.emplace_back(unit.name.empty() ? "none" : unit.name);
+  fail(limit, fmt::format(
+                  "'{}': {}; expected {}{}", limit.text,
+                  bound.unit.empty() ? "has no unit" : fmt::format("unknown unit '{}'", bound.unit),
+                  fmt::join(names, ", "), platform::did_you_mean(bound.unit, names)));
+}
+
+std::string figure_text(double value, std::string_view statistic_unit) {
+  const StatisticUnit* known = find_unit(statistic_unit);
+  if (known == nullptr) return fmt::format("{} {}", value, statistic_unit);
+  const std::string number = fmt::format("{:.{}f}", value / known->shown, known->decimals);
+  return known->shown_unit.empty() ? number : fmt::format("{} {}", number, known->shown_unit);
+}
+
+}  // namespace leviosim::tools

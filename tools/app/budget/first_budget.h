@@ -1,0 +1,16 @@
+// A first budget for a run: what it needs today and a margin, to be edited by people.
+#pragma once
+
+#include <string>
+
+#include "tools/app/comparison/run_record.h"
+
+namespace leviosim::tools {
+
+/// The text of a budget file that the run meets. @param margin  in per cent
+std::string first_budget(const RunRecord& run, double margin);
+
+/// "5 %". @throws InputError unless it is a share from 0 to 1000 %
+double parse_margin(const std::string& text);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,45 @@
+// A budget as a command holds a run against it: read before work is done, judged at the end.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "tools/app/budget/check.h"
+#include "tools/app/comparison/comparability.h"
+#include "tools/app/comparison/record_source.h"
+
+namespace leviosim::tools {
+
+struct GateOptions {
+  std::string budget;
+  std::string baseline;
+  std::string allow;
+};
+
+/// Declares --budget, --baseline and --allow.
+void add_gate_options(CLI::App& command, GateOptions& options);
+
+class Gate {
+ public:
+  /// Reads budget and baseline: a file of `budget record`, a run folder, or a trace.
+  /// @param chip  on which a trace is replayed
+  /// @throws InputError for what is none, or names another run
+  Gate(const GateOptions& options, const RecordOptions& chip);
+
+  /// @throws InputError as check_comparable() and check_budget()
+  CheckResult check(const RunRecord& run) const;
+
+ private:
+  Budget budget_;
+  Allowed allowed_;
+  std::optional<RunRecord> baseline_;
+};
+
+/// The gate of a command that does something else; none without --budget.
+std::optional<Gate> optional_gate(const GateOptions& options, const RecordOptions& chip);
+
+/// Prints what the gate says of a run. @throws LimitNotMet if a limit is not met
+void print_check(const Gate& gate, const RunRecord& run);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,257 @@
+#include "tools/app/comparison/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy/domain.h"
+#include "tools/app/comparison/cycle_difference.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct Figure {
+  const char* statistic;
+  const char* name;
+  const char* unit;
+  double scale;  ///< from the statistic's unit
+};
+constexpr std::array kFigures{
+    Figure{"frame.latency.p50", "latency, median", "ms", 1e-6},
+    Figure{"frame.latency.p95", "latency, 95 %", "ms", 1e-6},
+    Figure{"frame.latency.p99", "latency, 99 %", "ms", 1e-6},
+    Figure{"frame.latency.worst", "latency, worst", "ms", 1e-6},
+    Figure{"frame.missed_share", "frames that missed", "%", 100},
+    Figure{"frame.cycles.single.mean", "frame on one core", "kcycles", 1e-3},
+    Figure{"frame.cycles.parallel.mean", "frame on N cores", "kcycles", 1e-3},
+    Figure{"run.cluster_clock", "clock of the cluster", "MHz", 1e-6},
+    Figure{"memory.l1.peak", "L1 peak", "kB", 1e-3},
+    Figure{"memory.l2.peak", "L2 peak", "kB", 1e-3},
+    Figure{"energy.frame", "energy of a frame", "mJ", 1},
+    Figure{"energy.mean_power", "mean power", "mW", 1},
+    Figure{"accuracy.ate.rmse", "ATE (RMSE)", "m", 1},
+};
+
+std::optional<double> scaled(std::optional<double> value, double scale) {
+  if (value) *value *= scale;
+  return value;
+}
+
+class Comparer {
+ public:
+  Comparer(const RunRecord& a, const RunRecord& b) : a_(a), b_(b) {}
+
+  Quantity of(const std::string& name, const std::string& unit, const std::string& statistic,
+              double scale = 1) const {
+    return {name, unit, scaled(a_.value(statistic), scale), scaled(b_.value(statistic), scale)};
+  }
+
+  std::vector<Quantity> figures() const {
+    std::vector<Quantity> list;
+    for (const Figure& f : kFigures) {
+      Quantity q = of(f.name, f.unit, f.statistic, f.scale);
+      if (q.a || q.b) list.push_back(std::move(q));
+    }
+    return list;
+  }
+
+  /// Of both runs, those of A first.
+  std::vector<StageName> stages() const {
+    std::vector<StageName> all = a_.stages;
+    for (const StageName& stage : b_.stages)
+      if (std::none_of(all.begin(), all.end(),
+                       [&](const StageName& s) { return s.key == stage.key; }))
+        all.push_back(stage);
+    return all;
+  }
+
+  StageComparison stage(const StageName& name) const {
+    const std::string path = "stages." + name.key + '.';
+    StageComparison c;
+    c.stage = name;
+    c.calls = of("calls", "1", path + "calls");
+    c.single = of("a call on one core", "cycles", path + "cycles.single.mean");
+    c.parallel = of("a call on N cores", "cycles", path + "cycles.parallel.mean");
+    c.share = {"share of the frame", "%", share(a_, path), share(b_, path)};
+    if (name.on_controller) c.share.a = c.share.b = std::nullopt;
+    compare_work(path, c);
+    const StageParts* in_a = a_.stage_parts(name.name);
+    const StageParts* in_b = b_.stage_parts(name.name);
+    if (!a_.cycles.empty() && !b_.cycles.empty() && (in_a != nullptr || in_b != nullptr))
+      split(in_a, in_b, c);
+    return c;
+  }
+
+  /// A baseline has the larger parts only; the same parts of the other run then stand together.
+  void split(const StageParts* in_a, const StageParts* in_b, StageComparison& c) const {
+    StageParts like_b;
+    StageParts like_a;
+    if (in_a != nullptr && in_b != nullptr && is_folded(*in_b))
+      in_a = &(like_b = folded_like(*in_a, *in_b));
+    if (in_a != nullptr && in_b != nullptr && is_folded(*in_a))
+      in_b = &(like_a = folded_like(*in_b, *in_a));
+    c.mechanisms = split_by_mechanism(in_a, in_b, frames(a_), frames(b_));
+    c.places = split_by_place(in_a, in_b, frames(a_), frames(b_));
+    c.causes = split_by_cause(in_a, in_b, frames(a_), frames(b_));
+  }
+
+  /// The offload is a stage of the frame too.
+  Quantity frame(const std::vector<StageComparison>& stages) const {
+    Quantity whole = of("frame", "cycles", "frame.cycles.parallel.mean");
+    for (const StageComparison& stage : stages) {
+      if (!stage.mechanisms || stage.stage.on_controller) continue;
+      whole.parts.push_back(*stage.mechanisms);
+    }
+    const StageParts* in_a = a_.stage_parts(kOffloadStage);
+    const StageParts* in_b = b_.stage_parts(kOffloadStage);
+    if (in_a != nullptr && in_b != nullptr)
+      whole.parts.push_back(split_by_mechanism(in_a, in_b, frames(a_), frames(b_)));
+    return whole;
+  }
+
+  std::vector<Quantity> blocks() const {
+    std::vector<Quantity> list;
+    const auto is_block = [](const Statistic& s) {
+      return s.name.find(".block.") != std::string::npos && s.unit == "byte";
+    };
+    for (const Statistic& s : a_.statistics)
+      if (is_block(s) && b_.value(s.name) != s.value)
+        list.push_back({block_name(s.name), "byte", s.value, b_.value(s.name)});
+    for (const Statistic& s : b_.statistics)
+      if (is_block(s) && a_.find(s.name) == nullptr)
+        list.push_back({block_name(s.name), "byte", std::nullopt, s.value});
+    return list;
+  }
+
+  /// mJ of a frame. @param by_domain  else by stage
+  Quantity energy(bool by_domain) const {
+    Quantity whole = of("energy of a frame", "mJ", "energy.frame");
+    if (!whole.a && !whole.b) return whole;
+    for (const RunRecord* run : {&a_, &b_}) {
+      const auto total = run->value("energy.total");
+      const auto frame = run->value("energy.frame");
+      if (!total || !frame || *total == 0) continue;
+      for (const Statistic& s : run->statistics) {
+        constexpr std::string_view kDomain = ".domain.";
+        const auto at = s.name.find(kDomain);
+        if (s.name.rfind("energy.", 0) != 0 || at == std::string::npos || !s.value) continue;
+        const std::string domain = s.name.substr(at + kDomain.size());
+        if (domain.find('.') != std::string::npos) continue;  // ends of its band
+        Quantity& part = part_of(whole, by_domain ? domain : stage_name(s.name.substr(7, at - 7)));
+        *(run == &a_ ? part.a : part.b) += *s.value * *frame / *total;
+      }
+    }
+    return whole;
+  }
+
+ private:
+  static bool is_folded(const StageParts& stage) {
+    return std::any_of(stage.parts.begin(), stage.parts.end(),
+                       [](const CyclePart& part) { return part.mechanism == "other"; });
+  }
+
+  static double frames(const RunRecord& run) {
+    return run.value("frames.count").value_or(static_cast<double>(run.facts.frames));
+  }
+
+  static std::optional<double> share(const RunRecord& run, const std::string& path) {
+    const auto stage = run.value(path + "cycles.parallel.sum");
+    const auto frame = run.value("frame.cycles.parallel.mean");
+    if (!stage || !frame || *frame == 0) return std::nullopt;
+    return 100 * *stage / frames(run) / *frame;
+  }
+
+  void compare_work(const std::string& path, StageComparison& c) const {
+    c.operations = of("operations", "1", path + "operations");
+    c.same_work = c.calls.a == c.calls.b && c.operations.a == c.operations.b;
+    const std::string ops = path + "ops.";
+    for (const Statistic& s : a_.statistics) {
+      if (s.name.rfind(ops, 0) != 0) continue;
+      const auto in_b = b_.value(s.name);
+      if (in_b && in_b != s.value) c.same_work = false;
+    }
+  }
+
+  static Quantity& part_of(Quantity& whole, const std::string& name) {
+    for (Quantity& part : whole.parts)
+      if (part.name == name) return part;
+    return whole.parts.emplace_back(Quantity{name, whole.unit, 0.0, 0.0});
+  }
+
+  std::string stage_name(const std::string& key) const {
+    for (const StageName& stage : stages())
+      if (stage.key == key) return stage.name;
+    return key == "cluster_idle" ? "cluster idle" : key;
+  }
+
+  /// "stages.epnp_ransac.memory.block.scratch" → "EPnP RANSAC: scratch".
+  std::string block_name(const std::string& statistic) const {
+    constexpr std::string_view kBlock = ".block.";
+    const auto at = statistic.find(kBlock);
+    const std::string block = statistic.substr(at + kBlock.size());
+    std::string owner = statistic.substr(0, at);
+    for (const std::string_view prefix : {"stages.", "memory.l2."})
+      if (owner.rfind(prefix, 0) == 0) owner = owner.substr(prefix.size());
+    if (const auto dot = owner.find('.'); dot != std::string::npos) owner.resize(dot);
+    return fmt::format("{}: {}", stage_name(owner), block);
+  }
+
+  const RunRecord& a_;
+  const RunRecord& b_;
+};
+
+void collect_leaves(const Quantity& q, const std::string& prefix, std::vector<Leaf>& leaves) {
+  for (const Quantity& part : q.parts) {
+    const std::string name = prefix.empty() ? part.name : prefix + ": " + part.name;
+    if (part.parts.empty())
+      leaves.push_back({name, part.b.value_or(0) - part.a.value_or(0)});
+    else
+      collect_leaves(part, name, leaves);
+  }
+}
+
+}  // namespace
+
+std::optional<double> Quantity::difference() const {
+  if (!a || !b) return std::nullopt;
+  return *b - *a;
+}
+
+std::optional<double> Quantity::percent() const {
+  if (!a || !b || *a == 0) return std::nullopt;
+  return 100 * (*b - *a) / *a;
+}
+
+Causes& Causes::operator+=(const Causes& o) {
+  work += o.work;
+  price += o.price;
+  meeting += o.meeting;
+  return *this;
+}
+
+bool Comparison::same_work() const {
+  return std::all_of(stages.begin(), stages.end(),
+                     [](const StageComparison& s) { return s.same_work; });
+}
+
+Comparison compare(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes) {
+  const Comparer comparer(a, b);
+  Comparison c{a, b, std::move(notes), comparer.figures(), {}, {}, comparer.blocks(), {}, {}};
+  for (const StageName& name : comparer.stages()) c.stages.push_back(comparer.stage(name));
+  c.frame = comparer.frame(c.stages);
+  c.energy_by_stage = comparer.energy(false);
+  c.energy_by_domain = comparer.energy(true);
+  return c;
+}
+
+std::vector<Leaf> leaves_by_difference(const Quantity& whole) {
+  std::vector<Leaf> leaves;
+  collect_leaves(whole, "", leaves);
+  std::stable_sort(leaves.begin(), leaves.end(), [](const Leaf& x, const Leaf& y) {
+    return std::abs(x.difference) > std::abs(y.difference);
+  });
+  return leaves;
+}
+
+}  // namespace leviosim::tools

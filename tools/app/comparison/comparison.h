@@ -1,0 +1,88 @@
+// What differs between two runs, as a tree of quantities: each has its value in run A and in run B,
+// and parts whose values add up to it. So do their differences. Plain data; comparison_report.h
+// prints it.
+//
+// Cycles are those of a mean frame on N cores. They are split twice: by mechanism and kind of
+// operation, and by what the cores did. A third split tells the work from its price.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/app/comparison/run_record.h"
+
+namespace leviosim::tools {
+
+struct Quantity {
+  std::string name;
+  std::string unit;
+  std::optional<double> a;  ///< absent if the run has none
+  std::optional<double> b;
+  std::vector<Quantity> parts = {};  ///< all or none of it
+
+  /// B minus A, absent where one of them is.
+  std::optional<double> difference() const;
+  /// Of A; absent also if that is 0.
+  std::optional<double> percent() const;
+};
+
+/// Of a difference of cycles.
+struct Causes {
+  double work = 0;     ///< other numbers of operations, at the price in A
+  double price = 0;    ///< the operations of B at the price in B instead of A's
+  double meeting = 0;  ///< cores that wait for each other, for memory, for the DMA
+
+  double total() const { return work + price + meeting; }
+  Causes& operator+=(const Causes& o);
+};
+
+/// The place of what is known of a stage as a whole.
+inline constexpr const char* kWholeTeam = "between the cores";
+
+struct StageComparison {
+  StageName stage;
+  Quantity calls;
+  Quantity single;      ///< cycles of a call on one core
+  Quantity parallel;    ///< … on N cores
+  Quantity share;       ///< of the cycles of a frame, in per cent; none on the controller
+  Quantity operations;  ///< of all calls
+  bool same_work = true;
+  /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if one of
+  /// the runs has no cycles.csv.
+  std::optional<Quantity> mechanisms;
+  /// The same by fork, with mechanisms as parts.
+  std::optional<Quantity> places;
+  Causes causes;
+};
+
+struct Comparison {
+  const RunRecord& a;
+  const RunRecord& b;
+  std::vector<std::string> notes;
+  std::vector<Quantity> figures;  ///< of the run as a whole
+  std::vector<StageComparison> stages;
+  Quantity frame;                ///< cycles of a mean frame on N cores; parts: the cluster's stages
+  std::vector<Quantity> blocks;  ///< alive at a peak, that appeared, went, or changed their size
+  Quantity energy_by_stage;      ///< mJ of a frame
+  Quantity energy_by_domain;
+
+  bool same_work() const;
+};
+
+/// @param a,b    outlive the comparison
+/// @param notes  of check_comparable()
+Comparison compare(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes = {});
+Comparison compare(RunRecord&&, const RunRecord&, std::vector<std::string> = {}) = delete;
+Comparison compare(const RunRecord&, RunRecord&&, std::vector<std::string> = {}) = delete;
+Comparison compare(RunRecord&&, RunRecord&&, std::vector<std::string> = {}) = delete;
+
+/// A part of a tree that has no parts itself, named with the parts that it is in.
+struct Leaf {
+  std::string name;
+  double difference = 0;
+};
+/// All of them, the largest difference first. What is absent in a run counts as 0.
+std::vector<Leaf> leaves_by_difference(const Quantity& whole);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,115 @@
+#include "tools/app/comparison/comparison_files.h"
+
+#include <fmt/format.h>
+
+#include "sim/base/printable_text.h"
+
+namespace leviosim::tools {
+namespace {
+
+Json quantity_json(const Quantity& q) {
+  Json json;
+  json["name"] = q.name;
+  json["unit"] = q.unit;
+  json["a"] = value_of(q.a);
+  json["b"] = value_of(q.b);
+  json["difference"] = value_of(q.difference());
+  for (const Quantity& part : q.parts) json["parts"].push_back(quantity_json(part));
+  return json;
+}
+
+Json list_json(const std::vector<Quantity>& list) {
+  Json json = Json::array();
+  for (const Quantity& q : list) json.push_back(quantity_json(q));
+  return json;
+}
+
+Json stage_json(const StageComparison& s) {
+  Json json;
+  json["name"] = s.stage.name;
+  json["key"] = s.stage.key;
+  json["runs_on"] = s.stage.on_controller ? "controller" : "cluster";
+  json["same_work"] = s.same_work;
+  for (const auto& [key, quantity] : {std::pair{"calls", &s.calls},
+                                      {"operations", &s.operations},
+                                      {"single", &s.single},
+                                      {"parallel", &s.parallel},
+                                      {"share", &s.share}})
+    json[key] = quantity_json(*quantity);
+  if (!s.mechanisms) return json;
+  json["causes"] = {
+      {"work", s.causes.work}, {"price", s.causes.price}, {"meeting", s.causes.meeting}};
+  json["by_mechanism"] = quantity_json(*s.mechanisms);
+  json["by_place"] = quantity_json(*s.places);
+  return json;
+}
+
+std::string cell(const std::string& raw) {
+  const std::string text = printable(raw);
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+class CsvRows {
+ public:
+  void add(const std::string& subject, const std::string& quantity, const Quantity& q,
+           const std::string& part = {}, const std::string& subpart = {}) {
+    const auto number = [](std::optional<double> v) { return v ? fmt::format("{}", *v) : ""; };
+    text_ +=
+        fmt::format("{},{},{},{},{},{},{},{}\n", cell(subject), cell(quantity), cell(part),
+                    cell(subpart), cell(q.unit), number(q.a), number(q.b), number(q.difference()));
+    for (const Quantity& below : q.parts)
+      add(subject, quantity, below, part.empty() ? below.name : part,
+          part.empty() ? "" : below.name);
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_ = "subject,quantity,part,subpart,unit,a,b,difference\n";
+};
+
+}  // namespace
+
+Json comparison_json(const Comparison& c) {
+  Json json;
+  json["format"] = "leviosim comparison";
+  json["version"] = 1;
+  for (const auto& [key, run] : {std::pair{"a", &c.a}, {"b", &c.b}}) {
+    json[key]["name"] = run->name;
+    json[key]["facts"] = facts_json(run->facts);
+  }
+  json["notes"] = c.notes;
+  json["same_work"] = c.same_work();
+  json["figures"] = list_json(c.figures);
+  json["stages"] = Json::array();
+  for (const StageComparison& s : c.stages) json["stages"].push_back(stage_json(s));
+  json["frame"] = quantity_json(c.frame);
+  json["blocks"] = list_json(c.blocks);
+  json["energy_by_stage"] = quantity_json(c.energy_by_stage);
+  json["energy_by_domain"] = quantity_json(c.energy_by_domain);
+  return json;
+}
+
+std::string comparison_csv(const Comparison& c) {
+  CsvRows rows;
+  for (const Quantity& q : c.figures) rows.add("run", q.name, q);
+  for (const StageComparison& s : c.stages) {
+    for (const Quantity* q : {&s.calls, &s.operations, &s.single, &s.parallel, &s.share})
+      rows.add(s.stage.name, q->name, *q);
+    if (!s.mechanisms) continue;
+    rows.add(s.stage.name, "cycles of a frame by mechanism", *s.mechanisms);
+    rows.add(s.stage.name, "cycles of a frame by place", *s.places);
+    for (const auto& [name, cycles] : {std::pair{"work", s.causes.work},
+                                       {"price", s.causes.price},
+                                       {"meeting", s.causes.meeting}})
+      rows.add(s.stage.name, "cycles of a frame by cause", {name, "cycles", 0.0, cycles}, name);
+  }
+  for (const Quantity& q : c.blocks) rows.add("memory", q.name, q);
+  rows.add("energy", "by stage", c.energy_by_stage);
+  rows.add("energy", "by domain", c.energy_by_domain);
+  return rows.take();
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,358 @@
+#include "tools/app/comparison/comparison_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/base/error.h"
+#include "sim/base/nearest.h"
+#include "sim/base/printable_text.h"
+#include "tools/app/comparison/comparison_files.h"
+#include "tools/app/report/text_table.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr std::size_t kMostParts = 6;
+constexpr std::size_t kMostBlocks = 12;
+constexpr int kWidth = 80;
+constexpr double kKilo = 1e3;
+constexpr auto kLeft = TextTable::Align::Left;
+
+/// A part that changes its stage by less explains nothing.
+constexpr double kLeastShare = 1e-4;
+
+/// Nothing would be left of it in kilocycles with one decimal.
+constexpr double kLeastShown = 0.05 * kKilo;
+
+struct NamedFormat {
+  const char* name;
+  ReportFormat format;
+};
+constexpr std::array kFormats{
+    NamedFormat{"text", ReportFormat::text}, NamedFormat{"markdown", ReportFormat::markdown},
+    NamedFormat{"json", ReportFormat::json}, NamedFormat{"csv", ReportFormat::csv}};
+
+std::string number(std::optional<double> value, int decimals) {
+  if (!value) return "–";
+  return fmt::format("{:.{}f}", *value, decimals);
+}
+
+int decimals_of(const std::string& unit) { return unit == "m" || unit == "mJ" ? 3 : 1; }
+
+std::string percent(std::optional<double> value) {
+  if (!value) return "–";
+  if (std::abs(*value) < 0.005) return *value == 0 ? "0" : "±0.00 %";
+  return fmt::format("{:+.2f} %", *value);
+}
+
+std::string kilocycles(std::optional<double> cycles) {
+  return number(cycles ? std::optional(*cycles / kKilo) : std::nullopt, 1);
+}
+
+/// Without a sign where nothing would be left of it.
+std::string signed_kilocycles(double cycles) {
+  return std::abs(cycles) < kLeastShown ? "0.0" : fmt::format("{:+.1f}", cycles / kKilo);
+}
+
+/// Renders the tables of one report.
+class Writer {
+ public:
+  Writer(const Comparison& c, bool markdown) : c_(c), markdown_(markdown) {}
+
+  std::string str() {
+    head();
+    figures();
+    stages();
+    reasons_of_stages();
+    blocks();
+    energy("energy of a frame by stage [mJ]", c_.energy_by_stage);
+    energy("energy of a frame by domain [mJ]", c_.energy_by_domain);
+    return std::move(text_);
+  }
+
+ private:
+  void title(const std::string& name) {
+    text_ += markdown_ ? fmt::format("\n### {}\n\n", name) : fmt::format("\n{}\n", name);
+  }
+  void table(const TextTable& t) { text_ += markdown_ ? with_dots(t.markdown()) : t.str(); }
+  /// Blanks at the begin of a cell, which say what is part of what, are lost in Markdown.
+  static std::string with_dots(std::string text) {
+    constexpr std::string_view kBegin = "| ";
+    for (std::size_t at = 0; at != std::string::npos && at < text.size();) {
+      std::size_t cell = at + kBegin.size();
+      while (text.compare(cell, 2, "  ") == 0 && text[cell + 2] != '|') {
+        text.replace(cell, 2, "· ");
+        cell += std::string_view("· ").size();
+      }
+      at = text.find('\n', cell);
+      if (at != std::string::npos) ++at;
+    }
+    return text;
+  }
+  void line(const std::string& words) {
+    std::vector<std::string> items;
+    for (std::size_t begin = 0; begin <= words.size();) {
+      const std::size_t end = std::min(words.find(' ', begin), words.size());
+      items.push_back(words.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    text_ += (markdown_ ? "- " : "") + wrap(items, " ", markdown_ ? 2 : 3, kWidth) + '\n';
+  }
+
+  std::string described(const RunRecord& run) const {
+    const RunFacts& f = run.facts;
+    std::string text = fmt::format("{}: {}", printable(run.name), printable(f.profile));
+    for (const std::string& set : f.workload) text += ", " + printable(set);
+    text += f.platform.empty() ? " on the host" : " on " + printable(f.platform);
+    for (const std::string& override : f.overrides) text += ", " + printable(override);
+    if (f.cores > 0) text += fmt::format(", {} cores", f.cores);
+    if (!f.camera.empty()) text += ", camera at " + printable(f.camera);
+    return text;
+  }
+
+  void head() {
+    line("A  " + described(c_.a));
+    line("B  " + described(c_.b));
+    const RunFacts& f = c_.a.facts;
+    line(fmt::format("frames {}:{}, seed {}, {}x{}", f.first_frame, f.first_frame + f.frames,
+                     f.seed, f.image_width, f.image_height));
+    for (const std::string& note : c_.notes) line("note: " + printable(note));
+    line(work_line(c_));
+  }
+
+  void figures() {
+    title("the run as a whole");
+    TextTable t({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
+    for (const Quantity& q : c_.figures)
+      t.add({q.name, number(q.a, decimals_of(q.unit)), number(q.b, decimals_of(q.unit)), q.unit,
+             percent(q.percent())});
+    table(t);
+  }
+
+  static std::string pair(const Quantity& q, int decimals) {
+    const std::string a = number(q.a, decimals);
+    const std::string b = number(q.b, decimals);
+    return a == b ? a : a + " → " + b;
+  }
+
+  void stages() {
+    if (c_.stages.empty()) return;
+    title("stages on N cores: kcycles of a call, share of a frame's cycles [%]");
+    TextTable all({{"stage", kLeft}, {"calls"}, {"A"}, {"B"}, {"change"}, {"% A"}, {"% B"}});
+    TextTable one({{"stage on one core", kLeft}, {"A"}, {"B"}, {"change"}});
+    bool any_single = false;
+    for (const StageComparison& s : c_.stages) {
+      const std::string name = shortened(s.stage.name, 20);
+      all.add({name, pair(s.calls, 0), kilocycles(s.parallel.a), kilocycles(s.parallel.b),
+               percent(s.parallel.percent()), number(s.share.a, 1), number(s.share.b, 1)});
+      if (s.single.a == s.single.b) continue;
+      any_single = true;
+      one.add({name, kilocycles(s.single.a), kilocycles(s.single.b), percent(s.single.percent())});
+    }
+    table(all);
+    text_ += '\n';
+    if (any_single)
+      table(one);
+    else
+      line("on one core, all stages take the same");
+  }
+
+  void reasons_of_stages() {
+    const bool known = std::any_of(c_.stages.begin(), c_.stages.end(),
+                                   [](const StageComparison& s) { return s.mechanisms; });
+    if (!known) {
+      title("why");
+      line("one of the runs has no cycles.csv, so its mechanisms are not known; replay its trace");
+      return;
+    }
+    title("why: kcycles of a mean frame on N cores");
+    TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}});
+    const auto row = [&](const std::string& name, const Quantity& q) {
+      t.add({name, kilocycles(q.a), kilocycles(q.b),
+             signed_kilocycles(q.b.value_or(0) - q.a.value_or(0))});
+    };
+    bool any = false;
+    for (const StageComparison& s : c_.stages) {
+      if (!s.mechanisms || !is_worth_showing(*s.mechanisms)) continue;
+      any = true;
+      row(shortened(s.stage.name, 40), *s.mechanisms);
+      add_cause(t, "of it work", s.causes.work);
+      add_cause(t, "of it price of an operation", s.causes.price);
+      add_cause(t, "of it cores, memory, DMA", s.causes.meeting);
+      add_leaves(t, *s.mechanisms);
+      add_places(t, *s.places);
+    }
+    row("front end", c_.frame);
+    table(t);
+    if (!any) line("no stage differs");
+  }
+
+  static bool is_worth_showing(const Quantity& stage) {
+    const double most = std::max(stage.a.value_or(0), stage.b.value_or(0));
+    const std::vector<Leaf> leaves = leaves_by_difference(stage);
+    return !leaves.empty() && std::abs(leaves.front().difference) > kLeastShare * most;
+  }
+
+  static void add_cause(TextTable& t, const char* name, double cycles) {
+    if (std::abs(cycles) >= kLeastShown)
+      t.add({fmt::format("  {}", name), "", "", signed_kilocycles(cycles)});
+  }
+
+  /// The largest, and the sum of the others.
+  static void add_leaves(TextTable& t, const Quantity& whole) {
+    double others = 0;
+    std::size_t shown = 0;
+    for (const Leaf& leaf : leaves_by_difference(whole)) {
+      if (shown == kMostParts || std::abs(leaf.difference) < kLeastShown) {
+        others += leaf.difference;
+        continue;
+      }
+      ++shown;
+      t.add({"    " + shortened(part_label(leaf.name), 44), "", "",
+             signed_kilocycles(leaf.difference)});
+    }
+    if (std::abs(others) >= kLeastShown)
+      t.add({"    all others", "", "", signed_kilocycles(others)});
+  }
+
+  /// Only if a fork or the serial part differs.
+  static void add_places(TextTable& t, const Quantity& whole) {
+    const auto differs = [](const Quantity& place) {
+      return std::abs(place.b.value_or(0) - place.a.value_or(0)) >= kLeastShown;
+    };
+    if (std::none_of(whole.parts.begin(), whole.parts.end(), [&](const Quantity& place) {
+          return place.name != kWholeTeam && differs(place);
+        }))
+      return;
+    for (const Quantity& place : whole.parts)
+      if (differs(place))
+        t.add(
+            {place.name == kWholeTeam ? "    " + place.name : "    in " + shortened(place.name, 41),
+             kilocycles(place.a), kilocycles(place.b),
+             signed_kilocycles(place.b.value_or(0) - place.a.value_or(0))});
+  }
+
+  /// The largest differences; all are in JSON and CSV.
+  void blocks() {
+    if (c_.blocks.empty()) return;
+    std::vector<Quantity> sorted = c_.blocks;
+    const auto size = [](const Quantity& q) { return std::abs(q.b.value_or(0) - q.a.value_or(0)); };
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](const Quantity& x, const Quantity& y) { return size(x) > size(y); });
+    title("blocks at a peak that differ [kB]");
+    TextTable t({{"owner: block", kLeft}, {"A"}, {"B"}, {"difference"}});
+    for (std::size_t i = 0; i < std::min(sorted.size(), kMostBlocks); ++i) {
+      const Quantity& q = sorted[i];
+      t.add({shortened(q.name, 44), kilocycles(q.a), kilocycles(q.b),
+             fmt::format("{:+.1f}", (q.b.value_or(0) - q.a.value_or(0)) / kKilo)});
+    }
+    table(t);
+    if (sorted.size() > kMostBlocks)
+      line(fmt::format("… and {} more with --format json", sorted.size() - kMostBlocks));
+  }
+
+  void energy(const std::string& name, const Quantity& whole) {
+    if (whole.parts.empty()) return;
+    constexpr double kLeastEnergy = 5e-5;  // rows that show as they were are left out
+    title(name);
+    TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}, {"change"}});
+    const auto row = [&](const Quantity& q) {
+      t.add({shortened(q.name, 24), number(q.a, 4), number(q.b, 4),
+             q.difference() ? fmt::format("{:+.4f}", *q.difference()) : "–", percent(q.percent())});
+    };
+    for (const Quantity& part : whole.parts)
+      if (std::abs(part.b.value_or(0) - part.a.value_or(0)) >= kLeastEnergy) row(part);
+    row({"all", whole.unit, whole.a, whole.b});
+    table(t);
+  }
+
+  const Comparison& c_;
+  bool markdown_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string shortened(const std::string& text, int width) {
+  if (display_width(text) <= width) return text;
+  std::string shorter;
+  for (const char c : text) {
+    const bool begins = (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
+    if (begins && display_width(shorter) >= width - 1) break;
+    shorter += c;
+  }
+  return shorter + "…";
+}
+
+std::string part_label(const std::string& name) {
+  const std::string_view meaning = describe_mechanism(name);
+  return meaning.empty() ? name : std::string(meaning);
+}
+
+ReportFormat parse_report_format(const std::string& name) {
+  std::vector<std::string> names;
+  for (const NamedFormat& f : kFormats) {
+    if (name == f.name) return f.format;
+    names.emplace_back(f.name);
+  }
+  throw InputError(fmt::format("--format '{}': expected {}{}", name, fmt::join(names, ", "),
+                               platform::did_you_mean(name, names)));
+}
+
+std::string work_line(const Comparison& comparison) {
+  if (comparison.stages.empty()) return "work: not counted in a native run";
+  if (comparison.same_work())
+    return "work: the same operations and calls in all stages; what differs is their cost";
+  std::vector<std::string> changes;
+  for (const StageComparison& s : comparison.stages) {
+    if (s.same_work) continue;
+    std::string change = printable(s.stage.name);
+    if (s.calls.a != s.calls.b)
+      change += fmt::format(" {} → {} calls,", number(s.calls.a, 0), number(s.calls.b, 0));
+    changes.push_back(change + fmt::format(" operations {}", percent(s.operations.percent())));
+  }
+  return fmt::format("work: CHANGED in {} of {} stages: {}", changes.size(),
+                     comparison.stages.size(), fmt::join(changes, "; "));
+}
+
+std::vector<std::string> reasons(const StageComparison& stage, std::size_t most) {
+  std::vector<std::string> list;
+  if (!stage.mechanisms || stage.mechanisms->a.value_or(0) == 0) return list;
+  const double whole = *stage.mechanisms->a;
+  for (const Leaf& leaf : leaves_by_difference(*stage.mechanisms)) {
+    if (list.size() == most || std::abs(leaf.difference) < kLeastShare * whole) break;
+    list.push_back(
+        fmt::format("{} {:+.2f} %", part_label(leaf.name), 100 * leaf.difference / whole));
+  }
+  return list;
+}
+
+std::string comparison_report(const Comparison& comparison, ReportFormat format) {
+  switch (format) {
+    case ReportFormat::json:
+      return json_text(comparison_json(comparison), 2) + '\n';
+    case ReportFormat::csv:
+      return comparison_csv(comparison);
+    case ReportFormat::markdown:
+      return Writer(comparison, true).str();
+    default:
+      return Writer(comparison, false).str();
+  }
+}
+
+std::string comparison_report(const std::vector<Comparison>& comparisons, ReportFormat format) {
+  if (format == ReportFormat::json && comparisons.size() > 1) {
+    Json list = Json::array();
+    for (const Comparison& c : comparisons) list.push_back(comparison_json(c));
+    return json_text(list, 2) + '\n';
+  }
+  std::string text;
+  for (const Comparison& c : comparisons)
+    text += (text.empty() ? "" : "\n") + comparison_report(c, format);
+  return text;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,35 @@
+// A comparison for people and programs: text of 80 columns, Markdown, CSV (a row per quantity of
+// the tree), JSON (the tree). Text and Markdown show the largest parts and the sum of the others;
+// CSV and JSON hold all.
+#pragma once
+
+#include <string>
+
+#include "tools/app/comparison/comparison.h"
+
+namespace leviosim::tools {
+
+enum class ReportFormat { text, markdown, json, csv };
+
+/// @throws InputError for a name that is none of text, markdown, json, csv
+ReportFormat parse_report_format(const std::string& name);
+
+std::string comparison_report(const Comparison& comparison, ReportFormat format);
+/// The same of several, one after the other; in JSON a list if there is more than one.
+std::string comparison_report(const std::vector<Comparison>& comparisons, ReportFormat format);
+
+/// "8-point hypotheses: issue +1.2 %": the parts of a stage that explain most of its difference,
+/// each with its share of the stage's cycles in A.
+/// @param most  of them at most
+std::vector<std::string> reasons(const StageComparison& stage, std::size_t most);
+
+/// The name of a part for people: what a mechanism is, else as it is.
+std::string part_label(const std::string& name);
+
+/// Cut to so many columns, with "…" at the end.
+std::string shortened(const std::string& text, int width);
+
+/// One line about the work: the same, or where it is not.
+std::string work_line(const Comparison& comparison);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,267 @@
+#include "tools/app/comparison/cycle_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/base/csv.h"
+#include "sim/chip/accelerator.h"
+
+namespace leviosim::tools {
+namespace {
+
+using sim::CycleBreakdown;
+
+/// As the file has it, so that a run and its folder tell the same.
+double rounded_part(double value) { return std::round(value * 1e3) / 1e3; }
+
+struct PricedMechanism {
+  std::string_view key;
+  double CycleBreakdown::*of;
+};
+constexpr std::array kPriced{PricedMechanism{"issue", &CycleBreakdown::issue},
+                             PricedMechanism{"load_use", &CycleBreakdown::load_use},
+                             PricedMechanism{"control", &CycleBreakdown::control},
+                             PricedMechanism{"memory", &CycleBreakdown::memory},
+                             PricedMechanism{"arithmetic", &CycleBreakdown::arithmetic},
+                             PricedMechanism{"fetch", &CycleBreakdown::fetch}};
+
+/// Of a stage as a whole.
+struct TeamMechanism {
+  std::string_view key;
+  double sim::Account::*of;
+};
+constexpr std::array kOfTheTeam{
+    TeamMechanism{"fpu", &sim::Account::fpu},
+    TeamMechanism{"divider", &sim::Account::divider},
+    TeamMechanism{"banks", &sim::Account::banks},
+    TeamMechanism{"fetch_contention", &sim::Account::fetch},
+    TeamMechanism{"accelerator_contention", &sim::Account::accelerator},
+    TeamMechanism{"imbalance", &sim::Account::imbalance},
+    TeamMechanism{"synchronisation", &sim::Account::synchronisation},
+    TeamMechanism{"transfer", &sim::Account::transfer},
+    TeamMechanism{"rounding", &sim::Account::rounding},
+};
+
+constexpr std::string_view kOther = "other";
+
+template <class Keep>
+StageParts folded_unless(const StageParts& stage, Keep&& keep) {
+  StageParts result{stage.stage, stage.on_controller, stage.cycles, {}};
+  CyclePart other{"", std::string(kOther), "", 0, 0};
+  for (const CyclePart& part : stage.parts) {
+    if (part.mechanism != kOther && keep(part))
+      result.parts.push_back(part);
+    else
+      other.cycles += part.cycles;
+  }
+  other.cycles = rounded_part(other.cycles);
+  if (other.cycles != 0) result.parts.push_back(other);
+  return result;
+}
+
+/// The parts of one stage, in core-cycles over the cores.
+class PartList {
+ public:
+  explicit PartList(double cores) : cores_(cores) {}
+
+  void add(std::string_view where, std::string_view mechanism, std::string_view operation,
+           double core_cycles, double count = 0) {
+    const double cycles = rounded_part(core_cycles / cores_);
+    if (cycles == 0 && count == 0) return;
+    parts_.push_back(
+        {std::string(where), std::string(mechanism), std::string(operation), cycles, count});
+  }
+  std::vector<CyclePart> take() { return std::move(parts_); }
+
+ private:
+  double cores_;
+  std::vector<CyclePart> parts_;
+};
+
+/// What one piece of work costs a lone core, operation by operation: the price of a piece is the
+/// sum of the prices of its operations.
+/// @param factor  core-cycles that go by in a cycle of the piece
+/// @returns its price in core-cycles
+double add_priced(PartList& list, std::string_view where, const work::Piece& piece,
+                  const sim::CoreConfig& core, const sim::Accelerators& accelerators,
+                  const sim::CodeFetcher& code, double factor) {
+  double total = 0;
+  const auto add = [&](std::string_view operation, const CycleBreakdown& price, double count) {
+    total += price.total() * factor;
+    for (const PricedMechanism& m : kPriced)
+      if (price.*m.of != 0) list.add(where, m.key, operation, price.*m.of * factor, count);
+    if (price.total() == 0) list.add(where, "issue", operation, 0, count);
+  };
+  const work::Counts left =
+      piece.kernels.empty() ? work::Counts(piece) : sim::left_to_core(piece, accelerators);
+  for (const work::OpInfo& op : work::kOps) {
+    work::Counts one;
+    one[op.op] = left[op.op];
+    if (!one.empty()) add(op.name, price(one, core).alone, static_cast<double>(left[op.op]));
+  }
+  work::Counts fetched;
+  fetched.code = left.code;
+  const auto bytes = std::accumulate(left.code.begin(), left.code.end(), 0.0);
+  if (bytes > 0) add("code", price(fetched, core, code).alone, bytes);
+  for (const work::KernelWork& calls : piece.kernels) {
+    if (accelerators[work::index(calls.kernel)].units == 0) continue;
+    const sim::Service service = sim::service_of(calls, accelerators);
+    const std::string_view kernel = work::kKernels[work::index(calls.kernel)].name;
+    const auto items = static_cast<double>(calls.items);
+    list.add(where, "issue", kernel, service.instructions * factor, items);
+    list.add(where, "accelerator", kernel, service.waiting * factor, items);
+    total += (service.instructions + service.waiting) * factor;
+  }
+  return total;
+}
+
+}  // namespace
+
+std::string_view describe_mechanism(std::string_view key) {
+  const auto it = std::find_if(kMechanisms.begin(), kMechanisms.end(),
+                               [&](const Mechanism& m) { return m.key == key; });
+  return it == kMechanisms.end() ? std::string_view() : it->description;
+}
+
+CycleParts::CycleParts(const sim::ChipConfig& chip, int cores)
+    : chip_(chip),
+      cores_(cores),
+      worker_code_(chip.cluster.icache, chip.cluster.icache.worker, cores),
+      master_code_(chip.cluster.icache, chip.cluster.icache.master, 1),
+      controller_code_(chip.controller.icache, chip.controller.icache.worker, 1) {}
+
+CycleParts::Stage& CycleParts::find(std::string_view name, bool on_controller) {
+  const auto it = std::find_if(stages_.begin(), stages_.end(),
+                               [&](const Stage& stage) { return stage.name == name; });
+  if (it != stages_.end()) return *it;
+  return stages_.emplace_back(Stage{std::string(name), on_controller, 0, {}, {}});
+}
+
+work::Piece& CycleParts::place(Stage& stage, std::string_view name) {
+  const auto it = std::find_if(stage.places.begin(), stage.places.end(),
+                               [&](const Place& p) { return p.name == name; });
+  if (it != stage.places.end()) return it->work;
+  return stage.places.emplace_back(Place{std::string(name), {}}).work;
+}
+
+void CycleParts::add_steps(Stage& stage, const work::StageRun& run) {
+  for (const work::Step& step : run.steps) {
+    if (const auto* serial = std::get_if<work::Serial>(&step))
+      place(stage, kSerialPlace) += serial->counts;
+    const auto* fork = std::get_if<work::Fork>(&step);
+    if (fork == nullptr) continue;
+    // What the master does beside the workers is not in the account: they wait for it, or do not.
+    const std::size_t shares = fork->shares.size() - (fork->master_takes_part ? 1 : 0);
+    work::Piece& sum = place(stage, fork->name);
+    for (std::size_t i = 0; i < shares; ++i) sum += fork->shares[i];
+  }
+}
+
+void CycleParts::add(const work::Job& job, const sim::JobTiming& timing, bool on_controller) {
+  for (std::size_t i = 0; i < job.stages.size(); ++i) {
+    Stage& stage = find(job.stages[i].stage, on_controller);
+    stage.cycles += timing.stages[i].cycles.count();
+    stage.account += timing.stages[i].account;
+    add_steps(stage, job.stages[i]);
+  }
+}
+
+void CycleParts::on_front_end(const FrontEndJob& job) {
+  add(job.job, job.parallel, false);
+  offload_cycles_ += job.result.cycles.count();
+  for (const sim::StageTiming& stage : job.parallel.stages) offload_cycles_ -= stage.cycles.count();
+}
+
+void CycleParts::on_optimiser(const OptimiserJob& job) { add(job.job, job.timing, true); }
+
+std::vector<StageParts> CycleParts::stages() const {
+  std::vector<StageParts> result;
+  for (const Stage& stage : stages_) {
+    const int cores = stage.on_controller ? 1 : cores_;
+    PartList list(cores);
+    double serial = 0;
+    for (const Place& p : stage.places) {
+      const bool alone = p.name == kSerialPlace;
+      if (stage.on_controller)
+        add_priced(list, p.name, p.work, chip_.controller.core, chip_.controller.accelerators,
+                   controller_code_, 1);
+      else if (alone)
+        serial += add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators,
+                             master_code_, cores);
+      else
+        add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators,
+                   worker_code_, 1);
+    }
+    if (!stage.on_controller) list.add(kSerialPlace, "rounding", "", stage.account.serial - serial);
+    for (const TeamMechanism& m : kOfTheTeam) list.add("", m.key, "", stage.account.*m.of);
+    result.push_back(
+        {stage.name, stage.on_controller, static_cast<double>(stage.cycles), list.take()});
+  }
+  PartList offload(1);
+  const auto cycles = static_cast<double>(offload_cycles_);
+  offload.add("", "offload", "", cycles);
+  if (offload_cycles_ != 0) result.push_back({kOffloadStage, false, cycles, offload.take()});
+  return result;
+}
+
+StageParts folded(const StageParts& stage, double least_share) {
+  return folded_unless(stage, [&](const CyclePart& part) {
+    return std::abs(part.cycles) >= least_share * stage.cycles;
+  });
+}
+
+StageParts folded_like(const StageParts& stage, const StageParts& other) {
+  return folded_unless(stage, [&](const CyclePart& part) {
+    return std::any_of(other.parts.begin(), other.parts.end(), [&](const CyclePart& p) {
+      return p.where == part.where && p.mechanism == part.mechanism &&
+             p.operation == part.operation;
+    });
+  });
+}
+
+std::string cycles_csv(const std::vector<StageParts>& stages) {
+  std::string text = "stage,runs_on,where,mechanism,operation,cycles,count\n";
+  for (const StageParts& stage : stages) {
+    const char* runs_on = stage.on_controller ? "controller" : "cluster";
+    text += fmt::format("{},{},,total,,{:.3f},0\n", stage.stage, runs_on, stage.cycles);
+    for (const CyclePart& part : stage.parts)
+      text += fmt::format("{},{},{},{},{},{:.3f},{:.0f}\n", stage.stage, runs_on, part.where,
+                          part.mechanism, part.operation, part.cycles, part.count);
+  }
+  return text;
+}
+
+std::vector<StageParts> parse_cycles(const std::filesystem::path& file, std::string text) {
+  enum { kStage, kRunsOn, kWhere, kMechanism, kOperation, kCycles, kCount };
+  traces::CsvReader reader(
+      file, traces::Separator::comma,
+      {"stage", "runs_on", "where", "mechanism", "operation", "cycles", "count"}, std::move(text));
+  std::vector<StageParts> stages;
+  bool is_header = true;
+  while (const traces::CsvRow* row = reader.next()) {
+    if (std::exchange(is_header, false)) {
+      if (row->text(kStage) != "stage") row->fail(kStage, "no title; expected stage");
+      continue;
+    }
+    const std::string mechanism(row->text(kMechanism));
+    if (mechanism == "total") {
+      stages.push_back({std::string(row->text(kStage)),
+                        row->text(kRunsOn) == "controller",
+                        row->number(kCycles),
+                        {}});
+      continue;
+    }
+    if (describe_mechanism(mechanism).empty()) row->fail(kMechanism, "no mechanism");
+    if (stages.empty() || stages.back().stage != row->text(kStage))
+      row->fail(kStage, "a stage without its total before it");
+    stages.back().parts.push_back({std::string(row->text(kWhere)), mechanism,
+                                   std::string(row->text(kOperation)), row->number(kCycles),
+                                   row->number(kCount)});
+  }
+  return stages;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,90 @@
+#include "tools/app/comparison/record_source.h"
+
+#include <fmt/format.h>
+
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/progress_line.h"
+#include "tools/app/run/memory_option.h"
+#include "tools/app/run/replay.h"
+#include "tools/app/run/replay_report.h"
+#include "tools/app/run/run_folder.h"
+#include "tools/app/run/workload_overrides.h"
+#include "traces/work_traces/work_trace.h"
+
+namespace leviosim::tools {
+namespace {
+
+RunRequest request_for(const traces::WorkTrace& trace, const RecordOptions& options) {
+  if (const auto split = split_overrides(options.overrides); !split.workload.empty())
+    throw InputError(
+        fmt::format("{}: the recorded work is that of a workload as it was; leave out -p {}",
+                    trace.name(), split.workload.front()));
+  RunRequest request;
+  request.platform = options.platform.empty()
+                         ? recorded_platform(trace, options.overrides)
+                         : platform::resolve_platform(options.platform, options.overrides);
+  request.cores = options.cores.empty() ? trace.info().cores
+                                        : cores_of(options, request.platform.config.cluster);
+  return request;
+}
+
+/// Digests of the trace itself are not needed here: it names those of the data.
+Manifest manifest_of(const traces::WorkTrace& trace, const RecordOptions& options) {
+  Manifest manifest;
+  manifest.seed = trace.info().seed;
+  manifest.platform = options.platform.empty() ? trace.info().platform : options.platform;
+  manifest.overrides = options.overrides;
+  manifest.data = trace.info().data;
+  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
+  manifest.recording = recording_json(trace, "");
+  return manifest;
+}
+
+}  // namespace
+
+void add_record_options(CLI::App& command, RecordOptions& options) {
+  add_chip_options(command, options, ", on which traces are replayed [that of the recording]");
+  add_memory_option(command, options.memory);
+  command.add_flag("--quiet", options.quiet, "no progress");
+}
+
+std::string trace_of(const std::string& name) {
+  const std::filesystem::path path(name);
+  if (base::is_file(path)) return name;
+  return base::is_folder(path) && base::exists(path / kWorkTraceFile)
+             ? (path / kWorkTraceFile).string()
+             : std::string();
+}
+
+RunRecord replay_record(const std::string& name, const RecordOptions& options) {
+  const traces::WorkTrace trace(name, trace_memory(options.memory));
+  RunRequest request = request_for(trace, options);
+  CycleParts parts(request.platform.config, request.cores);
+  request.observer = &parts;
+  ProgressLine line(ProgressLine::style_of_stderr(options.quiet));
+  const Replay done = replay(trace, request, [&](const Progress& p) {
+    throw_if_interrupted();
+    line.show(p.done, p.total,
+              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
+  });
+  return make_record(name, manifest_of(trace, options), done.run, parts.stages());
+}
+
+RunRecord read_record(const std::string& name, const RecordOptions& options) {
+  const std::filesystem::path path(name);
+  if (!base::exists(path))
+    throw InputError(
+        fmt::format("{}: does not exist; expected a run folder or a work trace", name));
+  if (base::is_folder(path) && !options.names_chip()) return read_run_folder(path);
+  const std::string trace = trace_of(name);
+  if (trace.empty())
+    throw InputError(
+        fmt::format("{}: holds no {}, so it cannot be replayed on another chip; expected the "
+                    "folder of a run with --record, or leave out --platform, -p and --cores",
+                    name, kWorkTraceFile));
+  return replay_record(trace, options);
+}
+
+}  // namespace leviosim::tools

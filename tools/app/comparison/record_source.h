@@ -1,0 +1,34 @@
+// The runs that a command line names: folders of runs, or recorded work that is replayed on a chip.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/app/comparison/run_record.h"
+#include "tools/app/run/run_options.h"
+
+namespace leviosim::tools {
+
+/// The chip on which traces are replayed, and what a trace may take of memory.
+struct RecordOptions : RunOptions {
+  std::string memory;
+
+  bool names_chip() const { return !platform.empty() || !overrides.empty() || !cores.empty(); }
+};
+
+/// Declares --platform, -p, --cores, --max-memory and --quiet.
+void add_record_options(CLI::App& command, RecordOptions& options);
+
+/// The trace that a file is, or that a folder holds; else empty.
+std::string trace_of(const std::string& name);
+
+/// Of a folder what lies in it, unless the options name a chip; then, and of a trace, what a replay
+/// yields, on the chip of the recording if none is named.
+/// @throws InputError for what is neither, and as replay()
+RunRecord read_record(const std::string& name, const RecordOptions& options);
+
+/// The replay of a trace, with `overrides` of the chip of the recording or of options.platform.
+RunRecord replay_record(const std::string& trace, const RecordOptions& options);
+
+}  // namespace leviosim::tools

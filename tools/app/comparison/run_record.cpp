@@ -1,0 +1,218 @@
+#include "tools/app/comparison/run_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "tools/app/comparison/frame_statistics.h"
+#include "tools/app/report/statistics.h"
+#include "tools/app/result/summary.h"
+#include "tools/app/run/run_folder.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// f(), whose faults about JSON become one message.
+template <class F>
+auto reading(const std::string& where, const char* what, F&& f) {
+  try {
+    return f();
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(fmt::format("{}: does not hold {} as leviosim writes it", where, what));
+  }
+}
+
+void check_format(const std::string& where, const Json& document, const char* format) {
+  if (document.value("format", "") != format)
+    throw InputError(fmt::format("{}: no {}", where, format));
+  if (document.value("version", 0) != 1)
+    throw InputError(fmt::format("{}: {} of a version that this leviosim does not know; expected 1",
+                                 where, format));
+}
+
+std::vector<std::pair<std::string, std::string>> digests(const Json& inputs) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const Json& input : inputs)
+    list.emplace_back(input.at("name").get<std::string>(), input.at("sha256").get<std::string>());
+  return list;
+}
+
+std::string camera_text(const Json& camera) {
+  return fmt::format("{:g} frames/s, {}", camera.at("frames_per_second").get<double>(),
+                     camera.at("deadline").get<std::string>());
+}
+
+RunFacts facts_of_manifest(const Json& m) {
+  RunFacts facts;
+  const Json& program = m.at("program");
+  facts.program = fmt::format("{} {}", program.at("version").get<std::string>(),
+                              program.at("revision").get<std::string>());
+  m.at("profile").get_to(facts.profile);
+  if (m.contains("workload")) m.at("workload").get_to(facts.workload);
+  m.at("seed").get_to(facts.seed);
+  if (const Json& platform = m.at("platform"); !platform.is_null()) {
+    platform.at("name").get_to(facts.platform);
+    platform.at("overrides").get_to(facts.overrides);
+    platform.at("cores").get_to(facts.cores);
+  }
+  if (m.contains("camera")) facts.camera = camera_text(m.at("camera"));
+  m.at("image").at("width").get_to(facts.image_width);
+  m.at("image").at("height").get_to(facts.image_height);
+  m.at("data").at("first_frame").get_to(facts.first_frame);
+  m.at("data").at("frames").get_to(facts.frames);
+  // The work of a replay came from the data of its recording.
+  facts.inputs = digests(m.contains("recording") ? m.at("recording").at("inputs") : m.at("inputs"));
+  return facts;
+}
+
+/// "epnp_ransac" of "stages.epnp_ransac.calls" with the end ".calls"; empty for other names.
+std::string stage_key(const std::string& name, std::string_view end) {
+  constexpr std::string_view kStages = "stages.";
+  if (name.rfind(kStages, 0) != 0 || name.size() <= kStages.size() + end.size()) return {};
+  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return {};
+  std::string key = name.substr(kStages.size(), name.size() - kStages.size() - end.size());
+  return key.find('.') == std::string::npos ? key : std::string();
+}
+
+/// Of a statistic that is a text.
+void add_text(const std::string& name, const Json& value, RunRecord& record) {
+  const std::string key = stage_key(name, ".runs_on");
+  for (StageName& stage : record.stages)
+    if (stage.key == key) stage.on_controller = value == "controller";
+}
+
+void add_statistics(const Json& document, RunRecord& record) {
+  for (const Json& entry : document.at("statistics")) {
+    const Json& value = entry.at("value");
+    const auto text = [&](const char* key) { return entry.at(key).get<std::string>(); };
+    const std::string name = text("name");
+    if (value.is_string()) {
+      add_text(name, value, record);
+      continue;
+    }
+    if (std::string key = stage_key(name, ".calls"); !key.empty())
+      record.stages.push_back({key, key, false});
+    Statistic statistic{name, text("unit"), text("description"), {}};
+    if (!value.is_null()) statistic.value = value.get<double>();
+    record.statistics.push_back(std::move(statistic));
+  }
+}
+
+void name_stages(RunRecord& record) {
+  for (StageName& stage : record.stages)
+    for (const StageParts& parts : record.cycles)
+      if (key_of(parts.stage) == stage.key) stage.name = parts.stage;
+}
+
+}  // namespace
+
+const Statistic* RunRecord::find(std::string_view statistic) const {
+  const auto it = std::find_if(statistics.begin(), statistics.end(),
+                               [&](const Statistic& s) { return s.name == statistic; });
+  return it == statistics.end() ? nullptr : &*it;
+}
+
+std::optional<double> RunRecord::value(std::string_view statistic) const {
+  const Statistic* found = find(statistic);
+  return found == nullptr ? std::nullopt : found->value;
+}
+
+const StageParts* RunRecord::stage_parts(std::string_view stage) const {
+  const auto it = std::find_if(cycles.begin(), cycles.end(),
+                               [&](const StageParts& s) { return s.stage == stage; });
+  return it == cycles.end() ? nullptr : &*it;
+}
+
+Json parse_json(const std::string& where, const std::string& text) {
+  Json document = Json::parse(text, nullptr, false);
+  if (document.is_discarded() || !document.is_object())
+    throw InputError(fmt::format("{}: no JSON document", where));
+  return document;
+}
+
+RunRecord record_of(const std::string& where, const Json& manifest, const Json& statistics,
+                    const std::string& frames_csv, std::vector<StageParts> cycles) {
+  RunRecord record;
+  record.name = where;
+  reading(where + "/manifest.json", "a manifest", [&] {
+    check_format(where + "/manifest.json", manifest, "leviosim manifest");
+    record.facts = facts_of_manifest(manifest);
+  });
+  reading(where + "/stats.json", "statistics", [&] {
+    check_format(where + "/stats.json", statistics, "leviosim statistics");
+    add_statistics(statistics, record);
+  });
+  record.cycles = std::move(cycles);
+  name_stages(record);
+  add_frame_statistics(where + "/frames.csv", frames_csv, record);
+  add_memory_statistics(record);
+  add_operations(record);
+  return record;
+}
+
+RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run,
+                      std::vector<StageParts> cycles) {
+  return record_of(name, manifest_json(manifest, run), statistics(run), frames_csv(run),
+                   std::move(cycles));
+}
+
+RunRecord read_run_folder(const std::filesystem::path& folder) {
+  const std::string where = folder.string();
+  if (!base::exists(folder / "manifest.json") || !base::exists(folder / "stats.json"))
+    throw InputError(fmt::format(
+        "{}: no run folder; expected a folder that run or replay left, with manifest.json and "
+        "stats.json",
+        where));
+  const auto text = [&](const char* name) {
+    return base::read_file(folder / name, base::InputKind::run_file);
+  };
+  std::vector<StageParts> cycles;
+  if (base::exists(folder / kCyclesFile))
+    cycles = parse_cycles(folder / kCyclesFile, text(kCyclesFile));
+  return record_of(where, parse_json(where + "/manifest.json", text("manifest.json")),
+                   parse_json(where + "/stats.json", text("stats.json")), text("frames.csv"),
+                   std::move(cycles));
+}
+
+Json facts_json(const RunFacts& facts) {
+  Json json;
+  json["program"] = facts.program;
+  json["profile"] = facts.profile;
+  if (!facts.workload.empty()) json["workload"] = facts.workload;
+  json["seed"] = facts.seed;
+  json["platform"] = facts.platform;
+  json["overrides"] = facts.overrides;
+  json["cores"] = facts.cores;
+  if (!facts.camera.empty()) json["camera"] = facts.camera;
+  json["image"] = {facts.image_width, facts.image_height};
+  json["first_frame"] = facts.first_frame;
+  json["frames"] = facts.frames;
+  json["inputs"] = Json::object();
+  for (const auto& [name, sha256] : facts.inputs) json["inputs"][name] = sha256;
+  return json;
+}
+
+RunFacts facts_of_json(const std::string& where, const Json& json) {
+  return reading(where, "the facts of a run", [&] {
+    RunFacts facts;
+    json.at("program").get_to(facts.program);
+    json.at("profile").get_to(facts.profile);
+    if (json.contains("workload")) json.at("workload").get_to(facts.workload);
+    json.at("seed").get_to(facts.seed);
+    json.at("platform").get_to(facts.platform);
+    json.at("overrides").get_to(facts.overrides);
+    json.at("cores").get_to(facts.cores);
+    facts.camera = json.value("camera", "");
+    json.at("image").at(0).get_to(facts.image_width);
+    json.at("image").at(1).get_to(facts.image_height);
+    json.at("first_frame").get_to(facts.first_frame);
+    json.at("frames").get_to(facts.frames);
+    for (const auto& [name, sha256] : json.at("inputs").items())
+      facts.inputs.emplace_back(name, sha256.get<std::string>());
+    return facts;
+  });
+}
+
+}  // namespace leviosim::tools

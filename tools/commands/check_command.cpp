@@ -1,0 +1,76 @@
+#include "tools/commands/check_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "sim/base/error.h"
+#include "tools/app/budget/check_report.h"
+#include "tools/app/budget/ci_files.h"
+#include "tools/app/budget/gate.h"
+#include "tools/app/cli/limit_not_met.h"
+#include "tools/app/cli/outputs.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct CheckOptions : RecordOptions {
+  std::string run;
+  GateOptions gate;
+  std::string junit;
+  std::string annotations;
+  bool json = false;
+};
+
+void check_options(const CLI::App& command, const CheckOptions& options) {
+  require(command, "RUN", "a run folder or a work trace");
+  require(command, "--budget", "a file with limits (leviosim budget init writes a first one)");
+  if (!options.annotations.empty() && options.annotations != "github" &&
+      options.annotations != "gitlab")
+    throw InputError(
+        fmt::format("--annotations '{}': expected github or gitlab", options.annotations));
+  if (options.json && !options.annotations.empty())
+    throw InputError("check: --json and --annotations both print to stdout; leave out one");
+}
+
+std::string report(const CheckOptions& options, const CheckResult& result) {
+  if (options.json) return json_text(check_json(result), 2) + '\n';
+  if (options.annotations == "gitlab") return gitlab_report(result);
+  if (options.annotations == "github") return check_text(result) + github_annotations(result);
+  return check_text(result);
+}
+
+void run(const CLI::App& command, const CheckOptions& options) {
+  check_options(command, options);
+  const Gate gate(options.gate, options);
+  std::optional<base::OutputFile> junit =
+      claimed_file({.option = "--junit",
+                    .path = options.junit,
+                    .replace = options.force,
+                    .inputs = {options.run, options.gate.budget, options.gate.baseline}});
+  const CheckResult result = gate.check(read_record(options.run, options));
+  publish({{junit, junit_xml(result), ""}}, report(options, result));
+  if (result.missed() > 0) throw LimitNotMet();
+}
+
+}  // namespace
+
+Command add_check_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("check", "Hold a run against a budget; status 1 if a limit is not met");
+  const auto options = std::make_shared<CheckOptions>();
+  command->add_option("RUN", options->run, "run folder, or a work trace to replay");
+  add_gate_options(*command, options->gate);
+  command->add_option("--junit", options->junit, "report for CI servers to write")
+      ->type_name("FILE");
+  command->add_flag("--force", options->force, "replace that file");
+  command
+      ->add_option("--annotations", options->annotations,
+                   "github: lines that mark the limits; gitlab: a code quality report on stdout")
+      ->type_name("github|gitlab");
+  command->add_flag("--json", options->json, "print JSON");
+  add_record_options(*command, *options);
+  return {command, [=] { run(*command, *options); }};
+}
+
+}  // namespace leviosim::tools

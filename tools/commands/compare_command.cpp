@@ -1,0 +1,72 @@
+#include "tools/commands/compare_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "sim/base/error.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/comparison/comparability.h"
+#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/record_source.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct CompareOptions : RecordOptions {
+  std::vector<std::string> runs;
+  std::string allow;
+  std::string format = "text";
+};
+
+/// All runs that are compared with the first. One run with a chip is compared with itself there.
+std::vector<RunRecord> records(const CompareOptions& options) {
+  std::vector<RunRecord> list;
+  if (options.runs.size() == 1) {
+    if (!options.names_chip())
+      throw InputError(fmt::format(
+          "compare: only {} is given; expected two runs, or one with a recorded trace and the chip "
+          "to compare it on: --platform, -p",
+          options.runs.front()));
+    RecordOptions as_recorded = options;
+    as_recorded.platform.clear();
+    as_recorded.overrides.clear();
+    as_recorded.cores.clear();
+    const std::string trace = trace_of(options.runs.front());
+    list.push_back(trace.empty() ? read_record(options.runs.front(), options)
+                                 : replay_record(trace, as_recorded));
+  }
+  for (const std::string& run : options.runs) list.push_back(read_record(run, options));
+  return list;
+}
+
+void run(const CLI::App& command, const CompareOptions& options) {
+  require(command, "RUN", "two or more run folders or work traces");
+  const ReportFormat format = parse_report_format(options.format);
+  const Allowed allowed = parse_allowed(options.allow);
+  if (format == ReportFormat::csv && options.runs.size() > 2)
+    throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
+  const std::vector<RunRecord> runs = records(options);
+  std::vector<Comparison> comparisons;
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    comparisons.push_back(
+        compare(runs.front(), runs[i], check_comparable(runs.front(), runs[i], allowed)));
+  print_result("{}", comparison_report(comparisons, format));
+}
+
+}  // namespace
+
+Command add_compare_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("compare", "Show what differs between runs, and why, by mechanism");
+  const auto options = std::make_shared<CompareOptions>();
+  command->add_option("RUN", options->runs, "run folders or work traces; each against the first");
+  command->add_option("--allow", options->allow, "differences of the input that are meant")
+      ->type_name("data,frames,profile,seed,size");
+  command->add_option("--format", options->format, "text, markdown, json or csv [text]")
+      ->type_name("FORMAT");
+  add_record_options(*command, *options);
+  return {command, [=] { run(*command, *options); }};
+}
+
+}  // namespace leviosim::tools
