@@ -15,10 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Types at the top of a namespace, "leviosim::tools::Budget". A header has one namespace.
+/// Types at the top of a namespace, "leviosim::tools::Budget", but for specialisations. A header has
+/// one namespace.
 std::vector<std::string> types_of(std::istream& header) {
   static const std::regex space(R"re(^namespace (\S+) \{)re");
-  static const std::regex type(R"re(^(?:struct|class|enum class) (\w+)[^;]*\{)re");
+  static const std::regex type(R"re(^(?:struct|class|enum class) (\w+)(?![\w<])[^;]*\{)re");
   std::vector<std::string> types;
   std::string name;
   for (std::string line; std::getline(header, line);) {
