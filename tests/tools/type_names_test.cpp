@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Types at the top of a namespace, "leviosim::tools::Budget", but for specialisations. A header has
-/// one namespace.
+/// Types at the top of a namespace, "leviosim::tools::Budget", but for specialisations. A header
+/// has one namespace.
 std::vector<std::string> types_of(std::istream& header) {
   static const std::regex space(R"re(^namespace (\S+) \{)re");
   static const std::regex type(R"re(^(?:struct|class|enum class) (\w+)(?![\w<])[^;]*\{)re");
