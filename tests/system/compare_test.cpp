@@ -65,13 +65,13 @@ class Compare : public ::testing::Test {
   inline static SuiteFolder* folder_ = nullptr;
 };
 
-double difference(const Quantity& q) { return q.b.value_or(0) - q.a.value_or(0); }
+double difference(const ComparedQuantity& q) { return q.b.value_or(0) - q.a.value_or(0); }
 
 /// The parts but for the rest explain the difference of the whole within 0.1 % of it. Rows are
 /// rounded to a thousandth of a cycle of all calls.
-void expect_adds_up(const Quantity& whole, const std::string& what) {
+void expect_adds_up(const ComparedQuantity& whole, const std::string& what) {
   double sum = 0;
-  for (const Quantity& part : whole.parts)
+  for (const ComparedQuantity& part : whole.parts)
     if (part.name != "rest") sum += difference(part);
   EXPECT_NEAR(sum, difference(whole), 1e-3 * std::abs(difference(whole)) + 0.1) << what;
 }
@@ -104,7 +104,7 @@ TEST_F(Compare, PartsAddUpForRandomPairsOfChips) {
   for (int pair = 0; pair < 20; ++pair) {
     const RunRecord a = replayed(random_chip(random));
     const RunRecord b = replayed(random_chip(random));
-    const Comparison c = compare(a, b, check_comparable(a, b, {}));
+    const RunComparison c = compare_runs(a, b, check_comparable(a, b, {}));
     EXPECT_TRUE(c.same_work());
     ASSERT_FALSE(c.stages.empty());
     expect_adds_up(c.frame, "frame");
@@ -115,7 +115,7 @@ TEST_F(Compare, PartsAddUpForRandomPairsOfChips) {
       const std::string what = fmt::format("pair {}, {}", pair, s.stage.name);
       expect_adds_up(*s.mechanisms, what);
       expect_adds_up(*s.places, what);
-      for (const Quantity& mechanism : s.mechanisms->parts)
+      for (const ComparedQuantity& mechanism : s.mechanisms->parts)
         if (!mechanism.parts.empty()) expect_adds_up(mechanism, what + ", " + mechanism.name);
       EXPECT_NEAR(s.causes.total(), difference(*s.mechanisms), 1e-6) << what;
       EXPECT_NEAR(s.causes.work, 0, 1e-6) << what;
@@ -127,7 +127,7 @@ TEST_F(Compare, PartsAddUpForRandomPairsOfChips) {
 TEST_F(Compare, WhatCostsMoreIsNamed) {
   const RunRecord a = replayed({});
   const RunRecord b = replayed({"isa.ops.popcount.issue=3"});
-  const Comparison c = compare(a, b);
+  const RunComparison c = compare_runs(a, b);
   for (const StageComparison& s : c.stages) {
     if (s.stage.name != "frame matching") continue;
     ASSERT_TRUE(s.mechanisms.has_value());
@@ -141,7 +141,7 @@ TEST_F(Compare, WhatCostsMoreIsNamed) {
 TEST_F(Compare, OneUnitLessIsWaitedFor) {
   const RunRecord a = replayed({});
   const RunRecord b = replayed({"cluster.fpu.units=1"});
-  const Comparison c = compare(a, b);
+  const RunComparison c = compare_runs(a, b);
   for (const StageComparison& s : c.stages)
     if (s.stage.name == "8-point RANSAC" && s.calls.a.value_or(0) > 0) {
       EXPECT_EQ(leaves_by_difference(*s.mechanisms).front().name, "fpu");
@@ -153,8 +153,8 @@ TEST_F(Compare, OneUnitLessIsWaitedFor) {
 TEST_F(Compare, TheFolderOfARunSaysWhatItsReplaySays) {
   const RunRecord run = read_run_folder(path("run"));
   const RunRecord again = replayed({});
-  const Comparison c = compare(run, again);
-  for (const Quantity& q : c.figures) EXPECT_EQ(q.a, q.b) << q.name;
+  const RunComparison c = compare_runs(run, again);
+  for (const ComparedQuantity& q : c.figures) EXPECT_EQ(q.a, q.b) << q.name;
   EXPECT_EQ(difference(c.frame), 0);
   EXPECT_TRUE(c.blocks.empty());
 }
@@ -169,7 +169,7 @@ TEST_F(Compare, ACsvOfPartsIsReadBackAsItWas) {
 TEST_F(Compare, TextFitsEightyColumns) {
   const RunRecord a = replayed({});
   const RunRecord b = replayed({"isa.instruction_overhead=1.6"});
-  const Comparison c = compare(a, b);
+  const RunComparison c = compare_runs(a, b);
   const std::string text = comparison_report(c, ReportFormat::text);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(display_width(line), 80) << line;

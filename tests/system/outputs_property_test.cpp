@@ -49,6 +49,7 @@ struct Inputs {
     write_text(folder / "plan.yaml",
                "base: { data: flight, platform: gap9 }\n"
                "points: { grid: { seed: [1] } }\n");
+    write_text(folder / "budgets.yaml", "budgets:\n  - limits: [L1 peak <= 128 KiB]\n");
     const ProgramResult recorded =
         run_program(folder.path(), {"run", "--platform", "gap9", "--data", flight, "--record",
                                     "--quiet", "--out", (folder / "recorded").string()});
@@ -87,6 +88,10 @@ struct Inputs {
         {"sensitivity", with({"sensitivity", "--frames", "0:2"}, data), "--out", "out.csv"},
         {"feasibility", with({"platforms", "feasibility", "gap9", "--frames", "0:2"}, data),
          "--out", "out.csv"},
+        {"check",
+         {"check", path("recorded"), "--budget", path("budgets.yaml"), "--quiet"},
+         "--junit",
+         "out.xml"},
         {"microbench", {"microbench"}, "--out", "out.csv"},
         {"eval_json", {"eval", truth, truth, "--relative", "0.0001"}, "--json", "out.json"},
         {"eval_plot", {"eval", truth, truth, "--relative", "0.0001"}, "--plot", "out.svg"}};

@@ -19,9 +19,9 @@ StageParts stage(double cycles, std::vector<CyclePart> parts) {
   return {"s", false, cycles, std::move(parts)};
 }
 
-const Quantity& part(const Quantity& whole, const std::string& name) {
-  static const Quantity none;
-  for (const Quantity& q : whole.parts)
+const ComparedQuantity& part(const ComparedQuantity& whole, const std::string& name) {
+  static const ComparedQuantity none;
+  for (const ComparedQuantity& q : whole.parts)
     if (q.name == name) return q;
   ADD_FAILURE() << "no part " << name;
   return none;
@@ -35,10 +35,10 @@ TEST(CycleDifference, WorkIsAtThePriceOfAAndTheRestIsPrice) {
   EXPECT_EQ(causes.work, 100);
   EXPECT_EQ(causes.price, 150);
   EXPECT_EQ(causes.meeting, 40);
-  const Quantity whole = split_by_mechanism(&a, &b, 1, 1);
+  const ComparedQuantity whole = split_by_mechanism(&a, &b, 1, 1);
   EXPECT_EQ(part(part(whole, "issue"), "int_alu").difference(), 250);
   EXPECT_EQ(part(whole, "fpu").difference(), 40);
-  const Quantity places = split_by_place(&a, &b, 1, 1);
+  const ComparedQuantity places = split_by_place(&a, &b, 1, 1);
   EXPECT_EQ(part(places, "f").difference(), 250);
 }
 
@@ -109,15 +109,15 @@ TEST(Comparison, WorkHasChangedWhereOperationsOrCallsHave) {
   RunResult more = example_run();
   more.stages[0].counts[work::Op::F32Add] += 5;
   const RunRecord b = record(more);
-  EXPECT_TRUE(compare(a, a).same_work());
-  const Comparison c = compare(a, b);
+  EXPECT_TRUE(compare_runs(a, a).same_work());
+  const RunComparison c = compare_runs(a, b);
   EXPECT_FALSE(c.same_work());
   EXPECT_NE(work_line(c).find("CHANGED in 1 of 3 stages"), std::string::npos) << work_line(c);
   RunResult other_kind = example_run();  // as many operations, but others
   other_kind.stages[0].counts[work::Op::F32Add] -= 5;
   other_kind.stages[0].counts[work::Op::F32Mul] += 5;
   const RunRecord other = record(other_kind);
-  EXPECT_FALSE(compare(a, other).same_work());
+  EXPECT_FALSE(compare_runs(a, other).same_work());
 }
 
 TEST(Comparison, NamesBlocksThatGrewOrAppeared) {
@@ -126,7 +126,7 @@ TEST(Comparison, NamesBlocksThatGrewOrAppeared) {
   more.stages[0].memory.blocks[0].size = Bytes(20'000);
   const RunRecord a = record(example_run());
   const RunRecord b = record(more);
-  const Comparison c = compare(a, b);
+  const RunComparison c = compare_runs(a, b);
   ASSERT_EQ(c.blocks.size(), 2u);
   EXPECT_EQ(c.blocks[0].name, "feature_extraction: image");
   EXPECT_EQ(c.blocks[0].difference(), 800);
@@ -136,7 +136,7 @@ TEST(Comparison, NamesBlocksThatGrewOrAppeared) {
 
 TEST(Comparison, RunsWithoutPartsSayThatTheirMechanismsAreUnknown) {
   const RunRecord a = record(example_run());
-  EXPECT_NE(comparison_report(compare(a, a), ReportFormat::text).find("cycles.csv"),
+  EXPECT_NE(comparison_report(compare_runs(a, a), ReportFormat::text).find("cycles.csv"),
             std::string::npos);
 }
 

@@ -47,10 +47,10 @@ void run(const CLI::App& command, const CompareOptions& options) {
   if (format == ReportFormat::csv && options.runs.size() > 2)
     throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
   const std::vector<RunRecord> runs = records(options);
-  std::vector<Comparison> comparisons;
+  std::vector<RunComparison> comparisons;
   for (std::size_t i = 1; i < runs.size(); ++i)
     comparisons.push_back(
-        compare(runs.front(), runs[i], check_comparable(runs.front(), runs[i], allowed)));
+        compare_runs(runs.front(), runs[i], check_comparable(runs.front(), runs[i], allowed)));
   print_result("{}", comparison_report(comparisons, format));
 }
 

@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::size_t kMostReasons = 3;
 
-double size_of(const Quantity& q) { return std::abs(q.b.value_or(0) - q.a.value_or(0)); }
+double size_of(const ComparedQuantity& q) { return std::abs(q.b.value_or(0) - q.a.value_or(0)); }
 
 /// The part that differs most; null if none does.
-const Quantity* most_different(const std::vector<Quantity>& parts) {
+const ComparedQuantity* most_different(const std::vector<ComparedQuantity>& parts) {
   const auto it = std::max_element(
       parts.begin(), parts.end(),
-      [](const Quantity& x, const Quantity& y) { return size_of(x) < size_of(y); });
+      [](const ComparedQuantity& x, const ComparedQuantity& y) { return size_of(x) < size_of(y); });
   return it == parts.end() || size_of(*it) == 0 ? nullptr : &*it;
 }
 
@@ -44,7 +44,7 @@ class Explainer {
       : run_(run),
         has_baseline_(baseline != nullptr),
         nothing_(has_baseline_ ? RunRecord() : nothing_like(run)),
-        comparison_(compare(has_baseline_ ? *baseline : nothing_, run)) {}
+        comparison_(compare_runs(has_baseline_ ? *baseline : nothing_, run)) {}
 
   void explain(Finding& f) const {
     if (f.statistic.find("memory.") != std::string::npos)
@@ -67,7 +67,7 @@ class Explainer {
 
   /// The fork in which it happens, if it is known.
   static std::string place_in(const StageComparison& s) {
-    const Quantity* place = s.places ? most_different(s.places->parts) : nullptr;
+    const ComparedQuantity* place = s.places ? most_different(s.places->parts) : nullptr;
     if (place == nullptr || place->name == kWholeTeam) return s.stage.name;
     return s.stage.name + ", " + place->name;
   }
@@ -93,7 +93,7 @@ class Explainer {
   }
 
   void explain_frame(Finding& f) const {
-    const Quantity* most = most_different(comparison_.frame.parts);
+    const ComparedQuantity* most = most_different(comparison_.frame.parts);
     if (most == nullptr) return;
     explain_stage(f, most->name);
     const double difference = most->b.value_or(0) - most->a.value_or(0);
@@ -116,22 +116,24 @@ class Explainer {
     std::string owner = f.stage.empty() ? fullest(f.statistic.find("l2") != std::string::npos) : "";
     for (const StageName& s : run_.stages)
       if (s.name == f.stage) owner = fmt::format("stages.{}.memory.", s.key);
-    std::vector<Quantity> blocks;
+    std::vector<ComparedQuantity> blocks;
     for (const Statistic& s : run_.statistics) {
       if (s.name.rfind(owner + "block.", 0) != 0) continue;
       blocks.push_back({s.name.substr(owner.size() + 6), "byte", 0.0, s.value});
     }
     std::stable_sort(blocks.begin(), blocks.end(),
-                     [](const Quantity& x, const Quantity& y) { return size_of(x) > size_of(y); });
+                     [](const ComparedQuantity& x, const ComparedQuantity& y) {
+                       return size_of(x) > size_of(y);
+                     });
     f.where =
         fmt::format("{}{}", name_of(owner), blocks.empty() ? "" : ", block " + blocks.front().name);
     const std::string prefix = name_of(owner) + ": ";
     if (has_baseline_)
-      for (const Quantity& q : comparison_.blocks)
+      for (const ComparedQuantity& q : comparison_.blocks)
         if (q.name.rfind(prefix, 0) == 0 && f.why.size() < kMostReasons)
           f.why.push_back(fmt::format("{} {:+.1f} kB", q.name.substr(prefix.size()),
                                       (q.b.value_or(0) - q.a.value_or(0)) / 1e3));
-    for (const Quantity& block : blocks)
+    for (const ComparedQuantity& block : blocks)
       if (f.why.size() < kMostReasons)
         f.why.push_back(
             fmt::format("{} is {}", block.name, figure_text(block.b.value_or(0), "byte")));
@@ -170,7 +172,7 @@ class Explainer {
   const RunRecord& run_;
   bool has_baseline_;
   RunRecord nothing_;
-  Comparison comparison_;
+  RunComparison comparison_;
 };
 
 }  // namespace

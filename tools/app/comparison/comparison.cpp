@@ -42,15 +42,15 @@ class Comparer {
  public:
   Comparer(const RunRecord& a, const RunRecord& b) : a_(a), b_(b) {}
 
-  Quantity of(const std::string& name, const std::string& unit, const std::string& statistic,
-              double scale = 1) const {
+  ComparedQuantity of(const std::string& name, const std::string& unit,
+                      const std::string& statistic, double scale = 1) const {
     return {name, unit, scaled(a_.value(statistic), scale), scaled(b_.value(statistic), scale)};
   }
 
-  std::vector<Quantity> figures() const {
-    std::vector<Quantity> list;
+  std::vector<ComparedQuantity> figures() const {
+    std::vector<ComparedQuantity> list;
     for (const Figure& f : kFigures) {
-      Quantity q = of(f.name, f.unit, f.statistic, f.scale);
+      ComparedQuantity q = of(f.name, f.unit, f.statistic, f.scale);
       if (q.a || q.b) list.push_back(std::move(q));
     }
     return list;
@@ -97,8 +97,8 @@ class Comparer {
   }
 
   /// The offload is a stage of the frame too.
-  Quantity frame(const std::vector<StageComparison>& stages) const {
-    Quantity whole = of("frame", "cycles", "frame.cycles.parallel.mean");
+  ComparedQuantity frame(const std::vector<StageComparison>& stages) const {
+    ComparedQuantity whole = of("frame", "cycles", "frame.cycles.parallel.mean");
     for (const StageComparison& stage : stages) {
       if (!stage.mechanisms || stage.stage.on_controller) continue;
       whole.parts.push_back(*stage.mechanisms);
@@ -110,8 +110,8 @@ class Comparer {
     return whole;
   }
 
-  std::vector<Quantity> blocks() const {
-    std::vector<Quantity> list;
+  std::vector<ComparedQuantity> blocks() const {
+    std::vector<ComparedQuantity> list;
     const auto is_block = [](const Statistic& s) {
       return s.name.find(".block.") != std::string::npos && s.unit == "byte";
     };
@@ -125,8 +125,8 @@ class Comparer {
   }
 
   /// mJ of a frame. @param by_domain  else by stage
-  Quantity energy(bool by_domain) const {
-    Quantity whole = of("energy of a frame", "mJ", "energy.frame");
+  ComparedQuantity energy(bool by_domain) const {
+    ComparedQuantity whole = of("energy of a frame", "mJ", "energy.frame");
     if (!whole.a && !whole.b) return whole;
     for (const RunRecord* run : {&a_, &b_}) {
       const auto total = run->value("energy.total");
@@ -138,7 +138,8 @@ class Comparer {
         if (s.name.rfind("energy.", 0) != 0 || at == std::string::npos || !s.value) continue;
         const std::string domain = s.name.substr(at + kDomain.size());
         if (domain.find('.') != std::string::npos) continue;  // ends of its band
-        Quantity& part = part_of(whole, by_domain ? domain : stage_name(s.name.substr(7, at - 7)));
+        ComparedQuantity& part =
+            part_of(whole, by_domain ? domain : stage_name(s.name.substr(7, at - 7)));
         *(run == &a_ ? part.a : part.b) += *s.value * *frame / *total;
       }
     }
@@ -173,10 +174,10 @@ class Comparer {
     }
   }
 
-  static Quantity& part_of(Quantity& whole, const std::string& name) {
-    for (Quantity& part : whole.parts)
+  static ComparedQuantity& part_of(ComparedQuantity& whole, const std::string& name) {
+    for (ComparedQuantity& part : whole.parts)
       if (part.name == name) return part;
-    return whole.parts.emplace_back(Quantity{name, whole.unit, 0.0, 0.0});
+    return whole.parts.emplace_back(ComparedQuantity{name, whole.unit, 0.0, 0.0});
   }
 
   std::string stage_name(const std::string& key) const {
@@ -201,8 +202,9 @@ class Comparer {
   const RunRecord& b_;
 };
 
-void collect_leaves(const Quantity& q, const std::string& prefix, std::vector<Leaf>& leaves) {
-  for (const Quantity& part : q.parts) {
+void collect_leaves(const ComparedQuantity& q, const std::string& prefix,
+                    std::vector<Leaf>& leaves) {
+  for (const ComparedQuantity& part : q.parts) {
     const std::string name = prefix.empty() ? part.name : prefix + ": " + part.name;
     if (part.parts.empty())
       leaves.push_back({name, part.b.value_or(0) - part.a.value_or(0)});
@@ -213,12 +215,12 @@ void collect_leaves(const Quantity& q, const std::string& prefix, std::vector<Le
 
 }  // namespace
 
-std::optional<double> Quantity::difference() const {
+std::optional<double> ComparedQuantity::difference() const {
   if (!a || !b) return std::nullopt;
   return *b - *a;
 }
 
-std::optional<double> Quantity::percent() const {
+std::optional<double> ComparedQuantity::percent() const {
   if (!a || !b || *a == 0) return std::nullopt;
   return 100 * (*b - *a) / *a;
 }
@@ -230,14 +232,14 @@ Causes& Causes::operator+=(const Causes& o) {
   return *this;
 }
 
-bool Comparison::same_work() const {
+bool RunComparison::same_work() const {
   return std::all_of(stages.begin(), stages.end(),
                      [](const StageComparison& s) { return s.same_work; });
 }
 
-Comparison compare(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes) {
+RunComparison compare_runs(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes) {
   const Comparer comparer(a, b);
-  Comparison c{a, b, std::move(notes), comparer.figures(), {}, {}, comparer.blocks(), {}, {}};
+  RunComparison c{a, b, std::move(notes), comparer.figures(), {}, {}, comparer.blocks(), {}, {}};
   for (const StageName& name : comparer.stages()) c.stages.push_back(comparer.stage(name));
   c.frame = comparer.frame(c.stages);
   c.energy_by_stage = comparer.energy(false);
@@ -245,7 +247,7 @@ Comparison compare(const RunRecord& a, const RunRecord& b, std::vector<std::stri
   return c;
 }
 
-std::vector<Leaf> leaves_by_difference(const Quantity& whole) {
+std::vector<Leaf> leaves_by_difference(const ComparedQuantity& whole) {
   std::vector<Leaf> leaves;
   collect_leaves(whole, "", leaves);
   std::stable_sort(leaves.begin(), leaves.end(), [](const Leaf& x, const Leaf& y) {

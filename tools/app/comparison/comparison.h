@@ -14,12 +14,12 @@
 
 namespace leviosim::tools {
 
-struct Quantity {
+struct ComparedQuantity {
   std::string name;
   std::string unit;
   std::optional<double> a;  ///< absent if the run has none
   std::optional<double> b;
-  std::vector<Quantity> parts = {};  ///< all or none of it
+  std::vector<ComparedQuantity> parts = {};  ///< all or none of it
 
   /// B minus A, absent where one of them is.
   std::optional<double> difference() const;
@@ -42,40 +42,42 @@ inline constexpr const char* kWholeTeam = "between the cores";
 
 struct StageComparison {
   StageName stage;
-  Quantity calls;
-  Quantity single;      ///< cycles of a call on one core
-  Quantity parallel;    ///< … on N cores
-  Quantity share;       ///< of the cycles of a frame, in per cent; none on the controller
-  Quantity operations;  ///< of all calls
+  ComparedQuantity calls;
+  ComparedQuantity single;      ///< cycles of a call on one core
+  ComparedQuantity parallel;    ///< … on N cores
+  ComparedQuantity share;       ///< of the cycles of a frame, in per cent; none on the controller
+  ComparedQuantity operations;  ///< of all calls
   bool same_work = true;
   /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if one of
   /// the runs has no cycles.csv.
-  std::optional<Quantity> mechanisms;
+  std::optional<ComparedQuantity> mechanisms;
   /// The same by fork, with mechanisms as parts.
-  std::optional<Quantity> places;
+  std::optional<ComparedQuantity> places;
   Causes causes;
 };
 
-struct Comparison {
+struct RunComparison {
   const RunRecord& a;
   const RunRecord& b;
   std::vector<std::string> notes;
-  std::vector<Quantity> figures;  ///< of the run as a whole
+  std::vector<ComparedQuantity> figures;  ///< of the run as a whole
   std::vector<StageComparison> stages;
-  Quantity frame;                ///< cycles of a mean frame on N cores; parts: the cluster's stages
-  std::vector<Quantity> blocks;  ///< alive at a peak, that appeared, went, or changed their size
-  Quantity energy_by_stage;      ///< mJ of a frame
-  Quantity energy_by_domain;
+  ComparedQuantity frame;  ///< cycles of a mean frame on N cores; parts: the cluster's stages
+  std::vector<ComparedQuantity>
+      blocks;  ///< alive at a peak, that appeared, went, or changed their size
+  ComparedQuantity energy_by_stage;  ///< mJ of a frame
+  ComparedQuantity energy_by_domain;
 
   bool same_work() const;
 };
 
 /// @param a,b    outlive the comparison
 /// @param notes  of check_comparable()
-Comparison compare(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes = {});
-Comparison compare(RunRecord&&, const RunRecord&, std::vector<std::string> = {}) = delete;
-Comparison compare(const RunRecord&, RunRecord&&, std::vector<std::string> = {}) = delete;
-Comparison compare(RunRecord&&, RunRecord&&, std::vector<std::string> = {}) = delete;
+RunComparison compare_runs(const RunRecord& a, const RunRecord& b,
+                           std::vector<std::string> notes = {});
+RunComparison compare_runs(RunRecord&&, const RunRecord&, std::vector<std::string> = {}) = delete;
+RunComparison compare_runs(const RunRecord&, RunRecord&&, std::vector<std::string> = {}) = delete;
+RunComparison compare_runs(RunRecord&&, RunRecord&&, std::vector<std::string> = {}) = delete;
 
 /// A part of a tree that has no parts itself, named with the parts that it is in.
 struct Leaf {
@@ -83,6 +85,6 @@ struct Leaf {
   double difference = 0;
 };
 /// All of them, the largest difference first. What is absent in a run counts as 0.
-std::vector<Leaf> leaves_by_difference(const Quantity& whole);
+std::vector<Leaf> leaves_by_difference(const ComparedQuantity& whole);
 
 }  // namespace leviosim::tools

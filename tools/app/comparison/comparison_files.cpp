@@ -7,20 +7,20 @@
 namespace leviosim::tools {
 namespace {
 
-Json quantity_json(const Quantity& q) {
+Json quantity_json(const ComparedQuantity& q) {
   Json json;
   json["name"] = q.name;
   json["unit"] = q.unit;
   json["a"] = value_of(q.a);
   json["b"] = value_of(q.b);
   json["difference"] = value_of(q.difference());
-  for (const Quantity& part : q.parts) json["parts"].push_back(quantity_json(part));
+  for (const ComparedQuantity& part : q.parts) json["parts"].push_back(quantity_json(part));
   return json;
 }
 
-Json list_json(const std::vector<Quantity>& list) {
+Json list_json(const std::vector<ComparedQuantity>& list) {
   Json json = Json::array();
-  for (const Quantity& q : list) json.push_back(quantity_json(q));
+  for (const ComparedQuantity& q : list) json.push_back(quantity_json(q));
   return json;
 }
 
@@ -54,13 +54,13 @@ std::string cell(const std::string& raw) {
 
 class CsvRows {
  public:
-  void add(const std::string& subject, const std::string& quantity, const Quantity& q,
+  void add(const std::string& subject, const std::string& quantity, const ComparedQuantity& q,
            const std::string& part = {}, const std::string& subpart = {}) {
     const auto number = [](std::optional<double> v) { return v ? fmt::format("{}", *v) : ""; };
     text_ +=
         fmt::format("{},{},{},{},{},{},{},{}\n", cell(subject), cell(quantity), cell(part),
                     cell(subpart), cell(q.unit), number(q.a), number(q.b), number(q.difference()));
-    for (const Quantity& below : q.parts)
+    for (const ComparedQuantity& below : q.parts)
       add(subject, quantity, below, part.empty() ? below.name : part,
           part.empty() ? "" : below.name);
   }
@@ -72,7 +72,7 @@ class CsvRows {
 
 }  // namespace
 
-Json comparison_json(const Comparison& c) {
+Json comparison_json(const RunComparison& c) {
   Json json;
   json["format"] = "leviosim comparison";
   json["version"] = 1;
@@ -92,11 +92,11 @@ Json comparison_json(const Comparison& c) {
   return json;
 }
 
-std::string comparison_csv(const Comparison& c) {
+std::string comparison_csv(const RunComparison& c) {
   CsvRows rows;
-  for (const Quantity& q : c.figures) rows.add("run", q.name, q);
+  for (const ComparedQuantity& q : c.figures) rows.add("run", q.name, q);
   for (const StageComparison& s : c.stages) {
-    for (const Quantity* q : {&s.calls, &s.operations, &s.single, &s.parallel, &s.share})
+    for (const ComparedQuantity* q : {&s.calls, &s.operations, &s.single, &s.parallel, &s.share})
       rows.add(s.stage.name, q->name, *q);
     if (!s.mechanisms) continue;
     rows.add(s.stage.name, "cycles of a frame by mechanism", *s.mechanisms);
@@ -106,7 +106,7 @@ std::string comparison_csv(const Comparison& c) {
                                        {"meeting", s.causes.meeting}})
       rows.add(s.stage.name, "cycles of a frame by cause", {name, "cycles", 0.0, cycles}, name);
   }
-  for (const Quantity& q : c.blocks) rows.add("memory", q.name, q);
+  for (const ComparedQuantity& q : c.blocks) rows.add("memory", q.name, q);
   rows.add("energy", "by stage", c.energy_by_stage);
   rows.add("energy", "by domain", c.energy_by_domain);
   return rows.take();

@@ -60,7 +60,7 @@ std::string signed_kilocycles(double cycles) {
 /// Renders the tables of one report.
 class Writer {
  public:
-  Writer(const Comparison& c, bool markdown) : c_(c), markdown_(markdown) {}
+  Writer(const RunComparison& c, bool markdown) : c_(c), markdown_(markdown) {}
 
   std::string str() {
     head();
@@ -126,13 +126,13 @@ class Writer {
   void figures() {
     title("the run as a whole");
     TextTable t({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
-    for (const Quantity& q : c_.figures)
+    for (const ComparedQuantity& q : c_.figures)
       t.add({q.name, number(q.a, decimals_of(q.unit)), number(q.b, decimals_of(q.unit)), q.unit,
              percent(q.percent())});
     table(t);
   }
 
-  static std::string pair(const Quantity& q, int decimals) {
+  static std::string pair(const ComparedQuantity& q, int decimals) {
     const std::string a = number(q.a, decimals);
     const std::string b = number(q.b, decimals);
     return a == b ? a : a + " → " + b;
@@ -170,7 +170,7 @@ class Writer {
     }
     title("why: kcycles of a mean frame on N cores");
     TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}});
-    const auto row = [&](const std::string& name, const Quantity& q) {
+    const auto row = [&](const std::string& name, const ComparedQuantity& q) {
       t.add({name, kilocycles(q.a), kilocycles(q.b),
              signed_kilocycles(q.b.value_or(0) - q.a.value_or(0))});
     };
@@ -190,7 +190,7 @@ class Writer {
     if (!any) line("no stage differs");
   }
 
-  static bool is_worth_showing(const Quantity& stage) {
+  static bool is_worth_showing(const ComparedQuantity& stage) {
     const double most = std::max(stage.a.value_or(0), stage.b.value_or(0));
     const std::vector<Leaf> leaves = leaves_by_difference(stage);
     return !leaves.empty() && std::abs(leaves.front().difference) > kLeastShare * most;
@@ -202,7 +202,7 @@ class Writer {
   }
 
   /// The largest, and the sum of the others.
-  static void add_leaves(TextTable& t, const Quantity& whole) {
+  static void add_leaves(TextTable& t, const ComparedQuantity& whole) {
     double others = 0;
     std::size_t shown = 0;
     for (const Leaf& leaf : leaves_by_difference(whole)) {
@@ -219,15 +219,15 @@ class Writer {
   }
 
   /// Only if a fork or the serial part differs.
-  static void add_places(TextTable& t, const Quantity& whole) {
-    const auto differs = [](const Quantity& place) {
+  static void add_places(TextTable& t, const ComparedQuantity& whole) {
+    const auto differs = [](const ComparedQuantity& place) {
       return std::abs(place.b.value_or(0) - place.a.value_or(0)) >= kLeastShown;
     };
-    if (std::none_of(whole.parts.begin(), whole.parts.end(), [&](const Quantity& place) {
+    if (std::none_of(whole.parts.begin(), whole.parts.end(), [&](const ComparedQuantity& place) {
           return place.name != kWholeTeam && differs(place);
         }))
       return;
-    for (const Quantity& place : whole.parts)
+    for (const ComparedQuantity& place : whole.parts)
       if (differs(place))
         t.add(
             {place.name == kWholeTeam ? "    " + place.name : "    in " + shortened(place.name, 41),
@@ -238,14 +238,17 @@ class Writer {
   /// The largest differences; all are in JSON and CSV.
   void blocks() {
     if (c_.blocks.empty()) return;
-    std::vector<Quantity> sorted = c_.blocks;
-    const auto size = [](const Quantity& q) { return std::abs(q.b.value_or(0) - q.a.value_or(0)); };
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [&](const Quantity& x, const Quantity& y) { return size(x) > size(y); });
+    std::vector<ComparedQuantity> sorted = c_.blocks;
+    const auto size = [](const ComparedQuantity& q) {
+      return std::abs(q.b.value_or(0) - q.a.value_or(0));
+    };
+    std::stable_sort(
+        sorted.begin(), sorted.end(),
+        [&](const ComparedQuantity& x, const ComparedQuantity& y) { return size(x) > size(y); });
     title("blocks at a peak that differ [kB]");
     TextTable t({{"owner: block", kLeft}, {"A"}, {"B"}, {"difference"}});
     for (std::size_t i = 0; i < std::min(sorted.size(), kMostBlocks); ++i) {
-      const Quantity& q = sorted[i];
+      const ComparedQuantity& q = sorted[i];
       t.add({shortened(q.name, 44), kilocycles(q.a), kilocycles(q.b),
              fmt::format("{:+.1f}", (q.b.value_or(0) - q.a.value_or(0)) / kKilo)});
     }
@@ -254,22 +257,22 @@ class Writer {
       line(fmt::format("… and {} more with --format json", sorted.size() - kMostBlocks));
   }
 
-  void energy(const std::string& name, const Quantity& whole) {
+  void energy(const std::string& name, const ComparedQuantity& whole) {
     if (whole.parts.empty()) return;
     constexpr double kLeastEnergy = 5e-5;  // rows that show as they were are left out
     title(name);
     TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}, {"change"}});
-    const auto row = [&](const Quantity& q) {
+    const auto row = [&](const ComparedQuantity& q) {
       t.add({shortened(q.name, 24), number(q.a, 4), number(q.b, 4),
              q.difference() ? fmt::format("{:+.4f}", *q.difference()) : "–", percent(q.percent())});
     };
-    for (const Quantity& part : whole.parts)
+    for (const ComparedQuantity& part : whole.parts)
       if (std::abs(part.b.value_or(0) - part.a.value_or(0)) >= kLeastEnergy) row(part);
     row({"all", whole.unit, whole.a, whole.b});
     table(t);
   }
 
-  const Comparison& c_;
+  const RunComparison& c_;
   bool markdown_;
   std::string text_;
 };
@@ -302,7 +305,7 @@ ReportFormat parse_report_format(const std::string& name) {
                                platform::did_you_mean(name, names)));
 }
 
-std::string work_line(const Comparison& comparison) {
+std::string work_line(const RunComparison& comparison) {
   if (comparison.stages.empty()) return "work: not counted in a native run";
   if (comparison.same_work())
     return "work: the same operations and calls in all stages; what differs is their cost";
@@ -330,7 +333,7 @@ std::vector<std::string> reasons(const StageComparison& stage, std::size_t most)
   return list;
 }
 
-std::string comparison_report(const Comparison& comparison, ReportFormat format) {
+std::string comparison_report(const RunComparison& comparison, ReportFormat format) {
   switch (format) {
     case ReportFormat::json:
       return json_text(comparison_json(comparison), 2) + '\n';
@@ -343,14 +346,14 @@ std::string comparison_report(const Comparison& comparison, ReportFormat format)
   }
 }
 
-std::string comparison_report(const std::vector<Comparison>& comparisons, ReportFormat format) {
+std::string comparison_report(const std::vector<RunComparison>& comparisons, ReportFormat format) {
   if (format == ReportFormat::json && comparisons.size() > 1) {
     Json list = Json::array();
-    for (const Comparison& c : comparisons) list.push_back(comparison_json(c));
+    for (const RunComparison& c : comparisons) list.push_back(comparison_json(c));
     return json_text(list, 2) + '\n';
   }
   std::string text;
-  for (const Comparison& c : comparisons)
+  for (const RunComparison& c : comparisons)
     text += (text.empty() ? "" : "\n") + comparison_report(c, format);
   return text;
 }

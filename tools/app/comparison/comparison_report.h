@@ -14,9 +14,9 @@ enum class ReportFormat { text, markdown, json, csv };
 /// @throws InputError for a name that is none of text, markdown, json, csv
 ReportFormat parse_report_format(const std::string& name);
 
-std::string comparison_report(const Comparison& comparison, ReportFormat format);
+std::string comparison_report(const RunComparison& comparison, ReportFormat format);
 /// The same of several, one after the other; in JSON a list if there is more than one.
-std::string comparison_report(const std::vector<Comparison>& comparisons, ReportFormat format);
+std::string comparison_report(const std::vector<RunComparison>& comparisons, ReportFormat format);
 
 /// "8-point hypotheses: issue +1.2 %": the parts of a stage that explain most of its difference,
 /// each with its share of the stage's cycles in A.
@@ -30,6 +30,6 @@ std::string part_label(const std::string& name);
 std::string shortened(const std::string& text, int width);
 
 /// One line about the work: the same, or where it is not.
-std::string work_line(const Comparison& comparison);
+std::string work_line(const RunComparison& comparison);
 
 }  // namespace leviosim::tools

@@ -11,11 +11,11 @@ constexpr const char* kUnit = "cycles";
 /// What is below a thousandth of a cycle in every row of a file is no rest.
 constexpr double kNoRest = 1e-6;
 
-Quantity& part(Quantity& whole, const std::string& name) {
+ComparedQuantity& part(ComparedQuantity& whole, const std::string& name) {
   const auto it = std::find_if(whole.parts.begin(), whole.parts.end(),
-                               [&](const Quantity& q) { return q.name == name; });
+                               [&](const ComparedQuantity& q) { return q.name == name; });
   if (it != whole.parts.end()) return *it;
-  return whole.parts.emplace_back(Quantity{name, kUnit, 0.0, 0.0});
+  return whole.parts.emplace_back(ComparedQuantity{name, kUnit, 0.0, 0.0});
 }
 
 /// Where a part stands in a tree: names from the top.
@@ -32,15 +32,15 @@ Path place_path(const CyclePart& p) {
   return {p.where.empty() ? kWholeTeam : p.where, p.mechanism};
 }
 
-void add_parts(Quantity& whole, const StageParts* stage, double frames,
-               Path (*path)(const CyclePart&), std::optional<double> Quantity::*side) {
+void add_parts(ComparedQuantity& whole, const StageParts* stage, double frames,
+               Path (*path)(const CyclePart&), std::optional<double> ComparedQuantity::*side) {
   if (stage == nullptr || frames == 0) return;
   whole.*side = stage->cycles / frames;
   double listed = 0;
   for (const CyclePart& p : stage->parts) {
     const double cycles = p.cycles / frames;
     listed += cycles;
-    Quantity* node = &whole;
+    ComparedQuantity* node = &whole;
     for (const std::string& name : path(p)) {
       node = &part(*node, name);
       *(node->*side) += cycles;
@@ -50,15 +50,16 @@ void add_parts(Quantity& whole, const StageParts* stage, double frames,
   if (std::abs(rest) > kNoRest * stage->cycles / frames) *(part(whole, "rest").*side) += rest;
 }
 
-Quantity split(const StageParts* a, const StageParts* b, double frames_a, double frames_b,
-               Path (*path)(const CyclePart&)) {
-  Quantity whole{a != nullptr ? a->stage : b != nullptr ? b->stage : "", kUnit, 0.0, 0.0};
-  add_parts(whole, a, frames_a, path, &Quantity::a);
-  add_parts(whole, b, frames_b, path, &Quantity::b);
+ComparedQuantity split(const StageParts* a, const StageParts* b, double frames_a, double frames_b,
+                       Path (*path)(const CyclePart&)) {
+  ComparedQuantity whole{a != nullptr ? a->stage : b != nullptr ? b->stage : "", kUnit, 0.0, 0.0};
+  add_parts(whole, a, frames_a, path, &ComparedQuantity::a);
+  add_parts(whole, b, frames_b, path, &ComparedQuantity::b);
   // Ops that cost nothing in both runs explain nothing.
-  for (Quantity& q : whole.parts)
-    std::erase_if(q.parts, [](const Quantity& leaf) { return *leaf.a == 0 && *leaf.b == 0; });
-  std::erase_if(whole.parts, [](const Quantity& q) { return *q.a == 0 && *q.b == 0; });
+  for (ComparedQuantity& q : whole.parts)
+    std::erase_if(q.parts,
+                  [](const ComparedQuantity& leaf) { return *leaf.a == 0 && *leaf.b == 0; });
+  std::erase_if(whole.parts, [](const ComparedQuantity& q) { return *q.a == 0 && *q.b == 0; });
   return whole;
 }
 
@@ -88,13 +89,13 @@ Causes causes_of(double count_a, double cycles_a, double count_b, double cycles_
 
 }  // namespace
 
-Quantity split_by_mechanism(const StageParts* a, const StageParts* b, double frames_a,
-                            double frames_b) {
+ComparedQuantity split_by_mechanism(const StageParts* a, const StageParts* b, double frames_a,
+                                    double frames_b) {
   return split(a, b, frames_a, frames_b, mechanism_path);
 }
 
-Quantity split_by_place(const StageParts* a, const StageParts* b, double frames_a,
-                        double frames_b) {
+ComparedQuantity split_by_place(const StageParts* a, const StageParts* b, double frames_a,
+                                double frames_b) {
   return split(a, b, frames_a, frames_b, place_path);
 }
 

@@ -7,9 +7,10 @@
 namespace leviosim::tools {
 
 /// @param frames_a,frames_b  that the cycles are divided by
-Quantity split_by_mechanism(const StageParts* a, const StageParts* b, double frames_a,
-                            double frames_b);
-Quantity split_by_place(const StageParts* a, const StageParts* b, double frames_a, double frames_b);
+ComparedQuantity split_by_mechanism(const StageParts* a, const StageParts* b, double frames_a,
+                                    double frames_b);
+ComparedQuantity split_by_place(const StageParts* a, const StageParts* b, double frames_a,
+                                double frames_b);
 Causes split_by_cause(const StageParts* a, const StageParts* b, double frames_a, double frames_b);
 
 }  // namespace leviosim::tools
