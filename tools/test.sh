@@ -3,7 +3,7 @@
 # status 0 only if all is well.
 #   tools/test.sh           release build (GCC), reproducibility over compilers, all tests
 #                           and 20 s of each fuzz target but sweep_plan
-#   tools/test.sh --fast    without the other compilers and fuzz targets
+#   tools/test.sh --fast    only the program and its quick tests (ctest -L unit), and the pages
 #   tools/test.sh --asan    all tests under address and undefined-behaviour sanitizers
 #   tools/test.sh --tsan    tests of what runs in threads (sweeps, batches, drawing) under the
 #                           thread sanitizer
@@ -13,9 +13,15 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=release
 reproducible=yes
+targets=()
+tests=()
 for option in "$@"; do
   case $option in
-    --fast) reproducible=no ;;
+    --fast)
+      reproducible=no
+      targets=(leviosim leviosim_{sim,workload,platform_models,traces,tools}_tests)
+      tests=(--label-regex unit)
+      ;;
     --asan) preset=asan reproducible=no ;;
     --tsan) preset=tsan reproducible=no ;;
     --clang) preset=clang reproducible=no ;;
@@ -28,7 +34,7 @@ done
 
 tools/setup.sh
 echo "test: building preset $preset"
-tools/build.sh "$preset"
+tools/build.sh "$preset" "${targets[@]}"
 
 status=0
 if [[ $reproducible == yes ]]; then
@@ -36,9 +42,10 @@ if [[ $reproducible == yes ]]; then
   tools/fuzz.sh --seconds 20 --light || status=1
 fi
 tools/check_pages.sh || status=1
-if [[ $preset == release ]]; then
+if [[ $preset == release && ${#targets[@]} == 0 ]]; then
+  tools/ci/guard.sh || status=1
   tools/figures.sh --check || echo "test: figures are stale (above); tools/figures.sh makes them anew"
 fi
 # Last, so that its summary is what stands at the end of the log.
-ctest --preset "$preset" --parallel 2 || status=1
+ctest --preset "$preset" --parallel 2 "${tests[@]}" || status=1
 exit $status
