@@ -19,16 +19,6 @@ int checked_workers(const ClusterConfig& config, int workers) {
   return workers;
 }
 
-/// When the queue of the DMA has room for another command: as soon as fewer than `commands` of the
-/// transfers that end at `arrivals` are under way.
-Time room_in_queue(std::vector<Time> arrivals, Time now, int commands) {
-  std::erase_if(arrivals, [&](Time arrival) { return arrival <= now; });
-  const auto room = static_cast<std::size_t>(commands);
-  if (commands == 0 || arrivals.size() < room) return now;
-  std::sort(arrivals.begin(), arrivals.end());
-  return arrivals[arrivals.size() - room];
-}
-
 }  // namespace
 
 Cluster::Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers)
@@ -85,8 +75,7 @@ Task<> Cluster::step(const work::Serial& serial, Account& account) {
 
 Task<> Cluster::step(const work::Transfer& transfer, Account& account) {
   const Time begin = kernel_.now();
-  const Time room = room_in_queue(background_, begin, config_.dma.commands);
-  if (room > begin) co_await kernel_.at(room);
+  if (const Time room = dma_.room(); room > begin) co_await kernel_.at(room);
   co_await kernel_.delay(cycles(config_.dma.programming));
   const Time arrival = dma_.start(transfer);
   if (transfer.background)

@@ -26,12 +26,21 @@ Dma::Dma(Kernel& kernel, const ClockDomain& clock, const DmaConfig& config, Team
 
 Duration Dma::cycles(double n) const { return clock_.duration(counted_cycles(std::round(n))); }
 
+Time Dma::room() {
+  const Time now = kernel_.now();
+  std::erase_if(under_way_, [&](Time end) { return end <= now; });
+  const auto most = static_cast<std::size_t>(config_.commands);
+  if (under_way_.empty() || under_way_.size() < most) return now;
+  return *std::min_element(under_way_.begin(), under_way_.end());
+}
+
 Time Dma::start(const work::Transfer& transfer) {
   check(work::is_between_l1_and_l2(transfer.direction), "the cluster's DMA reaches L1 and L2 only");
   Channel& channel = channels_[transfer.direction == work::Direction::L2ToL1 ? 0 : 1];
   const Time begin = std::max(channel.free, kernel_.now() + cycles(config_.first_data));
   if (begin > kLastTime) fail_beyond_time();
   channel.free = begin + cycles(payload_cycles(config_, transfer.bytes));
+  if (config_.commands > 0) under_way_.push_back(channel.free);
   // Nobody computes during a transfer that the master waits for.
   if (transfer.background) kernel_.spawn("DMA data", disturb(begin, channel.free));
   return channel.free;

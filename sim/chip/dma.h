@@ -27,6 +27,8 @@ class Dma {
  public:
   Dma(Kernel& kernel, const ClockDomain& clock, const DmaConfig& config, Team& team);
 
+  /// When another command finds room in the queue: now, or as soon as one fewer is under way.
+  Time room();
   /// A transfer that has just been programmed. Returns when its last data arrive.
   Time start(const work::Transfer& transfer);
 
@@ -43,6 +45,7 @@ class Dma {
   DmaConfig config_;
   Team& team_;
   std::array<Channel, 2> channels_{};  ///< by direction
+  std::vector<Time> under_way_;        ///< ends of transfers; not kept where any number may be
 };
 
 }  // namespace leviosim::sim

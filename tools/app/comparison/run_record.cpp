@@ -24,12 +24,15 @@ auto reading(const std::string& where, const char* what, F&& f) {
   }
 }
 
-void check_format(const std::string& where, const Json& document, const char* format) {
+void check_format(const std::string& where, const Json& document, const char* format, int newest) {
   if (document.value("format", "") != format)
     throw InputError(fmt::format("{}: no {}", where, format));
-  if (document.value("version", 0) != 1)
-    throw InputError(fmt::format("{}: {} of a version that this leviosim does not know; expected 1",
-                                 where, format));
+  const int version = document.value("version", 0);
+  if (version < 1 || version > newest)
+    throw InputError(
+        fmt::format("{}: {} of version {}, which this leviosim does not know; "
+                    "expected 1 to {}",
+                    where, format, version, newest));
 }
 
 std::vector<std::pair<std::string, std::string>> digests(const Json& inputs) {
@@ -137,11 +140,11 @@ RunRecord record_of(const std::string& where, const Json& manifest, const Json& 
   RunRecord record;
   record.name = where;
   reading(where + "/manifest.json", "a manifest", [&] {
-    check_format(where + "/manifest.json", manifest, "leviosim manifest");
+    check_format(where + "/manifest.json", manifest, "leviosim manifest", 1);
     record.facts = facts_of_manifest(manifest);
   });
   reading(where + "/stats.json", "statistics", [&] {
-    check_format(where + "/stats.json", statistics, "leviosim statistics");
+    check_format(where + "/stats.json", statistics, "leviosim statistics", kStatisticsVersion);
     add_statistics(statistics, record);
   });
   record.cycles = std::move(cycles);

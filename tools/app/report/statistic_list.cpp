@@ -34,7 +34,7 @@ void StatisticList::add_with_protocol(const std::string& name, std::string_view 
 Json statistics_document(Json list, const Json& about) {
   Json document;
   document["format"] = "leviosim statistics";
-  document["version"] = 2;
+  document["version"] = kStatisticsVersion;
   document.update(about);
   document["statistics"] = std::move(list);
   return document;
