@@ -65,7 +65,7 @@ void write_to(const fs::path& folder, const RunResult& run, const std::string& p
   EXPECT_FALSE(out.commit());
 }
 
-TEST(StagesCsv, HasARowPerStageAndAccountsThatAddUp) {
+TEST(StagesCsv, HasARowPerStageAndBreakdownsThatAddUp) {
   const std::vector<Row> rows = parse_csv(stages_csv(example_run()));
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].at("stage"), "feature extraction");

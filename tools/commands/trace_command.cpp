@@ -23,7 +23,7 @@ struct TraceOptions {
 /// Everything that replay reads, its platform too.
 void check_trace(const traces::WorkTrace& trace) {
   recorded_platform(trace);
-  traces::WorkFrames reader(trace, trace.has_kernels());
+  traces::WorkFrames reader(trace, trace.has_offload());
   for (traces::WorkFrame frame; reader.next(frame);) {
   }
   print_result("{}: {} frames, all of them can be replayed\n", printable(trace.name()),

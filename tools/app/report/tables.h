@@ -13,7 +13,7 @@ std::string stage_table(const RunResult& run);
 
 /// Where the core-cycles of the team went in the stages of the cluster, in per cent. Each row adds
 /// up to 100.0 as printed.
-std::string account_table(const RunResult& run);
+std::string breakdown_table(const RunResult& run);
 
 /// Mean and worst latency of the kinds of frame, against the frame period.
 std::string latency_table(const RunResult& run);
