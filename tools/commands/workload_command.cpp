@@ -24,7 +24,6 @@ void run(const WorkloadOptions& options) {
   std::string text = "profiles (--profile NAME)\n";
   for (const std::string& name : vio::profile_names())
     text += fmt::format("  {}: {}\n", name, vio::profile_description(name));
-  constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"parameter (-p NAME=VALUE)", kLeft},
                    {"in " + options.profile},
                    {"range", kLeft},

@@ -20,7 +20,7 @@ struct FirstLimit {
   const char* unit;
   int decimals;
 };
-constexpr std::array kOfTheRun{
+constexpr std::array kFirstLimits{
     FirstLimit{"frame latency p99", "frame.latency.p99", 1e-6, "ms", 2},
     FirstLimit{"missed", "frame.missed_share", 100, "%", 2},
     FirstLimit{"frame cycles", "frame.cycles.parallel.mean", 1e-3, "kcycles", 1},
@@ -48,7 +48,7 @@ std::string first_budget(const RunRecord& run, double margin) {
       "budgets:\n  - name: {}\n    platform: {}\n    profile: {}\n    limits:\n",
       margin, quoted(run.facts.profile + " on " + run.facts.platform), quoted(run.facts.platform),
       quoted(run.facts.profile));
-  for (const FirstLimit& limit : kOfTheRun)
+  for (const FirstLimit& limit : kFirstLimits)
     if (const auto value = run.value(limit.statistic))
       text += fmt::format("      - {} <= {} {}\n", limit.figure,
                           rounded_up(*value * limit.scale * factor, limit.decimals), limit.unit);

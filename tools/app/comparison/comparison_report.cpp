@@ -19,7 +19,6 @@ constexpr std::size_t kMostParts = 6;
 constexpr std::size_t kMostBlocks = 12;
 constexpr int kWidth = 80;
 constexpr double kKilo = 1e3;
-constexpr auto kLeft = TextTable::Align::Left;
 
 /// A part that changes its stage by less explains nothing.
 constexpr double kLeastShare = 1e-4;

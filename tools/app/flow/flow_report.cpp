@@ -14,8 +14,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr auto kLeft = TextTable::Align::Left;
-constexpr const char* kNothing = "–";
 constexpr double kPixel = 1 << 8;
 
 double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }

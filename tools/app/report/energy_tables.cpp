@@ -14,9 +14,6 @@ namespace {
 
 using sim::Estimate;
 
-constexpr auto kLeft = TextTable::Align::Left;
-constexpr const char* kNothing = "–";
-
 double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }
 
 /// "12.34" and "9.87–15.43".

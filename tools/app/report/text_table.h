@@ -24,7 +24,7 @@ class TextTable {
   void add(std::vector<std::string> cells);
   /// Titles, a rule, and the rows; every line ends in a line break.
   std::string str() const;
-  /// The same for Markdown files. Cells must hold no bars.
+  /// A table for Markdown files. Cells must hold no bars.
   std::string markdown() const;
 
  private:
@@ -38,5 +38,9 @@ class TextTable {
 /// `indent` blanks stand in its place; the first line is taken to begin at column `indent`.
 std::string wrap(const std::vector<std::string>& items, std::string_view separator, int indent,
                  int width);
+
+inline constexpr auto kLeft = TextTable::Align::Left;
+/// What stands in a cell of which nothing is known.
+inline constexpr const char* kNothing = "–";
 
 }  // namespace leviosim::tools

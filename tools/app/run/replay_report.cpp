@@ -31,7 +31,6 @@ std::string seen_text(int seen) { return seen < 0 ? "none" : fmt::format("frame 
 std::string ms(std::int64_t ns) { return fmt::format("{:.2f}", static_cast<double>(ns) * 1e-6); }
 
 std::string differing_frames(const Replay& replay) {
-  constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"frame"},
                    {"optimiser: recorded", kLeft},
                    {"here", kLeft},

@@ -11,9 +11,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr auto kLeft = TextTable::Align::Left;
-constexpr const char* kNothing = "–";
-
 std::string number(std::optional<double> value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
 }

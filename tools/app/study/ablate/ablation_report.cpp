@@ -40,7 +40,6 @@ std::string range_text(const AblationRow& row, const Spread& spread, int count) 
 }
 
 TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
-  constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"sequence", kLeft},
                    {"images"},
                    {"profile", kLeft},

@@ -29,7 +29,6 @@ std::string value_of(const Dimension& d, const vio::Profile& profile) {
 }
 
 TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
-  constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"profile", kLeft},
                    {"parameters of", kLeft},
                    {"point"},

@@ -57,7 +57,6 @@ std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, in
 }  // namespace
 
 std::string feasibility_table(const std::vector<Feasibility>& rows) {
-  constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"chip", kLeft},
                    {"cores"},
                    {"MHz"},

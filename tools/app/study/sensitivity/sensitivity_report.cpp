@@ -10,7 +10,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr auto kLeft = TextTable::Align::Left;
 constexpr double kShown = 0.005;  ///< per cent; below, 0.00 would be printed
 constexpr int kWidth = 100;
 

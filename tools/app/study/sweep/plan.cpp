@@ -19,17 +19,18 @@ namespace {
 using platform::Place;
 using platform::YamlEntry;
 using platform::YamlNode;
-using Kind = SweepMember::Kind;
+using MemberKind = SweepMember::Kind;
 
 constexpr std::int64_t kMostDraws = 1'000'000;
 
 struct MemberName {
   const char* name;
-  Kind kind;
+  MemberKind kind;
 };
-constexpr std::array kMembers{MemberName{"grid", Kind::grid}, MemberName{"list", Kind::list},
-                              MemberName{"random", Kind::random},
-                              MemberName{"latin_hypercube", Kind::latin_hypercube}};
+constexpr std::array kMembers{MemberName{"grid", MemberKind::grid},
+                              MemberName{"list", MemberKind::list},
+                              MemberName{"random", MemberKind::random},
+                              MemberName{"latin_hypercube", MemberKind::latin_hypercube}};
 
 class PlanReader {
  public:
@@ -177,9 +178,9 @@ class PlanReader {
     member.place = place(entry, path);
     for (const MemberName& m : kMembers)
       if (entry.key == m.name) member.kind = m.kind;
-    if (member.kind == Kind::list)
+    if (member.kind == MemberKind::list)
       read_list(entry, inner, member);
-    else if (member.kind == Kind::grid)
+    else if (member.kind == MemberKind::grid)
       member.axes = read_axes(entries(entry.value, inner), inner, false);
     else
       read_draws(entries(entry.value, inner), inner, member);

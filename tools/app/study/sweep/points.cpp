@@ -75,17 +75,6 @@ std::string SweepPoints::settings_text(std::size_t i) const {
 
 namespace {
 
-/// The rows of different points, found again by a hash of what they are.
-class SeenRows {
- public:
-  /// Whether the row is new. @param is_same  whether a row that was there is the same point
-  template <class IsSame>
-  bool add(std::uint32_t hash, std::uint32_t row, const IsSame& is_same) {
-    if (2 * (count_ + 1) > slots_.size()) grow();
-    std::size_t at = hash & (slots_.size() - 1);
-    for (; slots_[at].row != kFree; at = (at + 1) & (slots_.size() - 1))
-      if (slots_[at].hash == hash && is_same(slots_[at].row)) return false;
-    slots_[at] = {hash, row};
     ++count_;
     return true;
   }
@@ -128,6 +117,18 @@ std::string text_of(const SweepRow& row) {
 }
 
 }  // namespace
+
+/// The rows of different points, told apart by a hash of what they are.
+class SeenRows {
+ public:
+  /// Whether the row is new. @param is_same  whether a row that was there is the same point
+  template <class IsSame>
+  bool add(std::uint32_t hash, std::uint32_t row, const IsSame& is_same) {
+    if (2 * (count_ + 1) > slots_.size()) grow();
+    std::size_t at = hash & (slots_.size() - 1);
+    for (; slots_[at].row != kFree; at = (at + 1) & (slots_.size() - 1))
+      if (slots_[at].hash == hash && is_same(slots_[at].row)) return false;
+    slots_[at] = {hash, row};
 
 class Expander {
  public:

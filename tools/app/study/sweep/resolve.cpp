@@ -15,7 +15,7 @@
 namespace leviosim::tools {
 namespace {
 
-const std::string kChipPrefix = "platform.";
+const std::string kPlatformPrefix = "platform.";
 
 class Resolver {
  public:
@@ -57,7 +57,7 @@ class Resolver {
 
   void take_chip(platform::PlatformFile& file) {
     point_.chip = &file;
-    point_.overrides = with_prefix(kChipPrefix, false);
+    point_.overrides = with_prefix(kPlatformPrefix, false);
     point_.request.platform = file.resolve(point_.overrides);
     const sim::ClusterConfig& cluster = point_.request.platform.config.cluster;
     point_.request.cores =

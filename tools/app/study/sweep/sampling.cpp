@@ -13,7 +13,7 @@
 namespace leviosim::tools {
 namespace {
 
-using Kind = SweepMember::Kind;
+using MemberKind = SweepMember::Kind;
 
 constexpr std::size_t kRowsPerPoll = 1024;
 
@@ -25,8 +25,8 @@ std::size_t multiplied(std::size_t a, std::size_t b, const platform::Place& plac
 }
 
 std::size_t rows_of(const SweepMember& member) {
-  if (member.kind == Kind::list) return member.rows.size();
-  if (member.kind != Kind::grid) return member.count;
+  if (member.kind == MemberKind::list) return member.rows.size();
+  if (member.kind != MemberKind::grid) return member.count;
   std::size_t rows = 1;
   for (const SweepAxis& axis : member.axes)
     rows = multiplied(rows, axis.domain.values.size(), member.place);
@@ -68,9 +68,9 @@ GroupRows::GroupRows(const SweepPlan& plan, const SweepGroup& group, ValuePool& 
   for (const SweepMember& member : group.members)
     rows = multiplied(rows, rows_of(member), group.place);
   for (auto member = group.members.rbegin(); member != group.members.rend(); ++member) {
-    if (member->kind == Kind::grid)
+    if (member->kind == MemberKind::grid)
       add_grid(plan, *member, pool);
-    else if (member->kind == Kind::list)
+    else if (member->kind == MemberKind::list)
       add_list(plan, *member, pool);
     else
       add_draws(plan, *member, pool);
@@ -103,7 +103,7 @@ void GroupRows::add_list(const SweepPlan& plan, const SweepMember& member, Value
 void GroupRows::add_draws(const SweepPlan& plan, const SweepMember& member, ValuePool& pool) {
   for (std::size_t d = 0; d < member.axes.size(); ++d) {
     const SweepAxis& axis = member.axes[d];
-    const std::vector<double> draws = member.kind == Kind::random
+    const std::vector<double> draws = member.kind == MemberKind::random
                                           ? random_draws(member.count, d, member.seed)
                                           : latin_draws(member.count, d, member.seed);
     Column column{place_of(plan, axis.key), size_, std::vector<ValueId>(member.count)};

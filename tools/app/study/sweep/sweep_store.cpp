@@ -62,7 +62,7 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const Sw
     if (!holds(points))
       database_.fail(
           "holds the results of another plan, of other data or of another leviosim; choose a new "
-          "folder, or --force to begin anew (finished points are found again where they are the "
+          "folder, or --force to begin anew (finished points come from the cache where they are the "
           "same)");
     transaction.commit();
     return;

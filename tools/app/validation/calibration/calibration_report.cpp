@@ -7,8 +7,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr auto kLeft = TextTable::Align::Left;
-
 std::string kilo(double cycles) { return fmt::format("{:.0f}", cycles / 1e3); }
 
 std::string percent(double simulated, double reference) {

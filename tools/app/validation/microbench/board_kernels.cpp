@@ -21,7 +21,7 @@ using Pairs = P::Span<work::I16x2<P>>;
 using work::Core;
 using work::Machine;
 
-constexpr std::string_view kReferences = "gap8_board";
+constexpr std::string_view kBoardReferences = "gap8_board";
 constexpr double kCalls = 100;
 constexpr double kSpeedUpTolerance = 0.5;  // of a factor
 
@@ -116,7 +116,7 @@ const Kernel& kernel_of(const MicrobenchRow& row) {
   for (const Kernel& kernel : kKernels)
     if (kernel.group == row.group && kernel.name == row.name) return kernel;
   throw InputError(fmt::format("tests/validation/{}.csv: there is no kernel \"{}, {}\"",
-                               kReferences, row.group, row.name));
+                               kBoardReferences, row.group, row.name));
 }
 
 /// What eight cores gain over one. Where the board gains more than there are cores, because the two
@@ -152,8 +152,9 @@ std::vector<MicrobenchRow> board_kernels(const sim::ChipConfig& chip,
 }
 
 std::vector<MicrobenchRow> board_rows(const sim::ChipConfig& chip) {
-  return board_kernels(chip, reference_rows(fmt::format("tests/validation/{}.csv", kReferences),
-                                            std::string(reference_text(kReferences)), 2));
+  return board_kernels(chip,
+                       reference_rows(fmt::format("tests/validation/{}.csv", kBoardReferences),
+                                      std::string(reference_text(kBoardReferences)), 2));
 }
 
 }  // namespace leviosim::tools

@@ -147,7 +147,7 @@ double offload_and_back(const sim::ChipConfig& chip, int cores) {
   return Bench(chip, cores).offload_cycles();
 }
 
-constexpr std::array kBenches = {
+constexpr std::array kMemoryBenches = {
     UnitBench{"loads of one word", loads_of_one_word},
     UnitBench{"loads in step", loads_in_step},
     UnitBench{"loads at random", loads_at_random},
@@ -176,6 +176,6 @@ constexpr std::array kBenches = {
 
 }  // namespace
 
-std::span<const UnitBench> memory_benches() { return kBenches; }
+std::span<const UnitBench> memory_benches() { return kMemoryBenches; }
 
 }  // namespace leviosim::tools

@@ -149,7 +149,7 @@ double division(const sim::ChipConfig& chip, int) {
   return sequence(as_assembly(chip),
                   [a = I32(7)](auto) { [[maybe_unused]] const I32 x = a / I32(Divisor); });
 }
-constexpr std::array kBenches = {
+constexpr std::array kStreamBenches = {
     UnitBench{"fp32 add", shared<&Registers::add>},
     UnitBench{"fp32 mul", shared<&Registers::mul>},
     UnitBench{"fp32 madd", shared<&Registers::madd>},
@@ -186,6 +186,6 @@ constexpr std::array kBenches = {
 
 }  // namespace
 
-std::span<const UnitBench> stream_benches() { return kBenches; }
+std::span<const UnitBench> stream_benches() { return kStreamBenches; }
 
 }  // namespace leviosim::tools
