@@ -22,7 +22,7 @@ struct TextFile {
 /// @param from   the file that names it
 /// @param place  where it does; begins the message if there is no such file
 TextFile find_instruction_set(const std::string& base, const std::string& from, const Place& place);
-/// The same for a platform.
+/// Checks the instruction set of a platform.
 TextFile find_platform(const std::string& name, const std::string& from, const Place& place);
 
 /// Whether a platform or an instruction set is given by path and not by name.

@@ -30,7 +30,7 @@ std::vector<std::string> platform_names();
 ResolvedPlatform resolve_platform(const std::string& name_or_path,
                                   const std::vector<std::string>& overrides = {});
 
-/// The same from the text of a file; `file` is its name for messages.
+/// Loads a platform from the text of a file; `file` is its name for messages.
 ResolvedPlatform resolve_platform_text(const std::string& file, const std::string& text,
                                        const std::vector<std::string>& overrides = {});
 

@@ -26,7 +26,7 @@ class PlatformFile {
   /// The parameters with overrides, before the rules between them are checked.
   Settings settings_with(const std::vector<std::string>& overrides);
 
-  /// The same parameter by its path; nullptr if the file does not give it.
+  /// A parameter by its path; nullptr if the file does not give it.
   const Parameter* find(const std::string& path);
 
   const Schema& schema() const { return schema_; }

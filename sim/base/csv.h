@@ -66,7 +66,7 @@ FirstRow first_row(const std::filesystem::path& file);
 class CsvReader {
  public:
   CsvReader(std::filesystem::path file, Separator separator, std::vector<std::string> names);
-  /// The same from text that is at hand; `file` is its name for messages.
+  /// Reads a table from text that is at hand; `file` is its name for messages.
   CsvReader(std::filesystem::path file, Separator separator, std::vector<std::string> names,
             std::string text);
   CsvReader(const CsvReader&) = delete;

@@ -67,7 +67,7 @@ int rename_new(const std::filesystem::path& from, const std::filesystem::path& t
 /// Exchanges the names of two files or of two folders, in one step where the file system can.
 /// @returns 0, or the error
 int exchange(const std::filesystem::path& a, const std::filesystem::path& b);
-/// The same in three steps for other file systems. Stopped in between, what b was has a name
+/// Exchanges two files in three steps, for file systems that cannot do it at once. Stopped in between, what b was has a name
 /// beside it, free_name(b, …).
 int exchange_by_steps(const std::filesystem::path& a, const std::filesystem::path& b);
 

@@ -13,7 +13,7 @@ namespace leviosim {
 /// are no UTF-8: "\n", "\t", "\r" and else "\x1b" for each byte.
 std::string printable(std::string_view text);
 
-/// The same for text of several lines, such as tables: newlines and tabs stay.
+/// Printable form of a text of several lines, such as tables: newlines and tabs stay.
 std::string printable_lines(std::string_view text);
 
 }  // namespace leviosim

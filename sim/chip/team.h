@@ -47,7 +47,7 @@ class Team {
     Timer end;
     bool running = false;
     Demand demand;
-    Runner runner;         ///< the same as the solver sees it
+    Runner runner;         ///< the segment as the contention solver sees it
     double remaining = 0;  ///< lone cycles still to do
     Progress progress;
     SegmentTime time;

@@ -49,7 +49,7 @@ class Kernel {
 
   /// Takes over a process; it starts at the current time, in Phase::Run, in the order of spawning.
   void spawn(std::string name, Process process);
-  /// The same for a process that serves others for ever: its waiting is no deadlock.
+  /// Starts a process that serves others for ever: that it waits is no deadlock.
   void spawn_server(std::string name, Process process);
 
   /// Executes events until none is left. Returns how many processes, other than servers, are then

@@ -53,7 +53,7 @@ struct RawCounts {
   std::array<std::uint64_t, kOpCount> n{};
   std::uint64_t not_taken_after_all = 0;
 };
-/// The same as they are meant, without code.
+/// Counts as they are meant, without code.
 Counts settled(const RawCounts& raw);
 
 /// Returns what this thread counted since the last call, and starts again from zero.

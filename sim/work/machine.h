@@ -97,7 +97,7 @@ class Machine {
     end_fork();
   }
 
-  /// The same with the master as one more core, whose id is the last.
+  /// Runs parallel work with the master as one more core, whose id is the last.
   template <class Body>
   void fork_with_master(std::string_view name, Body&& body) {
     begin_fork(name);

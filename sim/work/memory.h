@@ -135,7 +135,7 @@ class CountedSpan {
   bool straddles_ = false;
 };
 
-/// The same view under the native policy.
+/// A view of memory under the native policy.
 template <class T>
 class NativeSpan {
  public:

@@ -32,7 +32,7 @@ struct Packed {
 
   Lane lanes[N];
 
-  /// The same 32 bits seen as lanes: nothing is counted.
+  /// The 32 bits of a word seen as lanes: nothing is counted.
   static Packed of_register(Scalar x) {
     Packed out;
     const auto bits = static_cast<std::uint32_t>(value(x));

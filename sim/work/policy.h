@@ -96,7 +96,7 @@ struct CodeScope {
   CodeScope& operator=(const CodeScope&) = delete;
 };
 
-/// Marks a function that a target compiler does not inline: the same, and a call.
+/// Marks a function that a target compiler does not inline: names its code, and counts a call.
 template <bool Counted>
 struct FunctionScope {
   explicit FunctionScope(CodeName name) : code_(name) {

@@ -75,7 +75,7 @@ inline Counts counts_of(const StageRun& stage) {
   return sum;
 }
 
-/// The same with what of it was done in offload regions.
+/// The counts of a step with what of them was done in offload regions.
 inline Segment segments_of(const StageRun& stage) {
   Segment sum;
   for (const Step& step : stage.steps) {

@@ -157,7 +157,7 @@ TEST(RunOutcome, ARunSomeOfWhosePosesAreNoNumbersHasDiverged) {
   EXPECT_NEAR(outcome_of(run, truth, {}).ate_m.value(), 0, 1e-9);
   run.poses_left_out = 2;
   const RunOutcome diverged = outcome_of(run, truth, {});
-  EXPECT_EQ(diverged.failure, "2 poses are no numbers");
+  EXPECT_EQ(diverged.failure, "2 poses are NaN");
   EXPECT_FALSE(diverged.ate_m);
   EXPECT_EQ(diverged.frames, 12u);
 }

@@ -180,11 +180,11 @@ TEST(TrajectorySummary, SaysWhatCannotBeCompared) {
   run.poses_left_out = 2;
   run.not_comparable = "the positions are too large";
   const std::string text = trajectory_summary(run);
-  EXPECT_NE(text.find("2 more are no numbers and are left out"), std::string::npos);
+  EXPECT_NE(text.find("2 more are NaN and are left out"), std::string::npos);
   EXPECT_NE(text.find("ATE: none: the positions are too large"), std::string::npos);
   EXPECT_EQ(text.find("no ground truth"), std::string::npos);
   run.not_comparable.clear();  // as in a replay, which evaluates nothing
-  EXPECT_NE(trajectory_summary(run).find("ATE: none: 2 poses are no numbers"), std::string::npos);
+  EXPECT_NE(trajectory_summary(run).find("ATE: none: 2 poses are NaN"), std::string::npos);
 }
 
 TEST(Report, OnlyItsLastLineIsAboutTheHost) {

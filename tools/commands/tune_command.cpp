@@ -76,7 +76,7 @@ void run(const CLI::App& command, const TuneWords& words, const Words& command_l
 Command add_tune_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand(
       "tune",
-      "Accuracy and power over the clock, in closed loops; the lowest clock that is enough");
+      "Accuracy and power over the clock, in closed loops; the lowest clock that meets the limits");
   const auto typed = std::make_shared<TuneWords>();
   add_tune_options(*command, *typed);
   return {command, [=, &words] { run(*command, *typed, words); }};

@@ -45,7 +45,7 @@ class World {
   /// indices. The direction need not have unit length.
   Hit cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
            std::span<const int> candidates) const;
-  /// The same among all objects.
+  /// The nearest hit among all objects.
   Hit cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
 
   /// Grey level that the ray sees at its hit, through a pixel that spans `pixel_angle` radians.

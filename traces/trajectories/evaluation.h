@@ -67,7 +67,7 @@ struct Evaluation {
 };
 
 /// Throws InputError if nothing matches or too little for the alignment, and NotComparable if the
-/// coordinates are no numbers or too large to be compared.
+/// coordinates are NaN or too large to be compared.
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
                     const EvaluationOptions& options = {});
 

@@ -53,7 +53,7 @@ struct TrajectoryPair {
   TrajectoryFile truth;
 };
 
-/// Reads both with the same options. Throws InputError as read_trajectory() does, if one has time
+/// Reads estimate and truth with one set of options. Throws InputError as read_trajectory() does, if one has time
 /// stamps and the other none, if neither has any and the numbers of poses differ, and for times
 /// that neither file needs.
 TrajectoryPair read_pair(const std::filesystem::path& estimate, const std::filesystem::path& truth,

@@ -17,7 +17,7 @@ inline constexpr std::uint64_t kDecodedPerCeiling = 256;
 
 inline constexpr std::size_t kFrameMemory = 2048;  ///< stamp, result, comparison, rows of tables
 inline constexpr std::size_t kJobMemory = 1024;    ///< with its timing
-inline constexpr std::size_t kStageMemory = sizeof(work::StageRun) + 1024;  ///< likewise
+inline constexpr std::size_t kStageMemory = sizeof(work::StageRun) + 1024;  ///< of a stage in memory
 inline constexpr std::size_t kStepMemory = sizeof(work::Step) + 64;
 inline constexpr std::size_t kBlockMemory = 512;  ///< of a memory peak, with its statistics
 inline constexpr std::size_t kTextMemory = 128;   ///< beside its characters
@@ -26,7 +26,7 @@ inline constexpr std::size_t kTextMemory = 128;   ///< beside its characters
 inline constexpr std::size_t kMostStages = 256;
 /// Numbers that a frame yields.
 inline constexpr std::size_t kMostFacts = 64;
-/// Memories of the summary; likewise.
+/// What a memory of the summary takes.
 inline constexpr std::size_t kMostMemories = 256;
 /// Bytes of a memory or block. No memory of such chips comes near.
 inline constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40;

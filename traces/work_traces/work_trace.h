@@ -68,7 +68,7 @@ struct WorkTraceInfo {
   std::string data;              ///< what was run on, in the words of the user
   std::int64_t first_frame = 0;  ///< index in the data
   std::string platform;          ///< of the recording, in the words of the user
-  std::string platform_yaml;     ///< the same, resolved: loads as a platform file
+  std::string platform_yaml;     ///< the platform, resolved: loads as a platform file
   int cores = 0;                 ///< among which the front end's work was divided
   int image_width = 0;
   int image_height = 0;
@@ -88,7 +88,7 @@ class WorkTrace {
   /// @throws InputError for anything that is no whole work trace of a version that is known, and if
   ///         the memory does not suffice
   explicit WorkTrace(const std::filesystem::path& file, Bytes memory = kTraceMemory);
-  /// The same from its bytes; `name` is for messages.
+  /// Opens a work trace from its bytes; `name` is for messages.
   WorkTrace(std::string name, std::string bytes, Bytes memory = kTraceMemory);
   WorkTrace(const WorkTrace&) = delete;
   WorkTrace& operator=(const WorkTrace&) = delete;

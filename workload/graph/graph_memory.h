@@ -81,7 +81,7 @@ struct GraphMemory {
   GraphMemory() = default;
   /// Views of new, uninitialised memory in `arena`.
   GraphMemory(work::Arena& arena, const GraphCapacity& size) : GraphMemory(arena, arena, size) {}
-  /// The same with the intervals in `inertial`, beside the one that is under way. The paper's graph
+  /// Memory of a graph with the intervals in `inertial`, beside the one that is under way. The paper's graph
   /// of 64.2 kB has no room for them: to the byte it is 1000 landmarks of 45 bytes and 2400
   /// observations of 8.
   GraphMemory(work::Arena& arena, work::Arena& inertial, const GraphCapacity& size)
@@ -139,7 +139,7 @@ void for_each_block_pair(A a, B b, const Visitor& visit) {
       a.blocks());
 }
 
-/// The same memory as a cluster core sees it.
+/// Memory of a graph as a cluster core sees it.
 template <class P>
 GraphMemory<P, L2FromCluster> seen_from_cluster(const GraphMemory<P, LocalMemory>& graph) {
   GraphMemory<P, L2FromCluster> seen;

@@ -13,7 +13,7 @@
 //     from zero beside that of relative motion;
 //   - the biases have walked: noise q added to an unknown i changes H by −h hᵀ q/(1 + q H_ii) with
 //   h
-//     its column i, and b likewise, which leaves the estimate where it is.
+//     its column i, and the same for b, which leaves the estimate where it is.
 //
 // Left out: first-estimate Jacobians.
 #pragma once
@@ -28,7 +28,7 @@ namespace leviosim::vio {
 /// What is known before the first keyframe, and how the gauge is held: standard deviations.
 struct PriorOptions {
   float position = 1e-3f;   ///< of the oldest keyframe, m
-  float heading = 1e-3f;    ///< likewise, rad
+  float heading = 1e-3f;    ///< standard deviation, rad
   float tilt = 0.1f;        ///< of the first keyframe: gravity averaged in motion, rad
   float velocity = 1.0f;    ///< of the first keyframe, m/s
   float gyro_bias = 0.1f;   ///< rad/s
@@ -40,7 +40,7 @@ struct PriorOptions {
   float rest_velocity = 0.1f;
   float rest_gyro_bias = 0.005f;
   float gyro_walk = 1.9393e-5f;  ///< density, rad/s²/√Hz (EuRoC's sensor.yaml)
-  float accel_walk = 3e-3f;      ///< density, m/s³/√Hz (likewise)
+  float accel_walk = 3e-3f;      ///< density, m/s³/√Hz (as that of the gyroscope)
   /// Of each unknown's information, added to it before keyframes are eliminated, so that rounding
   /// in single precision leaves none without.
   float floor = 1e-6f;

@@ -64,7 +64,7 @@ template <class P>
 IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
                               const OptimiserOptions& options);
 
-/// The same with the biases as unknowns, a lever arm, and a prior from marginalisation in place of
+/// Optimises the window with the biases as unknowns, a lever arm, and a prior from marginalisation in place of
 /// the anchor; changes `window.bias` as well.
 template <class P>
 IterationReport optimise_jointly_once(work::Machine& fc, Window<P>& window,

@@ -11,7 +11,7 @@
 // the bias after it without bound.
 //
 // Before the first interval nothing is known but how large such biases are: 0.1 rad/s is a wide
-// bound for the zero-rate level of MEMS gyroscopes (some °/s), 0.05 m/s² likewise.
+// bound for the zero-rate level of MEMS gyroscopes (some °/s), 0.05 m/s² that of accelerometers.
 #pragma once
 
 #include "workload/inertial/residual.h"

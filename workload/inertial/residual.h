@@ -84,7 +84,7 @@ ImuJacobians<P> imu_jacobians(const KeyframeState<P>& begin, const KeyframeState
 }
 
 /// Derivatives by the biases. Those by the accelerometer bias are -velocity_by_accel() and
-/// -position_by_accel() of the interval; velocity and position by the gyro bias likewise.
+/// -position_by_accel() of the interval; velocity and position by the gyro bias in the same way.
 /// @param bias  at which `residual` was computed
 template <class P>
 Mat3<P> rotation_residual_by_gyro_bias(const Preintegration<P>& interval, const ImuBias<P>& bias,

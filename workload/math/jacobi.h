@@ -79,7 +79,7 @@ LEVIOSIM_HOST_INLINE void rotate_rows(typename P::template Span<typename P::F32>
   }
 }
 
-/// The same for columns p and q of a.
+/// Rotates columns p and q of a.
 template <class P>
 LEVIOSIM_HOST_INLINE void rotate_columns(MatrixView<P> a, typename P::I32 p, typename P::I32 q,
                                          typename P::F32 c, typename P::F32 s) {

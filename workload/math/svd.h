@@ -114,7 +114,7 @@ LEVIOSIM_HOST_INLINE void svd_square(ConstMatrixView<P> a, MatrixView<P> u,
 inline constexpr int kSvd3Rotations = 10;
 inline constexpr float kSvdTolerance = 1e-8f;
 
-/// The same for a 3×3 matrix in registers; the work is done in memory on the call stack.
+/// Singular values of a 3×3 matrix in registers; the work is done in memory on the call stack.
 template <class P>
 void svd3(const Mat3<P>& a, Mat3<P>& u, Vec3<P>& s, Mat3<P>& v, int max_rotations = kSvd3Rotations,
           typename P::F32 tolerance = kSvdTolerance,

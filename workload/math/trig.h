@@ -116,7 +116,7 @@ typename P::F32 cos_of(typename P::F32 x) {
   return trig::sin_in_quadrant<P>(a);
 }
 
-/// Both, with one reduction; the same bits as sin_of and cos_of.
+/// Sine and cosine with one reduction of the angle; the bits of sin_of and cos_of.
 template <class P>
 SinCos<P> sincos_of(typename P::F32 x) {
   using F = typename P::F32;

@@ -32,7 +32,7 @@ struct FrontEndState {
   bool strips;  ///< the image does not fit in local memory as a whole
   KeyframeRecord<P> keyframe;
   PoseGraph<P> graph;                       ///< in L2, as the source and target of transfers
-  PoseGraph<P, L2FromCluster> graph_in_l2;  ///< the same, as a cluster core reaches it
+  PoseGraph<P, L2FromCluster> graph_in_l2;  ///< the graph as a cluster core reaches it
   bool started = false;                     ///< there is a map
   std::uint32_t frame_number = 0;           ///< of the present frame, from 1 on
   float time_since_keyframe = 0;            ///< [s]

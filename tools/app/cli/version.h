@@ -15,7 +15,7 @@ std::string_view revision();
 std::string_view flight_version();
 
 /// Digest of the sources that decide the results of runs and replays: finished ones of another
-/// digest are not found again.
+/// digest are no cache hits.
 std::string_view results_version();
 
 }  // namespace leviosim::tools

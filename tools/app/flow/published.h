@@ -1,4 +1,4 @@
-// Published figures of PX4FLOW on the chips that we have platforms of, and the same from a run.
+// Published figures of PX4FLOW on the chips that we have platforms of, and such figures from a run.
 // tools/app/validation/published/px4flow.csv, compiled into the program.
 #pragma once
 
@@ -35,7 +35,7 @@ std::string_view name_of(FlowFigure figure);
 /// are scaled in proportion, cycles stay the same, and the voltage is the lowest that allows it.
 std::optional<double> predicted(const PublishedFlow& published, const RunResult& run);
 
-/// The same work with frames at another, even rate.
+/// A run's work with frames at another, even rate.
 RunResult at_rate(RunResult run, double frames_per_second);
 
 /// Cycles of a frame, on average over all but the first, which has no flow.

@@ -15,7 +15,7 @@ namespace leviosim::tools {
 /// "protocol".
 Json statistics(const RunResult& run);
 
-/// The content of stats.json: the same with one statistic on a line, so that runs can be compared
+/// The content of stats.json, with one statistic on a line, so that runs can be compared
 /// line by line.
 std::string statistics_text(const RunResult& run);
 

@@ -17,9 +17,7 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr auto kLeft = TextTable::Align::Left;
 constexpr int kWidth = 100;
-constexpr const char* kNothing = "–";
 
 std::string number(std::optional<double> value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
@@ -300,8 +298,7 @@ std::string trajectory_summary(const RunResult& run) {
   std::string text = fmt::format("trajectory: {} poses, {:.2f} m long\n", run.trajectory.size(),
                                  path_length(run.trajectory));
   if (run.poses_left_out > 0)
-    text +=
-        fmt::format("            {} more are no numbers and are left out\n", run.poses_left_out);
+    text += fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
   if (const std::string why = why_incomparable(run); !why.empty())
     return text + "ATE: none: " + why + '\n';
   if (!run.ate) return text + "ATE: no ground truth in the data\n";

@@ -57,7 +57,7 @@ struct RunResult {
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
   std::vector<traces::StampedPose> trajectory;
-  int poses_left_out = 0;                 ///< of the trajectory, since they are no numbers
+  int poses_left_out = 0;                 ///< of the trajectory, since they are NaN
   std::optional<traces::Evaluation> ate;  ///< where ground truth exists and all poses are numbers
   std::string
       not_comparable;       ///< why the trajectory could not be evaluated; see why_incomparable()

@@ -87,7 +87,7 @@ std::size_t expected_poses(const RunResult& run) {
 
 std::string why_incomparable(const RunResult& run) {
   if (!run.not_comparable.empty() || run.poses_left_out == 0) return run.not_comparable;
-  return fmt::format("{} poses are no numbers", run.poses_left_out);
+  return fmt::format("{} poses are NaN", run.poses_left_out);
 }
 
 std::optional<double> Scenario::mean_latency_ns() const {

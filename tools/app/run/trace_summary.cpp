@@ -89,7 +89,6 @@ class Contents {
 };
 
 std::string stage_table(const traces::WorkTrace& trace, const Contents& contents) {
-  constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"stage", kLeft},
                    {"call", kLeft},
                    {"calls"},

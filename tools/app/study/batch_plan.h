@@ -62,7 +62,7 @@ std::vector<std::string> sequence_names(const BatchPlan& plan);
 /// What every manifest of a study begins with. @param format  "leviosim batch manifest"
 Json study_manifest(const std::string& format, const Words& command_line);
 
-/// The content of manifest.json. Nothing in it depends on the host or on what was found again.
+/// The content of manifest.json. Nothing in it depends on the host or on cache hits.
 Json batch_manifest(const BatchPlan& plan, const Words& command_line);
 
 /// "SE3-aligned, relative errors over 40 m, …": how the errors of the plan are formed.

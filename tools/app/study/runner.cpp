@@ -57,7 +57,7 @@ void add_runner_options(CLI::App& command, RunnerWords& words, const std::string
       ->type_name("N");
   command
       .add_option("--cache", words.cache,
-                  fmt::format("where finished {}s are kept and found again [user's cache]", noun))
+                  fmt::format("where finished {}s are cached [user's cache]", noun))
       ->type_name("DIR");
 }
 

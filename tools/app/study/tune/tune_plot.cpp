@@ -142,7 +142,7 @@ void draw_legend(Svg& svg, const TunePlan& plan) {
   svg.text({kLegendX + 26, y}, "limit", {});
   y += kLineHeight;
   svg.circle({kLegendX + 9, y - 4}, 6.5, "none", {kInk, 2});
-  svg.text({kLegendX + 26, y}, "lowest enough", {});
+  svg.text({kLegendX + 26, y}, "lowest that meets the limits", {});
   y += kLineHeight;
   draw_cross(svg, {kLegendX + 9, y - 4}, {kInk, 1.6});
   svg.text({kLegendX + 26, y}, "diverged", {});

@@ -14,9 +14,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr auto kLeft = TextTable::Align::Left;
-constexpr const char* kNothing = "–";
-
 double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }
 
 std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
@@ -153,7 +150,7 @@ base::CsvTable<Run> runs_table(const TunePlan& plan) {
   add("completion", [](O o) { return fixed(o.completion, 9); });
   add("path_m", [](O o) { return fixed(o.path_m, 9); });
   add("failure", [](O o) { return plain_cell(o.failure); });
-  add_of_point("point_is_enough", [&plan](P p) { return int{is_enough(p, plan)}; });
+  add_of_point("point_meets_limits", [&plan](P p) { return int{is_enough(p, plan)}; });
   return table;
 }
 
@@ -166,7 +163,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
       {"p99 ms"},   {"worst ms"}, {"mW"}, {"band"},     {"mJ/frame"},  {"ATE m"}};
   if (several) columns.push_back({"least … greatest"});
   columns.push_back({"poses %"});
-  columns.push_back({"enough", kLeft});
+  columns.push_back({"meets limits", kLeft});
   TextTable table(std::move(columns));
   for (const TunePoint& point : points) {
     const auto power = point.median(&LoopOutcome::power_w);
@@ -199,7 +196,7 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
                   100 * plan.miss_rate, plan.ate_m);
   for (const Choice& choice : choices) text += choice_line(plan, choice);
   const TunePoint* best = chosen(choices);
-  if (best == nullptr) return text + "no point is enough\n";
+  if (best == nullptr) return text + "no point meets the limits\n";
   return text + fmt::format("the lowest of all: {} at {:g} frames/s\n  {}\n",
                             clock_text(best->setting), best->fps,
                             printable(run_command_text(plan, *best)));
