@@ -15,11 +15,11 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using base::read_text_file;
 using testing::expect_refused;
 using testing::Program;
 using testing::ProgramResult;
 using testing::run_program;
-using traces::read_text_file;
 using traces::testing::AslFolder;
 using traces::testing::contents;
 using traces::testing::expect_input_error;
@@ -195,7 +195,7 @@ TEST_F(BatchCommands, RefuseBadInputBeforeAnyRun) {
 
 TEST_F(BatchCommands, ReplaceNothingButResults) {
   fs::create_directory(folder_ / "out");
-  traces::write_file_atomically(folder_ / "out/thesis.tex", "mine");
+  base::write_file_atomically(folder_ / "out/thesis.tex", "mine");
   expect_refused(run_program(folder_.path(), words("ablate", {"--force"})),
                  {"something else than results"});
   EXPECT_TRUE(fs::exists(folder_ / "out/thesis.tex"));

@@ -15,12 +15,12 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using base::read_text_file;
+using base::write_file_atomically;
 using testing::expect_refused;
 using testing::ProgramResult;
 using testing::run_program;
-using traces::read_text_file;
 using traces::Trajectory;
-using traces::write_file_atomically;
 using traces::testing::TempFolder;
 
 /// A spiral of 10 s and about 12 m, 20 poses a second; `error` bends it. [m]

@@ -14,10 +14,10 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using base::read_text_file;
 using testing::expect_refused;
 using testing::ProgramResult;
 using testing::run_program;
-using traces::read_text_file;
 using traces::testing::AslFolder;
 using traces::testing::contents;
 using traces::testing::expect_input_error;

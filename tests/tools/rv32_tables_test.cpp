@@ -25,9 +25,9 @@ struct Segment {
 };
 
 std::vector<Segment> segments() {
-  traces::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", traces::Separator::comma,
-                        {"function", "after", "lines", "visits", "refetches"});
-  const traces::CsvRow* row = csv.next();
+  base::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", base::Separator::comma,
+                      {"function", "after", "lines", "visits", "refetches"});
+  const base::CsvRow* row = csv.next();
   EXPECT_EQ(row->text(0), "function");
   std::vector<Segment> result;
   while ((row = csv.next()) != nullptr)
@@ -80,7 +80,7 @@ TEST(Rv32Code, IsSortedWithoutRepetitionAndPlausible) {
 
 /// Operations of the vocabulary that the compiled workload does not use have no row.
 TEST(Rv32Costs, PriceKnownOperationsOnce) {
-  const std::string text = traces::read_text_file(kSource / "tools/rv32/rv32imfc_costs.csv");
+  const std::string text = base::read_text_file(kSource / "tools/rv32/rv32imfc_costs.csv");
   std::multiset<std::string> priced;
   static const std::regex row("\n([a-z0-9_]+),([0-9.]+),");
   for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it)

@@ -41,7 +41,7 @@ void run(const CLI::App& command, const TraceOptions& options) {
   else
     throw InputError(fmt::format("trace: unknown action '{}'; expected info or check{}",
                                  options.action,
-                                 platform::did_you_mean(options.action, {"info", "check"})));
+                                 base::did_you_mean(options.action, {"info", "check"})));
 }
 
 }  // namespace

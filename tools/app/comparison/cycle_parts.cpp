@@ -237,12 +237,12 @@ std::string cycles_csv(const std::vector<StageParts>& stages) {
 
 std::vector<StageParts> parse_cycles(const std::filesystem::path& file, std::string text) {
   enum { kStage, kRunsOn, kWhere, kMechanism, kOperation, kCycles, kCount };
-  traces::CsvReader reader(
-      file, traces::Separator::comma,
-      {"stage", "runs_on", "where", "mechanism", "operation", "cycles", "count"}, std::move(text));
+  base::CsvReader reader(file, base::Separator::comma,
+                         {"stage", "runs_on", "where", "mechanism", "operation", "cycles", "count"},
+                         std::move(text));
   std::vector<StageParts> stages;
   bool is_header = true;
-  while (const traces::CsvRow* row = reader.next()) {
+  while (const base::CsvRow* row = reader.next()) {
     if (std::exchange(is_header, false)) {
       if (row->text(kStage) != "stage") row->fail(kStage, "no title; expected stage");
       continue;

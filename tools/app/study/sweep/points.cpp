@@ -75,30 +75,6 @@ std::string SweepPoints::settings_text(std::size_t i) const {
 
 namespace {
 
-    ++count_;
-    return true;
-  }
-
- private:
-  static constexpr std::uint32_t kFree = UINT32_MAX;
-  struct Slot {
-    std::uint32_t hash = 0;
-    std::uint32_t row = kFree;
-  };
-  void grow() {
-    std::vector<Slot> before(std::max<std::size_t>(16, 2 * slots_.size()));
-    before.swap(slots_);
-    for (const Slot& slot : before) {
-      if (slot.row == kFree) continue;
-      std::size_t at = slot.hash & (slots_.size() - 1);
-      while (slots_[at].row != kFree) at = (at + 1) & (slots_.size() - 1);
-      slots_[at] = slot;
-    }
-  }
-  std::vector<Slot> slots_;
-  std::size_t count_ = 0;
-};
-
 /// Of an outline and numbers: all bits count (the finaliser of MurmurHash3).
 std::uint32_t hash_of(std::size_t outline, std::span<const double> numbers) {
   std::uint64_t hash = outline;
@@ -129,6 +105,29 @@ class SeenRows {
     for (; slots_[at].row != kFree; at = (at + 1) & (slots_.size() - 1))
       if (slots_[at].hash == hash && is_same(slots_[at].row)) return false;
     slots_[at] = {hash, row};
+    ++count_;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = UINT32_MAX;
+  struct Slot {
+    std::uint32_t hash = 0;
+    std::uint32_t row = kFree;
+  };
+  void grow() {
+    std::vector<Slot> before(std::max<std::size_t>(16, 2 * slots_.size()));
+    before.swap(slots_);
+    for (const Slot& slot : before) {
+      if (slot.row == kFree) continue;
+      std::size_t at = slot.hash & (slots_.size() - 1);
+      while (slots_[at].row != kFree) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = slot;
+    }
+  }
+  std::vector<Slot> slots_;
+  std::size_t count_ = 0;
+};
 
 class Expander {
  public:
