@@ -21,7 +21,7 @@ TEST(AtomicFile, ReplacesAndLeavesNothingElse) {
   const TempFolder folder;
   base::write_file_atomically(folder / "a", "one");
   base::write_file_atomically(folder / "a", "two");
-  EXPECT_EQ(read_text_file(folder / "a"), "two");
+  EXPECT_EQ(base::read_text_file(folder / "a"), "two");
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 

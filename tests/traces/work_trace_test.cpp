@@ -171,8 +171,8 @@ TEST(WorkTrace, RefusesKernelsThatCannotBe) {
 /// make no other version. Made like the first; not the compressed bytes are compared, which another
 /// version of zstd may choose otherwise.
 TEST(WorkTrace, WritesTheContentOfTheFirstVersion) {
-  const std::string golden = read_text_file(leviosim::tests::source_folder() /
-                                            "tests/traces/golden/version_1_46_operations.trace");
+  const std::string golden = base::read_text_file(
+      leviosim::tests::source_folder() / "tests/traces/golden/version_1_46_operations.trace");
   std::vector<std::string> contents = without_names_of_facts(contents_of(example_trace(5)));
   contents.pop_back();  // kernels, since version 2
   EXPECT_EQ(contents_of(golden), contents);
