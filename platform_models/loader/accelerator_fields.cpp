@@ -36,7 +36,7 @@ const std::array<Side, 2> kSides = {{
      [](EnergyConfig& e) -> EnergyConfig::Items& { return e.controller_accelerators; }, false},
 }};
 
-std::string section_of(const Side& side, const work::KernelInfo& kernel) {
+std::string section_of(const Side& side, const work::OffloadKindInfo& kernel) {
   return fmt::format("{}.accelerators.{}", side.section, kernel.name);
 }
 
@@ -72,7 +72,7 @@ const std::array<Number, 4> kNumbers = {{
      "words of L1 that a unit moves per cycle while it works"},
 }};
 
-Field field_of(const Side& side, const work::KernelInfo& kernel, const Number& number) {
+Field field_of(const Side& side, const work::OffloadKindInfo& kernel, const Number& number) {
   const std::size_t k = work::index(kernel.kernel);
   Field field =
       row(fmt::format("{}.{}", section_of(side, kernel), number.key), *number.dimension, number.min,
@@ -84,7 +84,7 @@ Field field_of(const Side& side, const work::KernelInfo& kernel, const Number& n
   return field;
 }
 
-Field units_of(const Side& side, const work::KernelInfo& kernel) {
+Field units_of(const Side& side, const work::OffloadKindInfo& kernel) {
   const std::size_t k = work::index(kernel.kernel);
   Field field = row(section_of(side, kernel) + ".units", kUnits, 1, kMaxUnits,
                     fmt::format("accelerators for: {}", kernel.description));
@@ -96,7 +96,7 @@ Field units_of(const Side& side, const work::KernelInfo& kernel) {
   return field;
 }
 
-Field energy_of(const Side& side, const work::KernelInfo& kernel) {
+Field energy_of(const Side& side, const work::OffloadKindInfo& kernel) {
   const std::size_t k = work::index(kernel.kernel);
   Field field = row(section_of(side, kernel) + ".energy", kEnergy, 0, kMaxEnergy,
                     fmt::format("of a unit for an item ({}), memory aside", kernel.item));
@@ -123,7 +123,7 @@ std::vector<Field> accelerator_fields(std::string_view section) {
   std::vector<Field> fields;
   for (const Side& side : kSides) {
     if (side.section != section) continue;
-    for (const work::KernelInfo& kernel : work::kKernels) {
+    for (const work::OffloadKindInfo& kernel : work::kOffloadKinds) {
       fields.push_back(units_of(side, kernel));
       for (const Number& number : kNumbers)
         if (number.member != &AcceleratorConfig::l1_words || side.has_l1)
@@ -138,7 +138,7 @@ void check_accelerators_are_whole(const Schema& schema, const Settings& settings
                                   const ChipConfig& chip) {
   const bool knows_energy = sim::knows_energy(chip);
   for (const Side& side : kSides)
-    for (const work::KernelInfo& kernel : work::kKernels) {
+    for (const work::OffloadKindInfo& kernel : work::kOffloadKinds) {
       const std::string section = section_of(side, kernel) + ".";
       const Setting* given = nullptr;
       const Field* missing = nullptr;
@@ -159,7 +159,7 @@ void check_accelerators_are_whole(const Schema& schema, const Settings& settings
 void check_accelerators(const Schema& schema, const Settings& settings, const ChipConfig& chip) {
   for (const Side& side : kSides) {
     if (!side.has_l1) continue;
-    for (const work::KernelInfo& kernel : work::kKernels) {
+    for (const work::OffloadKindInfo& kernel : work::kOffloadKinds) {
       const AcceleratorConfig& accelerator =
           side.of(const_cast<ChipConfig&>(chip))[work::index(kernel.kernel)];
       if (accelerator.units == 0 || accelerator.l1_words <= chip.cluster.l1.banks) continue;

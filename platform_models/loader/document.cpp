@@ -207,7 +207,7 @@ void Reader::read_section(const std::vector<YamlEntry>& entries, const std::stri
     } else if (!schema_.record(inner).empty()) {
       read_record(entry, inner);
     } else {
-      place(entry, inner).fail("unknown key" + did_you_mean(inner, schema_.keys()));
+      place(entry, inner).fail("unknown key" + base::did_you_mean(inner, schema_.keys()));
     }
   }
 }
@@ -255,7 +255,7 @@ void Reader::check_keys(const std::vector<YamlEntry>& entries, const std::string
     if (!found)
       place(entry, joined(path, entry.key))
           .fail(fmt::format("unknown key; expected {}{}", fmt::join(known, ", "),
-                            did_you_mean(entry.key, known)));
+                            base::did_you_mean(entry.key, known)));
   }
 }
 
@@ -285,7 +285,8 @@ Provenance Reader::read_provenance(const std::vector<YamlEntry>& entries, const 
     const std::vector<std::string> words(kWords.begin(), kWords.end());
     place(*find(entries, "confidence"), joined(path, "confidence"))
         .fail(fmt::format("'{}' is not known; expected one of {}{}", provenance.confidence,
-                          fmt::join(words, ", "), did_you_mean(provenance.confidence, words)));
+                          fmt::join(words, ", "),
+                          base::did_you_mean(provenance.confidence, words)));
   }
   return provenance;
 }
@@ -300,7 +301,8 @@ void Reader::check_source(const std::string& source, const Place& place) const {
     if (document_.sources.count(key) == 0) {
       std::vector<std::string> known;
       for (const auto& [name, text] : document_.sources) known.push_back(name);
-      place.fail(fmt::format("'{}' is not listed under sources{}", key, did_you_mean(key, known)));
+      place.fail(
+          fmt::format("'{}' is not listed under sources{}", key, base::did_you_mean(key, known)));
     }
     if (comma == std::string_view::npos) return;
     keys.remove_prefix(comma + 1);

@@ -41,7 +41,7 @@ TextFile find_file(const Shelf& shelf, const std::string& name, const std::strin
   place.fail(fmt::format(
       "unknown {} '{}'{} (built in: {}; a file is given by a path that contains '/' or ends in "
       ".yaml)",
-      shelf.what, name, did_you_mean(name, names), fmt::join(names, ", ")));
+      shelf.what, name, base::did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 }  // namespace

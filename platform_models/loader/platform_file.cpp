@@ -25,7 +25,7 @@ namespace {
   throw InputError(
       fmt::format("unknown platform '{}'{} (built in: {}; a file is given by a path that contains "
                   "'/' or ends in .yaml)",
-                  name, did_you_mean(name, names), fmt::join(names, ", ")));
+                  name, base::did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 /// Without the sources of rows that others replaced.

@@ -53,7 +53,7 @@ Setting read_choice(const Field& field, std::string_view text, const Place& plac
     return setting;
   }
   place.fail(fmt::format("'{}' is not known; expected one of {}{}", text,
-                         fmt::join(field.choices, ", "), did_you_mean(text, field.choices)));
+                         fmt::join(field.choices, ", "), base::did_you_mean(text, field.choices)));
 }
 
 }  // namespace

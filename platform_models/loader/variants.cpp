@@ -38,7 +38,7 @@ Settings Variants::changed(const std::vector<Change>& changes) const {
     const std::size_t index = schema_.find(change.path);
     const Place place{fmt::format("{} = {}", change.path, number_text(change.value))};
     if (index == Schema::kNone)
-      place.fail("unknown parameter" + did_you_mean(change.path, schema_.paths()));
+      place.fail("unknown parameter" + base::did_you_mean(change.path, schema_.paths()));
     if (!settings[index]) place.fail("the platform does not give this parameter");
     Setting& setting = *settings[index];
     const Setting read = read_value(schema_.fields()[index], number_text(change.value),

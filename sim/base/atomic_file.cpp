@@ -9,7 +9,7 @@
 
 #include "sim/base/error.h"
 
-namespace leviosim::traces {
+namespace leviosim::base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,4 +42,4 @@ void write_file_atomically(const fs::path& file, std::string_view contents) {
   throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
-}  // namespace leviosim::traces
+}  // namespace leviosim::base

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string_view>
 
-namespace leviosim::traces {
+namespace leviosim::base {
 
 /// Writes beside `file` and renames. Throws InputError if the folder cannot be written.
 void write_file_atomically(const std::filesystem::path& file, std::string_view contents);
 
-}  // namespace leviosim::traces
+}  // namespace leviosim::base

@@ -11,7 +11,7 @@
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 
-namespace leviosim::traces {
+namespace leviosim::base {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -197,4 +197,4 @@ void RisingStamps::add(const CsvRow& row, std::int64_t t_ns) {
   last_line_ = row.line();
 }
 
-}  // namespace leviosim::traces
+}  // namespace leviosim::base

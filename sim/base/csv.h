@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace leviosim::traces {
+namespace leviosim::base {
 
 /// "FILE line N", the way every message of this folder names a place.
 std::string at_line(const std::filesystem::path& file, std::size_t line);
@@ -102,4 +102,4 @@ class RisingStamps {
   std::size_t last_line_ = 0;
 };
 
-}  // namespace leviosim::traces
+}  // namespace leviosim::base

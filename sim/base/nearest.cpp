@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace leviosim::platform {
+namespace leviosim::base {
 namespace {
 
 // Names in platform files are short. Longer input is no misspelling of one of them, and need not
@@ -49,4 +49,4 @@ std::string did_you_mean(std::string_view typed, const std::vector<std::string>&
   return name.empty() ? std::string() : fmt::format("; did you mean '{}'?", name);
 }
 
-}  // namespace leviosim::platform
+}  // namespace leviosim::base

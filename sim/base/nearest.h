@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace leviosim::platform {
+namespace leviosim::base {
 
 /// The name in `valid` that takes the fewest single-character insertions and deletions to reach
 /// from `typed`; the earlier one of equals. Empty if even that one shares less than half of the
@@ -16,4 +16,4 @@ std::string nearest(std::string_view typed, const std::vector<std::string>& vali
 /// "; did you mean 'NAME'?", or empty if no name is near.
 std::string did_you_mean(std::string_view typed, const std::vector<std::string>& valid);
 
-}  // namespace leviosim::platform
+}  // namespace leviosim::base

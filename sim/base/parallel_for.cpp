@@ -9,7 +9,7 @@
 
 #include "sim/base/interruption.h"
 
-namespace leviosim::traces {
+namespace leviosim::base {
 
 void parallel_for(std::size_t count, unsigned threads,
                   const std::function<void(std::size_t)>& job) {
@@ -38,4 +38,4 @@ void parallel_for(std::size_t count, unsigned threads,
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace leviosim::traces
+}  // namespace leviosim::base

@@ -14,16 +14,16 @@ bool has_accelerators(const ChipConfig& chip) {
          has_accelerators(chip.controller.accelerators);
 }
 
-work::Counts left_to_core(const work::Piece& piece, const Accelerators& accelerators) {
-  work::Counts left = piece;
-  for (const work::KernelWork& calls : piece.kernels) {
+work::Counts left_to_core(const work::Segment& segment, const Accelerators& accelerators) {
+  work::Counts left = segment;
+  for (const work::OffloadWork& calls : segment.offload) {
     if (accelerators[work::index(calls.kernel)].units == 0) continue;
     for (std::size_t i = 0; i < work::kOpCount; ++i) left.n[i] -= calls.counts.n[i];
   }
   return left;
 }
 
-Service service_of(const work::KernelWork& calls, const Accelerators& accelerators) {
+Service service_of(const work::OffloadWork& calls, const Accelerators& accelerators) {
   const AcceleratorConfig& accelerator = accelerators[work::index(calls.kernel)];
   if (accelerator.units == 0) return {};
   const auto number = static_cast<double>(calls.calls);
@@ -32,12 +32,12 @@ Service service_of(const work::KernelWork& calls, const Accelerators& accelerato
           busy * accelerator.l1_words};
 }
 
-Demand price(const work::Piece& piece, const CoreConfig& core, const Accelerators& accelerators,
+Demand price(const work::Segment& segment, const CoreConfig& core, const Accelerators& accelerators,
              const CodeFetcher& code) {
-  if (piece.kernels.empty() || !has_accelerators(accelerators))
-    return price(static_cast<const work::Counts&>(piece), core, code);
-  Demand demand = price(left_to_core(piece, accelerators), core, code);
-  for (const work::KernelWork& calls : piece.kernels) {
+  if (segment.offload.empty() || !has_accelerators(accelerators))
+    return price(static_cast<const work::Counts&>(segment), core, code);
+  Demand demand = price(left_to_core(segment, accelerators), core, code);
+  for (const work::OffloadWork& calls : segment.offload) {
     const Service service = service_of(calls, accelerators);
     demand.alone.issue += service.instructions;
     demand.alone.accelerator += service.waiting;

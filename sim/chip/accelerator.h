@@ -8,13 +8,13 @@
 // energy of an item (energy/model.h).
 //
 // Leaves out: other work of the core while it waits; that the code of the kernel need not be
-// fetched (work/kernel_calls.h); how the result of the hardware differs from that of the software;
-// area, leakage.
+// fetched (work/offload_regions.h); how the result of the hardware differs from that of the
+// software; area, leakage.
 #pragma once
 
 #include "sim/chip/config.h"
 #include "sim/chip/cost.h"
-#include "sim/work/kernel_calls.h"
+#include "sim/work/offload_regions.h"
 
 namespace leviosim::sim {
 
@@ -23,7 +23,7 @@ bool has_accelerators(const Accelerators& accelerators);
 bool has_accelerators(const ChipConfig& chip);
 
 /// What is left for the core to execute.
-work::Counts left_to_core(const work::Piece& piece, const Accelerators& accelerators);
+work::Counts left_to_core(const work::Segment& segment, const Accelerators& accelerators);
 
 /// What calls of one kind ask of their accelerator.
 struct Service {
@@ -33,10 +33,10 @@ struct Service {
   double l1_words = 0;
 };
 /// None if there is no accelerator for them.
-Service service_of(const work::KernelWork& calls, const Accelerators& accelerators);
+Service service_of(const work::OffloadWork& calls, const Accelerators& accelerators);
 
 /// As price() of cost.h, with the calls that accelerators serve.
-Demand price(const work::Piece& piece, const CoreConfig& core, const Accelerators& accelerators,
+Demand price(const work::Segment& segment, const CoreConfig& core, const Accelerators& accelerators,
              const CodeFetcher& code = {});
 
 }  // namespace leviosim::sim

@@ -51,13 +51,13 @@ Task<JobTiming> Cluster::run(const work::Job& job) {
     for (const work::Step& variant : stage.steps) {
       // Not std::visit: a coroutine must not be awaited inside a plain lambda.
       if (const auto* serial = std::get_if<work::Serial>(&variant))
-        co_await step(*serial, s.account);
+        co_await step(*serial, s.breakdown);
       else if (const auto* fork = std::get_if<work::Fork>(&variant))
-        co_await step(*fork, s.account);
+        co_await step(*fork, s.breakdown);
       else if (const auto* transfer = std::get_if<work::Transfer>(&variant))
-        co_await step(*transfer, s.account);
+        co_await step(*transfer, s.breakdown);
       else
-        co_await step(std::get<work::TransferWait>(variant), s.account);
+        co_await step(std::get<work::TransferWait>(variant), s.breakdown);
     }
     s.end = kernel_.now();
     s.cycles = clock_.whole_cycles(s.end - s.begin);
@@ -67,13 +67,13 @@ Task<JobTiming> Cluster::run(const work::Job& job) {
   co_return timing;
 }
 
-Task<> Cluster::step(const work::Serial& serial, Account& account) {
+Task<> Cluster::step(const work::Serial& serial, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
   co_await team_.execute(workers_, serial.counts);
-  account.serial += workers_ * cycles_since(begin, kernel_.now());
+  breakdown.serial += workers_ * cycles_since(begin, kernel_.now());
 }
 
-Task<> Cluster::step(const work::Transfer& transfer, Account& account) {
+Task<> Cluster::step(const work::Transfer& transfer, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
   if (const Time room = dma_.room(); room > begin) co_await kernel_.at(room);
   co_await kernel_.delay(cycles(config_.dma.programming));
@@ -82,13 +82,13 @@ Task<> Cluster::step(const work::Transfer& transfer, Account& account) {
     background_.push_back(arrival);
   else
     co_await until_arrived(arrival);
-  account.transfer += workers_ * cycles_since(begin, kernel_.now());
+  breakdown.transfer += workers_ * cycles_since(begin, kernel_.now());
 }
 
-Task<> Cluster::step(const work::TransferWait& wait, Account& account) {
+Task<> Cluster::step(const work::TransferWait& wait, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
   co_await until_arrived(background_.at(static_cast<std::size_t>(wait.number)));
-  account.transfer += workers_ * cycles_since(begin, kernel_.now());
+  breakdown.transfer += workers_ * cycles_since(begin, kernel_.now());
 }
 
 /// A core sleeps on the wait instruction even if the event is there already
@@ -98,11 +98,11 @@ Task<> Cluster::until_arrived(Time arrival) {
   co_await kernel_.delay(cycles(config_.dma.completion));
 }
 
-Task<> Cluster::step(const work::Fork& fork, Account& account) {
+Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
   arrivals_ = 0;
   co_await kernel_.delay(cycles(config_.events.fork_master));
-  for (auto& channel : dispatch_) co_await channel->push({&fork, &account, begin});
+  for (auto& channel : dispatch_) co_await channel->push({&fork, &breakdown, begin});
   if (fork.master_takes_part) co_await team_.execute(workers_, fork.shares.back());
   co_await end_of_fork_.arrive();
   const double last = cycles_since(begin, last_arrival_);
@@ -110,31 +110,31 @@ Task<> Cluster::step(const work::Fork& fork, Account& account) {
       begin, begin + cycles(config_.events.fork_master) + cycles(config_.events.fork_worker));
   const double after = cycles_since(last_arrival_, kernel_.now());
   const double barrier = std::min(after, config_.events.barrier);
-  account.imbalance += workers_ * (last + after - barrier) - arrivals_;
-  account.synchronisation += workers_ * (start_up + barrier);
+  breakdown.imbalance += workers_ * (last + after - barrier) - arrivals_;
+  breakdown.synchronisation += workers_ * (start_up + barrier);
 }
 
 Process Cluster::worker(int id) {
-  work::Piece sum;
+  work::Segment sum;
   for (;;) {
     const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
     co_await kernel_.delay(cycles(config_.events.fork_worker));
     const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork, sum));
-    Account& account = *dispatch.account;
-    account.useful += time.alone;
-    account.fpu += time.fpu;
-    account.divider += time.divider;
-    account.banks += time.banks;
-    account.fetch += time.fetch;
-    account.accelerator += time.accelerator;
-    account.rounding += time.rounding;
+    CycleBreakdown& breakdown = *dispatch.breakdown;
+    breakdown.useful += time.alone;
+    breakdown.fpu += time.fpu;
+    breakdown.divider += time.divider;
+    breakdown.banks += time.banks;
+    breakdown.fetch += time.fetch;
+    breakdown.accelerator += time.accelerator;
+    breakdown.rounding += time.rounding;
     last_arrival_ = kernel_.now();
     arrivals_ += cycles_since(dispatch.begin, last_arrival_);
     co_await end_of_fork_.arrive();
   }
 }
 
-const work::Piece& Cluster::shares_of(int id, const work::Fork& fork, work::Piece& sum) const {
+const work::Segment& Cluster::shares_of(int id, const work::Fork& fork, work::Segment& sum) const {
   const std::size_t shares = fork.shares.size() - (fork.master_takes_part ? 1 : 0);
   const auto first = static_cast<std::size_t>(id);
   const auto step = static_cast<std::size_t>(workers_);

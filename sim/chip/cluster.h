@@ -33,18 +33,18 @@ class Cluster {
   /// What a worker is sent: its shares, and where it reports to.
   struct Dispatch {
     const work::Fork* fork;
-    Account* account;
+    CycleBreakdown* breakdown;
     Time begin;  ///< of the fork
   };
 
   Process worker(int id);
-  Task<> step(const work::Serial& serial, Account& account);
-  Task<> step(const work::Fork& fork, Account& account);
-  Task<> step(const work::Transfer& transfer, Account& account);
-  Task<> step(const work::TransferWait& wait, Account& account);
+  Task<> step(const work::Serial& serial, CycleBreakdown& breakdown);
+  Task<> step(const work::Fork& fork, CycleBreakdown& breakdown);
+  Task<> step(const work::Transfer& transfer, CycleBreakdown& breakdown);
+  Task<> step(const work::TransferWait& wait, CycleBreakdown& breakdown);
   Task<> until_arrived(Time arrival);
   /// The worker's share; where it has several, their sum, which is put into `sum`.
-  const work::Piece& shares_of(int id, const work::Fork& fork, work::Piece& sum) const;
+  const work::Segment& shares_of(int id, const work::Fork& fork, work::Segment& sum) const;
   Duration cycles(double n) const;
   double cycles_since(Time begin, Time end) const;
 

@@ -11,7 +11,7 @@
 
 #include "sim/base/units.h"
 #include "sim/chip/energy_config.h"
-#include "sim/work/kernel_calls.h"
+#include "sim/work/offload_regions.h"
 #include "sim/work/op.h"
 
 namespace leviosim::sim {
@@ -27,8 +27,8 @@ enum class Unit : std::uint8_t {
   /// Accelerators follow, one for each kind of kernel; no operation's, but calls'.
 };
 inline constexpr std::size_t kFirstAccelerator = 6;
-inline constexpr std::size_t kUnitCount = kFirstAccelerator + work::kKernelCount;
-constexpr Unit accelerator_of(work::KernelKind kind) {
+inline constexpr std::size_t kUnitCount = kFirstAccelerator + work::kOffloadKindCount;
+constexpr Unit accelerator_of(work::OffloadKind kind) {
   return static_cast<Unit>(kFirstAccelerator + work::index(kind));
 }
 
@@ -91,7 +91,7 @@ struct AcceleratorConfig {
   double items_per_cycle = 1;  ///< of each unit
   double l1_words = 0;         ///< words of L1 that a unit moves per cycle while it works
 };
-using Accelerators = std::array<AcceleratorConfig, work::kKernelCount>;
+using Accelerators = std::array<AcceleratorConfig, work::kOffloadKindCount>;
 
 struct DmaConfig {
   double programming = 0;      ///< cycles of the programming core per transfer, API included

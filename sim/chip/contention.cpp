@@ -79,7 +79,7 @@ Contention::Contention(const ClusterConfig& config)
   pools_[index(Unit::Bank)] = {1, 1.0};
   pools_[index(Unit::Refill)] = {1, config.icache.refills};
   shared_ = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::Refill};
-  for (const work::KernelInfo& info : work::kKernels) {
+  for (const work::OffloadKindInfo& info : work::kOffloadKinds) {
     const int units = config.accelerators[work::index(info.kernel)].units;
     if (units == 0) continue;
     shared_.push_back(accelerator_of(info.kernel));

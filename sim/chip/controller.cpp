@@ -18,9 +18,9 @@ Task<JobTiming> Controller::run(const work::Job& job) {
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
     const double transfer = transfer_cycles(stage);
     s.cycles = counted_cycles(std::ceil(demand.cycles() + transfer));
-    s.account.useful = demand.alone;
-    s.account.transfer = transfer;
-    s.account.rounding = static_cast<double>(s.cycles.count()) - demand.cycles() - transfer;
+    s.breakdown.useful = demand.alone;
+    s.breakdown.transfer = transfer;
+    s.breakdown.rounding = static_cast<double>(s.cycles.count()) - demand.cycles() - transfer;
     co_await kernel_.delay(clock_.duration(s.cycles));
     s.end = kernel_.now();
     timing.stages.push_back(s);
@@ -32,7 +32,7 @@ Task<JobTiming> Controller::run(const work::Job& job) {
 Demand Controller::demand_of(const work::StageRun& stage) const {
   if (!has_accelerators(config_.accelerators))
     return price(work::counts_of(stage), config_.core, code_);
-  return price(work::pieces_of(stage), config_.core, config_.accelerators, code_);
+  return price(work::segments_of(stage), config_.core, config_.accelerators, code_);
 }
 
 /// Only external memory is far from a controller.

@@ -5,8 +5,8 @@ namespace {
 
 using work::Op;
 
-/// The account that an operation's stall cycles are booked on.
-double CycleBreakdown::*stall_account(Op op) {
+/// The breakdown that an operation's stall cycles are booked on.
+double UsefulCycles::*stall_breakdown(Op op) {
   switch (op) {
     case Op::BranchTaken:
     case Op::BranchNotTaken:
@@ -14,7 +14,7 @@ double CycleBreakdown::*stall_account(Op op) {
     case Op::LoopIteration:
     case Op::Call:
     case Op::JumpRegister:
-      return &CycleBreakdown::control;
+      return &UsefulCycles::control;
     case Op::LoadStream:
     case Op::LoadIndexed:
     case Op::StoreStream:
@@ -24,15 +24,15 @@ double CycleBreakdown::*stall_account(Op op) {
     case Op::LoadShared:
     case Op::StoreShared:
     case Op::Straddle:
-      return &CycleBreakdown::memory;
+      return &UsefulCycles::memory;
     default:
-      return &CycleBreakdown::arithmetic;
+      return &UsefulCycles::arithmetic;
   }
 }
 
 }  // namespace
 
-CycleBreakdown& CycleBreakdown::operator+=(const CycleBreakdown& o) {
+UsefulCycles& UsefulCycles::operator+=(const UsefulCycles& o) {
   issue += o.issue;
   load_use += o.load_use;
   control += o.control;
@@ -43,7 +43,7 @@ CycleBreakdown& CycleBreakdown::operator+=(const CycleBreakdown& o) {
   return *this;
 }
 
-CycleBreakdown operator*(const CycleBreakdown& b, double k) {
+UsefulCycles operator*(const UsefulCycles& b, double k) {
   return {b.issue * k,      b.load_use * k, b.control * k,    b.memory * k,
           b.arithmetic * k, b.fetch * k,    b.accelerator * k};
 }
@@ -55,7 +55,7 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
     const OpCost& cost = core[info.op];
     // A routine was counted with its moves and spills.
     demand.alone.issue += n * cost.issue * (cost.routine ? 1.0 : core.instruction_overhead);
-    demand.alone.*stall_account(info.op) += n * cost.stall;
+    demand.alone.*stall_breakdown(info.op) += n * cost.stall;
     if (cost.unit == Unit::Core) continue;
     UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];
     unit.requests += n;

@@ -1,8 +1,8 @@
-// What a piece of counted work costs a core that runs alone, and what it asks of shared units.
+// What a segment of counted work costs a core that runs alone, and what it asks of shared units.
 //
 // Models: issue slots of an in-order single-issue core, load-use and taken-branch stalls,
-// latencies, instruction-cache refills. Leaves out: the order of instructions within a piece of
-// work.
+// latencies, instruction-cache refills. Leaves out: the order of instructions within a work
+// segment.
 #pragma once
 
 #include "sim/chip/config.h"
@@ -12,20 +12,20 @@
 namespace leviosim::sim {
 
 /// Where the cycles of a core that runs alone go. All in cycles of its clock.
-struct CycleBreakdown {
+struct UsefulCycles {
   double issue = 0;        ///< instructions
   double load_use = 0;     ///< waiting for a loaded value
   double control = 0;      ///< refilling the pipeline after branches, calls and loop entries
   double memory = 0;       ///< L2 latency and words that straddle
   double arithmetic = 0;   ///< integer divisions and floating-point latencies
   double fetch = 0;        ///< instructions that the private cache lacks
-  double accelerator = 0;  ///< calls of kernels that an accelerator serves
+  double accelerator = 0;  ///< offload regions that an accelerator serves
 
   double total() const {
     return issue + load_use + control + memory + arithmetic + fetch + accelerator;
   }
-  CycleBreakdown& operator+=(const CycleBreakdown& o);
-  friend CycleBreakdown operator*(const CycleBreakdown& b, double k);
+  UsefulCycles& operator+=(const UsefulCycles& o);
+  friend UsefulCycles operator*(const UsefulCycles& b, double k);
 };
 
 /// What a segment asks of one kind of shared unit.
@@ -36,7 +36,7 @@ struct UnitDemand {
 
 /// Demands of one segment.
 struct Demand {
-  CycleBreakdown alone;
+  UsefulCycles alone;
   std::array<UnitDemand, kUnitCount> units;  ///< by Unit; none of Unit::Core
   double streamed = 0;                       ///< accesses of local memory by streams
   double scattered = 0;                      ///< … at addresses that are computed from data

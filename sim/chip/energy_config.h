@@ -6,7 +6,7 @@
 #include <array>
 
 #include "sim/base/units.h"
-#include "sim/work/kernel_calls.h"
+#include "sim/work/offload_regions.h"
 
 namespace leviosim::sim {
 
@@ -67,7 +67,7 @@ struct EnergyConfig {
   } soc;
 
   /// Of an item of a call that an accelerator serves, by kind of kernel.
-  using Items = std::array<Joules, work::kKernelCount>;
+  using Items = std::array<Joules, work::kOffloadKindCount>;
   Items cluster_accelerators{};
   Items controller_accelerators{};
 };

@@ -28,7 +28,7 @@ namespace leviosim::sim {
 /// @param sharers  cores that run the same code on this cache, at random places of it
 double miss_share(double reuse, int sharers);
 
-/// What a piece of work fetches from beyond a core's private cache.
+/// What a work segment fetches from beyond a core's private cache.
 struct CodeFetch {
   double stall = 0;          ///< cycles that a lone core waits
   double requests = 0;       ///< lines that the private cache asks the shared one for

@@ -11,7 +11,7 @@
 namespace leviosim::sim {
 namespace {
 
-// Rates are quotients: what is left at the end of a piece of work may miss zero by rounding.
+// Rates are quotients: what is left at the end of a work segment may miss zero by rounding.
 constexpr double kNothingLeft = 1e-6;
 
 }  // namespace
@@ -31,11 +31,11 @@ Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config
   kernel_.spawn_server("contention", settle());
 }
 
-Task<SegmentTime> Team::execute(int id, const work::Piece& piece) {
+Task<SegmentTime> Team::execute(int id, const work::Segment& segment) {
   Core& core = *cores_.at(static_cast<std::size_t>(id));
-  check(!core.running, "a core runs one piece of work at a time");
+  check(!core.running, "a core runs one work segment at a time");
   const bool master = static_cast<std::size_t>(id) + 1 == cores_.size();
-  core.demand = price(piece, core_config_, accelerators_, master ? master_code_ : worker_code_);
+  core.demand = price(segment, core_config_, accelerators_, master ? master_code_ : worker_code_);
   core.runner = Runner::of(id, core.demand);
   core.remaining = core.demand.cycles();
   core.time = {};
@@ -83,7 +83,7 @@ void Team::advance() {
   if (cycles == 0) return;
   for (const auto& core : cores_) {
     if (!core->running) continue;
-    // The last, partial cycle of a piece of work is not lost to anybody: it is rounding.
+    // The last, partial cycle of a work segment is not lost to anybody: it is rounding.
     const double worked = std::min(cycles, core->remaining / core->progress.rate);
     core->remaining -= worked * core->progress.rate;
     core->time.fpu += worked * core->progress.fpu;

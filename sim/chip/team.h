@@ -1,6 +1,6 @@
-// Cores of a cluster that run pieces of work at the same time and share units.
+// Cores of a cluster that run work segments at the same time and share units.
 //
-// Whenever a core starts or ends a piece of work, the rates of all running ones are solved again
+// Whenever a core starts or ends a work segment, the rates of all running ones are solved again
 // (contention.h), once per instant, and their ends are moved. No cycle is stepped.
 #pragma once
 
@@ -17,9 +17,9 @@
 
 namespace leviosim::sim {
 
-/// Where the time of one piece of work went, in cycles.
+/// Where the time of one work segment went, in cycles.
 struct SegmentTime {
-  CycleBreakdown alone;
+  UsefulCycles alone;
   double fpu = 0;
   double divider = 0;
   double banks = 0;
@@ -35,8 +35,8 @@ class Team {
   /// @param workers  ids 0 … workers-1; the master is core `workers`
   Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
 
-  /// co_await: core `id` runs the piece of work; at most one per core at a time.
-  Task<SegmentTime> execute(int id, const work::Piece& piece);
+  /// co_await: core `id` runs the work segment; at most one per core at a time.
+  Task<SegmentTime> execute(int id, const work::Segment& segment);
 
   /// The DMA moves so many words of L1 per cycle more (or less) from now on.
   void change_traffic(double words_per_cycle);

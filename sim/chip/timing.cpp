@@ -2,7 +2,7 @@
 
 namespace leviosim::sim {
 
-Account& Account::operator+=(const Account& o) {
+CycleBreakdown& CycleBreakdown::operator+=(const CycleBreakdown& o) {
   useful += o.useful;
   fpu += o.fpu;
   divider += o.divider;

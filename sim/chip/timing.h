@@ -1,5 +1,5 @@
 // What timing a job on a chip yields: for every stage its time, and where the core-cycles of the
-// team went. The accounts add up: see Account::total().
+// team went. The breakdowns add up: see CycleBreakdown::total().
 #pragma once
 
 #include <string_view>
@@ -12,8 +12,8 @@ namespace leviosim::sim {
 
 /// Core-cycles of a team during a stage, by what they were spent on. With W workers, a stage of T
 /// cycles has W·T of them; what the master does beside them in a fork is not in it.
-struct Account {
-  CycleBreakdown useful;       ///< shares of parallel work, as if each core were alone
+struct CycleBreakdown {
+  UsefulCycles useful;         ///< shares of parallel work, as if each core were alone
   double fpu = 0;              ///< waiting for a shared floating-point unit
   double divider = 0;          ///< waiting for the shared divider
   double banks = 0;            ///< waiting for L1 banks
@@ -29,7 +29,7 @@ struct Account {
     return useful.total() + fpu + divider + banks + fetch + accelerator + imbalance +
            synchronisation + transfer + serial + rounding;
   }
-  Account& operator+=(const Account& o);
+  CycleBreakdown& operator+=(const CycleBreakdown& o);
 };
 
 /// One execution of a stage. Cycles are of the clock of the cores that ran it.
@@ -38,7 +38,7 @@ struct StageTiming {
   Time begin;
   Time end;
   Cycles cycles;
-  Account account;
+  CycleBreakdown breakdown;
 };
 
 struct JobTiming {

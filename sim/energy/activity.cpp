@@ -42,10 +42,10 @@ double cores_of(const ChipConfig& chip, int workers) {
 }
 
 /// Core-cycles in which cores worked or stalled; in all others they wait for an event. While the
-/// master works alone, the account holds a cycle of every worker for each of his.
-double working(const Account& account, int workers) {
-  return account.total() - account.imbalance - account.synchronisation - account.transfer -
-         account.serial + account.serial / static_cast<double>(workers);
+/// master works alone, the breakdown holds a cycle of every worker for each of his.
+double working(const CycleBreakdown& breakdown, int workers) {
+  return breakdown.total() - breakdown.imbalance - breakdown.synchronisation - breakdown.transfer -
+         breakdown.serial + breakdown.serial / static_cast<double>(workers);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Activity& Activity::operator+=(const Activity& o) {
   l2_accesses += o.l2_accesses;
   controller_instructions += o.controller_instructions;
   controller_f32_operations += o.controller_f32_operations;
-  for (std::size_t k = 0; k < work::kKernelCount; ++k) {
+  for (std::size_t k = 0; k < work::kOffloadKindCount; ++k) {
     cluster_items[k] += o.cluster_items[k];
     controller_items[k] += o.controller_items[k];
   }
@@ -77,8 +77,8 @@ Seconds seconds(double cycles, Hertz clock) {
 }
 
 Activity cluster_activity(const ChipConfig& chip, int workers, const work::Counts& counts,
-                          const work::Transferred& transfers, const Account& account, Cycles cycles,
-                          const std::vector<work::KernelWork>& served) {
+                          const work::Transferred& transfers, const CycleBreakdown& breakdown,
+                          Cycles cycles, const std::vector<work::OffloadWork>& served) {
   const Demand demand = demand_of(counts, chip.cluster.core, chip.cluster.icache, workers);
   const DmaConfig& dma = chip.cluster.dma;
   const auto bytes = static_cast<double>(transfers.bytes.count());
@@ -92,7 +92,7 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
   if (transfers.transfers > 0)
     a.transfer_cycles =
         static_cast<double>(transfers.transfers) * dma.first_data + bytes / dma.bytes_per_cycle;
-  for (const work::KernelWork& calls : served) {
+  for (const work::OffloadWork& calls : served) {
     const Service service = service_of(calls, chip.cluster.accelerators);
     a.instructions += service.instructions;
     a.l1_accesses += service.l1_words;
@@ -101,21 +101,21 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
   a.cluster_cycles = elapsed;
   a.time = seconds(elapsed, chip.cluster.clock);
   a.soc_cycles = a.time.count() * static_cast<double>(chip.controller.clock.count());
-  a.cores_working = seconds(working(account, workers), chip.cluster.clock);
+  a.cores_working = seconds(working(breakdown, workers), chip.cluster.clock);
   a.cores_gated = a.time * cores_of(chip, workers) - a.cores_working;
   return a;
 }
 
 Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
                              const work::Transferred& transfers, Cycles cycles,
-                             const std::vector<work::KernelWork>& served) {
+                             const std::vector<work::OffloadWork>& served) {
   const Demand demand = demand_of(counts, chip.controller.core, chip.controller.icache, 1);
   Activity a;
   a.controller_instructions = demand.alone.issue;
   a.controller_f32_operations = f32_operations(demand);
   a.l2_accesses = local_accesses(demand) + l2_accesses(counts, demand, chip.controller.icache) +
                   static_cast<double>(transfers.external.count()) / kWord;
-  for (const work::KernelWork& calls : served) {
+  for (const work::OffloadWork& calls : served) {
     a.controller_instructions += service_of(calls, chip.controller.accelerators).instructions;
     a.controller_items[work::index(calls.kernel)] += static_cast<double>(calls.items);
   }

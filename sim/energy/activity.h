@@ -28,8 +28,8 @@ struct Activity {
   double controller_instructions = 0;
   double controller_f32_operations = 0;
   /// Items that accelerators served, by kind of kernel.
-  std::array<double, work::kKernelCount> cluster_items{};
-  std::array<double, work::kKernelCount> controller_items{};
+  std::array<double, work::kOffloadKindCount> cluster_items{};
+  std::array<double, work::kOffloadKindCount> controller_items{};
 
   double cluster_cycles = 0;       ///< of the cluster's clock, at work
   double idle_cluster_cycles = 0;  ///< without work
@@ -48,16 +48,16 @@ Seconds seconds(double cycles, Hertz clock);
 
 /// Executions of a stage on the cluster, with a team of `workers`.
 /// @param counts   what cores executed
-/// @param account  core-cycles of the team
+/// @param breakdown  core-cycles of the team
 /// @param served   calls that accelerators served
 Activity cluster_activity(const ChipConfig& chip, int workers, const work::Counts& counts,
-                          const work::Transferred& transfers, const Account& account, Cycles cycles,
-                          const std::vector<work::KernelWork>& served = {});
+                          const work::Transferred& transfers, const CycleBreakdown& breakdown,
+                          Cycles cycles, const std::vector<work::OffloadWork>& served = {});
 
 /// Executions of a stage on the fabric controller, whose memory is L2.
 Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
                              const work::Transferred& transfers, Cycles cycles,
-                             const std::vector<work::KernelWork>& served = {});
+                             const std::vector<work::OffloadWork>& served = {});
 
 /// Time during which the cluster has nothing to do.
 Activity idle_activity(const ChipConfig& chip, int workers, Seconds time);

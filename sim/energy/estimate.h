@@ -1,7 +1,8 @@
-// A figure with its band: what it is expected to be, and how far each doubt (doubt.h) may move it.
+// A figure with its band: what it is expected to be, and how far each source (uncertainty_source.h)
+// may move it.
 //
-// Rule of combination: what one doubt does to the parts of a sum adds up, since its numbers err
-// together; the band of a figure is the root of the sum of squares over the doubts, which are
+// Rule of combination: what one source does to the parts of a sum adds up, since its numbers err
+// together; the band of a figure is the root of the sum of squares over the sources, which are
 // independent. So values add up exactly, and the band of a sum is at most the sum of the bands.
 #pragma once
 
@@ -9,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/energy/doubt.h"
+#include "sim/energy/uncertainty_source.h"
 
 namespace leviosim::sim {
 
@@ -17,16 +18,16 @@ namespace leviosim::sim {
 template <class Q>
 struct Estimate {
   Q value{};
-  std::array<Q, kDoubtCount> down{};  ///< by which each doubt may lower the value, ≥ 0
-  std::array<Q, kDoubtCount> up{};    ///< and raise it
+  std::array<Q, kUncertaintySourceCount> down{};  ///< by which each source may lower the value, ≥ 0
+  std::array<Q, kUncertaintySourceCount> up{};    ///< and raise it
 
-  /// Not below 0, where doubts that multiply each other would lead.
+  /// Not below 0, where sources that multiply each other would lead.
   Q low() const { return std::max(value - root_sum_square(down), Q{}); }
   Q high() const { return value + root_sum_square(up); }
 
   Estimate& operator+=(const Estimate& o) {
     value += o.value;
-    for (std::size_t i = 0; i < kDoubtCount; ++i) {
+    for (std::size_t i = 0; i < kUncertaintySourceCount; ++i) {
       down[i] += o.down[i];
       up[i] += o.up[i];
     }
@@ -35,7 +36,7 @@ struct Estimate {
   /// @param k  ≥ 0
   friend Estimate operator*(Estimate a, double k) {
     a.value = a.value * k;
-    for (std::size_t i = 0; i < kDoubtCount; ++i) {
+    for (std::size_t i = 0; i < kUncertaintySourceCount; ++i) {
       a.down[i] = a.down[i] * k;
       a.up[i] = a.up[i] * k;
     }
@@ -43,7 +44,7 @@ struct Estimate {
   }
 
  private:
-  static Q root_sum_square(const std::array<Q, kDoubtCount>& parts) {
+  static Q root_sum_square(const std::array<Q, kUncertaintySourceCount>& parts) {
     double sum = 0;
     for (const Q part : parts) sum += part.count() * part.count();
     return Q(std::sqrt(sum));
@@ -54,7 +55,7 @@ struct Estimate {
 inline Estimate<Watts> operator/(const Estimate<Joules>& energy, Seconds time) {
   Estimate<Watts> power;
   power.value = energy.value / time;
-  for (std::size_t i = 0; i < kDoubtCount; ++i) {
+  for (std::size_t i = 0; i < kUncertaintySourceCount; ++i) {
     power.down[i] = energy.down[i] / time;
     power.up[i] = energy.up[i] / time;
   }

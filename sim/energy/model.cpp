@@ -29,7 +29,7 @@ class Model {
     e[index(Domain::Dma)] = events(a.transfer_cycles, c.dma.transfer_cycle) +
                             events(clocked, c.dma.cycle) + flow(c.dma.leakage, a.time);
     e[index(Domain::Cluster)] = events(clocked, c.cluster.cycle) + flow(c.cluster.leakage, a.time);
-    for (std::size_t k = 0; k < work::kKernelCount; ++k) {
+    for (std::size_t k = 0; k < work::kOffloadKindCount; ++k) {
       e[index(Domain::Cluster)] += events(a.cluster_items[k], c.cluster_accelerators[k]);
       e[index(Domain::Soc)] += events(a.controller_items[k], c.controller_accelerators[k]);
     }
@@ -75,17 +75,17 @@ DomainEnergies energy_of(const Activity& activity, const ChipConfig& chip) {
   const Energies value = with(chip.energy.value);
   DomainEnergies result;
   for (const DomainInfo& info : kDomains) result[info.domain].value = value[index(info.domain)];
-  for (std::size_t doubt = 0; doubt < kDoubtCount; ++doubt) {
+  for (std::size_t source = 0; source < kUncertaintySourceCount; ++source) {
     EnergyConfig low = chip.energy.value;
     EnergyConfig high = chip.energy.value;
-    kDoubts[doubt].copy(chip.energy.low, low);
-    kDoubts[doubt].copy(chip.energy.high, high);
+    kUncertaintySources[source].copy(chip.energy.low, low);
+    kUncertaintySources[source].copy(chip.energy.high, high);
     const Energies least = with(low);
     const Energies most = with(high);
     for (const DomainInfo& info : kDomains) {
       const std::size_t i = index(info.domain);
-      result[info.domain].down[doubt] = value[i] - least[i];
-      result[info.domain].up[doubt] = most[i] - value[i];
+      result[info.domain].down[source] = value[i] - least[i];
+      result[info.domain].up[source] = most[i] - value[i];
     }
   }
   return result;

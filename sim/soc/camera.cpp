@@ -37,7 +37,7 @@ Deadline parse_deadline(const std::string& text) {
     names.emplace_back(info.name);
   }
   throw InputError(fmt::format("--deadline '{}': expected {}{}", text, fmt::join(names, " or "),
-                               platform::did_you_mean(text, names)));
+                               base::did_you_mean(text, names)));
 }
 
 std::vector<CameraFrame> all_frames(const std::vector<std::int64_t>& stamps_ns) {

@@ -19,7 +19,7 @@ void StageBook::add_work(const work::Job& job) {
   for (const work::StageRun& run : job.stages) {
     StageResult& stage = find(run.stage);
     ++stage.calls;
-    add_pieces(run, stage);
+    add_segments(run, stage);
     stage.transfers += work::transferred_by(run);
     stage.memory.single = std::max(stage.memory.single, run.memory.single);
     if (run.memory.parallel > stage.memory.parallel) {
@@ -29,20 +29,20 @@ void StageBook::add_work(const work::Job& job) {
   }
 }
 
-void StageBook::add_pieces(const work::StageRun& run, StageResult& stage) const {
+void StageBook::add_segments(const work::StageRun& run, StageResult& stage) const {
   const sim::Accelerators& accelerators = stage.on_controller ? controller_ : cluster_;
   if (!sim::has_accelerators(accelerators)) {
     stage.counts += work::counts_of(run);
     return;
   }
-  work::Piece piece = work::pieces_of(run);
-  stage.counts += sim::left_to_core(piece, accelerators);
-  std::erase_if(piece.kernels, [&](const work::KernelWork& calls) {
+  work::Segment segment = work::segments_of(run);
+  stage.counts += sim::left_to_core(segment, accelerators);
+  std::erase_if(segment.offload, [&](const work::OffloadWork& calls) {
     return accelerators[work::index(calls.kernel)].units == 0;
   });
-  work::Piece sum({}, std::move(stage.served));
-  sum += work::Piece({}, std::move(piece.kernels));
-  stage.served = std::move(sum.kernels);
+  work::Segment sum({}, std::move(stage.served));
+  sum += work::Segment({}, std::move(segment.offload));
+  stage.served = std::move(sum.offload);
 }
 
 void StageBook::add_parallel(const sim::JobTiming& timing) {
@@ -50,7 +50,7 @@ void StageBook::add_parallel(const sim::JobTiming& timing) {
     StageResult& stage = find(run.stage);
     stage.parallel += run.cycles;
     stage.worst_parallel = std::max(stage.worst_parallel, run.cycles);
-    stage.account += run.account;
+    stage.breakdown += run.breakdown;
   }
 }
 

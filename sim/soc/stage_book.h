@@ -29,7 +29,7 @@ class StageBook {
 
  private:
   StageResult& find(std::string_view name);
-  void add_pieces(const work::StageRun& run, StageResult& stage) const;
+  void add_segments(const work::StageRun& run, StageResult& stage) const;
 
   std::vector<StageResult> stages_;
   sim::Accelerators cluster_;

@@ -1,8 +1,8 @@
 // How far apart in code a core fetches the same instructions: what decides whether an instruction
 // cache still holds them, whatever its size. A *reuse distance* is the number of distinct bytes of
 // code that a core walked through since it was last in a piece of code, that piece included
-// (Mattson's stack distance, in bytes). Work carries a histogram of it, so that a recorded piece of
-// work can be priced for any cache, and two pieces of work can be added.
+// (Mattson's stack distance, in bytes). Work carries a histogram of it, so that a recorded work
+// segment can be priced for any cache, and two work segments can be added.
 #pragma once
 
 #include <algorithm>

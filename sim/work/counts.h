@@ -1,4 +1,4 @@
-// How often each operation occurred in a piece of work, and how much code it fetched.
+// How often each operation occurred in a work segment, and how much code it fetched.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace leviosim::work {
 
-/// Number of operations of each kind. A plain value: add two to merge two pieces of work.
+/// Number of operations of each kind. A plain value: add two to merge two work segments.
 struct Counts {
   std::array<std::uint64_t, kOpCount> n{};
   CodeReuse code{};  ///< bytes of code fetched, by reuse distance

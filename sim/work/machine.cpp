@@ -16,10 +16,10 @@ void Machine::follow_code_of(int core) {
   current_code = &*tracker_;
 }
 
-Piece Machine::counted_so_far() {
+Segment Machine::counted_so_far() {
   fetch_code();
-  std::vector<KernelWork> kernels = take_kernels();
-  return {take_tally(), std::move(kernels)};
+  std::vector<OffloadWork> offload = take_offload();
+  return {take_tally(), std::move(offload)};
 }
 
 void Machine::begin_stage(std::string_view name) {
@@ -31,7 +31,7 @@ void Machine::begin_stage(std::string_view name) {
   if (!recording()) return;
   counted_so_far();  // what happened between stages belongs to none
   follow_code_of(config_.cores);
-  kernels_followed = config_.kernels;
+  offload_followed = config_.offload;
   job_.stages.push_back({name, {}, {}});
 }
 
@@ -40,7 +40,7 @@ void Machine::end_stage() {
   if (!recording()) return;
   flush_serial();
   current_code = nullptr;
-  kernels_followed = true;
+  offload_followed = true;
   MemoryPeak& memory = job_.stages.back().memory;
   memory = fork_peak_;
   memory.single = std::max(memory.single, local_.peak());
@@ -93,7 +93,7 @@ void Machine::wait(Ticket ticket) {
 }
 
 void Machine::flush_serial() {
-  Piece counts = counted_so_far();
+  Segment counts = counted_so_far();
   if (!counts.empty()) job_.stages.back().steps.emplace_back(Serial{std::move(counts)});
 }
 

@@ -55,7 +55,7 @@ struct MachineConfig {
   Bytes capacity{128 * 1024};      ///< of the local memory
   int alignment = 4;               ///< of blocks, in bytes; 1 packs them
   bool record = false;             ///< keep a Job of what was done
-  bool kernels = true;             ///< … and in it what calls of kernels did, for accelerators
+  bool offload = true;             ///< … and in it what offload regions did, for accelerators
   const CodeMap* code = nullptr;   ///< sizes of the workload's compiled code; outlives the machine
 };
 
@@ -183,7 +183,7 @@ class Machine {
   void note_transfer(const Transfer& transfer);
   void flush_serial();
   /// By the core that the host executes at the moment, since this was last asked.
-  static Piece counted_so_far();
+  static Segment counted_so_far();
   /// From now on the host executes the code of this core; the master's id is cores().
   void follow_code_of(int core);
 

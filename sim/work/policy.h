@@ -17,8 +17,8 @@
 #include "sim/work/code_events.h"
 #include "sim/work/counted.h"
 #include "sim/work/functions.h"
-#include "sim/work/kernel_calls.h"
 #include "sim/work/memory.h"
+#include "sim/work/offload_regions.h"
 
 namespace leviosim::work {
 
@@ -126,7 +126,7 @@ struct Native {
   using Array = NativeArray<T, N>;
   using Function = FunctionScope<false>;
   using Code = CodeScope<false>;
-  using Kernel = KernelScope<false>;
+  using OffloadRegion = OffloadScope<false>;
   /// A jump through a table: of a state machine, an interpreter.
   static void jump_to_computed() {}
   static Range<false> range(int begin, int end) { return {begin, end}; }
@@ -152,7 +152,7 @@ struct Counting {
   using Array = CountedArray<T, N>;
   using Function = FunctionScope<true>;
   using Code = CodeScope<true>;
-  using Kernel = KernelScope<true>;
+  using OffloadRegion = OffloadScope<true>;
   static void jump_to_computed() { count(Op::JumpRegister); }
   static Range<true> range(int begin, int end) { return {begin, end}; }
   static DownRange<true> down_range(int begin, int last) { return {begin, last}; }

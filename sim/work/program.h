@@ -13,19 +13,19 @@
 
 #include "sim/base/units.h"
 #include "sim/work/arena.h"
-#include "sim/work/kernel_calls.h"
+#include "sim/work/offload_regions.h"
 
 namespace leviosim::work {
 
 /// Work of the master core alone.
 struct Serial {
-  Piece counts;
+  Segment counts;
 };
 
 /// The master offloads one share of work to each worker and waits for all of them.
 struct Fork {
   std::string_view name;
-  std::vector<Piece> shares;       ///< one per worker, in the order of their ids
+  std::vector<Segment> shares;     ///< one per worker, in the order of their ids
   bool master_takes_part = false;  ///< then the last share is the master's own
 };
 
@@ -70,18 +70,18 @@ inline Counts counts_of(const StageRun& stage) {
   for (const Step& step : stage.steps) {
     if (const auto* serial = std::get_if<Serial>(&step)) sum += serial->counts;
     if (const auto* fork = std::get_if<Fork>(&step))
-      for (const Piece& share : fork->shares) sum += static_cast<const Counts&>(share);
+      for (const Segment& share : fork->shares) sum += static_cast<const Counts&>(share);
   }
   return sum;
 }
 
-/// The same with what of it was done in calls of kernels.
-inline Piece pieces_of(const StageRun& stage) {
-  Piece sum;
+/// The same with what of it was done in offload regions.
+inline Segment segments_of(const StageRun& stage) {
+  Segment sum;
   for (const Step& step : stage.steps) {
     if (const auto* serial = std::get_if<Serial>(&step)) sum += serial->counts;
     if (const auto* fork = std::get_if<Fork>(&step))
-      for (const Piece& share : fork->shares) sum += share;
+      for (const Segment& share : fork->shares) sum += share;
   }
   return sum;
 }

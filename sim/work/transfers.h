@@ -1,4 +1,4 @@
-// How much a piece of work moved between memories.
+// How much a work segment moved between memories.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace leviosim::work {
 
-/// A plain value: add two to merge two pieces of work.
+/// A plain value: add two to merge two work segments.
 struct Transferred {
   std::int64_t transfers = 0;  ///< between L1 and L2
   Bytes bytes;                 ///< of these, both directions

@@ -53,7 +53,7 @@ std::string excerpt(const std::string& file, const std::string& mark) {
   std::string text;
   bool inside = false;
   int marks = 0;
-  for (const std::string& line : lines_of(traces::read_text_file(kSource / file))) {
+  for (const std::string& line : lines_of(base::read_text_file(kSource / file))) {
     const bool end = line == "// [/" + mark + "]" || line == "# [/" + mark + "]";
     if (end) inside = false;
     if (inside) text += line + '\n';
@@ -65,7 +65,7 @@ std::string excerpt(const std::string& file, const std::string& mark) {
 }
 
 std::vector<CodeBlock> page() {
-  return blocks_of(lines_of(traces::read_text_file(kSource / "workload/EXTENDING.md")));
+  return blocks_of(lines_of(base::read_text_file(kSource / "workload/EXTENDING.md")));
 }
 
 TEST(ExtendingPage, ShowsTheFilesThatAreCompiled) {
@@ -82,8 +82,7 @@ TEST(ExtendingPage, ShowsTheFilesThatAreCompiled) {
 TEST(ExtendingPage, NamesFilesThatAreThere) {
   std::string text;
   bool code = false;
-  for (const std::string& line :
-       lines_of(traces::read_text_file(kSource / "workload/EXTENDING.md")))
+  for (const std::string& line : lines_of(base::read_text_file(kSource / "workload/EXTENDING.md")))
     if (line.rfind("```", 0) == 0)
       code = !code;
     else if (!code)

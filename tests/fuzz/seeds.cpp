@@ -45,8 +45,8 @@ void write_trace(const fs::path& folder, const std::string& name, const std::str
 void write_traces(const fs::path& folder) {
   for (const int frames : {0, 1, 2, 5})
     write_trace(folder, fmt::format("example_{}", frames), example_trace(frames));
-  write_trace(folder, "kernels", example_trace_with_kernels(2));
-  write_trace(folder, "two_sections", example_trace_with_kernels(33));
+  write_trace(folder, "kernels", example_trace_with_offload(2));
+  write_trace(folder, "two_sections", example_trace_with_offload(33));
   TraceParts parts;
   parts.frames = {section(1, list(1, constant_series(3, 9)),
                           frame_facts(4) +

@@ -6,20 +6,20 @@
 namespace leviosim::platform {
 namespace {
 
-using work::KernelKind;
+using work::OffloadKind;
 
-sim::AcceleratorConfig of(const sim::ChipConfig& chip, KernelKind kind) {
+sim::AcceleratorConfig of(const sim::ChipConfig& chip, OffloadKind kind) {
   return chip.cluster.accelerators[work::index(kind)];
 }
 
 TEST(Accelerators, AreReadAndWritten) {
   const ResolvedPlatform platform = resolve_platform("gap9-hamming");
-  const sim::AcceleratorConfig hamming = of(platform.config, KernelKind::Hamming);
+  const sim::AcceleratorConfig hamming = of(platform.config, OffloadKind::Hamming);
   EXPECT_EQ(hamming.units, 1);
   EXPECT_EQ(hamming.start_up, 40);
   EXPECT_EQ(hamming.items_per_cycle, 2);
-  EXPECT_EQ(of(platform.config, KernelKind::Eigen3).units, 0);
-  EXPECT_EQ(platform.config.energy.high.cluster_accelerators[work::index(KernelKind::Hamming)],
+  EXPECT_EQ(of(platform.config, OffloadKind::Eigen3).units, 0);
+  EXPECT_EQ(platform.config.energy.high.cluster_accelerators[work::index(OffloadKind::Hamming)],
             Joules(8e-12));
   EXPECT_EQ(numbers_of(resolve_platform_text("again.yaml", to_yaml(platform)).config),
             numbers_of(platform.config));
@@ -27,7 +27,7 @@ TEST(Accelerators, AreReadAndWritten) {
 
 TEST(Accelerators, AreNotOnChipsThatSayNothingOfThem) {
   for (const char* name : {"gap9", "gap8", "cortex-m4f"})
-    for (const work::KernelInfo& info : work::kKernels) {
+    for (const work::OffloadKindInfo& info : work::kOffloadKinds) {
       EXPECT_EQ(of(load_platform(name), info.kernel).units, 0);
       EXPECT_EQ(load_platform(name).controller.accelerators[work::index(info.kernel)].units, 0);
     }
@@ -35,7 +35,7 @@ TEST(Accelerators, AreNotOnChipsThatSayNothingOfThem) {
 
 TEST(Accelerators, CanBeOverridden) {
   EXPECT_EQ(of(load_platform("gap9-hamming", {"cluster.accelerators.hamming.units=3"}),
-               KernelKind::Hamming)
+               OffloadKind::Hamming)
                 .units,
             3);
 }
@@ -69,8 +69,8 @@ TEST(Accelerators, OfTheControllerNeedNoL1) {
                "controller.accelerators.solve.latency=10",
                "controller.accelerators.solve.items_per_cycle=4",
                "controller.accelerators.solve.energy=3pJ"});
-  EXPECT_EQ(chip.controller.accelerators[work::index(KernelKind::Solve)].items_per_cycle, 4);
-  EXPECT_EQ(of(chip, KernelKind::Solve).units, 0);
+  EXPECT_EQ(chip.controller.accelerators[work::index(OffloadKind::Solve)].items_per_cycle, 4);
+  EXPECT_EQ(of(chip, OffloadKind::Solve).units, 0);
 }
 
 /// A chip without energy figures may have accelerators without them.

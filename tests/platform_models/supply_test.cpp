@@ -1,5 +1,5 @@
 // Sections `supply` and `energy`: clocks that a voltage does not allow, bands, completeness.
-#include "sim/energy/doubt.h"
+#include "sim/energy/uncertainty_source.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {
@@ -102,16 +102,16 @@ std::vector<double> energy_numbers(const sim::EnergyConfig& energy) {
   return numbers;
 }
 
-// What belongs to no doubt would have a range in the file and no part in the bands.
-TEST(EnergyFigures, EveryNumberBelongsToExactlyOneDoubt) {
+// What belongs to no source would have a range in the file and no part in the bands.
+TEST(EnergyFigures, EveryNumberBelongsToExactlyOneSource) {
   sim::EnergyConfig from = load_platform("gap9").energy.value;
   from.cluster_accelerators.fill(Joules(1e-12));  // GAP9 has none
   from.controller_accelerators.fill(Joules(2e-12));
   const std::vector<double> expected = energy_numbers(from);
   std::vector<int> copies(expected.size(), 0);
-  for (const sim::Doubt& doubt : sim::kDoubts) {
+  for (const sim::UncertaintySource& source : sim::kUncertaintySources) {
     sim::EnergyConfig to{};
-    doubt.copy(from, to);
+    source.copy(from, to);
     const std::vector<double> copied = energy_numbers(to);
     for (std::size_t i = 0; i < expected.size(); ++i) copies[i] += copied[i] == expected[i] ? 1 : 0;
   }

@@ -72,19 +72,20 @@ TEST(Units, NumbersReadBackExactly) {
 
 TEST(Nearest, FewestEditsWin) {
   const std::vector<std::string> names = {"workers", "max_workers", "clock"};
-  EXPECT_EQ(nearest("wrokers", names), "workers");
-  EXPECT_EQ(nearest("maxworkers", names), "max_workers");
-  EXPECT_EQ(nearest("clk", names), "clock");
-  EXPECT_EQ(nearest("workers", names), "workers");
+  EXPECT_EQ(base::nearest("wrokers", names), "workers");
+  EXPECT_EQ(base::nearest("maxworkers", names), "max_workers");
+  EXPECT_EQ(base::nearest("clk", names), "clock");
+  EXPECT_EQ(base::nearest("workers", names), "workers");
 }
 
 TEST(Nearest, NothingAlikeGivesNoSuggestion) {
-  EXPECT_EQ(nearest("zzzz", {"workers", "clock"}), "");
-  EXPECT_EQ(did_you_mean("zzzz", {"workers"}), "");
-  EXPECT_EQ(did_you_mean("worker", {"workers"}), "; did you mean 'workers'?");
-  EXPECT_EQ(nearest("x", {}), "");
-  EXPECT_EQ(nearest("clock", {"clock_a", "clock_b"}), "clock_a") << "of two as near the first";
-  EXPECT_EQ(nearest(std::string(100000, 'q'), {"workers"}), "");
+  EXPECT_EQ(base::nearest("zzzz", {"workers", "clock"}), "");
+  EXPECT_EQ(base::did_you_mean("zzzz", {"workers"}), "");
+  EXPECT_EQ(base::did_you_mean("worker", {"workers"}), "; did you mean 'workers'?");
+  EXPECT_EQ(base::nearest("x", {}), "");
+  EXPECT_EQ(base::nearest("clock", {"clock_a", "clock_b"}), "clock_a")
+      << "of two as near the first";
+  EXPECT_EQ(base::nearest(std::string(100000, 'q'), {"workers"}), "");
 }
 
 TEST(Schema, DescribesEveryFieldCompletely) {

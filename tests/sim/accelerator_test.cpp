@@ -13,10 +13,10 @@ namespace leviosim::sim {
 namespace {
 
 using work::Counts;
-using work::KernelKind;
-using work::KernelWork;
+using work::OffloadKind;
+using work::OffloadWork;
 using work::Op;
-using work::Piece;
+using work::Segment;
 
 Counts alu(std::uint64_t n) {
   Counts counts;
@@ -25,8 +25,8 @@ Counts alu(std::uint64_t n) {
 }
 
 /// `rest` instructions, and calls that a core would need `inside` instructions for in all.
-Piece piece(std::uint64_t rest, std::uint64_t inside, std::uint64_t calls, std::uint64_t items,
-            KernelKind kernel = KernelKind::Hamming) {
+Segment segment(std::uint64_t rest, std::uint64_t inside, std::uint64_t calls, std::uint64_t items,
+                OffloadKind kernel = OffloadKind::Hamming) {
   return {alu(rest + inside), {{kernel, calls, items, alu(inside)}}};
 }
 
@@ -36,7 +36,7 @@ AcceleratorConfig unit(int units, double start_up, double latency, double items_
 }
 
 ClusterConfig cluster_with(const AcceleratorConfig& accelerator,
-                           KernelKind kernel = KernelKind::Hamming) {
+                           OffloadKind kernel = OffloadKind::Hamming) {
   ClusterConfig cluster = test_cluster();
   cluster.events = {};
   cluster.accelerators[work::index(kernel)] = accelerator;
@@ -60,34 +60,34 @@ StageTiming time_of(const ClusterConfig& config, std::vector<work::Step> steps, 
   return timing.stages.at(0);
 }
 
-std::int64_t serial_cycles(const ClusterConfig& config, const Piece& piece) {
-  return time_of(config, {work::Serial{piece}}).cycles.count();
+std::int64_t serial_cycles(const ClusterConfig& config, const Segment& segment) {
+  return time_of(config, {work::Serial{segment}}).cycles.count();
 }
 
 /// All workers do the same.
-StageTiming together(const ClusterConfig& config, const Piece& piece, int workers) {
-  return time_of(config,
-                 {work::Fork{"f", std::vector<Piece>(static_cast<std::size_t>(workers), piece)}},
-                 workers);
+StageTiming together(const ClusterConfig& config, const Segment& segment, int workers) {
+  return time_of(
+      config, {work::Fork{"f", std::vector<Segment>(static_cast<std::size_t>(workers), segment)}},
+      workers);
 }
 
 TEST(Accelerator, ACallTakesStartUpLatencyAndItems) {
-  EXPECT_EQ(serial_cycles(cluster_with(unit(1, 30, 12, 0.5)), piece(100, 9999, 1, 64)),
+  EXPECT_EQ(serial_cycles(cluster_with(unit(1, 30, 12, 0.5)), segment(100, 9999, 1, 64)),
             100 + 30 + 12 + 128);
-  EXPECT_EQ(serial_cycles(cluster_with(unit(1, 30, 12, 4)), piece(0, 9999, 3, 64)),
+  EXPECT_EQ(serial_cycles(cluster_with(unit(1, 30, 12, 4)), segment(0, 9999, 3, 64)),
             3 * (30 + 12) + 16);
 }
 
 TEST(Accelerator, WithoutOneTheCoreDoesTheWork) {
-  EXPECT_EQ(serial_cycles(test_cluster(), piece(100, 900, 1, 64)), 1000);
+  EXPECT_EQ(serial_cycles(test_cluster(), segment(100, 900, 1, 64)), 1000);
   // Another kind of kernel is not served.
-  EXPECT_EQ(
-      serial_cycles(cluster_with(unit(1, 30, 12, 0.5), KernelKind::Eigen3), piece(100, 900, 1, 64)),
-      1000);
+  EXPECT_EQ(serial_cycles(cluster_with(unit(1, 30, 12, 0.5), OffloadKind::Eigen3),
+                          segment(100, 900, 1, 64)),
+            1000);
 }
 
 TEST(Accelerator, WithoutOneTheDemandIsThatOfTheCounts) {
-  const Piece work = piece(100, 900, 3, 64);
+  const Segment work = segment(100, 900, 3, 64);
   const Demand a = price(work, unit_cost_core(), Accelerators{});
   const Demand b = price(static_cast<const Counts&>(work), unit_cost_core());
   EXPECT_EQ(a.cycles(), b.cycles());
@@ -98,7 +98,7 @@ TEST(Accelerator, WithoutOneTheDemandIsThatOfTheCounts) {
 TEST(Accelerator, CoresQueueForOneUnit) {
   for (const int cores : {1, 2, 4, 8})
     EXPECT_NEAR(
-        cycles_of(together(cluster_with(unit(1, 0, 0, 0.1)), piece(0, 5000, 50, 50), cores)),
+        cycles_of(together(cluster_with(unit(1, 0, 0, 0.1)), segment(0, 5000, 50, 50), cores)),
         cores * 50 * 10, 1)
         << cores;
 }
@@ -109,17 +109,18 @@ TEST(Accelerator, QueueingBeginsWhenTheUnitIsSaturated) {
   constexpr double s = 30, l = 10, b = 20;
   const ClusterConfig config = cluster_with(unit(1, s, l, 1 / b));
   for (const int cores : {1, 2, 3, 4, 8}) {
-    const StageTiming timing = together(config, piece(0, 5000, 100, 100), cores);
+    const StageTiming timing = together(config, segment(0, 5000, 100, 100), cores);
     EXPECT_NEAR(cycles_of(timing), 100 * std::max(s + l + b, cores * b), 2) << cores;
-    EXPECT_NEAR(timing.account.useful.accelerator, cores * 100 * (l + b), 1);
-    EXPECT_NEAR(timing.account.accelerator, cores * 100 * std::max(0.0, cores * b - s - l - b), 20);
-    EXPECT_NEAR(timing.account.total(), cores * static_cast<double>(timing.cycles.count()), 1e-6);
+    EXPECT_NEAR(timing.breakdown.useful.accelerator, cores * 100 * (l + b), 1);
+    EXPECT_NEAR(timing.breakdown.accelerator, cores * 100 * std::max(0.0, cores * b - s - l - b),
+                20);
+    EXPECT_NEAR(timing.breakdown.total(), cores * static_cast<double>(timing.cycles.count()), 1e-6);
   }
 }
 
 TEST(Accelerator, TwoUnitsServeTwiceAsMany) {
   const auto cycles = [](int units) {
-    return together(cluster_with(unit(units, 0, 0, 0.1)), piece(0, 1, 50, 50), 8).cycles.count();
+    return together(cluster_with(unit(units, 0, 0, 0.1)), segment(0, 1, 50, 50), 8).cycles.count();
   };
   EXPECT_NEAR(static_cast<double>(cycles(1)) / static_cast<double>(cycles(2)), 2, 1e-3);
   EXPECT_NEAR(static_cast<double>(cycles(1)) / static_cast<double>(cycles(8)), 8, 1e-2);
@@ -129,18 +130,18 @@ TEST(Accelerator, ThatTakesForEverIsNeverBetter) {
   for (const AcceleratorConfig& slow :
        {unit(8, 1e9, 0, 1), unit(8, 0, 1e9, 1), unit(8, 0, 0, 1e-9)})
     for (const std::uint64_t inside : {10, 1000, 100000})
-      EXPECT_GT(serial_cycles(cluster_with(slow), piece(100, inside, 1, 64)),
-                serial_cycles(test_cluster(), piece(100, inside, 1, 64)));
+      EXPECT_GT(serial_cycles(cluster_with(slow), segment(100, inside, 1, 64)),
+                serial_cycles(test_cluster(), segment(100, inside, 1, 64)));
 }
 
 /// What it moves in L1 takes banks from the other cores.
 TEST(Accelerator, TakesBanksOfL1) {
-  Piece other;
+  Segment other;
   other[Op::LoadIndexed] = 1000;
   const auto cycles = [&](double words) {
     return time_of(cluster_with(unit(1, 0, 0, 0.1, words)),
-                   {work::Fork{"f", {piece(0, 1, 100, 200), other}}}, 2)
-        .account.banks;
+                   {work::Fork{"f", {segment(0, 1, 100, 200), other}}}, 2)
+        .breakdown.banks;
   };
   EXPECT_EQ(cycles(0), 0);
   EXPECT_GT(cycles(2), 0);
@@ -149,13 +150,13 @@ TEST(Accelerator, TakesBanksOfL1) {
 
 TEST(Accelerator, OfTheControllerServesItsCalls) {
   ChipConfig chip = test_chip();
-  chip.controller.accelerators[work::index(KernelKind::Solve)] = unit(1, 30, 12, 2);
+  chip.controller.accelerators[work::index(OffloadKind::Solve)] = unit(1, 30, 12, 2);
   // Of the cluster: another one's.
-  chip.cluster.accelerators[work::index(KernelKind::Solve)] = unit(1, 0, 0, 1e6);
+  chip.cluster.accelerators[work::index(OffloadKind::Solve)] = unit(1, 0, 0, 1e6);
   const Timebase timebase({{"controller", chip.controller.clock}});
   Kernel kernel;
   Controller controller(kernel, timebase.clock("controller"), chip.controller);
-  const work::Job job{{{"s", {work::Serial{piece(7, 9999, 2, 100, KernelKind::Solve)}}, {}}}};
+  const work::Job job{{{"s", {work::Serial{segment(7, 9999, 2, 100, OffloadKind::Solve)}}, {}}}};
   JobTiming timing;
   const auto run = [](Controller& c, const work::Job& j, JobTiming& t) -> Process {
     t = co_await c.run(j);
@@ -165,24 +166,25 @@ TEST(Accelerator, OfTheControllerServesItsCalls) {
   EXPECT_EQ(timing.stages.at(0).cycles.count(), 7 + 2 * (30 + 12) + 50);
 }
 
-TEST(Accelerator, SharesOfSeveralWorkersAreOnePieceOfWork) {
+TEST(Accelerator, SharesOfSeveralWorkersAreOneWorkSegment) {
   // Eight shares on two workers: each has the calls of four.
   const ClusterConfig config = cluster_with(unit(8, 10, 0, 1));
-  const std::vector<Piece> shares(8, piece(5, 100, 2, 20));
+  const std::vector<Segment> shares(8, segment(5, 100, 2, 20));
   EXPECT_NEAR(cycles_of(time_of(config, {work::Fork{"f", shares}}, 2)), 4 * (5 + 2 * 10 + 20), 1);
 }
 
 TEST(Accelerator, TakesItsWorkFromTheCoresEnergyAndAddsItsOwn) {
   ChipConfig chip = energy_chip();
-  chip.cluster.accelerators[work::index(KernelKind::Hamming)] = unit(1, 30, 0, 1, 4);
-  chip.energy.value.cluster_accelerators[work::index(KernelKind::Hamming)] = Joules(2e-12);
-  const Piece work = piece(100, 900, 3, 64);
+  chip.cluster.accelerators[work::index(OffloadKind::Hamming)] = unit(1, 30, 0, 1, 4);
+  chip.energy.value.cluster_accelerators[work::index(OffloadKind::Hamming)] = Joules(2e-12);
+  const Segment work = segment(100, 900, 3, 64);
   const Counts left = left_to_core(work, chip.cluster.accelerators);
   EXPECT_EQ(left, alu(100));
-  const Activity with = cluster_activity(chip, 8, left, {}, Account{}, Cycles(0), work.kernels);
+  const Activity with =
+      cluster_activity(chip, 8, left, {}, CycleBreakdown{}, Cycles(0), work.offload);
   EXPECT_EQ(with.instructions, 100 + 3 * 30);
   EXPECT_EQ(with.l1_accesses, 64 * 4);
-  const Activity without = cluster_activity(chip, 8, left, {}, Account{}, Cycles(0));
+  const Activity without = cluster_activity(chip, 8, left, {}, CycleBreakdown{}, Cycles(0));
   const double scale = chip.supply.voltage.count() / chip.energy.value.voltage.count();
   const auto cluster_of = [&](const Activity& a) {
     return energy_of(a, chip)[Domain::Cluster].value.count();

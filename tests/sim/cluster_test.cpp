@@ -1,4 +1,4 @@
-// The cluster's steps against closed formulas, and the accounts that must add up.
+// The cluster's steps against closed formulas, and the breakdowns that must add up.
 #include "sim/chip/cluster.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ constexpr std::int64_t kForkCost = 40 + 20 + 10;  // fork_master, fork_worker, b
 TEST(Cluster, SerialWorkTakesItsCycles) {
   const JobTiming t = run(one_stage({work::Serial{alu(1234)}}));
   EXPECT_EQ(t.stages[0].cycles.count(), 1234);
-  EXPECT_EQ(t.stages[0].account.serial, 8 * 1234);
+  EXPECT_EQ(t.stages[0].breakdown.serial, 8 * 1234);
 }
 
 /// When the last of two jobs of 1000 cycles ends, one on the cluster and one on the controller.
@@ -104,19 +104,19 @@ TEST(Cluster, TheDmaTakesBanksFromTheCores) {
   Counts work;
   work[Op::LoadStream] = 10'000;
   const work::Transfer in{work::Direction::L2ToL1, Bytes(1'000'000), true};
-  work::Fork fork{"fork", std::vector<work::Piece>(8, work)};
+  work::Fork fork{"fork", std::vector<work::Segment>(8, work)};
   const JobTiming t = run(one_stage({in, fork, work::TransferWait{0}}));
   // Two words per cycle on 16 banks: an access waits 2/(2·16) cycles.
-  EXPECT_NEAR(t.stages[0].account.banks, 8 * 10'000 * 2.0 / 32, 8 * 3);
+  EXPECT_NEAR(t.stages[0].breakdown.banks, 8 * 10'000 * 2.0 / 32, 8 * 3);
 }
 
 TEST(Cluster, AMasterThatTakesPartIsOneMoreCore) {
-  work::Fork fork{"fork", std::vector<work::Piece>(9, alu(100)), true};
+  work::Fork fork{"fork", std::vector<work::Segment>(9, alu(100)), true};
   fork.shares.back() = alu(1000);
   const JobTiming t = run(one_stage({fork}));
   EXPECT_EQ(t.stages[0].cycles.count(), 40 + 1000 + 10) << "the master needs no wake-up";
-  EXPECT_EQ(t.stages[0].account.useful.total(), 800) << "of the workers";
-  EXPECT_NEAR(t.stages[0].account.total(), 8 * 1050, 1e-6);
+  EXPECT_EQ(t.stages[0].breakdown.useful.total(), 800) << "of the workers";
+  EXPECT_NEAR(t.stages[0].breakdown.total(), 8 * 1050, 1e-6);
 }
 
 TEST(Cluster, ABarrierReleasesOnTheLastArrival) {
@@ -124,17 +124,17 @@ TEST(Cluster, ABarrierReleasesOnTheLastArrival) {
   for (std::uint64_t k = 1; k <= 8; ++k) fork.shares.push_back(alu(100 * k));
   const JobTiming t = run(one_stage({fork}));
   EXPECT_EQ(t.stages[0].cycles.count(), 800 + kForkCost);
-  EXPECT_EQ(t.stages[0].account.imbalance, 100 + 200 + 300 + 400 + 500 + 600 + 700);
-  EXPECT_EQ(t.stages[0].account.useful.total(), 3600);
+  EXPECT_EQ(t.stages[0].breakdown.imbalance, 100 + 200 + 300 + 400 + 500 + 600 + 700);
+  EXPECT_EQ(t.stages[0].breakdown.useful.total(), 3600);
 }
 
 TEST(Cluster, OneWorkerRunsAllSharesOfEight) {
-  work::Fork fork{"fork", std::vector<work::Piece>(8, alu(100))};
+  work::Fork fork{"fork", std::vector<work::Segment>(8, alu(100))};
   EXPECT_EQ(run(one_stage({fork}), 1).stages[0].cycles.count(), 800 + kForkCost);
   EXPECT_EQ(run(one_stage({fork}), 3).stages[0].cycles.count(), 300 + kForkCost);
 }
 
-TEST(Cluster, TheAccountOfAStageAddsUpToItsCoreCycles) {
+TEST(Cluster, TheBreakdownOfAStageAddsUpToItsCoreCycles) {
   std::uint64_t state = 1;
   const auto random = [&](std::uint64_t n) {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;
@@ -158,12 +158,12 @@ TEST(Cluster, TheAccountOfAStageAddsUpToItsCoreCycles) {
   }
   const StageTiming stage = run(one_stage(steps)).stages[0];
   const double core_cycles = 8.0 * static_cast<double>(stage.cycles.count());
-  EXPECT_NEAR(stage.account.total(), core_cycles, 1e-9 * core_cycles);
-  EXPECT_GT(stage.account.fpu, 0);
-  EXPECT_GT(stage.account.divider, 0);
-  EXPECT_GT(stage.account.banks, 0);
-  EXPECT_GE(stage.account.rounding, 0);
-  EXPECT_LT(stage.account.rounding, 8 * 40);
+  EXPECT_NEAR(stage.breakdown.total(), core_cycles, 1e-9 * core_cycles);
+  EXPECT_GT(stage.breakdown.fpu, 0);
+  EXPECT_GT(stage.breakdown.divider, 0);
+  EXPECT_GT(stage.breakdown.banks, 0);
+  EXPECT_GE(stage.breakdown.rounding, 0);
+  EXPECT_LT(stage.breakdown.rounding, 8 * 40);
 }
 
 TEST(Cluster, EveryTeamSizeUpToTheEventUnitsLimit) {
@@ -204,7 +204,7 @@ TEST(Chip, AnOffloadCostsBothWays) {
 TEST(Chip, TheControllerRunsForksAsOneCore) {
   Chip chip(test_chip(), 8);
   JobTiming timing;
-  const work::Job job = one_stage({work::Fork{"f", std::vector<work::Piece>(8, alu(10))}});
+  const work::Job job = one_stage({work::Fork{"f", std::vector<work::Segment>(8, alu(10))}});
   const auto body = [&]() -> Process { timing = co_await chip.controller().run(job); };
   chip.kernel().spawn("test", body());
   chip.kernel().run();

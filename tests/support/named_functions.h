@@ -18,7 +18,7 @@ inline std::set<std::string> named_functions() {
   const std::filesystem::path workload = source_folder() / "workload";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(workload)) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-    const std::string text = traces::read_text_file(entry.path());
+    const std::string text = base::read_text_file(entry.path());
     for (std::sregex_iterator it(text.begin(), text.end(), scope), end; it != end; ++it)
       names.insert((*it)[1]);
   }

@@ -64,8 +64,8 @@ class Program {
     ProgramResult result;
     result.status =
         WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_);
-    result.out = traces::read_text_file(out_);
-    result.err = traces::read_text_file(err_);
+    result.out = base::read_text_file(out_);
+    result.err = base::read_text_file(err_);
     return result;
   }
 

@@ -385,7 +385,7 @@ std::map<std::string, std::string> listing(const fs::path& folder) {
     if (entry.is_symlink())
       found[name] = "-> " + fs::read_symlink(entry.path()).string();
     else if (entry.is_regular_file())
-      found[name] = traces::read_text_file(entry.path());
+      found[name] = base::read_text_file(entry.path());
     else
       found[name] = entry.is_directory() ? "folder" : "special";
   }
@@ -438,7 +438,7 @@ TEST_P(BadInputs, IsRefused) {
   if (row.setup) row.setup(folder_.path(), data_);
   for (const auto& entry : fs::directory_iterator(folder_.path()))
     if (entry.path().extension() == ".yaml" && entry.is_regular_file()) {
-      const std::string text = filled_in(traces::read_text_file(entry.path()));
+      const std::string text = filled_in(base::read_text_file(entry.path()));
       std::ofstream(entry.path(), std::ios::binary) << text;
     }
   Words words;

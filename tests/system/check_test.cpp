@@ -78,7 +78,7 @@ TEST_F(Check, AStageThatBecameSlowerEndsWithStatusOneAndSaysWhy) {
   EXPECT_EQ(result.err, "");
   expect_holds(result.out, {"1 not met", "where: frame matching, ", "why: issue: popcount +",
                             "owner: vision", "::error file=", "line=3,"});
-  const std::string junit = traces::read_text_file(path("junit.xml"));
+  const std::string junit = base::read_text_file(path("junit.xml"));
   EXPECT_EQ(junit_fault(junit), "");
   expect_holds(junit, {"failures=\"1\"", "popcount"});
 }
@@ -143,7 +143,7 @@ TEST_F(Check, RefusesBadInput) {
   EXPECT_FALSE(fs::exists(path("never")));
   expect_refused(program({"budget", "recrod", path("run")}), {"did you mean 'record'"});
   expect_refused(program({"budget", "init", path("run"), "--margin", "5"}), {"--margin '5'"});
-  std::string other = traces::read_text_file(path("baseline.json"));
+  std::string other = base::read_text_file(path("baseline.json"));
   other.replace(other.find("\"seed\":1"), 8, "\"seed\":2");
   expect_refused(
       program({"check", path("run"), "--budget", budget, "--baseline", write("seed.json", other)}),
@@ -152,7 +152,7 @@ TEST_F(Check, RefusesBadInput) {
 
 /// Lines of an example that call the program.
 std::string commands_of(const std::string& file) {
-  std::istringstream lines(traces::read_text_file((tests::source_folder() / ("tools/ci/" + file))));
+  std::istringstream lines(base::read_text_file((tests::source_folder() / ("tools/ci/" + file))));
   std::string commands;
   for (std::string line; std::getline(lines, line);)
     if (const auto begin = line.find_first_not_of(' ');
@@ -184,12 +184,12 @@ TEST_F(Check, TheExamplesForServersWork) {
     fs::create_directories(folder);
     fs::copy(path("baseline.json"), folder / "baseline.json");
     fs::copy(path("budgets.yaml"), folder / "budgets.yaml");
-    EXPECT_EQ(run_script(folder, commands), 0) << traces::read_text_file(folder / "log");
-    EXPECT_EQ(junit_fault(traces::read_text_file(folder / "junit.xml")), "");
+    EXPECT_EQ(run_script(folder, commands), 0) << base::read_text_file(folder / "log");
+    EXPECT_EQ(junit_fault(base::read_text_file(folder / "junit.xml")), "");
     fs::remove_all(folder / "run");
     fs::remove(folder / "junit.xml");
     std::ofstream(folder / "budgets.yaml") << "budgets:\n  - limits: [L1 peak <= 1 kB]\n";
-    EXPECT_EQ(run_script(folder, commands), 1) << traces::read_text_file(folder / "log");
+    EXPECT_EQ(run_script(folder, commands), 1) << base::read_text_file(folder / "log");
   }
 }
 
@@ -230,7 +230,7 @@ TEST(ProjectBudgets, HaveBaselinesOfBothProfiles) {
   for (const char* profile : {"levio", "next"}) {
     const std::string file = fmt::format("tools/ci/{}-gap9.json", profile);
     const RunRecord baseline =
-        parse_baseline(file, traces::read_text_file(tests::source_folder() / file));
+        parse_baseline(file, base::read_text_file(tests::source_folder() / file));
     EXPECT_EQ(baseline.facts.profile, profile);
     EXPECT_FALSE(sections_for(budget, baseline).empty());
   }

@@ -172,11 +172,11 @@ TEST_F(CommandLine, ReplacesResultsOnlyIfForced) {
   std::vector<std::string> words = run_words(data_.root().string(), out());
   words.push_back("--force");
   expect_refusal(words, {"manifest.json", "no record", "by hand"});
-  EXPECT_EQ(traces::read_text_file(folder_ / "out/manifest.json"), "{}");
+  EXPECT_EQ(base::read_text_file(folder_ / "out/manifest.json"), "{}");
 }
 
 TEST_F(CommandLine, AnImageThatCannotBeReadLeavesNothingBehind) {
-  traces::write_file_atomically(data_.image(3), "no image");
+  base::write_file_atomically(data_.image(3), "no image");
   expect_run_refused({"--quiet"}, {data_.image(3).filename().string()});
 }
 

@@ -54,7 +54,7 @@ class Compare : public ::testing::Test {
     const std::string copy = path("changed");
     fs::remove_all(copy);
     fs::copy(path("run"), copy);
-    std::string text = traces::read_text_file(copy + '/' + file);
+    std::string text = base::read_text_file(copy + '/' + file);
     const auto at = text.find(before);
     EXPECT_NE(at, std::string::npos) << before;
     text.replace(at, before.size(), after);
@@ -162,7 +162,7 @@ TEST_F(Compare, TheFolderOfARunSaysWhatItsReplaySays) {
 TEST_F(Compare, ACsvOfPartsIsReadBackAsItWas) {
   const RunRecord run = replayed({});
   const std::string text = cycles_csv(run.cycles);
-  EXPECT_EQ(text, traces::read_text_file(path("run/cycles.csv")));
+  EXPECT_EQ(text, base::read_text_file(path("run/cycles.csv")));
   EXPECT_EQ(cycles_csv(parse_cycles("cycles.csv", text)), text);
 }
 

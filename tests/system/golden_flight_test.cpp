@@ -2,7 +2,8 @@
 // digit: poses and where they come from, keyframes, matches, inliers, landmarks, error, and cycles
 // per stage on GAP9. Determinism makes exact values possible, and no data is needed. Whoever means
 // to change what is computed makes golden_flight.csv anew, and looks at what has changed:
-//   LEVIOSIM_RENEW_GOLDEN=1 build/release/tests/leviosim_system_tests --gtest_filter='*GoldenFlight*'
+//   LEVIOSIM_RENEW_GOLDEN=1 build/release/tests/leviosim_system_tests
+//   --gtest_filter='*GoldenFlight*'
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -50,9 +51,9 @@ const ShortFlight& troubled() {
 }
 
 /// Adds up what happens on the way.
-class Account {
+class CycleBreakdown {
  public:
-  Account() : chip_(platform::load_platform("gap9")), timer_(chip_, 8) {}
+  CycleBreakdown() : chip_(platform::load_platform("gap9")), timer_(chip_, 8) {}
 
   void add(const vio::FrameReport& report) {
     count("source " + std::string(name_of(report.source)), 1);
@@ -105,7 +106,7 @@ Figures figures_of(const ShortFlight& flight, const vio::Profile& profile) {
   work::Machine cluster({8, "L1", Bytes(1 << 24), profile.l1_alignment, true, false, &code});
   work::Machine controller({1, "L2", Bytes(1 << 24), 4, true, false, &code});
   const auto odometry = vio::make_odometry(true, profile, flight.rig, cluster, controller);
-  Account account;
+  CycleBreakdown account;
   traces::Trajectory trajectory;
   std::int64_t before_ns = flight.frames.front().t_ns;
   for (const ShortFlight::Frame& frame : flight.frames) {

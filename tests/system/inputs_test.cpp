@@ -26,7 +26,7 @@ class Inputs : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   void write(const std::string& name, const std::string& text) const {
-    traces::write_file_atomically(folder_ / name, text);
+    base::write_file_atomically(folder_ / name, text);
   }
 
   /// Three seconds of processor time; thirty of the clock, for what waits.
@@ -39,8 +39,8 @@ class Inputs : public ::testing::Test {
     const int status = std::system(command.c_str());
     ProgramResult result;
     result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    result.out = traces::read_text_file(folder_ / "stdout.txt");
-    result.err = traces::read_text_file(folder_ / "stderr.txt");
+    result.out = base::read_text_file(folder_ / "stdout.txt");
+    result.err = base::read_text_file(folder_ / "stderr.txt");
     return result;
   }
 
@@ -270,8 +270,8 @@ TEST_F(Inputs, FlightsThatAreLongerThanSimulatedTimeAreFoundBeforeTheFirstFrame)
   std::string samples = "#timestamp\n";
   for (std::int64_t t_ns = 4'950'000'000; t_ns < 350'003'000'000'000'000; t_ns += 2'990'000'000'000)
     samples += fmt::format("{},0,0,0,0,0,9.8\n", t_ns);
-  traces::write_file_atomically(data.mav0("imu0/data.csv"), samples);
-  traces::write_file_atomically(data.image(0), "no picture");
+  base::write_file_atomically(data.mav0("imu0/data.csv"), samples);
+  base::write_file_atomically(data.image(0), "no picture");
   expect_refusal({"run", "--platform", "gap9", "--data", data.root().string(), "--size", "32x24",
                   "--out", path("out")},
                  {"is outside the simulated range"});
@@ -283,8 +283,8 @@ TEST_F(Inputs, TruthThatDoesNotOverlapIsFoundBeforeTheFirstFrame) {
   std::string truth = "#timestamp\n";
   for (int i = 0; i < 5; ++i)
     truth += fmt::format("{},0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n", 90'000'000'000 + i);
-  traces::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"), truth);
-  traces::write_file_atomically(data.image(0), "no picture");
+  base::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"), truth);
+  base::write_file_atomically(data.image(0), "no picture");
   const std::vector<std::string> parts{"state_groundtruth_estimate0/data.csv: none of the 6 frames",
                                        "5000000000", "90000000000", "expected at least 3"};
   expect_run_refused(data, parts);
@@ -301,12 +301,11 @@ TEST_F(Inputs, TruthThatDoesNotOverlapIsFoundBeforeTheFirstFrame) {
 
 TEST_F(Inputs, TwoPosesOfTruthAreTooFew) {
   const AslFolder data;
-  const std::string truth =
-      traces::read_text_file(data.mav0("state_groundtruth_estimate0/data.csv"));
+  const std::string truth = base::read_text_file(data.mav0("state_groundtruth_estimate0/data.csv"));
   const std::size_t end = truth.find("5055000000");  // frames 0 and 1 lie before
   ASSERT_NE(end, std::string::npos);
-  traces::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"),
-                                truth.substr(0, end));
+  base::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"),
+                              truth.substr(0, end));
   expect_run_refused(data, {"2 of the 6 frames", "expected at least 3"});
 }
 
@@ -314,10 +313,10 @@ TEST_F(Inputs, TwoPosesOfTruthAreTooFew) {
 TEST_F(Inputs, ARunThatDropsTheFramesOfItsTruthKeepsItsResults) {
   traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
   const fs::path file = folder_ / "flight/mav0/state_groundtruth_estimate0/data.csv";
-  const std::string truth = traces::read_text_file(file);
+  const std::string truth = base::read_text_file(file);
   const std::size_t end = truth.find("1000105000000");
   ASSERT_NE(end, std::string::npos);
-  traces::write_file_atomically(file, truth.substr(0, end));
+  base::write_file_atomically(file, truth.substr(0, end));
   const ProgramResult result =
       program({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("out"),
                "--deadline", "drop", "-p", "cluster.clock=20MHz"});
@@ -332,10 +331,10 @@ TEST_F(Inputs, ARunThatDropsTheFramesOfItsTruthKeepsItsResults) {
 TEST_F(Inputs, DamagedPicturesAreOneLine) {
   const auto expect = [&](const std::string& bytes, const std::string& part) {
     const AslFolder data;
-    traces::write_file_atomically(data.image(0), bytes);
+    base::write_file_atomically(data.image(0), bytes);
     expect_run_refused(data, {"5000000000.png", "cam0/data.csv line 2", part});
   };
-  std::string png = traces::read_text_file(data_.image(0));
+  std::string png = base::read_text_file(data_.image(0));
   expect(png.substr(0, png.size() / 2), "damaged PNG");
   std::string flipped = png;
   flipped[png.size() / 2] = static_cast<char>(flipped[png.size() / 2] ^ 0x10);

@@ -72,7 +72,7 @@ class Interrupts : public ::testing::Test {
                               "--out", path("recorded")});
     ASSERT_EQ(recorded.status, 0) << recorded.err;
     fs::rename(folder_ / "recorded/work.trace", folder_ / "TRACE");
-    traces::write_file_atomically(
+    base::write_file_atomically(
         folder_ / "PLAN",
         fmt::format("base: {{ trace: {} }}\npoints: {{ random: {{ number: 300000, over: {{ "
                     "platform.cluster.clock: {{ from: 100, to: 300 }}, "
@@ -81,7 +81,7 @@ class Interrupts : public ::testing::Test {
     std::string table;
     for (int i = 0; i < 300'000; ++i)
       table += fmt::format("{}.{:03} {} {} 0 0 0 0 1\n", i / 100, i % 100 * 10, i * 0.001, i % 7);
-    traces::write_file_atomically(folder_ / "TABLE", table);
+    base::write_file_atomically(folder_ / "TABLE", table);
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
@@ -158,7 +158,7 @@ TEST_F(Interrupts, CountWhereTheCallerIgnoresThemAndWhateverTheWork) {
   Program program(folder_, {"calibrate", "--data", path("FLIGHT")});
   std::signal(SIGINT, before);
   while (program.running() &&
-         traces::read_text_file(folder_ / "stderr.txt").find("frame 12/60") == std::string::npos)
+         base::read_text_file(folder_ / "stderr.txt").find("frame 12/60") == std::string::npos)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   program.send(SIGINT);
   const ProgramResult result = program.wait();
@@ -180,10 +180,10 @@ TEST_F(Interrupts, ReachEveryJobOfALoop) {
   sigaddset(&interrupt, SIGINT);
   pthread_sigmask(SIG_BLOCK, &interrupt, &before);
   int jobs = 0;
-  EXPECT_THROW(traces::parallel_for(1000, 1,
-                                    [&](std::size_t) {
-                                      if (++jobs == 10) ::raise(SIGINT);
-                                    }),
+  EXPECT_THROW(base::parallel_for(1000, 1,
+                                  [&](std::size_t) {
+                                    if (++jobs == 10) ::raise(SIGINT);
+                                  }),
                Interrupted);
   EXPECT_EQ(jobs, 10);
   int signal = 0;

@@ -15,8 +15,8 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using base::read_text_file;
 using testing::ProgramResult;
-using traces::read_text_file;
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -56,7 +56,7 @@ class PrintoutTest : public ::testing::Test {
     const std::string command =
         fmt::format("script -qec \"bash -c '$WORDS'\" /dev/null >'{}' </dev/null", path("typed"));
     EXPECT_EQ(std::system(command.c_str()), 0) << command;  // NOLINT: the line is the test's own
-    return read_text_file(folder_ / "typed");
+    return base::read_text_file(folder_ / "typed");
   }
 
   static fs::path folder_;
@@ -95,7 +95,7 @@ TEST_F(PrintoutTest, TablesAreChosenByName) {
 /// Every command that prints results prints a document that says what it is, and nothing else.
 TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
   const ProgramResult replayed = replay("json", {"--json"});
-  EXPECT_EQ(replayed.out, read_text_file(folder_ / "json/stats.json"));
+  EXPECT_EQ(replayed.out, base::read_text_file(folder_ / "json/stats.json"));
   const std::string est = path("run/trajectory.tum"), flight = path("flight");
   const std::vector<std::string> few{"--frames",    "0:30",   "--quiet", "--cache",
                                      path("cache"), "--seed", "1"};
@@ -103,7 +103,7 @@ TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
     words.insert(words.end(), few.begin(), few.end());
     return words;
   };
-  traces::write_file_atomically(
+  base::write_file_atomically(
       folder_ / "plan.yaml",
       "base: { trace: run }\npoints: { grid: { platform.cluster.clock: [200, 240] } }\n");
   const std::vector<std::vector<std::string>> commands{
@@ -147,7 +147,7 @@ TEST_F(PrintoutTest, JsonOfRowsHoldsTheNumbersOfTheFile) {
   const ProgramResult flown = run({"flow", "--platform", "gap8", "--data", path("flight"),
                                    "--quiet", "--out", path("flow2"), "--json"});
   const Json rows = Json::parse(flown.out).at("rows");
-  EXPECT_EQ(rows.size() + 1, lines_of(read_text_file(folder_ / "flow2/flow.csv")).size());
+  EXPECT_EQ(rows.size() + 1, lines_of(base::read_text_file(folder_ / "flow2/flow.csv")).size());
 }
 
 TEST(Colours, AreForVerdictsAndWarnings) {

@@ -50,14 +50,14 @@ TEST_F(ReplayCommand, TakesThePlatformOfTheRecordingByDefault) {
   record();
   ASSERT_EQ(program({"replay", path("run/work.trace"), "--out", path("again"), "--quiet"}).status,
             0);
-  EXPECT_EQ(traces::read_text_file(folder_ / "run/stats.json"),
-            traces::read_text_file(folder_ / "again/stats.json"));
+  EXPECT_EQ(base::read_text_file(folder_ / "run/stats.json"),
+            base::read_text_file(folder_ / "again/stats.json"));
   ASSERT_EQ(program({"replay", path("run"), "-p", "isa.instruction_overhead=1.5", "--out",
                      path("slower"), "--quiet"})
                 .status,
             0);
-  EXPECT_NE(traces::read_text_file(folder_ / "run/stages.csv"),
-            traces::read_text_file(folder_ / "slower/stages.csv"));
+  EXPECT_NE(base::read_text_file(folder_ / "run/stages.csv"),
+            base::read_text_file(folder_ / "slower/stages.csv"));
 }
 
 TEST_F(ReplayCommand, TraceShowsAndChecks) {
@@ -70,9 +70,9 @@ TEST_F(ReplayCommand, TraceShowsAndChecks) {
   EXPECT_EQ(check.status, 0) << check.err;
   EXPECT_NE(check.out.find("20 frames"), std::string::npos) << check.out;
 
-  std::string bytes = traces::read_text_file(folder_ / "run/work.trace");
+  std::string bytes = base::read_text_file(folder_ / "run/work.trace");
   bytes.resize(bytes.size() / 2);
-  traces::write_file_atomically(folder_ / "cut.trace", bytes);
+  base::write_file_atomically(folder_ / "cut.trace", bytes);
   for (const char* action : {"info", "check"})
     expect_refused(program({"trace", action, path("cut.trace")}), {"cut.trace", "truncated"});
   expect_refused(program({"replay", path("cut.trace"), "--out", path("none")}),

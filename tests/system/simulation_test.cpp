@@ -88,13 +88,13 @@ TEST_F(Simulated, ACoreAloneIsNotFasterThanTwoAndTwoNotThanEight) {
   EXPECT_LT(speedup(stage(eight, name)), 8.0);
 }
 
-TEST_F(Simulated, AccountsAddUpAndMemoryFits) {
+TEST_F(Simulated, BreakdownsAddUpAndMemoryFits) {
   const RunResult result = run(request(flight()));
   for (const StageResult& s : result.stages) {
     if (s.calls == 0) continue;
     const double cores = s.on_controller ? 1 : 8;
     const double cycles = cores * static_cast<double>(s.parallel.count());
-    EXPECT_NEAR(s.account.total(), cycles, 1e-6 * cycles + 1) << s.name;
+    EXPECT_NEAR(s.breakdown.total(), cycles, 1e-6 * cycles + 1) << s.name;
     if (s.on_controller) continue;
     EXPECT_LE(s.memory.single, s.memory.parallel) << s.name;
     EXPECT_LE(s.memory.parallel, result.l1_size) << s.name;
@@ -172,8 +172,8 @@ TEST(RealFrames, AllThreeHundredFramesOfMachineHall) {
   expect_one_ransac_per_frame(result);
   // Waiting, the divider and serial work hold the 8-point algorithm back; matching runs freely.
   EXPECT_LT(speedup(stage(result, "8-point RANSAC")), speedup(stage(result, "frame matching")) - 1);
-  const sim::Account& account = stage(result, "8-point RANSAC").account;
-  EXPECT_GT(account.imbalance + account.divider + account.serial, 0.1 * account.total());
+  const sim::CycleBreakdown& breakdown = stage(result, "8-point RANSAC").breakdown;
+  EXPECT_GT(breakdown.imbalance + breakdown.divider + breakdown.serial, 0.1 * breakdown.total());
 }
 
 }  // namespace

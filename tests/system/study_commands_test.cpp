@@ -51,9 +51,9 @@ TEST_F(StudyCommands, RefuseConstantsThatMustNotBeFitted) {
 }
 
 TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
-  traces::write_file_atomically(folder_ / "mine.yaml", "mine");
+  base::write_file_atomically(folder_ / "mine.yaml", "mine");
   fs::create_directory(folder_ / "folder");
-  traces::write_file_atomically(folder_ / "folder/thesis.tex", "mine");
+  base::write_file_atomically(folder_ / "folder/thesis.tex", "mine");
   expect_refusal({"calibrate", "--data", "x", "--out", path("mine.yaml")},
                  {"exists", "not a file that leviosim wrote"});
   expect_refusal({"calibrate", "--data", "x", "--out", path("mine.csv")}, {"ends in .yaml"});
@@ -62,7 +62,7 @@ TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
   expect_refusal({"sensitivity", "--data", "x", "--out", path("none/a.csv")}, {"no folder"});
   expect_refusal({"validate", "--data", "x", "--out", path("folder"), "--force"},
                  {"something else than results"});
-  EXPECT_EQ(traces::read_text_file(folder_ / "mine.yaml"), "mine");
+  EXPECT_EQ(base::read_text_file(folder_ / "mine.yaml"), "mine");
   EXPECT_TRUE(fs::exists(folder_ / "folder/thesis.tex"));
 }
 

@@ -34,15 +34,15 @@ class SweepCommand : public ::testing::Test {
         run_program(folder_, {"run", "--platform", "gap9", "--data", path("flight"), "--record",
                               "--out", path("recorded"), "--quiet"});
     ASSERT_EQ(recorded.status, 0) << recorded.err;
-    traces::write_file_atomically(folder_ / "plan.yaml",
-                                  "base: { trace: recorded }\n"
-                                  "points:\n"
-                                  "  - grid:\n"
-                                  "      platform.cluster.clock: [200, 370]\n"
-                                  "      platform.cluster.fpu.units: [1, 4]\n"
-                                  "      platform.cluster.dma.bytes_per_cycle: [4, 8]\n"
-                                  "  - list:\n"
-                                  "      - { platform.cluster.l1.size: 64KiB }\n");
+    base::write_file_atomically(folder_ / "plan.yaml",
+                                "base: { trace: recorded }\n"
+                                "points:\n"
+                                "  - grid:\n"
+                                "      platform.cluster.clock: [200, 370]\n"
+                                "      platform.cluster.fpu.units: [1, 4]\n"
+                                "      platform.cluster.dma.bytes_per_cycle: [4, 8]\n"
+                                "  - list:\n"
+                                "      - { platform.cluster.l1.size: 64KiB }\n");
     const ProgramResult whole = sweep({"--out", path("whole")}, "whole");
     ASSERT_EQ(whole.status, 0) << whole.err;
     whole_out_ = whole.out;
@@ -61,7 +61,7 @@ class SweepCommand : public ::testing::Test {
     return run_program(folder_, words(std::move(more), cache));
   }
   static std::string csv(const std::string& folder) {
-    return traces::read_text_file(folder_ / folder / kSweepCsv);
+    return base::read_text_file(folder_ / folder / kSweepCsv);
   }
   static int shell(const std::string& script) {
     const std::string line = fmt::format("cd '{}' && LEVIOSIM='{}' {} >shell.txt 2>&1", path(""),
@@ -70,8 +70,8 @@ class SweepCommand : public ::testing::Test {
     return WEXITSTATUS(status);
   }
   static std::string example(const std::string& name) {
-    return fmt::format("'{}/tools/app/study/sweep/examples/{}'", leviosim::tests::source_folder().string(),
-                       name);
+    return fmt::format("'{}/tools/app/study/sweep/examples/{}'",
+                       leviosim::tests::source_folder().string(), name);
   }
 
   static fs::path folder_;
@@ -143,9 +143,9 @@ TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
     ASSERT_EQ(sweep({"--out", path("singly"), "--point", point}, "s").status, 0);
   EXPECT_EQ(SweepStore(folder_ / "singly").finished(), (std::set<int>{2, 9}));
 
-  traces::write_file_atomically(folder_ / "other.yaml",
-                                "base: { trace: recorded }\n"
-                                "points: { grid: { platform.cluster.clock: [200] } }\n");
+  base::write_file_atomically(folder_ / "other.yaml",
+                              "base: { trace: recorded }\n"
+                              "points: { grid: { platform.cluster.clock: [200] } }\n");
   ASSERT_EQ(run_program(folder_, {"sweep", path("other.yaml"), "--out", path("other"), "--quiet",
                                   "--cache", path("cache-other")})
                 .status,
@@ -168,16 +168,16 @@ TEST_F(SweepCommand, ListsItsPointsAndRefusesWhatItCannotDo) {
   testing::expect_refused(sweep({"--out", path("x"), "--point", "10"}, "x"), {"--point '10'"});
   testing::expect_refused(sweep({"--out", path("flight")}, "x"), {"something else"});
   testing::expect_refused(sweep({}, "x"), {"--out"});
-  traces::write_file_atomically(folder_ / "bad.yaml",
-                                "base: { trace: recorded }\n"
-                                "points: { grid: { workload.window: [4] } }\n");
+  base::write_file_atomically(folder_ / "bad.yaml",
+                              "base: { trace: recorded }\n"
+                              "points: { grid: { workload.window: [4] } }\n");
   testing::expect_refused(run_program(folder_, {"sweep", path("bad.yaml"), "--out", path("x")}),
                           {"bad.yaml:2", "workload.window", "recorded work", "data"});
   EXPECT_FALSE(fs::exists(folder_ / "x"));
 }
 
 TEST_F(SweepCommand, ListsAMillionPointsInLittleMemory) {
-  traces::write_file_atomically(
+  base::write_file_atomically(
       folder_ / "million.yaml",
       "base: { trace: recorded }\n"
       "points: { random: { number: 1000000, over: {\n"
@@ -190,15 +190,15 @@ TEST_F(SweepCommand, ListsAMillionPointsInLittleMemory) {
                   leviosim::tests::program_path());
   ASSERT_EQ(std::system(fmt::format("cd '{}' && {} >last.txt", path(""), limited).c_str()),
             0);  // NOLINT: the command is the test's own
-  const std::string last = traces::read_text_file(folder_ / "last.txt");
+  const std::string last = base::read_text_file(folder_ / "last.txt");
   EXPECT_EQ(last.find("9"), 0u) << last;  // of 7 digits' millions, a few are drawn twice
   EXPECT_NE(last.find("\tplatform.cluster.clock="), std::string::npos) << last;
 }
 
 TEST_F(SweepCommand, LivePointsHaveTheAccuracyOfTheirRun) {
-  traces::write_file_atomically(folder_ / "live.yaml",
-                                "base: { data: flight, platform: gap9, frames: '0:6' }\n"
-                                "points: { grid: { workload.window: [4, 6] } }\n");
+  base::write_file_atomically(folder_ / "live.yaml",
+                              "base: { data: flight, platform: gap9, frames: '0:6' }\n"
+                              "points: { grid: { workload.window: [4, 6] } }\n");
   const ProgramResult live =
       run_program(folder_, {"sweep", path("live.yaml"), "--out", path("live"), "--quiet", "--cache",
                             path("cache-live")});
@@ -220,7 +220,7 @@ TEST_F(SweepCommand, SlurmArraysMakeOneRun) {
         shell(fmt::format("SLURM_ARRAY_TASK_ID={} SLURM_ARRAY_TASK_COUNT=2 {} plan.yaml slurm",
                           task, example("slurm_array.sh"))),
         0)
-        << traces::read_text_file(folder_ / "shell.txt");
+        << base::read_text_file(folder_ / "shell.txt");
   ASSERT_EQ(shell(fmt::format("'{}' sweep --merge slurm/all slurm/shard-1 slurm/shard-2",
                               leviosim::tests::program_path())),
             0);
@@ -231,7 +231,7 @@ TEST_F(SweepCommand, GnuParallelMakesOneRun) {
   if (std::system("parallel --version 2>/dev/null | grep -q GNU") != 0)  // NOLINT: as above
     GTEST_SKIP() << "GNU parallel is not installed";
   ASSERT_EQ(shell(example("gnu_parallel.sh") + " plan.yaml parallel 3"), 0)
-      << traces::read_text_file(folder_ / "shell.txt");
+      << base::read_text_file(folder_ / "shell.txt");
   EXPECT_EQ(csv("parallel/all"), csv("whole"));
 }
 

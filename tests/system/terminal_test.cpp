@@ -13,9 +13,9 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using base::read_text_file;
 using testing::ProgramResult;
 using testing::run_program;
-using traces::read_text_file;
 
 /// ESC, BEL, newline, a byte that is no UTF-8, an override of the direction.
 const std::string kHostile = "a\x1b[31m\x07\nleviosim: b\xff\xe2\x80\xae";
@@ -54,7 +54,7 @@ class Terminal : public ::testing::Test {
         fmt::format("L='{}'; exec 2>'{}'; {}", leviosim::tests::program_path(), path("err"), line);
     ::setenv("SCRIPT", script.c_str(), 1);
     const int status = std::system("bash -c \"$SCRIPT\"");  // NOLINT: the line is the test's own
-    return {WEXITSTATUS(status), read_text_file(folder_ / "err")};
+    return {WEXITSTATUS(status), base::read_text_file(folder_ / "err")};
   }
 
   static fs::path folder_;
@@ -62,10 +62,10 @@ class Terminal : public ::testing::Test {
 fs::path Terminal::folder_;
 
 TEST_F(Terminal, ErrorsAreOneLineWhateverTheyName) {
-  traces::write_file_atomically(folder_ / "plan.yaml",
-                                "base: { \"x\\ny\\e[2J\": 1 }\npoints: { list: [{ seed: 1 }] }\n");
-  traces::write_file_atomically(folder_ / "est.tum", "1 2 3\x1b[2J 4 5 6 7 8\n");
-  traces::write_file_atomically(folder_ / "chip.yaml", "name: \"a\\nb\"\n\"k\\e[1m\\nq\": 3\n");
+  base::write_file_atomically(folder_ / "plan.yaml",
+                              "base: { \"x\\ny\\e[2J\": 1 }\npoints: { list: [{ seed: 1 }] }\n");
+  base::write_file_atomically(folder_ / "est.tum", "1 2 3\x1b[2J 4 5 6 7 8\n");
+  base::write_file_atomically(folder_ / "chip.yaml", "name: \"a\\nb\"\n\"k\\e[1m\\nq\": 3\n");
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {kHostile},
            {"run", kHostile},
@@ -100,7 +100,7 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   const std::string out = "out" + kHostile;
   const std::vector<std::string> cache{"--cache", path("cache")};
   expect_done({"run", "--native", "--data", flight(), "--frames", "0:8", "--out", path(out)}, out);
-  const Json manifest = Json::parse(read_text_file(folder_ / out / "manifest.json"));
+  const Json manifest = Json::parse(base::read_text_file(folder_ / out / "manifest.json"));
   EXPECT_NE(manifest.at("data").at("folder").get<std::string>().find("\xef\xbf\xbd"),
             std::string::npos);
   expect_done({"run", "--platform", "gap9", "--data", flight(), "--frames", "0:8", "--record",
@@ -131,14 +131,14 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   const fs::path beside = folder_ / ("s" + out);
   fs::create_directory(beside);
   fs::copy_file(folder_ / ("r" + out) / "work.trace", beside / "x\xff.trace");
-  traces::write_file_atomically(
+  base::write_file_atomically(
       beside / "plan.yaml",
       "base: { trace: \"x\xff.trace\" }\npoints: { grid: { platform.cluster.clock: [240] } }\n");
   const ProgramResult swept = run({"sweep", (beside / "plan.yaml").string(), "--cache",
                                    path("cache" + kHostile), "--out", path("sw" + out)});
   EXPECT_TRUE(swept.status == 0 || swept.status == 2) << swept.err;  // YAML must be UTF-8
   fs::copy_file(folder_ / ("r" + out) / "work.trace", beside / "x.trace");
-  traces::write_file_atomically(
+  base::write_file_atomically(
       beside / "plan.yaml",
       "base: { trace: x.trace }\npoints: { grid: { platform.cluster.clock: [240] } }\n");
   expect_done({"sweep", (beside / "plan.yaml").string(), "--cache", path("cache" + kHostile),

@@ -50,7 +50,7 @@ TraceParts gap9_parts() {
 class TraceBombs : public ::testing::TestWithParam<TraceBomb> {
  protected:
   TraceBombs() {
-    traces::write_file_atomically(folder_ / "bomb.trace", GetParam().file(gap9_parts()));
+    base::write_file_atomically(folder_ / "bomb.trace", GetParam().file(gap9_parts()));
   }
   ProgramResult program(std::vector<std::string> words) const {
     const AddressSpace little(kLittle);
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, TraceBombs, ::testing::ValuesIn(kTraceBombs),
 class TraceLimitsOfPrograms : public ::testing::Test {
  protected:
   void write(const std::string& name, const std::string& content) {
-    traces::write_file_atomically(folder_ / name, content);
+    base::write_file_atomically(folder_ / name, content);
   }
   ProgramResult program(std::vector<std::string> words) const {
     const AddressSpace little(kLittle);
@@ -85,7 +85,7 @@ class TraceLimitsOfPrograms : public ::testing::Test {
   TempFolder folder_;
 };
 
-/// One frame of so many steps, each of the piece of work in which one counter is so high.
+/// One frame of so many steps, each of the work segment in which one counter is so high.
 std::string heavy_trace(std::size_t steps, std::uint64_t count, work::Op op) {
   return trace_of_frame(gap9_parts(), list(1, constant_series(work::index(op), count)),
                         frame(list(1, stage(list(steps, kSerial)))));
@@ -120,10 +120,10 @@ TEST_F(TraceLimitsOfPrograms, HoldForSweeps) {
     return program(words);
   };
   ASSERT_EQ(sweep({"--out", path("little")}).status, 0);
-  EXPECT_NE(traces::read_text_file(folder_ / "little/sweep.csv").find("steps of a stage"),
+  EXPECT_NE(base::read_text_file(folder_ / "little/sweep.csv").find("steps of a stage"),
             std::string::npos);
   ASSERT_EQ(sweep({"--out", path("more"), "--max-memory", "600MiB"}).status, 0);
-  EXPECT_EQ(traces::read_text_file(folder_ / "more/sweep.csv").find("steps of a stage"),
+  EXPECT_EQ(base::read_text_file(folder_ / "more/sweep.csv").find("steps of a stage"),
             std::string::npos);
   write("large.trace", trace_with(gap9_parts(), &TraceParts::names, list(9 * kMillion, text(""))));
   expect_refused(sweep({"--out", path("none")}), {"large.trace", "names", "--max-memory"});

@@ -90,7 +90,7 @@ TEST(WorkloadOverrides, ReachTheRunAndItsManifest) {
   EXPECT_NE(set.out.find(" workload.window=6\n"), std::string::npos) << set.out;
   EXPECT_EQ(run("plain", {}).status, 0);
   const auto manifest = [&](const std::string& out) {
-    return Json::parse(traces::read_text_file(folder / (out + "/manifest.json")));
+    return Json::parse(base::read_text_file(folder / (out + "/manifest.json")));
   };
   EXPECT_EQ(manifest("set").at("workload"), Json::array({"workload.window=6"}));
   EXPECT_FALSE(manifest("plain").contains("workload"));

@@ -18,7 +18,7 @@ TEST(InputDigests, ChangeWithAPixelOfAFrameInRangeOnly) {
   const std::vector<InputDigest> before = digests();
   ASSERT_EQ(before.size(), 6u);
   const auto append = [&](int frame) {
-    traces::write_file_atomically(asl.image(frame), traces::read_text_file(asl.image(frame)) + "x");
+    base::write_file_atomically(asl.image(frame), base::read_text_file(asl.image(frame)) + "x");
   };
   append(4);
   EXPECT_EQ(digests().back().sha256, before.back().sha256);

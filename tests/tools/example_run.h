@@ -19,15 +19,15 @@ inline StageResult parallel_stage() {
   stage.single = Cycles(8'000'000);
   stage.parallel = Cycles(2'000'000);
   stage.worst_parallel = Cycles(1'200'000);
-  stage.account.useful = {3e6, 1e6, 5e5, 2e5, 3e5};
-  stage.account.fpu = 1e6;
-  stage.account.divider = 5e5;
-  stage.account.banks = 1e5;
-  stage.account.imbalance = 3e5;
-  stage.account.synchronisation = 1e5;
-  stage.account.transfer = 2e5;
-  stage.account.serial = 799'000;
-  stage.account.rounding = 1'000;
+  stage.breakdown.useful = {3e6, 1e6, 5e5, 2e5, 3e5};
+  stage.breakdown.fpu = 1e6;
+  stage.breakdown.divider = 5e5;
+  stage.breakdown.banks = 1e5;
+  stage.breakdown.imbalance = 3e5;
+  stage.breakdown.synchronisation = 1e5;
+  stage.breakdown.transfer = 2e5;
+  stage.breakdown.serial = 799'000;
+  stage.breakdown.rounding = 1'000;
   stage.counts[work::Op::F32Add] = 12'345;
   stage.memory.single = Bytes(32'000);
   stage.memory.parallel = Bytes(64'000);
@@ -51,7 +51,7 @@ inline StageResult controller_stage() {
   stage.calls = 3;
   stage.single = stage.parallel = Cycles(1'500'000);
   stage.worst_parallel = Cycles(600'000);
-  stage.account.useful.issue = 1'500'000;
+  stage.breakdown.useful.issue = 1'500'000;
   stage.memory.single = stage.memory.parallel = Bytes(743'600);
   return stage;
 }

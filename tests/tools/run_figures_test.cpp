@@ -65,7 +65,7 @@ TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
   soc::StageBook book({}, platform::load_platform("gap9"));
   for (const int cycles : {300, 500, 200}) {
     sim::StageTiming stage{"matching", {}, {}, Cycles(cycles), {}};
-    stage.account.serial = cycles;
+    stage.breakdown.serial = cycles;
     book.add_parallel({{}, {}, {stage}});
     stage.cycles = Cycles(10 * cycles);
     book.add_single({{}, {}, {stage}});
@@ -75,7 +75,7 @@ TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
   EXPECT_EQ(stage.parallel, Cycles(1000));
   EXPECT_EQ(stage.worst_parallel, Cycles(500));
   EXPECT_EQ(stage.single, Cycles(10000));
-  EXPECT_EQ(stage.account.serial, 1000);
+  EXPECT_EQ(stage.breakdown.serial, 1000);
 }
 
 TEST(RunFigures, TheBookAddsUpTransfers) {

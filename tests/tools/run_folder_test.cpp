@@ -65,7 +65,7 @@ void write_to(const fs::path& folder, const RunResult& run, const std::string& p
   EXPECT_FALSE(out.commit());
 }
 
-TEST(StagesCsv, HasARowPerStageAndAccountsThatAddUp) {
+TEST(StagesCsv, HasARowPerStageAndBreakdownsThatAddUp) {
   const std::vector<Row> rows = parse_csv(stages_csv(example_run()));
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].at("stage"), "feature extraction");
@@ -122,7 +122,7 @@ TEST(RunFolder, HoldsFilesThatParse) {
   const TempFolder folder;
   const platform::ResolvedPlatform platform = platform::resolve_platform("gap9");
   write_to(folder.path(), example_run(), platform::to_yaml(platform));
-  const auto read = [&](const char* name) { return traces::read_text_file(folder / name); };
+  const auto read = [&](const char* name) { return base::read_text_file(folder / name); };
   EXPECT_EQ(Json::parse(read("stats.json")), statistics(example_run()));
   const Json manifest = Json::parse(read("manifest.json"));
   EXPECT_EQ(manifest.at("seed"), 7);
@@ -142,8 +142,8 @@ TEST(RunFolder, OnlyTheManifestsHostPartDependsOnTheHost) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder / "a")) {
     const std::string name = entry.path().filename().string();
     if (name == base::kRecordName) continue;
-    std::string a = traces::read_text_file(folder / ("a/" + name));
-    std::string b = traces::read_text_file(folder / ("b/" + name));
+    std::string a = base::read_text_file(folder / ("a/" + name));
+    std::string b = base::read_text_file(folder / ("b/" + name));
     if (name == "manifest.json") {
       Json left = Json::parse(a);
       Json right = Json::parse(b);
@@ -167,8 +167,7 @@ TEST(RunFolder, OfANativeRunHasNoFilesAboutAChip) {
     names.insert(entry.path().filename().string());
   EXPECT_EQ(names, (std::set<std::string>{base::kRecordName, "manifest.json", "stats.json",
                                           "frames.csv", "trajectory.tum"}));
-  EXPECT_TRUE(
-      Json::parse(traces::read_text_file(folder / "manifest.json")).at("platform").is_null());
+  EXPECT_TRUE(Json::parse(base::read_text_file(folder / "manifest.json")).at("platform").is_null());
 }
 
 TEST(RunFolder, NothingIsLeftWhenWritingFails) {

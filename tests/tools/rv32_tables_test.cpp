@@ -19,17 +19,17 @@ namespace {
 
 const std::filesystem::path kSource = leviosim::tests::source_folder();
 
-struct Piece {
+struct Segment {
   std::string function, after;
   double lines, visits, refetches;
 };
 
-std::vector<Piece> pieces() {
-  traces::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", traces::Separator::comma,
-                        {"function", "after", "lines", "visits", "refetches"});
-  const traces::CsvRow* row = csv.next();
+std::vector<Segment> segments() {
+  base::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", base::Separator::comma,
+                      {"function", "after", "lines", "visits", "refetches"});
+  const base::CsvRow* row = csv.next();
   EXPECT_EQ(row->text(0), "function");
-  std::vector<Piece> result;
+  std::vector<Segment> result;
   while ((row = csv.next()) != nullptr)
     result.push_back({std::string(row->text(0)), std::string(row->text(1)), row->number(2),
                       row->number(3), row->number(4)});
@@ -41,8 +41,8 @@ const std::set<std::string> kLibrary = {"f64_add",     "f64_mul",  "f64_div", "f
 
 TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   std::set<std::string> measured;
-  for (const Piece& piece : pieces())
-    if (piece.after.empty()) measured.insert(piece.function);
+  for (const Segment& segment : segments())
+    if (segment.after.empty()) measured.insert(segment.function);
   const std::set<std::string> names = leviosim::tests::named_functions();
   EXPECT_GT(names.size(), 50u);
   for (const std::string& name : names)
@@ -52,35 +52,35 @@ TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
 
 TEST(Rv32Code, NamesNoFunctionThatTheWorkloadDoesNotHave) {
   const std::set<std::string> names = leviosim::tests::named_functions();
-  for (const Piece& piece : pieces()) {
-    EXPECT_TRUE(names.contains(piece.function) || kLibrary.contains(piece.function))
-        << piece.function << " is gone: run tools/rv32/measure.sh";
-    EXPECT_TRUE(piece.after.empty() || names.contains(piece.after)) << piece.after;
+  for (const Segment& segment : segments()) {
+    EXPECT_TRUE(names.contains(segment.function) || kLibrary.contains(segment.function))
+        << segment.function << " is gone: run tools/rv32/measure.sh";
+    EXPECT_TRUE(segment.after.empty() || names.contains(segment.after)) << segment.after;
   }
 }
 
 TEST(Rv32Code, IsSortedWithoutRepetitionAndPlausible) {
-  const std::vector<Piece> table = pieces();
+  const std::vector<Segment> table = segments();
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const Piece& piece = table[i];
-    EXPECT_GE(piece.lines, 0) << piece.function;
-    EXPECT_LT(piece.lines, 1000) << piece.function;
-    EXPECT_GE(piece.visits, 1) << piece.function;
-    EXPECT_GE(piece.refetches, 0) << piece.function;
+    const Segment& segment = table[i];
+    EXPECT_GE(segment.lines, 0) << segment.function;
+    EXPECT_LT(segment.lines, 1000) << segment.function;
+    EXPECT_GE(segment.visits, 1) << segment.function;
+    EXPECT_GE(segment.refetches, 0) << segment.function;
     // What fits into the small cache is fetched once.
-    if (piece.lines <= 25) {
-      EXPECT_LT(piece.refetches, piece.lines + 1) << piece.function;
+    if (segment.lines <= 25) {
+      EXPECT_LT(segment.refetches, segment.lines + 1) << segment.function;
     }
     if (i > 0) {
       EXPECT_LT(std::pair(table[i - 1].function, table[i - 1].after),
-                std::pair(piece.function, piece.after));
+                std::pair(segment.function, segment.after));
     }
   }
 }
 
 /// Operations of the vocabulary that the compiled workload does not use have no row.
 TEST(Rv32Costs, PriceKnownOperationsOnce) {
-  const std::string text = traces::read_text_file(kSource / "tools/rv32/rv32imfc_costs.csv");
+  const std::string text = base::read_text_file(kSource / "tools/rv32/rv32imfc_costs.csv");
   std::multiset<std::string> priced;
   static const std::regex row("\n([a-z0-9_]+),([0-9.]+),");
   for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it)

@@ -89,11 +89,11 @@ TEST(Statistics, WhatDoesNotExistIsNull) {
   EXPECT_TRUE(value(document, "latency.epnp_keyframe.mean").is_null());
 }
 
-TEST(Statistics, AccountPartsAddUpToTheirTotal) {
+TEST(Statistics, BreakdownPartsAddUpToTheirTotal) {
   const Json document = statistics(example_run());
-  const std::string prefix = "stages.feature_extraction.account.";
+  const std::string prefix = "stages.feature_extraction.breakdown.";
   double sum = 0;
-  for (const AccountPart& part : kAccountParts)
+  for (const BreakdownPart& part : kBreakdownParts)
     sum += value(document, prefix + std::string(part.key)).get<double>();
   EXPECT_DOUBLE_EQ(sum, value(document, prefix + "total").get<double>());
 }

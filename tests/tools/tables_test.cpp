@@ -75,13 +75,13 @@ TEST(TextTable, LeavesOutColumnsThatDoNotFit) {
 TEST(Tables, FitTheWidth) {
   const RunResult run = example_run();
   const auto header = [](const std::string& table) { return lines_of(table).at(1); };
-  for (const std::string& table : {stage_table(run, 80), account_table(run, 80),
+  for (const std::string& table : {stage_table(run, 80), breakdown_table(run, 80),
                                    latency_table(run, 80), memory_table(run, 80)})
     EXPECT_LE(display_width(header(table)), 80) << table;
   EXPECT_NE(header(stage_table(run, 80)).find("speed-up"), std::string::npos);
   EXPECT_EQ(header(stage_table(run, 80)).find("calls"), std::string::npos);
-  EXPECT_NE(header(account_table(run, 80)).find("serial"), std::string::npos);
-  EXPECT_EQ(header(account_table(run, 80)).find("core-Mcycles"), std::string::npos);
+  EXPECT_NE(header(breakdown_table(run, 80)).find("serial"), std::string::npos);
+  EXPECT_EQ(header(breakdown_table(run, 80)).find("core-Mcycles"), std::string::npos);
 }
 
 TEST(TextTable, WrapsListsWhereTheyWouldExceedTheWidth) {
@@ -110,8 +110,8 @@ TEST(StageTable, ShowsDashesForAStageWithoutCalls) {
   EXPECT_EQ(cells_after(line, 11), (Cells{"frame", "0", "–", "–", "–", "–", "–"}));
 }
 
-TEST(AccountTable, SharesAddUpTo100PerCent) {
-  const std::string text = account_table(example_run());
+TEST(BreakdownTable, SharesAddUpTo100PerCent) {
+  const std::string text = breakdown_table(example_run());
   const Cells cells = cells_after(line_of(text, "feature extraction"), 18);
   // 5 of 8 Mcycles are useful, 1 waits for a floating-point unit; rounding counts as imbalance.
   // Three tenths are handed out: to serial (99.875), imbalance (37.625) and divider (62.5).
@@ -122,14 +122,14 @@ TEST(AccountTable, SharesAddUpTo100PerCent) {
   EXPECT_NEAR(sum, 100.0, 1e-9);
 }
 
-TEST(AccountTable, LeavesOutTheControllerAndShowsDashesWithoutCalls) {
-  const std::string text = account_table(example_run());
+TEST(BreakdownTable, LeavesOutTheControllerAndShowsDashesWithoutCalls) {
+  const std::string text = breakdown_table(example_run());
   EXPECT_EQ(text.find("optimiser iteration"), std::string::npos);
   const Cells cells = cells_after(line_of(text, "EPnP RANSAC"), 11);
   EXPECT_EQ(cells, Cells(10, "–"));
 }
 
-TEST(AccountTable, TenthsAddUpForAnyParts) {
+TEST(BreakdownTable, TenthsAddUpForAnyParts) {
   for (const std::vector<double>& parts :
        {std::vector<double>{1, 1, 1}, {1, 2, 4, 8, 16, 32, 1e-9}, {0.3333, 0.6667, 0, 12345.678}}) {
     const std::vector<double> tenths = tenths_of_percent(parts);
@@ -141,12 +141,12 @@ TEST(AccountTable, TenthsAddUpForAnyParts) {
   EXPECT_EQ(tenths_of_percent({0, 0}), (std::vector<double>{0, 0}));
 }
 
-TEST(AccountTable, PartsAreTheWholeAccount) {
-  const sim::Account account = example_run().stages[0].account;
+TEST(BreakdownTable, PartsAreTheWholeBreakdown) {
+  const sim::CycleBreakdown breakdown = example_run().stages[0].breakdown;
   double sum = 0;
-  for (const AccountPart& part : kAccountParts) sum += part.of(account);
-  EXPECT_DOUBLE_EQ(sum, account.total());
-  EXPECT_DOUBLE_EQ(account.total(), 8e6);
+  for (const BreakdownPart& part : kBreakdownParts) sum += part.of(breakdown);
+  EXPECT_DOUBLE_EQ(sum, breakdown.total());
+  EXPECT_DOUBLE_EQ(breakdown.total(), 8e6);
 }
 
 TEST(LatencyTable, TellsTheKindsOfFrameApart) {

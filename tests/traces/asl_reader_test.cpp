@@ -60,9 +60,9 @@ TEST(AslReader, AcceptsCarriageReturnsAndBlankLinesAtTheEnd) {
   const AslFolder folder;
   for (const char* name : {kFrames, kImu, kTruth}) {
     std::string text;
-    for (const char c : read_text_file(folder.mav0(name)))
+    for (const char c : base::read_text_file(folder.mav0(name)))
       text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-    write_file_atomically(folder.mav0(name), "\xEF\xBB\xBF" + text + "\r\n \r\n\n");
+    base::write_file_atomically(folder.mav0(name), "\xEF\xBB\xBF" + text + "\r\n \r\n\n");
   }
   const Dataset data = open_asl(folder.root());
   EXPECT_EQ(data.frames.size(), 6u);
@@ -140,7 +140,7 @@ TEST(AslReader, UnsortedStampsNameBothValues) {
 TEST(AslReader, DuplicateStampsNameBothLines) {
   for (const char* name : {kFrames, kImu, kTruth}) {
     const AslFolder folder;
-    const std::string text = read_text_file(folder.mav0(name));
+    const std::string text = base::read_text_file(folder.mav0(name));
     const auto from = text.find('\n') + 1;
     const std::string row = text.substr(from, text.find('\n', from) - from);
     folder.set_line(name, 2, row + "\n" + row);
@@ -203,9 +203,9 @@ TEST(AslReader, RowWithoutFileName) {
 TEST(AslReader, EmptySequences) {
   for (const char* name : {kFrames, kImu, kTruth}) {
     const AslFolder folder;
-    write_file_atomically(folder.mav0(name), "#heading only\n");
+    base::write_file_atomically(folder.mav0(name), "#heading only\n");
     expect_broken(folder, {name, "empty"});
-    write_file_atomically(folder.mav0(name), "");
+    base::write_file_atomically(folder.mav0(name), "");
     expect_broken(folder, {name, "empty"});
   }
 }

@@ -19,17 +19,19 @@ std::size_t entries(const fs::path& folder) {
 
 TEST(AtomicFile, ReplacesAndLeavesNothingElse) {
   const TempFolder folder;
-  write_file_atomically(folder / "a", "one");
-  write_file_atomically(folder / "a", "two");
-  EXPECT_EQ(read_text_file(folder / "a"), "two");
+  base::write_file_atomically(folder / "a", "one");
+  base::write_file_atomically(folder / "a", "two");
+  EXPECT_EQ(base::read_text_file(folder / "a"), "two");
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 
 TEST(AtomicFile, FailsCleanly) {
   const TempFolder folder;
-  expect_input_error([&] { write_file_atomically(folder / "none/a", "x"); }, {"cannot be written"});
+  expect_input_error([&] { base::write_file_atomically(folder / "none/a", "x"); },
+                     {"cannot be written"});
   fs::create_directories(folder / "a/b");
-  expect_input_error([&] { write_file_atomically(folder / "a", "x"); }, {"cannot be written"});
+  expect_input_error([&] { base::write_file_atomically(folder / "a", "x"); },
+                     {"cannot be written"});
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 

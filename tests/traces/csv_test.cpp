@@ -12,9 +12,9 @@ using testing::TempFolder;
 
 TEST(Csv, SkipsCommentsAndTrimsCells) {
   const TempFolder folder;
-  write_file_atomically(folder / "a.csv", "# one\n 1 , +2.5e1 \r\n# two\n3,-4");
-  CsvReader csv(folder / "a.csv", Separator::comma, {"a", "b"});
-  const CsvRow* row = csv.next();
+  base::write_file_atomically(folder / "a.csv", "# one\n 1 , +2.5e1 \r\n# two\n3,-4");
+  base::CsvReader csv(folder / "a.csv", base::Separator::comma, {"a", "b"});
+  const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->line(), 2u);
   EXPECT_EQ(row->nanoseconds(0), 1);
@@ -28,9 +28,9 @@ TEST(Csv, SkipsCommentsAndTrimsCells) {
 
 TEST(Csv, BlanksSeparateWhereAsked) {
   const TempFolder folder;
-  write_file_atomically(folder / "a.txt", "  1\t2   3 \n");
-  CsvReader csv(folder / "a.txt", Separator::blanks, {"a", "b", "c"});
-  const CsvRow* row = csv.next();
+  base::write_file_atomically(folder / "a.txt", "  1\t2   3 \n");
+  base::CsvReader csv(folder / "a.txt", base::Separator::blanks, {"a", "b", "c"});
+  const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->text(1), "2");
   EXPECT_EQ(row->text(2), "3");
@@ -38,9 +38,9 @@ TEST(Csv, BlanksSeparateWhereAsked) {
 
 TEST(Csv, LongCellsAreCutInMessages) {
   const TempFolder folder;
-  write_file_atomically(folder / "a.csv", std::string(500, 'x'));
-  CsvReader csv(folder / "a.csv", Separator::comma, {"a"});
-  const CsvRow* row = csv.next();
+  base::write_file_atomically(folder / "a.csv", std::string(500, 'x'));
+  base::CsvReader csv(folder / "a.csv", base::Separator::comma, {"a"});
+  const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
   try {
     row->number(0);
@@ -52,8 +52,8 @@ TEST(Csv, LongCellsAreCutInMessages) {
 
 TEST(Csv, MissingFilesAndFolders) {
   const TempFolder folder;
-  expect_input_error([&] { read_text_file(folder / "none"); }, {"none", "cannot be opened"});
-  expect_input_error([&] { read_text_file(folder.path()); }, {"cannot be opened"});
+  expect_input_error([&] { base::read_text_file(folder / "none"); }, {"none", "cannot be opened"});
+  expect_input_error([&] { base::read_text_file(folder.path()); }, {"cannot be opened"});
 }
 
 }  // namespace

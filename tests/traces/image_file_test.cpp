@@ -85,7 +85,7 @@ TEST(ImageFile, RecordedFrame) {
   const auto folder = testing::recorded_data() / "euroc/MH_01_easy_t05_t20/mav0/cam0/data";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
   const auto file = std::filesystem::directory_iterator(folder)->path();
-  expect_as_opencv(read_text_file(file));
+  expect_as_opencv(base::read_text_file(file));
 }
 
 void expect_refused(const std::string& bytes, const std::string& part) {

@@ -139,7 +139,7 @@ TEST(ImageSource, WrongImages) {
 
 TEST(ImageSource, BrokenImages) {
   const AslFolder folder;
-  write_file_atomically(folder.image(1), "this is no picture");
+  base::write_file_atomically(folder.image(1), "this is no picture");
   fs::resize_file(folder.image(2), fs::file_size(folder.image(2)) / 2);
   const ImageSource source(open_asl(folder.root()), {16, 12});
   expect_input_error([&] { source.read(1); },

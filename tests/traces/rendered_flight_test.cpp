@@ -82,7 +82,9 @@ TEST(RenderedFlight, RecordedStreamsAreCopiedExactly) {
   write_rendered_flight(motion.root(), out / "a", coarse());
   for (const char* name : {"imu0/data.csv", "imu0/sensor.yaml", "cam0/sensor.yaml",
                            "state_groundtruth_estimate0/data.csv"})
-    EXPECT_EQ(read_text_file(out / "a" / "mav0" / name), read_text_file(motion.mav0(name))) << name;
+    EXPECT_EQ(base::read_text_file(out / "a" / "mav0" / name),
+              base::read_text_file(motion.mav0(name)))
+        << name;
 }
 
 /// Pixel (x, y) as a ray through the camera model and the recorded pose finds it, without the

@@ -69,7 +69,7 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
     if (entry.is_regular_file() && entry.path().filename() != ".leviosim-files")
       files[std::filesystem::relative(entry.path(), folder).string()] =
-          read_text_file(entry.path());
+          base::read_text_file(entry.path());
   return files;
 }
 
@@ -125,11 +125,11 @@ class AslFolder {
     });
   }
   void replace(const std::string& name, const std::string& from, const std::string& to) const {
-    std::string text = read_text_file(mav0(name));
+    std::string text = base::read_text_file(mav0(name));
     const auto position = text.find(from);
     ASSERT_NE(position, std::string::npos) << from;
     text.replace(position, from.size(), to);
-    write_file_atomically(mav0(name), text);
+    base::write_file_atomically(mav0(name), text);
   }
 
  private:
@@ -141,7 +141,7 @@ class AslFolder {
     change(lines);
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
-    write_file_atomically(mav0(name), text);
+    base::write_file_atomically(mav0(name), text);
   }
 
   void write_streams() {
@@ -163,12 +163,12 @@ class AslFolder {
     }
     for (const char* name : {"cam0/data", "imu0", "state_groundtruth_estimate0"})
       std::filesystem::create_directories(mav0(name));
-    write_file_atomically(mav0("cam0/sensor.yaml"), format_camera_yaml(camera_, "test"));
-    write_file_atomically(mav0("cam0/data.csv"), format_frames_csv(frames));
-    write_file_atomically(mav0("imu0/sensor.yaml"), format_imu_yaml(imu_, "test"));
-    write_file_atomically(mav0("imu0/data.csv"), format_imu_csv(samples));
-    write_file_atomically(mav0("state_groundtruth_estimate0/data.csv"),
-                          format_ground_truth_csv(truth));
+    base::write_file_atomically(mav0("cam0/sensor.yaml"), format_camera_yaml(camera_, "test"));
+    base::write_file_atomically(mav0("cam0/data.csv"), format_frames_csv(frames));
+    base::write_file_atomically(mav0("imu0/sensor.yaml"), format_imu_yaml(imu_, "test"));
+    base::write_file_atomically(mav0("imu0/data.csv"), format_imu_csv(samples));
+    base::write_file_atomically(mav0("state_groundtruth_estimate0/data.csv"),
+                                format_ground_truth_csv(truth));
   }
 
   void write_images() {

@@ -4,7 +4,7 @@
 
 #include <ostream>
 
-#include "sim/work/kernel_calls.h"
+#include "sim/work/offload_regions.h"
 #include "tests/traces/trace_parts.h"
 
 namespace leviosim::traces::testing {
@@ -117,23 +117,23 @@ inline const TraceBomb kTraceBombs[] = {
        return trace_of_frame(whole, kOneSeries,
                              frame(list(1, stage(list(20'000, bytes({1, 0, 0}))))));
      }},
-    {"CallsOfKernels", "calls of kernels",
+    {"OffloadRegions", "offload regions",
      [](TraceParts whole) {
        whole.cores = 10;
-       whole.names = bytes({work::kKernelCount});
-       std::string calls = bytes({work::kKernelCount});
-       for (std::size_t k = 0; k < work::kKernelCount; ++k) {
-         whole.names += text(work::kKernels[k].name);
+       whole.names = bytes({work::kOffloadKindCount});
+       std::string calls = bytes({work::kOffloadKindCount});
+       for (std::size_t k = 0; k < work::kOffloadKindCount; ++k) {
+         whole.names += text(work::kOffloadKinds[k].name);
          calls += bytes({k, 0, 0, 0});
        }
-       whole.kernels = {text(kOneSeries) + text("") + times(300'000, calls)};
+       whole.offload = {text(kOneSeries) + text("") + times(300'000, calls)};
        return trace_of_frame(whole, kOneSeries,
                              frame(list(1, stage(list(30'000, bytes({1, 0, 0}))))));
      }},
     {"Content", "the content of the section",
      [](TraceParts whole) {
        const std::string zeros(200 * kMillion, '\0');
-       whole.kernels = {zeros};
+       whole.offload = {zeros};
        return trace_of_frame(whole, kNoSeries, kNoJob + zeros);
      }},
 };

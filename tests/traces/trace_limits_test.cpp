@@ -138,19 +138,20 @@ TEST(TraceLimits, AFrameSeesEarlierOnesOnly) {
   expect_refused(two_frames(-2, 0), {"of frame -2"});
 }
 
-TEST(TraceLimits, KernelsTogetherAreAtMostTheirPieceOfWork) {
+TEST(TraceLimits, OffloadRegionsTogetherAreAtMostTheirSegment) {
   const auto with_calls = [](std::uint64_t eigen3, std::uint64_t solve) {
     TraceParts parts;
     parts.names = bytes({3}) + text("first") + text("eigen3") + text("solve");
     const std::string series = bytes({2}) + constant_series(0, eigen3) + constant_series(0, solve);
     const std::string calls = bytes({2, 1, 1, 1, 0, 2, 1, 1, 1});
-    parts.kernels = {text(series) + text("") + calls};
+    parts.offload = {text(series) + text("") + calls};
     return trace_of_frame(parts, list(1, constant_series(0, 10)),
                           frame(list(1, stage(list(1, kSerial)))));
   };
   EXPECT_EQ(read_all(WorkTrace("t", with_calls(4, 6))), 1);
-  expect_refused(with_calls(11, 0), {"count more than their piece of work"});
-  expect_refused(with_calls(4, 7), {"kernels of frames 0 to 0", "more than their piece of work"});
+  expect_refused(with_calls(11, 0), {"count more than their work segment"});
+  expect_refused(with_calls(4, 7),
+                 {"offload regions of frames 0 to 0", "more than their work segment"});
 }
 
 TEST(TraceLimits, TheSizeOfASectionIsThatOfItsContent) {

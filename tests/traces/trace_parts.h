@@ -47,7 +47,7 @@ struct TraceParts {
   std::vector<std::uint64_t> chunk_frames{1};
   std::string stamps = list(1, bytes({2}));
   std::vector<std::string> frames;   ///< contents of the sections of frames
-  std::vector<std::string> kernels;  ///< of kernels; the file is of version 1 without
+  std::vector<std::string> offload;  ///< of kernels; the file is of version 1 without
 
   std::string summary() const {
     ByteWriter out;
@@ -73,16 +73,16 @@ struct TraceParts {
   }
 
   std::string file() const {
-    const std::uint32_t version = kernels.empty() ? 1 : 2;
+    const std::uint32_t version = offload.empty() ? 1 : 2;
     std::string all = file_head({"LEVIOWT\n", "a work trace", version});
     all += packed_section(summary(), 1);
     for (const std::string& content : frames) all += packed_section(content, 1);
-    for (const std::string& content : kernels) all += packed_section(content, 1);
+    for (const std::string& content : offload) all += packed_section(content, 1);
     return all;
   }
 };
 
-/// A series of pieces of work that all count the same of one counter.
+/// A series of work segments that all count the same of one counter.
 inline std::string constant_series(std::uint64_t counter, std::uint64_t value) {
   return value == 0 ? bytes({0, 0, 0}) : bytes({1, counter, value, 0, 0});
 }

@@ -49,11 +49,11 @@ void expect_round_trip(const std::vector<work::Counts>& series) {
 }
 
 /// A program of so many basic blocks, each of which counts some operations.
-std::vector<work::Counts> program(Rng& rng, std::size_t blocks, std::size_t pieces) {
+std::vector<work::Counts> program(Rng& rng, std::size_t blocks, std::size_t segments) {
   std::vector<work::Counts> block_counts(blocks);
   for (work::Counts& counts : block_counts)
     for (int i = 0; i < 6; ++i) counter(counts, rng.next() % kCounters) += rng.next() % 5;
-  std::vector<work::Counts> series(pieces);
+  std::vector<work::Counts> series(segments);
   for (work::Counts& counts : series)
     for (const work::Counts& block : block_counts)
       for (std::uint64_t visits = rng.next() % 40; visits > 0; --visits) counts += block;
@@ -105,7 +105,7 @@ TEST(WorkColumns, SumsOfOtherCountersAreNotStored) {
   EXPECT_LE(written(series).columns.size(), 2 * 2 * (series.size() - 1));
 }
 
-TEST(WorkColumns, EqualPiecesTakeNoColumns) {
+TEST(WorkColumns, EqualSegmentsTakeNoColumns) {
   work::Counts counts;
   counts[Op::F64Mul] = 12'345;
   EXPECT_EQ(written(std::vector<work::Counts>(100, counts)).columns.size(), 0u);

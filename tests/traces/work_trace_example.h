@@ -18,15 +18,15 @@ inline work::Counts counts(std::uint64_t loops) {
   return c;
 }
 
-/// The piece of work with calls of two kernels in it.
-inline work::Piece with_kernels(work::Piece piece, std::uint64_t calls) {
+/// The work segment with calls of two kernels in it.
+inline work::Segment with_offload(work::Segment segment, std::uint64_t calls) {
   work::Counts of_calls;
-  of_calls[work::Op::F32Fma] = piece[work::Op::F32Fma] / 3;
+  of_calls[work::Op::F32Fma] = segment[work::Op::F32Fma] / 3;
   work::Counts of_others;
-  of_others[work::Op::LoopIteration] = piece[work::Op::LoopIteration] / 2;
-  piece.kernels = {{work::KernelKind::Eigen12, calls, 5 * calls, of_calls},
-                   {work::KernelKind::Hamming, 1, calls, of_others}};
-  return piece;
+  of_others[work::Op::LoopIteration] = segment[work::Op::LoopIteration] / 2;
+  segment.offload = {{work::OffloadKind::Eigen12, calls, 5 * calls, of_calls},
+                     {work::OffloadKind::Hamming, 1, calls, of_others}};
+  return segment;
 }
 
 inline work::StageRun cluster_stage(int frame) {
@@ -66,20 +66,20 @@ inline WorkFrame example_frame(int frame) {
   return f;
 }
 
-/// The same with calls of kernels in some of its work.
-inline WorkFrame example_frame_with_kernels(int frame) {
+/// The same with offload regions in some of its work.
+inline WorkFrame example_frame_with_offload(int frame) {
   WorkFrame f = example_frame(frame);
   for (work::StageRun& stage : f.front_end.stages)
     for (work::Step& step : stage.steps) {
       if (auto* fork = std::get_if<work::Fork>(&step)) {
-        fork->shares.front() = with_kernels(fork->shares.front(), 3);
+        fork->shares.front() = with_offload(fork->shares.front(), 3);
         fork->shares.back() =
-            with_kernels(fork->shares.back(), static_cast<std::uint64_t>(frame + 1));
+            with_offload(fork->shares.back(), static_cast<std::uint64_t>(frame + 1));
       }
     }
   for (work::Job& job : f.iterations) {
     auto& serial = std::get<work::Serial>(job.stages.at(0).steps.at(0));
-    serial.counts = with_kernels(serial.counts, 1);
+    serial.counts = with_offload(serial.counts, 1);
   }
   return f;
 }
@@ -110,9 +110,9 @@ inline std::string example_trace(int frames) {
   return writer.finish(example_info());
 }
 
-inline std::string example_trace_with_kernels(int frames) {
+inline std::string example_trace_with_offload(int frames) {
   WorkTraceWriter writer(3);
-  for (int i = 0; i < frames; ++i) writer.add(example_frame_with_kernels(i));
+  for (int i = 0; i < frames; ++i) writer.add(example_frame_with_offload(i));
   return writer.finish(example_info());
 }
 
@@ -174,7 +174,7 @@ inline void expect_equal(const WorkFrame& a, const WorkFrame& b) {
 
 /// Everything that a replay reads.
 inline int read_all(const WorkTrace& trace) {
-  WorkFrames reader(trace, trace.has_kernels());
+  WorkFrames reader(trace, trace.has_offload());
   int frames = 0;
   for (WorkFrame frame; reader.next(frame);) ++frames;
   return frames;

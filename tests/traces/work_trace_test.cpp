@@ -102,19 +102,19 @@ TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
   WorkFrames reader(golden);
   WorkFrame frame;
   for (int i = 0; reader.next(frame); ++i) testing::expect_equal(frame, example_frame(i));
-  EXPECT_FALSE(golden.has_kernels());
+  EXPECT_FALSE(golden.has_offload());
   expect_input_error([&] { WorkFrames(golden, true); },
                      {"version_1.trace", "version 1", "kernels", "record it again"});
 }
 
 TEST(WorkTrace, ReadsTheSecondVersion) {
-  const std::string whole = testing::example_trace_with_kernels(5);
+  const std::string whole = testing::example_trace_with_offload(5);
   const WorkTrace second("second", trace_of(without_names_of_facts(contents_of(whole)), 2));
   EXPECT_EQ(second.info().facts, testing::example_info().facts);
   WorkFrames reader(second, true);
   WorkFrame frame;
   for (int i = 0; reader.next(frame); ++i)
-    testing::expect_equal(frame, testing::example_frame_with_kernels(i));
+    testing::expect_equal(frame, testing::example_frame_with_offload(i));
 }
 
 TEST(WorkTrace, KeepsFactsOfAnyNameAndNumber) {
@@ -139,14 +139,14 @@ TEST(WorkTrace, KeepsFactsOfAnyNameAndNumber) {
 }
 
 TEST_P(FramesOfTraces, ComeBackWithTheirKernels) {
-  const WorkTrace trace("example", testing::example_trace_with_kernels(GetParam()));
+  const WorkTrace trace("example", testing::example_trace_with_offload(GetParam()));
   WorkFrames reader(trace, true);
   WorkFrames without(trace);
   WorkFrame frame;
   WorkFrame plain;
   for (int i = 0; i < GetParam(); ++i) {
     ASSERT_TRUE(reader.next(frame));
-    testing::expect_equal(frame, testing::example_frame_with_kernels(i));
+    testing::expect_equal(frame, testing::example_frame_with_offload(i));
     ASSERT_TRUE(without.next(plain));
     testing::expect_equal(plain, example_frame(i));
   }
@@ -156,13 +156,13 @@ TEST_P(FramesOfTraces, ComeBackWithTheirKernels) {
 TEST(WorkTrace, RefusesKernelsThatCannotBe) {
   const auto refuse = [](const char* from, const char* to,
                          std::initializer_list<std::string> parts) {
-    std::vector<std::string> contents = contents_of(testing::example_trace_with_kernels(2));
+    std::vector<std::string> contents = contents_of(testing::example_trace_with_offload(2));
     const std::size_t at = contents[0].find(from);
     ASSERT_NE(at, std::string::npos);
     contents[0].replace(at, std::string(from).size(), to);
     expect_input_error([&] { read_all(WorkTrace("t", trace_of(contents))); }, parts);
   };
-  refuse("eigen12", "eigen17", {"kernels of frames 0 to 1", "'eigen17' is no kernel"});
+  refuse("eigen12", "eigen17", {"offload regions of frames 0 to 1", "'eigen17' is no kernel"});
   // Order of the kinds: 12 after Hamming is twice the same or out of order.
   refuse("eigen12", "hamming", {"comes twice"});
 }
@@ -171,8 +171,8 @@ TEST(WorkTrace, RefusesKernelsThatCannotBe) {
 /// make no other version. Made like the first; not the compressed bytes are compared, which another
 /// version of zstd may choose otherwise.
 TEST(WorkTrace, WritesTheContentOfTheFirstVersion) {
-  const std::string golden = read_text_file(leviosim::tests::source_folder() /
-                                            "tests/traces/golden/version_1_46_operations.trace");
+  const std::string golden = base::read_text_file(
+      leviosim::tests::source_folder() / "tests/traces/golden/version_1_46_operations.trace");
   std::vector<std::string> contents = without_names_of_facts(contents_of(example_trace(5)));
   contents.pop_back();  // kernels, since version 2
   EXPECT_EQ(contents_of(golden), contents);
@@ -199,7 +199,7 @@ TEST(WorkTrace, EveryFlippedBitIsRefused) {
 /// Whatever a section holds: with right checksums, damage is found while reading or not at all, but
 /// never ends in anything else.
 TEST(WorkTrace, DamagedContentIsReadOrRefused) {
-  const std::vector<std::string> whole = contents_of(testing::example_trace_with_kernels(5));
+  const std::vector<std::string> whole = contents_of(testing::example_trace_with_offload(5));
   Rng rng(11);
   int refused = 0;
   for (int trial = 0; trial < 4000; ++trial) {
@@ -216,7 +216,7 @@ TEST(WorkTrace, DamagedContentIsReadOrRefused) {
 }
 
 TEST(WorkTrace, ContentThatIsCutIsRefused) {
-  const std::vector<std::string> whole = contents_of(testing::example_trace_with_kernels(5));
+  const std::vector<std::string> whole = contents_of(testing::example_trace_with_offload(5));
   for (std::size_t section = 0; section < whole.size(); ++section)
     for (std::size_t size = 0; size < whole[section].size(); ++size) {
       std::vector<std::string> contents = whole;

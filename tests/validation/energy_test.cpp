@@ -51,11 +51,11 @@ struct Load {
 };
 Load eight_busy_cores(const sim::ChipConfig& config, const Counts& share) {
   work::StageRun stage{"load", {}, {}};
-  stage.steps.emplace_back(work::Fork{"load", std::vector<work::Piece>(8, share)});
+  stage.steps.emplace_back(work::Fork{"load", std::vector<work::Segment>(8, share)});
   const sim::StageTiming timing = time_of(config, {{stage}});
   const Activity activity =
       sim::cluster_activity(config, 8, work::counts_of(stage), work::transferred_by(stage),
-                            timing.account, timing.cycles);
+                            timing.breakdown, timing.cycles);
   return {activity, activity.instructions / 8 / static_cast<double>(timing.cycles.count())};
 }
 

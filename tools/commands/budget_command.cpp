@@ -26,7 +26,7 @@ void run(const CLI::App& command, const BudgetOptions& options) {
   require(command, "ACTION", "record or init");
   if (std::find(actions.begin(), actions.end(), options.action) == actions.end())
     throw InputError(fmt::format("budget: unknown action '{}'; expected record or init{}",
-                                 options.action, platform::did_you_mean(options.action, actions)));
+                                 options.action, base::did_you_mean(options.action, actions)));
   require(command, "RUN", "a run folder or a work trace");
   const double margin = parse_margin(options.margin);
   std::optional<Budget> budget;

@@ -205,7 +205,7 @@ void run(const CLI::App& command, const PlatformsOptions& options) {
   if (action == kActions.end())
     throw InputError(fmt::format(
         "platforms: unknown action '{}'; expected list, show, diff, feasibility or stages{}",
-        options.action, platform::did_you_mean(options.action, known)));
+        options.action, base::did_you_mean(options.action, known)));
   if (action->names != kAnyNumber && options.names.size() != action->names)
     throw InputError(fmt::format("platforms {}: expected {}, found {}", action->name,
                                  action->expected, options.names.size()));

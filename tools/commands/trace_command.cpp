@@ -53,7 +53,7 @@ void show_trace(const traces::WorkTrace& trace, bool json) {
 /// Everything that replay reads, its platform too.
 void check_trace(const traces::WorkTrace& trace, bool json) {
   recorded_platform(trace);
-  traces::WorkFrames reader(trace, trace.has_kernels());
+  traces::WorkFrames reader(trace, trace.has_offload());
   for (traces::WorkFrame frame; reader.next(frame);) {
   }
   const auto lines = [&] {
@@ -74,7 +74,7 @@ void run(const CLI::App& command, const TraceOptions& options) {
   else
     throw InputError(fmt::format("trace: unknown action '{}'; expected info or check{}",
                                  options.action,
-                                 platform::did_you_mean(options.action, {"info", "check"})));
+                                 base::did_you_mean(options.action, {"info", "check"})));
 }
 
 }  // namespace

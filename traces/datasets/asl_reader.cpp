@@ -37,7 +37,7 @@ constexpr Bound kAccel{1e4, "any accelerometer [m/s^2]"};
 constexpr Bound kPosition{1e7, "any flight [m]"};
 constexpr Bound kVelocity{1e5, "any flight [m/s]"};
 
-Eigen::Vector3d vector_at(const CsvRow& row, std::size_t column, const Bound& bound) {
+Eigen::Vector3d vector_at(const base::CsvRow& row, std::size_t column, const Bound& bound) {
   Eigen::Vector3d vector;
   for (int k = 0; k < 3; ++k) {
     const std::size_t at = column + static_cast<std::size_t>(k);
@@ -49,7 +49,7 @@ Eigen::Vector3d vector_at(const CsvRow& row, std::size_t column, const Bound& bo
   return vector;
 }
 
-Eigen::Quaterniond quaternion_at(const CsvRow& row, std::size_t w_column) {
+Eigen::Quaterniond quaternion_at(const base::CsvRow& row, std::size_t w_column) {
   const Eigen::Quaterniond q(row.number(w_column), row.number(w_column + 1),
                              row.number(w_column + 2), row.number(w_column + 3));
   if (std::abs(q.norm() - 1) > kQuaternionTolerance)
@@ -84,7 +84,7 @@ void require_images(const std::vector<FrameRef>& frames, const fs::path& csv) {
     const base::PathKind kind = base::kind_of(frame.path);
     if (kind == base::PathKind::file) continue;
     throw InputError(
-        fmt::format("{}: the image {} {}", at_line(csv, frame.line), frame.path.string(),
+        fmt::format("{}: the image {} {}", base::at_line(csv, frame.line), frame.path.string(),
                     kind == base::PathKind::missing ? "does not exist" : "is no regular file"));
   }
 }
@@ -95,8 +95,8 @@ void require_cover(const Dataset& data, double tolerance_s, const fs::path& imu_
     throw InputError(fmt::format(
         "{}: the frame at {} ns lies {:.4f} s {} IMU sample of {} ({} ns); choose frames that the "
         "IMU covers",
-        at_line(data.frames_csv, frame.line), frame.t_ns, std::abs(seconds(frame.t_ns - edge)),
-        where, imu_csv.string(), edge));
+        base::at_line(data.frames_csv, frame.line), frame.t_ns,
+        std::abs(seconds(frame.t_ns - edge)), where, imu_csv.string(), edge));
   };
   const FrameRef& first = data.frames.front();
   const FrameRef& last = data.frames.back();
@@ -136,10 +136,10 @@ void require_smooth_truth(const std::vector<GroundTruthPose>& poses, const fs::p
 }  // namespace
 
 std::vector<FrameRef> read_frames_csv(const fs::path& data_csv) {
-  CsvReader csv(data_csv, Separator::comma, {"timestamp [ns]", "filename"});
-  RisingStamps stamps;
+  base::CsvReader csv(data_csv, base::Separator::comma, {"timestamp [ns]", "filename"});
+  base::RisingStamps stamps;
   std::vector<FrameRef> frames;
-  while (const CsvRow* row = csv.next()) {
+  while (const base::CsvRow* row = csv.next()) {
     const std::int64_t t_ns = row->nanoseconds(0);
     stamps.add(*row, t_ns);
     if (row->text(1).empty()) row->fail(1, "not a file name");
@@ -150,12 +150,12 @@ std::vector<FrameRef> read_frames_csv(const fs::path& data_csv) {
 }
 
 std::vector<ImuSample> read_imu_csv(const fs::path& data_csv) {
-  CsvReader csv(
-      data_csv, Separator::comma,
+  base::CsvReader csv(
+      data_csv, base::Separator::comma,
       {"timestamp [ns]", "w_RS_S_x", "w_RS_S_y", "w_RS_S_z", "a_RS_S_x", "a_RS_S_y", "a_RS_S_z"});
-  RisingStamps stamps;
+  base::RisingStamps stamps;
   std::vector<ImuSample> samples;
-  while (const CsvRow* row = csv.next()) {
+  while (const base::CsvRow* row = csv.next()) {
     const std::int64_t t_ns = row->nanoseconds(0);
     stamps.add(*row, t_ns);
     samples.push_back({t_ns, vector_at(*row, 1, kGyro), vector_at(*row, 4, kAccel)});
@@ -165,13 +165,13 @@ std::vector<ImuSample> read_imu_csv(const fs::path& data_csv) {
 }
 
 std::vector<GroundTruthPose> read_ground_truth_csv(const fs::path& data_csv) {
-  CsvReader csv(data_csv, Separator::comma,
-                {"timestamp", "p_RS_R_x", "p_RS_R_y", "p_RS_R_z", "q_RS_w", "q_RS_x", "q_RS_y",
-                 "q_RS_z", "v_RS_R_x", "v_RS_R_y", "v_RS_R_z", "b_w_RS_S_x", "b_w_RS_S_y",
-                 "b_w_RS_S_z", "b_a_RS_S_x", "b_a_RS_S_y", "b_a_RS_S_z"});
-  RisingStamps stamps;
+  base::CsvReader csv(data_csv, base::Separator::comma,
+                      {"timestamp", "p_RS_R_x", "p_RS_R_y", "p_RS_R_z", "q_RS_w", "q_RS_x",
+                       "q_RS_y", "q_RS_z", "v_RS_R_x", "v_RS_R_y", "v_RS_R_z", "b_w_RS_S_x",
+                       "b_w_RS_S_y", "b_w_RS_S_z", "b_a_RS_S_x", "b_a_RS_S_y", "b_a_RS_S_z"});
+  base::RisingStamps stamps;
   std::vector<GroundTruthPose> poses;
-  while (const CsvRow* row = csv.next()) {
+  while (const base::CsvRow* row = csv.next()) {
     GroundTruthPose pose;
     pose.t_ns = row->nanoseconds(0);
     stamps.add(*row, pose.t_ns);

@@ -17,7 +17,7 @@ ImageSource::ImageSource(const Dataset& data, ImageSize size)
       preparation_(data.camera, size) {}
 
 cv::Mat ImageSource::decode(const FrameRef& frame) const {
-  const std::string row = at_line(frames_csv_, frame.line);
+  const std::string row = base::at_line(frames_csv_, frame.line);
   std::string bytes;
   try {
     bytes = base::read_file(frame.path, base::InputKind::image);

@@ -36,7 +36,7 @@ std::string_view kind_of(const base::YamlNode& node) {
 }
 
 std::string place_of(const std::filesystem::path& file, int line, const std::string& key) {
-  const std::string place = at_line(file, static_cast<std::size_t>(line));
+  const std::string place = base::at_line(file, static_cast<std::size_t>(line));
   return key.empty() ? place : fmt::format("{}, key '{}'", place, key);
 }
 
@@ -109,7 +109,8 @@ std::string YamlMap::text(const std::string& key) const {
 double YamlMap::number(const std::string& key) const {
   double value = 0;
   const std::string spelled = text(key);
-  if (!parse_number(spelled, value)) fail(key, fmt::format("'{}' is not a finite number", spelled));
+  if (!base::parse_number(spelled, value))
+    fail(key, fmt::format("'{}' is not a finite number", spelled));
   return value;
 }
 
@@ -146,7 +147,7 @@ std::vector<double> YamlMap::numbers(const std::string& key, std::size_t size,
   std::vector<double> values(size);
   for (std::size_t i = 0; i < size; ++i) {
     const base::YamlNode entry = node[i];
-    if (!entry.is_scalar() || !parse_number(entry.scalar(), values[i]))
+    if (!entry.is_scalar() || !base::parse_number(entry.scalar(), values[i]))
       fail_at(entry.line(), key,
               fmt::format("entry {} ('{}') is not a finite number", i + 1,
                           entry.is_scalar() ? entry.scalar() : std::string(kind_of(entry))));

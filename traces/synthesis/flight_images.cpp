@@ -29,7 +29,7 @@ void write_flight_images(base::OutputFolder& out, const std::vector<std::int64_t
                          const FlightProgress& progress) {
   std::mutex mutex;
   std::size_t done = 0;
-  parallel_for(stamps_ns.size(), threads, [&](std::size_t i) {
+  base::parallel_for(stamps_ns.size(), threads, [&](std::size_t i) {
     std::vector<std::uint8_t> pixels = draw(i);
     const std::vector<std::uint8_t> bytes = png(size, pixels);
     out.write("mav0/cam0/data/" + image_name(stamps_ns[i]),

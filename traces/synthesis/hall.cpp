@@ -75,7 +75,7 @@ World make_hall(std::span<const Eigen::Vector3d> path, const CameraModel& camera
   std::vector<Box> objects;
   for (const HallObject& object : layout.objects)
     objects.push_back(box_of(object.box, kObjectLight));
-  parallel_for((1 + objects.size()) * kFaces, options.threads, [&](std::size_t job) {
+  base::parallel_for((1 + objects.size()) * kFaces, options.threads, [&](std::size_t job) {
     const std::size_t index = job / kFaces;
     const std::size_t face = job % kFaces;
     Box& box = index == 0 ? room : objects[index - 1];

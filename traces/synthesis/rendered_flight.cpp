@@ -113,7 +113,7 @@ void write_streams(base::OutputFolder& out, const Plan& plan,
     out.write("mav0/" + name.string(), text);
   };
   const auto copy = [&](const fs::path& name) {
-    write(name, read_text_file(plan.record.mav0 / name));
+    write(name, base::read_text_file(plan.record.mav0 / name));
   };
   const fs::path truth = "state_groundtruth_estimate0";
   const std::string comment = fmt::format("leviosim rendered flight, seed {}", options.seed);

@@ -76,7 +76,7 @@ World make_room(std::uint64_t seed, double texel_m, unsigned threads) {
     objects.push_back(unpainted_box(vector(row.min), vector(row.max), kObjectLight));
 
   constexpr std::size_t kFaces = 6;
-  parallel_for((1 + kObjects.size()) * kFaces, threads, [&](std::size_t job) {
+  base::parallel_for((1 + kObjects.size()) * kFaces, threads, [&](std::size_t job) {
     const std::size_t index = job / kFaces;
     const std::size_t face = job % kFaces;
     SurfaceSpec spec;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRotationTolerance = 1e-3;
 
-Eigen::Isometry3d pose_of(const CsvRow& row) {
+Eigen::Isometry3d pose_of(const base::CsvRow& row) {
   Eigen::Matrix<double, 3, 4> m;
   for (int i = 0; i < 12; ++i) m(i / 4, i % 4) = row.number(static_cast<std::size_t>(i));
   const Eigen::Matrix3d rotation = m.leftCols<3>();
@@ -27,19 +27,20 @@ Eigen::Isometry3d pose_of(const CsvRow& row) {
 }  // namespace
 
 std::vector<Eigen::Isometry3d> read_kitti_poses(const std::filesystem::path& file) {
-  CsvReader csv(file, Separator::blanks,
-                {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty", "r31", "r32", "r33", "tz"});
+  base::CsvReader csv(
+      file, base::Separator::blanks,
+      {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty", "r31", "r32", "r33", "tz"});
   std::vector<Eigen::Isometry3d> poses;
-  while (const CsvRow* row = csv.next()) poses.push_back(pose_of(*row));
+  while (const base::CsvRow* row = csv.next()) poses.push_back(pose_of(*row));
   if (poses.empty()) throw InputError(fmt::format("{}: holds no pose", file.string()));
   return poses;
 }
 
 std::vector<std::int64_t> read_times(const std::filesystem::path& file) {
-  CsvReader csv(file, Separator::blanks, {"time [s]"});
-  RisingStamps stamps;
+  base::CsvReader csv(file, base::Separator::blanks, {"time [s]"});
+  base::RisingStamps stamps;
   std::vector<std::int64_t> times;
-  while (const CsvRow* row = csv.next()) {
+  while (const base::CsvRow* row = csv.next()) {
     times.push_back(row->nanoseconds_from_seconds(0));
     stamps.add(*row, times.back());
   }

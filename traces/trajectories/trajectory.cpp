@@ -50,14 +50,15 @@ std::string format_tum(const Trajectory& trajectory) {
 }
 
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory) {
-  write_file_atomically(file, format_tum(trajectory));
+  base::write_file_atomically(file, format_tum(trajectory));
 }
 
 Trajectory read_tum(const std::filesystem::path& file) {
-  CsvReader csv(file, Separator::blanks, {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
-  RisingStamps stamps;
+  base::CsvReader csv(file, base::Separator::blanks,
+                      {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
+  base::RisingStamps stamps;
   Trajectory trajectory;
-  while (const CsvRow* row = csv.next()) {
+  while (const base::CsvRow* row = csv.next()) {
     const std::int64_t t_ns = row->nanoseconds_from_seconds(0);
     stamps.add(*row, t_ns);
     const Eigen::Quaterniond q(row->number(7), row->number(4), row->number(5), row->number(6));

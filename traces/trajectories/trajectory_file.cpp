@@ -20,14 +20,14 @@ struct FormatRow {
   TrajectoryFormat format;
   std::string_view option;
   std::string_view name;
-  Separator separator;
+  base::Separator separator;
   std::size_t columns;
 };
 
 constexpr std::array<FormatRow, 3> kFormats{{
-    {TrajectoryFormat::tum, "tum", "TUM", Separator::blanks, 8},
-    {TrajectoryFormat::euroc, "euroc", "EuRoC", Separator::comma, 17},
-    {TrajectoryFormat::kitti, "kitti", "KITTI", Separator::blanks, 12},
+    {TrajectoryFormat::tum, "tum", "TUM", base::Separator::blanks, 8},
+    {TrajectoryFormat::euroc, "euroc", "EuRoC", base::Separator::comma, 17},
+    {TrajectoryFormat::kitti, "kitti", "KITTI", base::Separator::blanks, 12},
 }};
 
 constexpr const char* kRunTrajectory = "trajectory.tum";
@@ -77,14 +77,14 @@ TrajectoryFormat parse_trajectory_format(std::string_view name) {
 }
 
 TrajectoryFormat detect_format(const fs::path& file) {
-  const FirstRow first = first_row(file);
+  const base::FirstRow first = base::first_row(file);
   for (const FormatRow& row : kFormats)
     if (row.separator == first.separator && row.columns == first.columns) return row.format;
   throw InputError(fmt::format(
       "{}: {} columns separated by {}; expected 8 (TUM) or 12 (KITTI) separated by blanks, or 17 "
       "(EuRoC) by commas",
-      at_line(file, first.line), first.columns,
-      first.separator == Separator::comma ? "commas" : "blanks"));
+      base::at_line(file, first.line), first.columns,
+      first.separator == base::Separator::comma ? "commas" : "blanks"));
 }
 
 fs::path find_trajectory(const fs::path& path) {

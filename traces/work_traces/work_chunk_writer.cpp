@@ -5,7 +5,7 @@
 namespace leviosim::traces {
 namespace {
 
-/// What stands before a piece of serial work, which tells it from others of its stage.
+/// What stands before a segment of serial work, which tells it from others of its stage.
 std::string_view label_of(const work::Step& step) {
   if (const auto* fork = std::get_if<work::Fork>(&step)) return fork->name;
   return std::holds_alternative<work::Serial>(step) ? "serial" : "transfer";
@@ -62,7 +62,7 @@ void ChunkWriter::write_stage(const work::StageRun& stage, bool on_controller) {
       text_.whole(series);
       for (std::size_t k = 0; k < workers; ++k) {
         work_.series[series].push_back(fork->shares[k]);
-        write_kernels(place, fork->shares[k]);
+        write_offload(place, fork->shares[k]);
       }
       if (fork->master_takes_part)
         write_counts({Kind::MasterShare, stage.stage, fork->name, {}}, fork->shares.back());
@@ -108,25 +108,25 @@ void ChunkWriter::SeriesTable::write(ByteWriter& content) const {
   content.text(columns.bytes());
 }
 
-void ChunkWriter::write_counts(const Place& place, const work::Piece& piece) {
+void ChunkWriter::write_counts(const Place& place, const work::Segment& segment) {
   const std::uint64_t series = work_.number_of(place);
   text_.whole(series);
-  work_.series[series].push_back(piece);
-  write_kernels(place, piece);
+  work_.series[series].push_back(segment);
+  write_offload(place, segment);
 }
 
-void ChunkWriter::write_kernels(const Place& place, const work::Piece& piece) {
-  kernel_text_.whole(piece.kernels.size());
-  for (const work::KernelWork& calls : piece.kernels) {
-    const std::string_view kernel = work::kKernels[work::index(calls.kernel)].name;
+void ChunkWriter::write_offload(const Place& place, const work::Segment& segment) {
+  offload_text_.whole(segment.offload.size());
+  for (const work::OffloadWork& calls : segment.offload) {
+    const std::string_view kernel = work::kOffloadKinds[work::index(calls.kernel)].name;
     Place of_kernel = place;
     std::get<3>(of_kernel) = kernel;
-    const std::uint64_t series = kernel_work_.number_of(of_kernel);
-    kernel_text_.whole(names_->number_of(kernel));
-    kernel_text_.whole(calls.calls);
-    kernel_text_.whole(calls.items);
-    kernel_text_.whole(series);
-    kernel_work_.series[series].push_back(calls.counts);
+    const std::uint64_t series = offload_work_.number_of(of_kernel);
+    offload_text_.whole(names_->number_of(kernel));
+    offload_text_.whole(calls.calls);
+    offload_text_.whole(calls.items);
+    offload_text_.whole(series);
+    offload_work_.series[series].push_back(calls.counts);
   }
 }
 
@@ -135,11 +135,11 @@ ChunkWriter::Contents ChunkWriter::finish() {
   content.whole(static_cast<std::uint64_t>(frames_));
   work_.write(content);
   content.append(text_.bytes());
-  ByteWriter kernels;
-  kernel_work_.write(kernels);
-  kernels.append(kernel_text_.bytes());
+  ByteWriter offload;
+  offload_work_.write(offload);
+  offload.append(offload_text_.bytes());
   *this = ChunkWriter(*names_);
-  return {content.take(), kernels.take()};
+  return {content.take(), offload.take()};
 }
 
 }  // namespace leviosim::traces

@@ -12,7 +12,7 @@ namespace leviosim::traces {
 namespace {
 
 constexpr std::uint64_t kPrime = (std::uint64_t{1} << 31) - 1;
-/// Pieces from which dependences are guessed; they are then compared with all.
+/// Segments from which dependences are guessed; they are then compared with all.
 constexpr std::size_t kSample = 256;
 constexpr std::int64_t kLargestFactor = 4096;
 
@@ -182,8 +182,8 @@ SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns,
   const auto field = [&](const char* what) {
     return fields[static_cast<std::size_t>(head.whole_below(fields.size(), what))];
   };
-  // Each counter has one column or sum at most, and a sum has each counter once: what a piece of
-  // work costs to read is bounded.
+  // Each counter has one column or sum at most, and a sum has each counter once: what a work
+  // segment costs to read is bounded.
   const auto number_of = [&](const char* what, std::size_t memory_each) {
     const auto number = static_cast<std::size_t>(head.whole_below(kCounters + 1, what));
     head.charge(number, memory_each, what);

@@ -1,8 +1,8 @@
-// Columns of a work trace: how the counts of many similar pieces of work become few bytes, and come
-// back fast. Pieces of work at the same place of a program form a *series*. The first of a series
-// is stored as it is. Of the counters that change at all, some are stored as differences from piece
-// to piece; the others are sums of multiples of these, since the operations of a program come in
-// the proportions of its basic blocks, of which it has fewer than kinds of operations.
+// Columns of a work trace: how the counts of many similar work segments become few bytes, and come
+// back fast. Segments of work at the same place of a program form a *series*. The first of a series
+// is stored as it is. Of the counters that change at all, some are stored as differences from
+// segment to segment; the others are sums of multiples of these, since the operations of a program
+// come in the proportions of its basic blocks, of which it has fewer than kinds of operations.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace leviosim::traces {
 
 /// All counters of work::Counts as one list: operations, then classes of code reuse.
 inline constexpr std::size_t kCounters = work::kOpCount + work::kReuseClasses;
-/// No piece of work counts as much; keeps what is derived from counts from overflowing.
+/// No work segment counts as much; keeps what is derived from counts from overflowing.
 inline constexpr int kCounterBits = 40;
 
 inline std::uint64_t& counter(work::Counts& counts, std::size_t k) {
@@ -29,7 +29,7 @@ inline std::uint64_t counter(const work::Counts& counts, std::size_t k) {
 /// Appends the description of a series to `head`, its differences to `columns`.
 void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWriter& columns);
 
-/// Gives the pieces of a series back, one after the other.
+/// Gives the segments of a series back, one after the other.
 class SeriesReader {
  public:
   /// @param fields  the counter of each field of the file
@@ -37,7 +37,7 @@ class SeriesReader {
   SeriesReader(ByteReader& head, ByteReader& columns, const std::vector<std::size_t>& fields);
 
   void next(work::Counts& counts);
-  /// @throws InputError if pieces are left
+  /// @throws InputError if segments are left
   void expect_end();
 
  private:

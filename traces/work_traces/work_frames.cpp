@@ -17,15 +17,15 @@ constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 31;
 
 }  // namespace
 
-WorkFrames::WorkFrames(const WorkTrace& trace, bool kernels)
+WorkFrames::WorkFrames(const WorkTrace& trace, bool offload)
     : trace_(&trace),
-      with_kernels_(kernels),
+      with_offload_(offload),
       budget_(trace.budget()),
       stage_names_(trace.names().size()) {
-  if (kernels && !trace.has_kernels())
+  if (offload && !trace.has_offload())
     throw InputError(
         fmt::format("{}: is of version 1, which does not say what of the work was done in calls of "
-                    "kernels that an accelerator could serve: record it again",
+                    "offload regions: record it again",
                     trace.name()));
 }
 
@@ -70,7 +70,7 @@ void WorkFrames::drop_storage(WorkFrame& frame) {
 void WorkFrames::open_chunk(WorkFrame& frame) {
   of_chunk_ = trace_->budget().used();
   drop_storage(frame);
-  for (std::string* content : {&content_, &kernel_content_}) std::string().swap(*content);
+  for (std::string* content : {&content_, &offload_content_}) std::string().swap(*content);
   const WorkTrace::Chunk& chunk = trace_->chunks()[next_chunk_++];
   place_ = fmt::format("{}, frames {} to {} (section at byte {})", trace_->name(), chunk.first,
                        chunk.first + chunk.frames - 1, chunk.section.offset);
@@ -82,16 +82,17 @@ void WorkFrames::open_chunk(WorkFrame& frame) {
     text_.fail(fmt::format("holds {} frames; expected {}", frames, chunk.frames));
   open_series(text_, series_);
   peaks_ = std::vector<work::MemoryPeak>();
-  if (with_kernels_) open_kernels(chunk);
+  if (with_offload_) open_offload(chunk);
   of_chunk_ = budget_.used();
 }
 
-void WorkFrames::open_kernels(const WorkTrace::Chunk& chunk) {
-  kernel_place_ = fmt::format("{}, kernels of frames {} to {} (section at byte {})", trace_->name(),
-                              chunk.first, chunk.first + chunk.frames - 1, chunk.kernels->offset);
-  kernel_content_ = unpacked(*chunk.kernels, trace_->name(), budget_);
-  kernel_text_ = ByteReader(kernel_content_, kernel_place_, &budget_);
-  open_series(kernel_text_, kernel_series_);
+void WorkFrames::open_offload(const WorkTrace::Chunk& chunk) {
+  offload_place_ =
+      fmt::format("{}, offload regions of frames {} to {} (section at byte {})", trace_->name(),
+                  chunk.first, chunk.first + chunk.frames - 1, chunk.offload->offset);
+  offload_content_ = unpacked(*chunk.offload, trace_->name(), budget_);
+  offload_text_ = ByteReader(offload_content_, offload_place_, &budget_);
+  open_series(offload_text_, offload_series_);
 }
 
 void WorkFrames::open_series(ByteReader& in, std::vector<SeriesReader>& series) {
@@ -109,9 +110,9 @@ void WorkFrames::open_series(ByteReader& in, std::vector<SeriesReader>& series) 
 void WorkFrames::close_chunk() {
   text_.expect_end();
   for (SeriesReader& series : series_) series.expect_end();
-  if (!with_kernels_) return;
-  kernel_text_.expect_end();
-  for (SeriesReader& series : kernel_series_) series.expect_end();
+  if (!with_offload_) return;
+  offload_text_.expect_end();
+  for (SeriesReader& series : offload_series_) series.expect_end();
 }
 
 std::string_view WorkFrames::read_name() {
@@ -220,7 +221,7 @@ void WorkFrames::read_fork(work::Fork& fork, bool on_controller) {
   fork.name = read_name();
   const auto workers = static_cast<std::size_t>(on_controller ? 1 : trace_->info().cores);
   const std::size_t shares = workers + (fork.master_takes_part ? 1 : 0);
-  text_.charge(shares, sizeof(work::Piece), "shares of a fork");
+  text_.charge(shares, sizeof(work::Segment), "shares of a fork");
   fork.shares.resize(shares);
   const std::uint64_t series = text_.whole("a series");
   for (std::size_t k = 0; k < workers; ++k) read_counts(series, fork.shares[k]);
@@ -252,37 +253,37 @@ void WorkFrames::read_peak(work::MemoryPeak& peak) {
   peaks_.push_back(peak);
 }
 
-void WorkFrames::read_counts(std::uint64_t series, work::Piece& piece) {
+void WorkFrames::read_counts(std::uint64_t series, work::Segment& segment) {
   if (series >= series_.size()) [[unlikely]]
-    text_.fail(
-        fmt::format("a piece of work is of series {}; there are {}", series, series_.size()));
-  series_[series].next(piece);
-  if (with_kernels_) read_kernels(piece);
+    text_.fail(fmt::format("a work segment is of series {}; there are {}", series, series_.size()));
+  series_[series].next(segment);
+  if (with_offload_) read_offload(segment);
 }
 
-void WorkFrames::read_kernels(work::Piece& piece) {
+void WorkFrames::read_offload(work::Segment& segment) {
   const std::size_t kinds =
-      kernel_text_.whole_below(work::kKernelCount + 1, "the number of kernels");
-  kernel_text_.charge(kinds, sizeof(work::KernelWork), "calls of kernels");
-  piece.kernels.resize(kinds);
-  work::Counts left = piece;  // that is not yet part of a call
-  std::size_t least = 0;      // each kind at most once, in their order
-  for (work::KernelWork& calls : piece.kernels) {
+      offload_text_.whole_below(work::kOffloadKindCount + 1, "the number of offload regions");
+  offload_text_.charge(kinds, sizeof(work::OffloadWork), "offload regions");
+  segment.offload.resize(kinds);
+  work::Counts left = segment;  // that is not yet part of a call
+  std::size_t least = 0;        // each kind at most once, in their order
+  for (work::OffloadWork& calls : segment.offload) {
     const std::string& name =
-        trace_->names()[kernel_text_.whole_below(trace_->names().size(), "the number of a name")];
-    while (least < work::kKernelCount && work::kKernels[least].name != name) ++least;
-    if (least == work::kKernelCount)
-      kernel_text_.fail(
-          fmt::format("'{}' is no kernel that is known, or comes twice in a piece of work", name));
-    calls.kernel = work::kKernels[least++].kernel;
-    calls.calls = kernel_text_.whole_below(std::uint64_t{1} << kCounterBits, "calls of a kernel");
-    calls.items = kernel_text_.whole_below(std::uint64_t{1} << kCounterBits, "items of a kernel");
+        trace_->names()[offload_text_.whole_below(trace_->names().size(), "the number of a name")];
+    while (least < work::kOffloadKindCount && work::kOffloadKinds[least].name != name) ++least;
+    if (least == work::kOffloadKindCount)
+      offload_text_.fail(
+          fmt::format("'{}' is no kernel that is known, or comes twice in a work segment", name));
+    calls.kernel = work::kOffloadKinds[least++].kernel;
+    calls.calls =
+        offload_text_.whole_below(std::uint64_t{1} << kCounterBits, "offload regions of a kind");
+    calls.items = offload_text_.whole_below(std::uint64_t{1} << kCounterBits, "items of a kernel");
     const std::uint64_t series =
-        kernel_text_.whole_below(kernel_series_.size(), "a series of kernels");
-    kernel_series_[series].next(calls.counts);
+        offload_text_.whole_below(offload_series_.size(), "a series of offload regions");
+    offload_series_[series].next(calls.counts);
     for (std::size_t i = 0; i < work::kOpCount; ++i) {
       if (calls.counts.n[i] > left.n[i])
-        kernel_text_.fail("calls of kernels count more than their piece of work");
+        offload_text_.fail("offload regions count more than their work segment");
       left.n[i] -= calls.counts.n[i];
     }
   }

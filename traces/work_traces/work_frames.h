@@ -1,5 +1,5 @@
 // The frames of a work trace, written and read in chunks: of each chunk first the series of its
-// pieces of work (work_columns.h), then the frames with their jobs, in which a piece of work is the
+// work segments (work_columns.h), then the frames with their jobs, in which a work segment is the
 // number of its series.
 #pragma once
 
@@ -34,7 +34,7 @@ class ChunkWriter {
   /// The contents of its two sections; starts the next chunk.
   struct Contents {
     std::string frames;
-    std::string kernels;
+    std::string offload;
   };
   Contents finish();
 
@@ -42,7 +42,7 @@ class ChunkWriter {
   enum class Kind { Serial, Share, MasterShare, Controller };
   /// With stage and step, and the kind of kernel if it is about calls.
   using Place = std::tuple<Kind, std::string_view, std::string_view, std::string_view>;
-  /// Pieces of work by their place: some series.
+  /// Segments of work by their place: some series.
   struct SeriesTable {
     std::map<Place, std::uint64_t> numbers;
     std::vector<std::vector<work::Counts>> series;
@@ -55,15 +55,15 @@ class ChunkWriter {
   void write_job(const work::Job& job, bool on_controller);
   void write_stage(const work::StageRun& stage, bool on_controller);
   void write_peak(const work::MemoryPeak& peak);
-  void write_counts(const Place& place, const work::Piece& piece);
-  void write_kernels(const Place& place, const work::Piece& piece);
+  void write_counts(const Place& place, const work::Segment& segment);
+  void write_offload(const Place& place, const work::Segment& segment);
 
   NameTable* names_;
   int frames_ = 0;
   ByteWriter text_;  ///< the frames and their jobs
   SeriesTable work_;
-  ByteWriter kernel_text_;  ///< calls of kernels of every piece of work
-  SeriesTable kernel_work_;
+  ByteWriter offload_text_;  ///< offload regions of every work segment
+  SeriesTable offload_work_;
   std::map<std::string, std::uint64_t> peaks_;  ///< written → number
 };
 
@@ -71,10 +71,10 @@ class ChunkWriter {
 class WorkFrames {
  public:
   /// @param trace  outlives the reader and the names in what it gives
-  /// @param kernels  whether the calls of kernels are read, too
+  /// @param offload  whether the offload regions are read, too
   /// @throws InputError if they are asked for, and the trace has none
   /// Memory: what trace.budget() has left, at any time.
-  explicit WorkFrames(const WorkTrace& trace, bool kernels = false);
+  explicit WorkFrames(const WorkTrace& trace, bool offload = false);
 
   /// The next frame; storage of `frame` is used again. False at the end.
   /// @throws InputError for what cannot have been recorded
@@ -82,7 +82,7 @@ class WorkFrames {
 
  private:
   void open_chunk(WorkFrame& frame);
-  void open_kernels(const WorkTrace::Chunk& chunk);
+  void open_offload(const WorkTrace::Chunk& chunk);
   void close_chunk();
   void drop_storage(WorkFrame& frame);
   std::string_view read_name();
@@ -96,12 +96,12 @@ class WorkFrames {
   work::TransferWait read_wait();
   void read_fork(work::Fork& fork, bool on_controller);
   void read_peak(work::MemoryPeak& peak);
-  void read_counts(std::uint64_t series, work::Piece& piece);
-  void read_kernels(work::Piece& piece);
+  void read_counts(std::uint64_t series, work::Segment& segment);
+  void read_offload(work::Segment& segment);
   void open_series(ByteReader& in, std::vector<SeriesReader>& series);
 
   const WorkTrace* trace_;
-  bool with_kernels_;
+  bool with_offload_;
   MemoryBudget budget_;
   std::uint64_t of_chunk_ =
       0;  ///< used of it at the first frame of the chunk, with peaks since then
@@ -113,10 +113,10 @@ class WorkFrames {
   std::string content_;
   ByteReader text_;
   std::vector<SeriesReader> series_;
-  std::string kernel_place_;
-  std::string kernel_content_;
-  ByteReader kernel_text_;
-  std::vector<SeriesReader> kernel_series_;
+  std::string offload_place_;
+  std::string offload_content_;
+  ByteReader offload_text_;
+  std::vector<SeriesReader> offload_series_;
   std::vector<work::MemoryPeak> peaks_;
   std::vector<bool> stage_names_;  ///< by number of the name, whether it is that of a stage
   std::size_t stages_ = 0;         ///< so many are

@@ -18,7 +18,7 @@ namespace leviosim::traces {
 namespace {
 
 constexpr FileKind kKind{"LEVIOWT\n", "a work trace", 3};
-constexpr std::uint32_t kWithKernels = 2;
+constexpr std::uint32_t kWithOffload = 2;
 constexpr std::uint32_t kWithNamesOfFacts = 3;
 /// Of frames in files of older versions.
 constexpr std::array kOldFacts{"features", "world_matches", "frame_matches", "inliers",
@@ -200,7 +200,7 @@ WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
   if (sections.empty())
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",
                                  name_, bytes_.size()));
-  has_kernels_ = version_of(bytes_) >= kWithKernels;
+  has_offload_ = version_of(bytes_) >= kWithOffload;
   const std::string summary = unpacked(sections[0], name_, budget_);
   const std::string place =
       fmt::format("{}, summary (section at byte {})", name_, sections[0].offset);
@@ -255,7 +255,7 @@ void WorkTrace::read_facts(ByteReader& in) {
 void WorkTrace::read_chunks(ByteReader& in, const std::vector<Section>& sections) {
   int frames = 0;
   const std::size_t chunks = in.count("sections of frames", sizeof(Chunk));
-  const std::size_t expected = has_kernels_ ? 2 * chunks : chunks;
+  const std::size_t expected = has_offload_ ? 2 * chunks : chunks;
   if (expected + 1 != sections.size())
     throw InputError(fmt::format(
         "{}, byte {}: the file ends after {} sections of frames; expected {}: it is truncated",
@@ -264,7 +264,7 @@ void WorkTrace::read_chunks(ByteReader& in, const std::vector<Section>& sections
     const auto n = static_cast<int>(read_number(in, 1 << 16, "frames of a section"));
     if (n == 0) in.fail("a section without frames");
     chunks_.push_back({frames, n, sections[i + 1], {}});
-    if (has_kernels_) chunks_.back().kernels = sections[i + 1 + chunks];
+    if (has_offload_) chunks_.back().offload = sections[i + 1 + chunks];
     frames += n;
     if (static_cast<std::size_t>(frames) > in.left()) in.fail("more frames than time stamps");
   }
@@ -277,7 +277,7 @@ struct WorkTraceWriter::State {
     chunk_frames.push_back(chunk.frames());
     const ChunkWriter::Contents contents = chunk.finish();
     sections += packed_section(contents.frames, kLevel);
-    kernels += packed_section(contents.kernels, kLevel);
+    offload += packed_section(contents.offload, kLevel);
   }
 
   int cores;
@@ -287,7 +287,7 @@ struct WorkTraceWriter::State {
   std::vector<std::int64_t> stamps_ns;
   std::optional<std::size_t> facts;  ///< of each frame
   std::string sections;
-  std::string kernels;
+  std::string offload;
 };
 
 WorkTraceWriter::WorkTraceWriter(int cores) : state_(std::make_unique<State>(cores)) {}
@@ -310,7 +310,7 @@ std::string WorkTraceWriter::finish(WorkTraceInfo info) {
   info.stamps_ns = state_->stamps_ns;
   return file_head(kKind) +
          packed_section(summary_of(info, state_->names, state_->chunk_frames), kLevel) +
-         state_->sections + state_->kernels;
+         state_->sections + state_->offload;
 }
 
 }  // namespace leviosim::traces

@@ -2,8 +2,8 @@
 // frame it holds the job of the front end, those of the optimisation that began with it, and what
 // came out; so a chip can be timed without computing, and without the images.
 //
-// What is recorded is the work as it was divided among a number of cores. How much code each piece
-// of work fetches is part of it, for caches of any size (sim/work/code_reuse.h).
+// What is recorded is the work as it was divided among a number of cores. How much code each work
+// segment fetches is part of it, for caches of any size (sim/work/code_reuse.h).
 //
 // Left out: values other than the poses.
 #pragma once
@@ -34,7 +34,7 @@ struct WorkFrame {
   std::int64_t t_ns = 0;    ///< camera timestamp
   std::string_view source;  ///< of the pose, a key of frames.csv
   bool keyframe = false;
-  std::vector<int> facts;   ///< numbers that are not negative, named by WorkTraceInfo::facts
+  std::vector<int> facts;  ///< numbers that are not negative, named by WorkTraceInfo::facts
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();  ///< [m]
 
   std::int64_t start_ns = 0;    ///< the front end took it up, in simulated time of the recording
@@ -75,8 +75,8 @@ struct WorkTraceInfo {
   std::int64_t frame_period_ns = 0;
   std::vector<Stage> stages;
   std::vector<std::string> facts;  ///< names of the numbers that each frame yields
-  std::vector<Memory> l2;         ///< what the workload keeps there
-  std::optional<Evaluation> ate;  ///< where ground truth exists; without its poses
+  std::vector<Memory> l2;          ///< what the workload keeps there
+  std::optional<Evaluation> ate;   ///< where ground truth exists; without its poses
   std::vector<std::pair<std::string, std::string>> inputs;  ///< name → SHA-256, for provenance
   std::vector<std::int64_t> stamps_ns;                      ///< of the camera, a frame each
 };
@@ -97,8 +97,8 @@ class WorkTrace {
   const WorkTraceInfo& info() const { return info_; }
   int frames() const { return static_cast<int>(info_.stamps_ns.size()); }
   const std::vector<std::string>& names() const { return names_; }
-  /// Whether it says what of the work was done in calls of kernels: those of version 1 do not.
-  bool has_kernels() const { return has_kernels_; }
+  /// Whether it says what of the work was done in offload regions: those of version 1 do not.
+  bool has_offload() const { return has_offload_; }
   std::size_t file_size() const { return bytes_.size(); }
   /// Memory that is allowed, and used by what is the same for all frames.
   const MemoryBudget& budget() const { return budget_; }
@@ -108,7 +108,7 @@ class WorkTrace {
     int first = 0;
     int frames = 0;
     Section section;
-    std::optional<Section> kernels;  ///< calls of kernels in the frames
+    std::optional<Section> offload;  ///< offload regions in the frames
   };
   const std::vector<Chunk>& chunks() const { return chunks_; }
   /// Which counter of work::Counts (operations, then classes of reuse) a field of the file is.
@@ -126,7 +126,7 @@ class WorkTrace {
   std::vector<std::string> names_;
   std::vector<std::size_t> fields_;
   std::vector<Chunk> chunks_;
-  bool has_kernels_ = false;
+  bool has_offload_ = false;
 };
 
 /// Makes a trace of frames that are given in order.

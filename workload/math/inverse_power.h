@@ -24,7 +24,7 @@ int smallest_eigenvector(ConstMatrixView<P> a, typename P::template Span<typenam
   using Span = typename P::template Span<F>;
   const typename P::Function function("smallest_eigenvector");
   const int n = a.rows();
-  const typename P::Kernel kernel(eigen_of_size(n), 1);
+  const typename P::OffloadRegion kernel(eigen_of_size(n), 1);
   const work::Arena::Frame frame(scratch);
   const MatrixView<P> lu = alloc_matrix<P>(scratch, "elimination", n, n);
   const Span b = scratch.alloc<Span>("right-hand side", n);

@@ -133,7 +133,7 @@ LEVIOSIM_HOST_INLINE int jacobi_eigen_classical(MatrixView<P> a, MatrixView<P> v
                                                 typename P::F32 tolerance,
                                                 DiagonalPrecision precision) {
   const typename P::Function function("jacobi_eigen_classical");
-  const typename P::Kernel kernel(eigen_of_size(a.rows()), 1);
+  const typename P::OffloadRegion kernel(eigen_of_size(a.rows()), 1);
   set_identity<P>(v);
   int rotations = 0;
   for (int step : P::range(0, max_rotations)) {

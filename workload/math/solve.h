@@ -75,7 +75,8 @@ bool solve_gauss(MatrixView<P> a, typename P::template Span<typename P::F32> b,
   using F = typename P::F32;
   const typename P::Function function("solve_gauss");
   const int n = a.rows();
-  const typename P::Kernel kernel(solve_of_size(n), factor_items(n, n) + substitution_items(n, n));
+  const typename P::OffloadRegion kernel(solve_of_size(n),
+                                         factor_items(n, n) + substitution_items(n, n));
   for (int k : P::range(0, n)) {
     const solve::Pivot<P> pivot = solve::find_pivot<P>(a, k);
     if (pivot.magnitude > smallest_pivot) {
@@ -106,7 +107,8 @@ bool solve_qr(MatrixView<P> a, typename P::template Span<typename P::F32> b,
   using F = typename P::F32;
   const typename P::Function function("solve_qr");
   const int m = a.rows(), n = a.cols();
-  const typename P::Kernel kernel(solve_of_size(n), factor_items(m, n) + substitution_items(m, n));
+  const typename P::OffloadRegion kernel(solve_of_size(n),
+                                         factor_items(m, n) + substitution_items(m, n));
   for (int k : P::range(0, n)) {
     F length2 = 0.0f;
     for (int r : P::range(k, m)) {
@@ -146,7 +148,7 @@ template <class P>
 bool cholesky_factor(MatrixView<P> a) {
   using F = typename P::F32;
   const typename P::Function function("cholesky_factor");
-  const typename P::Kernel kernel(solve_of_size(a.rows()), factor_items(a.rows(), a.rows()));
+  const typename P::OffloadRegion kernel(solve_of_size(a.rows()), factor_items(a.rows(), a.rows()));
   for (int i : P::range(0, a.rows())) {
     for (int j : P::range(0, i)) {
       F sum = a(i, j);
@@ -170,7 +172,7 @@ void cholesky_solve(ConstMatrixView<P> l, typename P::template Span<typename P::
   using F = typename P::F32;
   const typename P::Function function("cholesky_solve");
   const int n = l.rows();
-  const typename P::Kernel kernel(solve_of_size(n), substitution_items(n, n));
+  const typename P::OffloadRegion kernel(solve_of_size(n), substitution_items(n, n));
   for (int i : P::range(0, n)) {
     F sum = b[i];
     for (int k : P::range(0, i)) sum -= l(i, k) * b[k];

@@ -67,8 +67,8 @@ void detect_in_box(ConstImageView<P> image, const PixelBox<P>& box,
   using I = typename P::I32;
   const I fast_threshold = options.fast_threshold;
   const I harris_threshold = options.harris_threshold;
-  const typename P::Kernel kernel(
-      work::KernelKind::Corners,
+  const typename P::OffloadRegion kernel(
+      work::OffloadKind::Corners,
       (work::value(box.x1) - work::value(box.x0)) * (work::value(box.y1) - work::value(box.y0)));
   for (int y : P::range(box.y0, box.y1))
     for (int x : P::range(box.x0, box.x1)) {

@@ -54,8 +54,8 @@ typename P::I32 search(typename P::template Span<const typename P::U32> current,
                        const MatchList<P>& list) {
   using I = typename P::I32;
   const I limit = options.max_distance;
-  const typename P::Kernel kernel(work::KernelKind::Hamming,
-                                  (share.end - share.begin) * reference_count);
+  const typename P::OffloadRegion kernel(work::OffloadKind::Hamming,
+                                         (share.end - share.begin) * reference_count);
   I next = share.begin;
   for (int i : P::range(share.begin, share.end)) {
     const auto descriptor = current.subspan(kDescriptorWords * i, kDescriptorWords);

@@ -45,7 +45,7 @@ class BudgetReader {
   [[noreturn]] void unknown(const YamlEntry& entry, const std::string& path,
                             const std::vector<std::string>& known) const {
     place(entry, path)
-        .fail(fmt::format("unknown key{}; expected {}", platform::did_you_mean(entry.key, known),
+        .fail(fmt::format("unknown key{}; expected {}", base::did_you_mean(entry.key, known),
                           fmt::join(known, ", ")));
   }
   std::vector<YamlNode> items(const YamlEntry& entry, const std::string& path) const {

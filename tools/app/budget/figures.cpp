@@ -131,7 +131,7 @@ std::vector<FigureOf> figures_of_stages(const Limit& limit, const FigurePhrase& 
   if (found.empty())
     fail(limit, fmt::format("no stage '{}' with '{}' in {}; its stages are {}{}", limit.stage,
                             limit.figure, run.name, fmt::join(names, ", "),
-                            platform::did_you_mean(limit.stage, names)));
+                            base::did_you_mean(limit.stage, names)));
   return found;
 }
 
@@ -156,7 +156,7 @@ void check_figure(const Limit& limit) {
   if (limit.stage.empty() && is_statistic(limit.figure)) return;  // the run knows
   const std::vector<std::string> known = phrase_names(phrases_for(limit));
   fail(limit, fmt::format("unknown figure '{}'{}; expected {}{}", limit.figure,
-                          platform::did_you_mean(limit.figure, known), fmt::join(known, ", "),
+                          base::did_you_mean(limit.figure, known), fmt::join(known, ", "),
                           limit.stage.empty() ? ", or the name of a statistic" : ""));
 }
 
@@ -171,7 +171,7 @@ std::vector<FigureOf> figures_of(const Limit& limit, const RunRecord& run) {
   std::vector<std::string> names;
   for (const Statistic& s : run.statistics) names.push_back(s.name);
   fail(limit, fmt::format("{} has no statistic '{}'{}", run.name, pattern,
-                          platform::did_you_mean(pattern, names)));
+                          base::did_you_mean(pattern, names)));
 }
 
 bool is_percent_of_baseline(const Bound& bound) { return bound.relative && bound.unit == "%"; }
@@ -190,7 +190,7 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
   fail(limit, fmt::format(
                   "'{}': {}; expected {}{}", limit.text,
                   bound.unit.empty() ? "has no unit" : fmt::format("unknown unit '{}'", bound.unit),
-                  fmt::join(names, ", "), platform::did_you_mean(bound.unit, names)));
+                  fmt::join(names, ", "), base::did_you_mean(bound.unit, names)));
 }
 
 std::string figure_text(double value, std::string_view statistic_unit) {

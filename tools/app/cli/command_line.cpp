@@ -41,7 +41,7 @@ const std::string& first_fault(const Words& unknown) {
     throw InputError(fmt::format("{}unexpected argument '{}'", where, word));
   const std::string name = word.substr(0, word.find('='));
   throw InputError(
-      fmt::format("{}unknown option '{}'{}", where, name, platform::did_you_mean(name, options)));
+      fmt::format("{}unknown option '{}'{}", where, name, base::did_you_mean(name, options)));
 }
 
 /// CLI11 takes the next word for the value of "--out=", and an empty word for no value.
@@ -65,8 +65,7 @@ void refuse_empty_values(const Words& words) {
     throw InputError(fmt::format("expected a command: {}", fmt::join(names, ", ")));
   const std::string& word = unknown.front();
   if (word.rfind('-', 0) == 0) fail_unknown("", word, options_of(app));
-  throw InputError(
-      fmt::format("unknown command '{}'{}", word, platform::did_you_mean(word, names)));
+  throw InputError(fmt::format("unknown command '{}'{}", word, base::did_you_mean(word, names)));
 }
 
 }  // namespace
@@ -112,7 +111,7 @@ std::int64_t parse_whole(const std::string& option, const std::string& text, std
 
 double parse_positive(const std::string& option, const std::string& text) {
   double value = 0;
-  if (!traces::parse_number(text, value) || !(value > 0))
+  if (!base::parse_number(text, value) || !(value > 0))
     throw InputError(fmt::format("{} '{}': expected a number above 0", option, text));
   return value;
 }

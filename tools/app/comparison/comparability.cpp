@@ -65,7 +65,7 @@ Allowed parse_allowed(const std::string& text) {
     const std::string word = text.substr(begin, end - begin);
     if (std::find(known.begin(), known.end(), word) == known.end())
       throw InputError(fmt::format("--allow '{}': expected {}{}", word, fmt::join(known, ", "),
-                                   platform::did_you_mean(word, known)));
+                                   base::did_you_mean(word, known)));
     allowed.insert(word);
     begin = end + 1;
   }

@@ -302,7 +302,7 @@ ReportFormat parse_report_format(const std::string& name) {
     names.emplace_back(f.name);
   }
   throw InputError(fmt::format("--format '{}': expected {}{}", name, fmt::join(names, ", "),
-                               platform::did_you_mean(name, names)));
+                               base::did_you_mean(name, names)));
 }
 
 std::string work_line(const RunComparison& comparison) {

@@ -12,37 +12,37 @@
 namespace leviosim::tools {
 namespace {
 
-using sim::CycleBreakdown;
+using sim::UsefulCycles;
 
 /// As the file has it, so that a run and its folder tell the same.
 double rounded_part(double value) { return std::round(value * 1e3) / 1e3; }
 
 struct PricedMechanism {
   std::string_view key;
-  double CycleBreakdown::*of;
+  double UsefulCycles::*of;
 };
-constexpr std::array kPriced{PricedMechanism{"issue", &CycleBreakdown::issue},
-                             PricedMechanism{"load_use", &CycleBreakdown::load_use},
-                             PricedMechanism{"control", &CycleBreakdown::control},
-                             PricedMechanism{"memory", &CycleBreakdown::memory},
-                             PricedMechanism{"arithmetic", &CycleBreakdown::arithmetic},
-                             PricedMechanism{"fetch", &CycleBreakdown::fetch}};
+constexpr std::array kPriced{PricedMechanism{"issue", &UsefulCycles::issue},
+                             PricedMechanism{"load_use", &UsefulCycles::load_use},
+                             PricedMechanism{"control", &UsefulCycles::control},
+                             PricedMechanism{"memory", &UsefulCycles::memory},
+                             PricedMechanism{"arithmetic", &UsefulCycles::arithmetic},
+                             PricedMechanism{"fetch", &UsefulCycles::fetch}};
 
 /// Of a stage as a whole.
 struct TeamMechanism {
   std::string_view key;
-  double sim::Account::*of;
+  double sim::CycleBreakdown::*of;
 };
 constexpr std::array kOfTheTeam{
-    TeamMechanism{"fpu", &sim::Account::fpu},
-    TeamMechanism{"divider", &sim::Account::divider},
-    TeamMechanism{"banks", &sim::Account::banks},
-    TeamMechanism{"fetch_contention", &sim::Account::fetch},
-    TeamMechanism{"accelerator_contention", &sim::Account::accelerator},
-    TeamMechanism{"imbalance", &sim::Account::imbalance},
-    TeamMechanism{"synchronisation", &sim::Account::synchronisation},
-    TeamMechanism{"transfer", &sim::Account::transfer},
-    TeamMechanism{"rounding", &sim::Account::rounding},
+    TeamMechanism{"fpu", &sim::CycleBreakdown::fpu},
+    TeamMechanism{"divider", &sim::CycleBreakdown::divider},
+    TeamMechanism{"banks", &sim::CycleBreakdown::banks},
+    TeamMechanism{"fetch_contention", &sim::CycleBreakdown::fetch},
+    TeamMechanism{"accelerator_contention", &sim::CycleBreakdown::accelerator},
+    TeamMechanism{"imbalance", &sim::CycleBreakdown::imbalance},
+    TeamMechanism{"synchronisation", &sim::CycleBreakdown::synchronisation},
+    TeamMechanism{"transfer", &sim::CycleBreakdown::transfer},
+    TeamMechanism{"rounding", &sim::CycleBreakdown::rounding},
 };
 
 constexpr std::string_view kOther = "other";
@@ -81,22 +81,22 @@ class PartList {
   std::vector<CyclePart> parts_;
 };
 
-/// What one piece of work costs a lone core, operation by operation: the price of a piece is the
+/// What one work segment costs a lone core, operation by operation: the price of a segment is the
 /// sum of the prices of its operations.
-/// @param factor  core-cycles that go by in a cycle of the piece
+/// @param factor  core-cycles that go by in a cycle of the segment
 /// @returns its price in core-cycles
-double add_priced(PartList& list, std::string_view where, const work::Piece& piece,
+double add_priced(PartList& list, std::string_view where, const work::Segment& segment,
                   const sim::CoreConfig& core, const sim::Accelerators& accelerators,
                   const sim::CodeFetcher& code, double factor) {
   double total = 0;
-  const auto add = [&](std::string_view operation, const CycleBreakdown& price, double count) {
+  const auto add = [&](std::string_view operation, const UsefulCycles& price, double count) {
     total += price.total() * factor;
     for (const PricedMechanism& m : kPriced)
       if (price.*m.of != 0) list.add(where, m.key, operation, price.*m.of * factor, count);
     if (price.total() == 0) list.add(where, "issue", operation, 0, count);
   };
   const work::Counts left =
-      piece.kernels.empty() ? work::Counts(piece) : sim::left_to_core(piece, accelerators);
+      segment.offload.empty() ? work::Counts(segment) : sim::left_to_core(segment, accelerators);
   for (const work::OpInfo& op : work::kOps) {
     work::Counts one;
     one[op.op] = left[op.op];
@@ -106,10 +106,10 @@ double add_priced(PartList& list, std::string_view where, const work::Piece& pie
   fetched.code = left.code;
   const auto bytes = std::accumulate(left.code.begin(), left.code.end(), 0.0);
   if (bytes > 0) add("code", price(fetched, core, code).alone, bytes);
-  for (const work::KernelWork& calls : piece.kernels) {
+  for (const work::OffloadWork& calls : segment.offload) {
     if (accelerators[work::index(calls.kernel)].units == 0) continue;
     const sim::Service service = sim::service_of(calls, accelerators);
-    const std::string_view kernel = work::kKernels[work::index(calls.kernel)].name;
+    const std::string_view kernel = work::kOffloadKinds[work::index(calls.kernel)].name;
     const auto items = static_cast<double>(calls.items);
     list.add(where, "issue", kernel, service.instructions * factor, items);
     list.add(where, "accelerator", kernel, service.waiting * factor, items);
@@ -140,7 +140,7 @@ CycleParts::Stage& CycleParts::find(std::string_view name, bool on_controller) {
   return stages_.emplace_back(Stage{std::string(name), on_controller, 0, {}, {}});
 }
 
-work::Piece& CycleParts::place(Stage& stage, std::string_view name) {
+work::Segment& CycleParts::place(Stage& stage, std::string_view name) {
   const auto it = std::find_if(stage.places.begin(), stage.places.end(),
                                [&](const Place& p) { return p.name == name; });
   if (it != stage.places.end()) return it->work;
@@ -155,7 +155,7 @@ void CycleParts::add_steps(Stage& stage, const work::StageRun& run) {
     if (fork == nullptr) continue;
     // What the master does beside the workers is not in the account: they wait for it, or do not.
     const std::size_t shares = fork->shares.size() - (fork->master_takes_part ? 1 : 0);
-    work::Piece& sum = place(stage, fork->name);
+    work::Segment& sum = place(stage, fork->name);
     for (std::size_t i = 0; i < shares; ++i) sum += fork->shares[i];
   }
 }
@@ -164,7 +164,7 @@ void CycleParts::add(const work::Job& job, const sim::JobTiming& timing, bool on
   for (std::size_t i = 0; i < job.stages.size(); ++i) {
     Stage& stage = find(job.stages[i].stage, on_controller);
     stage.cycles += timing.stages[i].cycles.count();
-    stage.account += timing.stages[i].account;
+    stage.breakdown += timing.stages[i].breakdown;
     add_steps(stage, job.stages[i]);
   }
 }
@@ -195,8 +195,9 @@ std::vector<StageParts> CycleParts::stages() const {
         add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators,
                    worker_code_, 1);
     }
-    if (!stage.on_controller) list.add(kSerialPlace, "rounding", "", stage.account.serial - serial);
-    for (const TeamMechanism& m : kOfTheTeam) list.add("", m.key, "", stage.account.*m.of);
+    if (!stage.on_controller)
+      list.add(kSerialPlace, "rounding", "", stage.breakdown.serial - serial);
+    for (const TeamMechanism& m : kOfTheTeam) list.add("", m.key, "", stage.breakdown.*m.of);
     result.push_back(
         {stage.name, stage.on_controller, static_cast<double>(stage.cycles), list.take()});
   }
@@ -236,12 +237,12 @@ std::string cycles_csv(const std::vector<StageParts>& stages) {
 
 std::vector<StageParts> parse_cycles(const std::filesystem::path& file, std::string text) {
   enum { kStage, kRunsOn, kWhere, kMechanism, kOperation, kCycles, kCount };
-  traces::CsvReader reader(
-      file, traces::Separator::comma,
-      {"stage", "runs_on", "where", "mechanism", "operation", "cycles", "count"}, std::move(text));
+  base::CsvReader reader(file, base::Separator::comma,
+                         {"stage", "runs_on", "where", "mechanism", "operation", "cycles", "count"},
+                         std::move(text));
   std::vector<StageParts> stages;
   bool is_header = true;
-  while (const traces::CsvRow* row = reader.next()) {
+  while (const base::CsvRow* row = reader.next()) {
     if (std::exchange(is_header, false)) {
       if (row->text(kStage) != "stage") row->fail(kStage, "no title; expected stage");
       continue;

@@ -1,10 +1,10 @@
-// Where the cycles of each stage went on N cores, finer than the account of a stage: by what the
+// Where the cycles of each stage went on N cores, finer than the breakdown of a stage: by what the
 // cores did (a named fork, or the master alone), by mechanism and by kind of operation. The file
 // cycles.csv of a run folder holds it.
 //
 // Parts are core-cycles over the cores of the team, so that the parts of a stage add up to its
 // cycles. What is priced (instructions, stalls, fetched code, accelerators) is that of cost.h; what
-// the cores do to each other is the account's, and known for a whole stage only.
+// the cores do to each other is the breakdown's, and known for a whole stage only.
 //
 // Left out: named functions within a fork. Work is counted between two synchronisation points.
 #pragma once
@@ -86,18 +86,18 @@ class CycleParts : public RunObserver {
  private:
   struct Place {
     std::string name;
-    work::Piece work;
+    work::Segment work;
   };
   struct Stage {
     std::string name;
     bool on_controller = false;
     std::int64_t cycles = 0;
-    sim::Account account;
+    sim::CycleBreakdown breakdown;
     std::vector<Place> places;
   };
 
   Stage& find(std::string_view name, bool on_controller);
-  static work::Piece& place(Stage& stage, std::string_view name);
+  static work::Segment& place(Stage& stage, std::string_view name);
   void add(const work::Job& job, const sim::JobTiming& timing, bool on_controller);
   void add_steps(Stage& stage, const work::StageRun& run);
 

@@ -42,10 +42,10 @@ std::optional<Frames> read_frames(const std::filesystem::path& file, const std::
   const std::size_t parallel = column("parallel_cycles");
   const std::size_t single = column("single_cycles");
   if (std::max({latency, parallel, single}) >= titles.size()) return std::nullopt;
-  traces::CsvReader reader(file, traces::Separator::comma, titles, csv);
+  base::CsvReader reader(file, base::Separator::comma, titles, csv);
   reader.next();  // the titles
   Frames frames;
-  while (const traces::CsvRow* row = reader.next()) {
+  while (const base::CsvRow* row = reader.next()) {
     ++frames.arrived;
     if (row->text(latency).empty()) {
       ++frames.dropped;

@@ -112,7 +112,7 @@ std::int64_t parse_tolerance(const std::string& option, const std::string& text)
   double ns_per_unit = 1e6;
   if (!remove_suffix(number, "ms") && remove_suffix(number, "s")) ns_per_unit = 1e9;
   double value = 0;
-  if (!traces::parse_number(number, value) || value < 0 || value * ns_per_unit > kMostNs)
+  if (!base::parse_number(number, value) || value < 0 || value * ns_per_unit > kMostNs)
     throw InputError(fmt::format("{} '{}': expected a time such as 10ms or 0.01s, at most an hour",
                                  option, text));
   return std::llround(value * ns_per_unit);

@@ -72,8 +72,8 @@ Picture picture_of(const traces::TrajectoryPair& pair, const Evaluation& evaluat
 }
 
 /// Calls `draw(first, last)` for each run of poses without a gap whose steps have one kind.
-void for_each_piece(const Picture& picture, const std::function<int(std::size_t)>& kind_of_step,
-                    const std::function<void(std::size_t, std::size_t)>& draw) {
+void for_each_segment(const Picture& picture, const std::function<int(std::size_t)>& kind_of_step,
+                      const std::function<void(std::size_t, std::size_t)>& draw) {
   const std::vector<MatchedPose>& poses = picture.evaluation.poses;
   const auto gap = [&](std::size_t i) {
     return poses[i].t_ns - poses[i - 1].t_ns > picture.longest_step_ns;
@@ -117,7 +117,7 @@ void draw_paths(Svg& svg, const Axes& axes, const Picture& picture, int vertical
   const auto colour_of_step = [&](std::size_t i) {
     return plot::colour_index(std::max(picture.translation[i - 1], picture.translation[i]), worst);
   };
-  for_each_piece(picture, colour_of_step, [&](std::size_t first, std::size_t last) {
+  for_each_segment(picture, colour_of_step, [&](std::size_t first, std::size_t last) {
     std::vector<Point> points;
     for (std::size_t i = first; i <= last; ++i) points.push_back(at(poses[i].estimate));
     const std::string colour = plot::colour(colour_of_step(std::max<std::size_t>(last, 1)));
@@ -164,7 +164,7 @@ void draw_errors(Svg& svg, const Box& box, const Picture& picture,
   svg.begin_clip(box);
   const double y = axes.at(0, rmse).y;
   svg.line({box.x, y}, {box.right(), y}, {"#be202e", 1.2, "6 4"});
-  for_each_piece(
+  for_each_segment(
       picture, [](std::size_t) { return 0; },
       [&](std::size_t first, std::size_t last) {
         std::vector<Point> points;

@@ -102,7 +102,7 @@ std::string flow_report(const FlowRun& flow) {
   const RunResult timed = at_rate(flow.run, rate_of(flow));
   std::string text;
   for (const std::string& lines :
-       {stage_table(timed), account_table(timed), frame_rate_table(flow), memory_table(timed),
+       {stage_table(timed), breakdown_table(timed), frame_rate_table(flow), memory_table(timed),
         energy_table(timed), power_table(timed), published_table(flow), flow_summary(flow)})
     if (!lines.empty()) text += lines + '\n';
   return text + host_line(flow.run);

@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kReferences = "px4flow";
 constexpr std::array<std::string_view, 3> kNames = {"frames per second", "speed-up", "power"};
 
-FlowFigure figure_named(const traces::CsvRow& row) {
+FlowFigure figure_named(const base::CsvRow& row) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (row.text(1) == kNames[i]) return static_cast<FlowFigure>(i);
   row.fail(1, "unknown: expected 'frames per second', 'speed-up' or 'power'");
@@ -42,11 +42,10 @@ std::string_view name_of(FlowFigure figure) { return kNames[static_cast<std::siz
 std::vector<PublishedFlow> published_flow() {
   const std::vector<std::string> columns = {"platform", "figure", "cores", "clock_mhz",
                                             "rate",     "value",  "unit",  "source"};
-  traces::CsvReader reader(fmt::format("tests/validation/{}.csv", kReferences),
-                           traces::Separator::comma, columns,
-                           std::string(reference_text(kReferences)));
+  base::CsvReader reader(fmt::format("tests/validation/{}.csv", kReferences),
+                         base::Separator::comma, columns, std::string(reference_text(kReferences)));
   std::vector<PublishedFlow> all;
-  while (const traces::CsvRow* row = reader.next()) {
+  while (const base::CsvRow* row = reader.next()) {
     if (row->text(0) == columns[0]) continue;  // the header
     PublishedFlow published;
     published.platform = row->text(0);

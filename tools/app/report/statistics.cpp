@@ -43,18 +43,19 @@ void add_cycles(StatisticList& list, const std::string& path, const RunResult& r
            parallel ? Json(milliseconds(*parallel, clock)) : Json(nullptr));
 }
 
-void add_account(StatisticList& list, const std::string& path, const RunResult& run,
-                 const StageResult& stage) {
-  list.add(path + "account.total", "core-cycles", "of the team on N cores", stage.account.total());
-  for (const AccountPart& part : account_parts(run))
-    list.add(fmt::format("{}account.{}", path, part.key), "core-cycles", part.description,
-             part.of(stage.account));
+void add_breakdown(StatisticList& list, const std::string& path, const RunResult& run,
+                   const StageResult& stage) {
+  list.add(path + "breakdown.total", "core-cycles", "of the team on N cores",
+           stage.breakdown.total());
+  for (const BreakdownPart& part : breakdown_parts(run))
+    list.add(fmt::format("{}breakdown.{}", path, part.key), "core-cycles", part.description,
+             part.of(stage.breakdown));
 }
 
 /// Of chips with accelerators only.
 void add_served(StatisticList& list, const std::string& path, const StageResult& stage) {
-  for (const work::KernelWork& calls : stage.served) {
-    const work::KernelInfo& info = work::kKernels[work::index(calls.kernel)];
+  for (const work::OffloadWork& calls : stage.served) {
+    const work::OffloadKindInfo& info = work::kOffloadKinds[work::index(calls.kernel)];
     const std::string kernel = fmt::format("{}served.{}.", path, info.name);
     list.add(kernel + "calls", "1",
              fmt::format("calls that an accelerator served: {}", info.description), calls.calls);
@@ -88,7 +89,7 @@ void add_stage(StatisticList& list, const RunResult& run, const StageResult& sta
   list.add(path + "runs_on", "text", "cluster or fabric controller",
            stage.on_controller ? "controller" : "cluster");
   add_cycles(list, path, run, stage);
-  add_account(list, path, run, stage);
+  add_breakdown(list, path, run, stage);
   add_served(list, path, stage);
   for (const work::OpInfo& op : work::kOps)
     list.add(fmt::format("{}ops.{}", path, op.name), "1", op.description, stage.counts[op.op]);

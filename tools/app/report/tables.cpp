@@ -32,8 +32,8 @@ std::string milliseconds_text(std::optional<double> cycles, Hertz clock) {
   return figure_text(cycles ? std::optional(milliseconds(*cycles, clock)) : std::nullopt, 3);
 }
 
-/// Columns of the table of accounts, in its order.
-constexpr std::array<std::string_view, 11> kAccountColumns{
+/// Columns of the table of breakdowns, in its order.
+constexpr std::array<std::string_view, 11> kBreakdownColumns{
     "useful", "served",    "queue", "I-cache",  "FPU",   "divider",
     "banks",  "imbalance", "sync",  "transfer", "serial"};
 /// Those that are small on most chips, so that they go first where the width is short.
@@ -45,31 +45,31 @@ int rank_of(std::string_view column) {
 }
 
 /// What stands in a column, summed up. Absent for a column that no part belongs to.
-std::optional<double> sum_of(std::string_view column, const std::vector<AccountPart>& parts,
-                             const sim::Account& account) {
+std::optional<double> sum_of(std::string_view column, const std::vector<BreakdownPart>& parts,
+                             const sim::CycleBreakdown& breakdown) {
   std::optional<double> sum;
-  for (const AccountPart& part : parts)
-    if (part.column == column) sum = sum.value_or(0) + part.of(account);
+  for (const BreakdownPart& part : parts)
+    if (part.column == column) sum = sum.value_or(0) + part.of(breakdown);
   return sum;
 }
 
 /// Those that there are on the cluster.
-std::vector<AccountPart> cluster_parts(const RunResult& run) {
-  std::vector<AccountPart> parts(kAccountParts.begin(), kAccountParts.end());
+std::vector<BreakdownPart> cluster_parts(const RunResult& run) {
+  std::vector<BreakdownPart> parts(kBreakdownParts.begin(), kBreakdownParts.end());
   if (run.timed && sim::has_accelerators(run.chip.cluster.accelerators))
     parts.insert(parts.end(), kAcceleratorParts.begin(), kAcceleratorParts.end());
   return parts;
 }
 
-std::vector<std::string> account_cells(const std::vector<AccountPart>& parts,
-                                       const sim::Account& account) {
+std::vector<std::string> breakdown_cells(const std::vector<BreakdownPart>& parts,
+                                         const sim::CycleBreakdown& breakdown) {
   std::vector<double> sums;
-  for (const std::string_view column : kAccountColumns)
-    if (const auto sum = sum_of(column, parts, account)) sums.push_back(*sum);
-  if (!(account.total() > 0)) return std::vector<std::string>(sums.size() + 1, kNothing);
+  for (const std::string_view column : kBreakdownColumns)
+    if (const auto sum = sum_of(column, parts, breakdown)) sums.push_back(*sum);
+  if (!(breakdown.total() > 0)) return std::vector<std::string>(sums.size() + 1, kNothing);
   std::vector<std::string> cells;
   for (const double percent : tenths_of_percent(sums)) cells.push_back(figure_text(percent, 1));
-  cells.push_back(figure_text(account.total() * 1e-6, 1));
+  cells.push_back(figure_text(breakdown.total() * 1e-6, 1));
   return cells;
 }
 
@@ -183,17 +183,17 @@ std::string stage_table(const RunResult& run, int width) {
          (any_on_controller ? "¹ on the fabric controller, which is one core\n" : "");
 }
 
-std::string account_table(const RunResult& run, int width) {
+std::string breakdown_table(const RunResult& run, int width) {
   std::vector<TextTable::Column> columns{{"stage", kLeft}};
-  const std::vector<AccountPart> parts = cluster_parts(run);
-  for (const std::string_view column : kAccountColumns)
+  const std::vector<BreakdownPart> parts = cluster_parts(run);
+  for (const std::string_view column : kBreakdownColumns)
     if (sum_of(column, parts, {}))
       columns.push_back({std::string(column), kRight, rank_of(column)});
   columns.push_back({"core-Mcycles", kRight, 2});
   TextTable table(std::move(columns));
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;
-    std::vector<std::string> cells = account_cells(parts, stage.account);
+    std::vector<std::string> cells = breakdown_cells(parts, stage.breakdown);
     cells.insert(cells.begin(), stage.name);
     table.add(std::move(cells));
   }
@@ -235,7 +235,7 @@ struct NamedTable {
 /// In the order in which they are printed.
 constexpr std::array kTables{
     NamedTable{"stages", true, stage_table},
-    NamedTable{"breakdown", true, account_table},
+    NamedTable{"breakdown", true, breakdown_table},
     NamedTable{"latency", true, latency_table},
     NamedTable{"camera", true, [](const RunResult& run, int) { return camera_summary(run); }},
     NamedTable{"memory", true, memory_table},

@@ -22,7 +22,7 @@ TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>&
 
 /// Where the core-cycles of the team went in the stages of the cluster, in per cent. Each row adds
 /// up to 100.0 as printed.
-std::string account_table(const RunResult& run, int width = kAnyWidth);
+std::string breakdown_table(const RunResult& run, int width = kAnyWidth);
 
 /// Peaks in L1 and L2, and the blocks that were alive at them.
 std::string memory_table(const RunResult& run, int width = kAnyWidth);

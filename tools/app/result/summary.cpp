@@ -127,8 +127,8 @@ Waiting frames_that_waited(const RunResult& run) {
   return waiting;
 }
 
-std::vector<AccountPart> account_parts(const RunResult& run) {
-  std::vector<AccountPart> parts(kAccountParts.begin(), kAccountParts.end());
+std::vector<BreakdownPart> breakdown_parts(const RunResult& run) {
+  std::vector<BreakdownPart> parts(kBreakdownParts.begin(), kBreakdownParts.end());
   if (run.timed && sim::has_accelerators(run.chip.cluster.accelerators))
     parts.insert(parts.end(), kAcceleratorParts.begin(), kAcceleratorParts.end());
   else if (run.timed && sim::has_accelerators(run.chip.controller.accelerators))

@@ -23,8 +23,8 @@ std::vector<std::int64_t> stamps_of(const Feed& feed) {
 /// Room for a native run at any resolution; untouched pages cost nothing.
 constexpr Bytes kUnlimited{std::int64_t{1} << 30};
 
-/// Only an accelerator, of this chip or of one that replays the run, asks for calls of kernels.
-bool follows_kernels(const RunRequest& request) {
+/// Only an accelerator, of this chip or of one that replays the run, asks for offload regions.
+bool follows_offload(const RunRequest& request) {
   return request.recording || sim::has_accelerators(request.platform.config);
 }
 
@@ -34,7 +34,7 @@ work::MachineConfig cluster_machine(const RunRequest& request, const vio::Profil
           .capacity = request.native ? kUnlimited : request.platform.config.cluster.l1.size,
           .alignment = profile.l1_alignment,
           .record = !request.native,
-          .kernels = follows_kernels(request),
+          .offload = follows_offload(request),
           .code = &platform::compiled_code()};
 }
 
@@ -46,7 +46,7 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .capacity = request.native ? kUnlimited : l2,
           .alignment = 4,
           .record = !request.native,
-          .kernels = follows_kernels(request),
+          .offload = follows_offload(request),
           .code = &platform::compiled_code()};
 }
 

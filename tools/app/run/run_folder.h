@@ -4,7 +4,7 @@
 //   manifest.json    what the run was made from (manifest.h)
 //   platform.yaml    the resolved platform, overrides included; loads as a platform file
 //   stats.json       every statistic with name, unit and description (statistics.h)
-//   stages.csv       a row per stage: calls, cycles, account, operations
+//   stages.csv       a row per stage: calls, cycles, breakdown, operations
 //   frames.csv       a row per frame
 //   memory.csv       a row per peak, and per block alive at it
 //   energy.csv       a row per stage, quantity and domain of the chip, with its band

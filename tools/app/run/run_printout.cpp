@@ -32,7 +32,7 @@ std::vector<std::string> parse_tables(const std::string& text) {
     if (std::find(valid.begin(), valid.end(), name) == valid.end())
       throw InputError(
           fmt::format("--tables '{}': there is no table '{}'; expected all, or some of {}{}", text,
-                      name, fmt::join(valid, ","), platform::did_you_mean(name, valid)));
+                      name, fmt::join(valid, ","), base::did_you_mean(name, valid)));
   return names;
 }
 

@@ -31,8 +31,8 @@ std::vector<const vio::FrameFact*> known_facts(const traces::WorkTraceInfo& info
 
 }  // namespace
 
-TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool kernels)
-    : trace_(trace), l1_(l1), l2_(l2), reader_(trace, kernels), facts_(known_facts(trace.info())) {}
+TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool offload)
+    : trace_(trace), l1_(l1), l2_(l2), reader_(trace, offload), facts_(known_facts(trace.info())) {}
 
 bool TraceSource::begin_frame(const soc::FrameStart& start) {
   for (; number_ < start.frame; ++number_)

@@ -36,8 +36,8 @@ class TraceSource : public RunSource {
  public:
   /// @param trace  outlives the source and all names in what it gives
   /// @param l1,l2    sizes of the memories that the work has to fit in
-  /// @param kernels  whether calls of kernels are needed: by chips with accelerators
-  TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool kernels = false);
+  /// @param offload  whether offload regions are needed: by chips with accelerators
+  TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool offload = false);
 
   int frames() const override { return trace_.frames(); }
   std::int64_t time_ns(int frame) const override {

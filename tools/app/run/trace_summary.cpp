@@ -16,7 +16,7 @@ namespace {
 /// All executions of one stage.
 struct StageSum {
   std::int64_t calls = 0;
-  std::int64_t pieces = 0;
+  std::int64_t segments = 0;
   std::int64_t forks = 0;
   work::Counts counts;
   work::Transferred transfers;
@@ -33,7 +33,7 @@ double operations(const work::Counts& counts) {
 class Contents {
  public:
   explicit Contents(const traces::WorkTrace& trace) {
-    traces::WorkFrames reader(trace, trace.has_kernels());
+    traces::WorkFrames reader(trace, trace.has_offload());
     for (traces::WorkFrame frame; reader.next(frame);) {
       keyframes += frame.keyframe;
       optimised += frame.optimised;
@@ -52,7 +52,7 @@ class Contents {
   StageSum all() const {
     StageSum sum;
     for (const auto& [name, stage] : stages_) {
-      sum.pieces += stage.pieces;
+      sum.segments += stage.segments;
       sum.forks += stage.forks;
       sum.counts += stage.counts;
     }
@@ -63,24 +63,24 @@ class Contents {
   std::int64_t optimised = 0;
   std::int64_t iterations = 0;
   std::int64_t busy = 0;
-  work::Piece kernels;  ///< calls of them
+  work::Segment offload;  ///< calls of them
 
  private:
   void add(const work::Job& job) {
     for (const work::StageRun& run : job.stages) {
       StageSum& sum = stages_[std::string(run.stage)];
       ++sum.calls;
-      work::Piece piece = work::pieces_of(run);
-      sum.counts += piece;
-      kernels += work::Piece({}, std::move(piece.kernels));
+      work::Segment segment = work::segments_of(run);
+      sum.counts += segment;
+      offload += work::Segment({}, std::move(segment.offload));
       sum.transfers += work::transferred_by(run);
       sum.peak = std::max(sum.peak, run.memory.parallel);
       for (const work::Step& step : run.steps) {
-        if (std::holds_alternative<work::Serial>(step)) ++sum.pieces;
+        if (std::holds_alternative<work::Serial>(step)) ++sum.segments;
         const auto* fork = std::get_if<work::Fork>(&step);
         if (fork == nullptr) continue;
         ++sum.forks;
-        sum.pieces += static_cast<std::int64_t>(fork->shares.size());
+        sum.segments += static_cast<std::int64_t>(fork->shares.size());
       }
     }
   }
@@ -94,7 +94,7 @@ std::string stage_table(const traces::WorkTrace& trace, const Contents& contents
                    {"call", kLeft},
                    {"calls"},
                    {"forks"},
-                   {"pieces of work"},
+                   {"work segments"},
                    {"million operations"},
                    {"transfers"},
                    {"kB moved"},
@@ -102,7 +102,8 @@ std::string stage_table(const traces::WorkTrace& trace, const Contents& contents
   for (const traces::WorkTraceInfo::Stage& stage : trace.info().stages) {
     const StageSum& sum = contents.of(stage.name);
     table.add({stage.name, stage.unit, fmt::format("{}", sum.calls), fmt::format("{}", sum.forks),
-               fmt::format("{}", sum.pieces), fmt::format("{:.1f}", operations(sum.counts) * 1e-6),
+               fmt::format("{}", sum.segments),
+               fmt::format("{:.1f}", operations(sum.counts) * 1e-6),
                fmt::format("{}", sum.transfers.transfers),
                fmt::format("{:.1f}", static_cast<double>(sum.transfers.bytes.count()) * 1e-3),
                fmt::format("{}", sum.peak.count())});
@@ -112,14 +113,14 @@ std::string stage_table(const traces::WorkTrace& trace, const Contents& contents
 
 /// What an accelerator might serve.
 std::string kernel_line(const traces::WorkTrace& trace, const Contents& contents) {
-  if (!trace.has_kernels()) return "calls of kernels are not in it: version 1\n";
+  if (!trace.has_offload()) return "offload regions are not in it: version 1\n";
   std::string text;
-  for (const work::KernelWork& calls : contents.kernels.kernels)
+  for (const work::OffloadWork& calls : contents.offload.offload)
     text += fmt::format(
-        "{}{} {} ({} %)", text.empty() ? "" : ", ", work::kKernels[work::index(calls.kernel)].name,
-        calls.calls,
+        "{}{} {} ({} %)", text.empty() ? "" : ", ",
+        work::kOffloadKinds[work::index(calls.kernel)].name, calls.calls,
         std::llround(100 * operations(calls.counts) / operations(contents.all().counts)));
-  return fmt::format("calls of kernels (share of operations): {}\n", text.empty() ? "none" : text);
+  return fmt::format("offload regions (share of operations): {}\n", text.empty() ? "none" : text);
 }
 
 }  // namespace
@@ -135,14 +136,14 @@ std::string trace_summary(const traces::WorkTrace& trace) {
              "recorded on {}, work divided among {} cores\n"
              "workload {}, seed {}, over {}, {} frames from {} on, {}x{}\n"
              "keyframes {}, optimisations {} with {} iterations, optimiser busy at {} frames\n"
-             "{:.1f} kB, {:.2f} kB per frame; {:.0f} pieces of work per frame, {:.2f} bytes "
+             "{:.1f} kB, {:.2f} kB per frame; {:.0f} work segments per frame, {:.2f} bytes "
              "each\n\n",
              printable(trace.name()), printable(info.program), printable(info.platform), info.cores,
              printable(info.profile), info.seed, printable(info.data), trace.frames(),
              info.first_frame, info.image_width, info.image_height, contents.keyframes,
              contents.optimised, contents.iterations, contents.busy, size * 1e-3,
-             size * 1e-3 / frames, static_cast<double>(all.pieces) / frames,
-             size / static_cast<double>(std::max(all.pieces, std::int64_t{1}))) +
+             size * 1e-3 / frames, static_cast<double>(all.segments) / frames,
+             size / static_cast<double>(std::max(all.segments, std::int64_t{1}))) +
          stage_table(trace, contents) + kernel_line(trace, contents);
 }
 

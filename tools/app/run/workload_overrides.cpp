@@ -51,7 +51,7 @@ const Parameter& workload_parameter(const std::string& where, const std::string&
   const Parameter* const parameter = vio::find_parameter(name);
   if (parameter == nullptr)
     throw InputError(fmt::format("{}: the workload has no parameter '{}'{}", where, name,
-                                 platform::did_you_mean(name, names())));
+                                 base::did_you_mean(name, names())));
   return *parameter;
 }
 

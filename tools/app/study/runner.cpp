@@ -81,7 +81,7 @@ void run_all(std::size_t points, const RunnerOptions& options,
   ProgressLine line(options.progress);
   std::mutex mutex;
   Tally tally{.total = points};
-  traces::parallel_for(points, options.threads, [&](std::size_t point) {
+  base::parallel_for(points, options.threads, [&](std::size_t point) {
     compute(point);
     const std::lock_guard<std::mutex> lock(mutex);
     ++tally.computed;
@@ -95,7 +95,7 @@ Tally run_points(const PointBatch& batch, const RunnerOptions& options) {
   ProgressLine line(options.progress);
   std::mutex mutex;
   Tally tally{.total = batch.before + batch.keys.size(), .before = batch.before};
-  traces::parallel_for(chains.firsts.size(), options.threads, [&](std::size_t chain) {
+  base::parallel_for(chains.firsts.size(), options.threads, [&](std::size_t chain) {
     const std::size_t first = chains.firsts[chain];
     std::optional<Outcome> outcome = cache.find(batch.keys[first]);
     std::size_t& count = outcome ? tally.found : tally.computed;

@@ -52,7 +52,7 @@ class Row {
   std::string_view cell(std::size_t column) const { return cells_[column]; }
   double number(std::string_view text, std::string_view what) const {
     double value = 0;
-    if (!traces::parse_number(text, value))
+    if (!base::parse_number(text, value))
       fail(fmt::format("{} '{}': expected a number", what, text));
     return value;
   }

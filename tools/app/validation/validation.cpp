@@ -57,7 +57,7 @@ Value find(const std::vector<Quantity>& quantities, const Reference& reference) 
     return quantity.value;
   }
   throw InputError(fmt::format("reference '{}': a run has no such quantity{}", reference.name,
-                               platform::did_you_mean(reference.name, names)));
+                               base::did_you_mean(reference.name, names)));
 }
 
 std::string cell(Value value) { return value ? fmt::format("{:.6g}", *value) : std::string(); }

@@ -25,13 +25,13 @@ enum Column : std::size_t {
   kSource
 };
 
-Figure figure_in(const traces::CsvRow& row, Column column) {
+Figure figure_in(const base::CsvRow& row, Column column) {
   if (row.text(column) == "ate") return Figure::ate;
   if (row.text(column) == "relative") return Figure::relative;
   row.fail(column, "no figure; expected ate or relative");
 }
 
-PaperAccuracy accuracy_from(const traces::CsvRow& row) {
+PaperAccuracy accuracy_from(const base::CsvRow& row) {
   PaperAccuracy entry{std::string(row.text(kSequence)),
                       std::string(row.text(kProfile)),
                       {static_cast<int>(row.number(kWidth)), static_cast<int>(row.number(kHeight))},
@@ -57,12 +57,12 @@ std::vector<PaperAccuracy> parse_paper_accuracy(const std::string& file, std::st
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
   }
-  traces::CsvReader reader(file, traces::Separator::comma, names, std::string(text));
-  const traces::CsvRow* header = reader.next();
+  base::CsvReader reader(file, base::Separator::comma, names, std::string(text));
+  const base::CsvRow* header = reader.next();
   for (std::size_t i = 0; header != nullptr && i < names.size(); ++i)
     if (header->text(i) != names[i]) header->fail(fmt::format("expected the header {}", kHeader));
   std::vector<PaperAccuracy> entries;
-  while (const traces::CsvRow* row = reader.next()) entries.push_back(accuracy_from(*row));
+  while (const base::CsvRow* row = reader.next()) entries.push_back(accuracy_from(*row));
   return entries;
 }
 

@@ -18,7 +18,7 @@ using vio::Parameter;
 /// To three digits, so that a point can be typed again exactly.
 double to_three_digits(double value) {
   double rounded = value;
-  check(traces::parse_number(fmt::format("{:.3g}", value), rounded), "a formatted number");
+  check(base::parse_number(fmt::format("{:.3g}", value), rounded), "a formatted number");
   return rounded;
 }
 

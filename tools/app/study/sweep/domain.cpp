@@ -62,7 +62,7 @@ class RangeReader {
     const std::vector<std::string> known{"from", "to", "step", "scale"};
     for (const YamlEntry& entry : entries)
       if (std::find(known.begin(), known.end(), entry.key) == known.end())
-        place(entry).fail("unknown key" + platform::did_you_mean(entry.key, known) +
+        place(entry).fail("unknown key" + base::did_you_mean(entry.key, known) +
                           "; a range has from, to, and step or scale");
   }
   SweepNumber number(const std::vector<YamlEntry>& entries, const char* name, const Place& at) {

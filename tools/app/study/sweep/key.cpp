@@ -106,7 +106,7 @@ SweepKey find_key(const std::string& name, const platform::Schema& schema,
     if (path == platform::kBasePath) return {Kind::instruction_set, name, path};
     if (schema.find(path) != platform::Schema::kNone) return {Kind::chip, name, path};
   }
-  place.fail("unknown key" + platform::did_you_mean(name, all_names(schema)));
+  place.fail("unknown key" + base::did_you_mean(name, all_names(schema)));
 }
 
 std::string SweepNumber::text() const { return platform::number_text(value) + unit; }

@@ -75,8 +75,8 @@ class PlanReader {
     for (const YamlEntry& entry : all)
       if (std::find(known.begin(), known.end(), entry.key) == known.end())
         place(entry, path)
-            .fail(fmt::format("unknown key{}; expected {}",
-                              platform::did_you_mean(entry.key, known), fmt::join(known, ", ")));
+            .fail(fmt::format("unknown key{}; expected {}", base::did_you_mean(entry.key, known),
+                              fmt::join(known, ", ")));
   }
 
   void read_impossible(const YamlEntry* entry) {

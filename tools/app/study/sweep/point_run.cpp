@@ -15,7 +15,7 @@ namespace {
 
 /// Parts of names of statistics that a sweep leaves to run folders: a thousand figures per point
 /// that add up to others.
-constexpr std::array kLeftOut{".ops.", ".code.", ".account.", ".block.", ".domain."};
+constexpr std::array kLeftOut{".ops.", ".code.", ".breakdown.", ".block.", ".domain."};
 
 bool is_kept(const std::string& name) {
   return std::none_of(kLeftOut.begin(), kLeftOut.end(),

@@ -41,7 +41,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 Hertz parse_megahertz(const std::string& text) {
   constexpr double kMost = 1e5;  // beyond any clock, and small enough to be a whole number of hertz
   double value = 0;
-  if (!traces::parse_number(text, value) || !(value > 0) || value > kMost)
+  if (!base::parse_number(text, value) || !(value > 0) || value > kMost)
     refuse("--clock", text, "a clock in MHz above 0, such as 240, or a range 100:370:10");
   return Hertz(std::llround(value * kMega));
 }
@@ -70,7 +70,7 @@ void sort_and_refuse_repetitions(const std::string& option, const std::string& t
 
 double parse_miss_rate(const std::string& text) {
   double value = 0;
-  if (!traces::parse_number(text, value) || !(value >= 0) || value > 1)
+  if (!base::parse_number(text, value) || !(value >= 0) || value > 1)
     refuse("--miss-rate", text, "a share of the frames from 0 to 1, such as 0.05 for 5 %");
   return value;
 }

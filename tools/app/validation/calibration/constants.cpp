@@ -26,9 +26,9 @@ void check_fittable(const std::string& option, const std::string& path) {
   std::vector<std::string> known;
   for (const FittableConstant& constant : kFittableConstants) known.emplace_back(constant.path);
   if (std::find(known.begin(), known.end(), path) != known.end()) return;
-  throw InputError(fmt::format(
-      "{} '{}': is no constant that may be fitted{}; expected up to {} of {}", option, path,
-      platform::did_you_mean(path, known), kMostConstants, fmt::join(known, ", ")));
+  throw InputError(
+      fmt::format("{} '{}': is no constant that may be fitted{}; expected up to {} of {}", option,
+                  path, base::did_you_mean(path, known), kMostConstants, fmt::join(known, ", ")));
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ const std::vector<std::string> kColumns = {"group",     "name",           "cores
 }  // namespace
 
 std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string text, int tier) {
-  traces::CsvReader reader(file, traces::Separator::comma, kColumns, std::move(text));
+  base::CsvReader reader(file, base::Separator::comma, kColumns, std::move(text));
   std::vector<MicrobenchRow> rows;
-  while (const traces::CsvRow* row = reader.next()) {
+  while (const base::CsvRow* row = reader.next()) {
     if (row->text(0) == kColumns[0]) continue;  // the header
     MicrobenchRow r;
     r.group = row->text(0);

@@ -71,7 +71,7 @@ double loads_in_step_beside_dma(const sim::ChipConfig& chip, int cores) {
     machine.wait(more);
     machine.wait(last);
   });
-  return 1 + timing.account.banks / (static_cast<double>(cores) * kLoads);
+  return 1 + timing.breakdown.banks / (static_cast<double>(cores) * kLoads);
 }
 
 template <int Bytes>
@@ -119,7 +119,7 @@ double code_loop(const sim::ChipConfig& chip, int cores) {
     const auto walk = [&](work::Core&) {
       for (int round = 0; round < rounds; ++round)
         for (int part = 0; part < Bytes / kPart; ++part) {
-          const work::Counting::Code piece{work::CodeName(std::to_string(part))};
+          const work::Counting::Code segment{work::CodeName(std::to_string(part))};
           I32 x(1);
           for (int i = 0; i < kPart / 4; ++i) x = x & x;
         }
@@ -136,7 +136,7 @@ double barrier(const sim::ChipConfig& chip, int cores) {
     for (int i = 0; i < 100 * core.id; ++i) x = x & x;
   });
   const sim::EventUnitConfig& events = chip.cluster.events;
-  return timing.account.synchronisation / cores - events.fork_master - events.fork_worker;
+  return timing.breakdown.synchronisation / cores - events.fork_master - events.fork_worker;
 }
 
 double empty_fork(const sim::ChipConfig& chip, int cores) {

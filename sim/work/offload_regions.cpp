@@ -1,4 +1,4 @@
-#include "sim/work/kernel_calls.h"
+#include "sim/work/offload_regions.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,48 +9,48 @@ namespace leviosim::work {
 namespace {
 
 /// Of one host thread, as the tally is.
-struct KernelTally {
+struct OffloadTally {
   struct Sum {
     std::uint64_t calls = 0;
     std::uint64_t items = 0;
     RawCounts counts{};
   };
-  std::array<Sum, kKernelCount> sums{};
+  std::array<Sum, kOffloadKindCount> sums{};
   RawCounts at_begin{};  ///< the tally when the present call began
-  KernelKind present{};
+  OffloadKind present{};
   int depth = 0;  ///< of marks within marks
   bool any = false;
 };
-constinit thread_local KernelTally kernel_tally{};
+constinit thread_local OffloadTally offload_tally{};
 
 }  // namespace
 
-void begin_kernel(KernelKind kind, std::uint64_t items) {
-  KernelTally& t = kernel_tally;
+void begin_offload(OffloadKind kind, std::uint64_t items) {
+  OffloadTally& t = offload_tally;
   if (t.depth++ > 0) return;
   t.present = kind;
   t.any = true;
-  KernelTally::Sum& sum = t.sums[index(kind)];
+  OffloadTally::Sum& sum = t.sums[index(kind)];
   ++sum.calls;
   sum.items += items;
   t.at_begin = {tally.n, branches_not_taken_after_all};
 }
 
-void end_kernel() {
-  KernelTally& t = kernel_tally;
+void end_offload() {
+  OffloadTally& t = offload_tally;
   if (--t.depth > 0) return;
   RawCounts& sum = t.sums[index(t.present)].counts;
   for (std::size_t i = 0; i < kOpCount; ++i) sum.n[i] += tally.n[i] - t.at_begin.n[i];
   sum.not_taken_after_all += branches_not_taken_after_all - t.at_begin.not_taken_after_all;
 }
 
-std::vector<KernelWork> take_kernels() {
-  KernelTally& t = kernel_tally;
+std::vector<OffloadWork> take_offload() {
+  OffloadTally& t = offload_tally;
   if (!t.any) return {};
-  check_equal(t.depth, 0, "calls of kernels that go on at the end of a piece of work");
-  std::vector<KernelWork> taken;
-  for (const KernelInfo& info : kKernels) {
-    KernelTally::Sum& sum = t.sums[index(info.kernel)];
+  check_equal(t.depth, 0, "offload regions that go on at the end of a work segment");
+  std::vector<OffloadWork> taken;
+  for (const OffloadKindInfo& info : kOffloadKinds) {
+    OffloadTally::Sum& sum = t.sums[index(info.kernel)];
     if (sum.calls == 0) continue;
     taken.push_back({info.kernel, sum.calls, sum.items, settled(sum.counts)});
     sum = {};
@@ -59,14 +59,14 @@ std::vector<KernelWork> take_kernels() {
   return taken;
 }
 
-Piece& Piece::operator+=(const Piece& other) {
+Segment& Segment::operator+=(const Segment& other) {
   Counts::operator+=(other);
-  for (const KernelWork& more : other.kernels) {
-    const auto at = std::find_if(kernels.begin(), kernels.end(), [&](const KernelWork& k) {
+  for (const OffloadWork& more : other.offload) {
+    const auto at = std::find_if(offload.begin(), offload.end(), [&](const OffloadWork& k) {
       return index(k.kernel) >= index(more.kernel);
     });
-    if (at == kernels.end() || at->kernel != more.kernel) {
-      kernels.insert(at, more);
+    if (at == offload.end() || at->kernel != more.kernel) {
+      offload.insert(at, more);
       continue;
     }
     at->calls += more.calls;
