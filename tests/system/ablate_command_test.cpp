@@ -253,9 +253,9 @@ TEST_F(BatchCommands, ExplorationsResume) {
       folder_.path(),
       words("explore", {"--points", "30", "--profile", "levio", "--seed", "1,2", "--jobs", "1"}),
       {"runs.csv", "points.csv", "best.md", "scatter.svg", "manifest.json"});
-  EXPECT_EQ(lines_of(read_text_file(folder_ / "out/runs.csv")), 1u + 30 * 2);
-  EXPECT_EQ(lines_of(read_text_file(folder_ / "out/points.csv")), 1u + 30);
-  const std::string picture = read_text_file(folder_ / "out/scatter.svg");
+  EXPECT_EQ(lines_of(base::read_text_file(folder_ / "out/runs.csv")), 1u + 30 * 2);
+  EXPECT_EQ(lines_of(base::read_text_file(folder_ / "out/points.csv")), 1u + 30);
+  const std::string picture = base::read_text_file(folder_ / "out/scatter.svg");
   EXPECT_EQ(testing::xml_fault(picture), "");
   EXPECT_NE(picture.find("30 of 30 marks"), std::string::npos);
 }
@@ -268,7 +268,7 @@ TEST(AblateCommand, ResumesAfterAKillAndComparesProfiles) {
                  {"ablate", "--data", path("flight"), "--seed", "1,2", "--out", path("out"),
                   "--cache", path("runs"), "--relative", "0.5", "--jobs", "2"},
                  {"runs.csv", "table.md", "table.json", "manifest.json"});
-  const Json table = Json::parse(read_text_file(folder / "out/table.json"));
+  const Json table = Json::parse(base::read_text_file(folder / "out/table.json"));
   ASSERT_EQ(table.at("rows").size(), 3u);
   for (const Json& row : table.at("rows")) {
     EXPECT_EQ(row.at("sequence"), "flight");
@@ -277,9 +277,9 @@ TEST(AblateCommand, ResumesAfterAKillAndComparesProfiles) {
     EXPECT_EQ(row.at("completion"), 1.0);
     EXPECT_LT(row.at("ate").at("low"), row.at("ate").at("high"));  // of two seeds
   }
-  EXPECT_EQ(lines_of(read_text_file(folder / "out/runs.csv")), 7u);
+  EXPECT_EQ(lines_of(base::read_text_file(folder / "out/runs.csv")), 7u);
   expect_parts(
-      read_text_file(folder / "out/table.md"),
+      base::read_text_file(folder / "out/table.md"),
       {"| flight | 160x120 | levio-no-imu-no-epnp | 2 |", "- flight: SE3-aligned, 40 of 40"});
 }
 

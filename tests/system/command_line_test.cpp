@@ -257,9 +257,19 @@ TEST(FlightCache, AnExistingFlightIsUsedIfItIsWhole) {
     ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
 }
 
+TEST(ProgressLine, SaysWhenItIsDone) {
+  EXPECT_EQ(time_left_text(1, 3601, 1), " · done in 1:00:00");
+  EXPECT_EQ(time_left_text(50, 100, 73), " · done in 0:01:13");
+  for (const auto& [done, total, seconds] :
+       {std::tuple{0, 100, 5.0}, {100, 100, 5.0}, {10, 100, 0.0}})
+    EXPECT_EQ(time_left_text(done, total, seconds), "");
+}
+
 TEST(ProgressLine, FrameProgressReadsAsASentence) {
   EXPECT_EQ(frame_progress(123, 300, 6'150'000'000, 3.0),
-            "frame 123/300 · simulated 6.15 s · 41 frames/s");
+            "frame 123/300 · simulated 6.15 s · 41 frames/s · done in 0:00:04");
+  EXPECT_EQ(frame_progress(300, 300, 15'000'000'000, 10.0),
+            "frame 300/300 · simulated 15.00 s · 30 frames/s");
   EXPECT_EQ(frame_progress(1, 300, 0, 0), "frame 1/300 · simulated 0.00 s");
 }
 

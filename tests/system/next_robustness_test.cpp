@@ -110,6 +110,17 @@ TEST(NextRobustnessOf, StandsStillAfterMotion) {
   RecordProperty("moved_mm", static_cast<int>(moved * 1000));
 }
 
+/// A gyro's bias below 0 there cannot be, so every map after the first frame's is refused.
+TEST(NextRobustnessOf, SaysWhenItsMapStartsAnew) {
+  const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 1);
+  Profile profile = profile_named("next", 1);
+  EXPECT_EQ(fly(flight, profile).map_restarts, 0);
+  profile.recovery.max_gyro_bias = 0;
+  const Flown refused = fly(flight, profile);
+  EXPECT_EQ(refused.map_restarts, static_cast<int>(flight.frames.size()) - 1);
+  EXPECT_EQ(refused.count(PoseSource::First), static_cast<int>(flight.frames.size()));
+}
+
 /// An IMU that sees rest, as in uniform motion, does not hold the pose while the images move.
 TEST(NextRobustnessOf, ImuAtRestWhileTheImagesMove) {
   ShortFlight flight = from_rest();

@@ -54,7 +54,7 @@ class Terminal : public ::testing::Test {
         fmt::format("L='{}'; exec 2>'{}'; {}", leviosim::tests::program_path(), path("err"), line);
     ::setenv("SCRIPT", script.c_str(), 1);
     const int status = std::system("bash -c \"$SCRIPT\"");  // NOLINT: the line is the test's own
-    return {WEXITSTATUS(status), read_text_file(folder_ / "err")};
+    return {WEXITSTATUS(status), base::read_text_file(folder_ / "err")};
   }
 
   static fs::path folder_;
@@ -100,7 +100,7 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   const std::string out = "out" + kHostile;
   const std::vector<std::string> cache{"--cache", path("cache")};
   expect_done({"run", "--native", "--data", flight(), "--frames", "0:8", "--out", path(out)}, out);
-  const Json manifest = Json::parse(read_text_file(folder_ / out / "manifest.json"));
+  const Json manifest = Json::parse(base::read_text_file(folder_ / out / "manifest.json"));
   EXPECT_NE(manifest.at("data").at("folder").get<std::string>().find("\xef\xbf\xbd"),
             std::string::npos);
   expect_done({"run", "--platform", "gap9", "--data", flight(), "--frames", "0:8", "--record",

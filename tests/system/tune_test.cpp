@@ -283,7 +283,8 @@ TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
   run.insert(run.end(), {"--out", path("run"), "--quiet"});
   EXPECT_EQ(run_program(folder_.path(), run).status, 0);
   for (const char* name : {"frames.csv", "stats.json", "trajectory.tum", "platform.yaml"})
-    EXPECT_EQ(read_text_file(folder_ / "run" / name), files[std::string("chosen/") + name]) << name;
+    EXPECT_EQ(base::read_text_file(folder_ / "run" / name), files[std::string("chosen/") + name])
+        << name;
 
   // One of the loops is lost: the others are found, and everything is as before.
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "runs"))

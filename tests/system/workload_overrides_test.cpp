@@ -87,7 +87,7 @@ TEST(WorkloadOverrides, ReachTheRunAndItsManifest) {
   };
   const ProgramResult set = run("set", {"-p", "workload.window=6"});
   EXPECT_EQ(set.status, 0) << set.err;
-  EXPECT_NE(set.out.find(", workload.window=6\n"), std::string::npos) << set.out;
+  EXPECT_NE(set.out.find(" workload.window=6\n"), std::string::npos) << set.out;
   EXPECT_EQ(run("plain", {}).status, 0);
   const auto manifest = [&](const std::string& out) {
     return Json::parse(base::read_text_file(folder / (out + "/manifest.json")));

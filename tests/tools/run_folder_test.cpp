@@ -90,6 +90,15 @@ TEST(FramesCsv, HasARowPerFrameAndLatenciesFromArrivalToPose) {
               std::stoll(row.at("latency_ns")));
 }
 
+TEST(FramesCsv, EveryFactOfAFrameIsAColumn) {
+  RunResult run = example_run();
+  run.frames[3].map_restarts = 1;
+  const std::vector<Row> rows = parse_csv(frames_csv(run));
+  for (const vio::FrameFact& fact : vio::kFrameFacts)
+    EXPECT_EQ(rows[3].at(std::string(fact.name)), std::to_string(run.frames[3].*fact.of));
+  EXPECT_EQ(rows[2].at("map_restarts"), "0");
+}
+
 TEST(FramesCsv, OfANativeRunHasNoTimingColumns) {
   RunResult run = example_run();
   run.timed = false;

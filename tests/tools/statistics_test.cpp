@@ -53,6 +53,14 @@ TEST(Statistics, ValuesAreThoseOfTheRun) {
   EXPECT_EQ(value(document, "frames.keyframes"), 2);
 }
 
+TEST(Statistics, FactsOfFramesAreSummedUp) {
+  RunResult run = example_run();
+  run.frames[1].map_restarts = run.frames[4].map_restarts = 1;
+  const Json document = statistics(run);
+  EXPECT_EQ(value(document, "frames.map_restarts.sum"), 2);
+  EXPECT_EQ(value(document, "frames.landmarks.sum"), 5 * 200);
+}
+
 TEST(Statistics, EveryFrameHasASourceAndAKind) {
   RunResult run = example_run();
   run.frames.clear();

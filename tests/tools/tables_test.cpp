@@ -50,6 +50,40 @@ TEST(TextTable, AlignsByCodePointsAndTrimsLineEnds) {
             "b    1000\n");
 }
 
+TEST(TextTable, LeavesOutColumnsThatDoNotFit) {
+  constexpr auto kRight = TextTable::Align::Right;
+  TextTable table({{"name", TextTable::Align::Left}, {"a", kRight, 1}, {"b"}, {"c", kRight, 1}});
+  table.add({"x", "100", "200", "300"});
+  const auto titles = [&](int width) {
+    std::istringstream in(table.str(width));
+    std::string line;
+    std::getline(in, line);
+    return line;
+  };
+  EXPECT_EQ(table.str(19), table.str());
+  EXPECT_EQ(titles(19), "name    a    b    c");
+  EXPECT_EQ(titles(18), "name    a    b");
+  EXPECT_EQ(titles(13), "name    b");
+  EXPECT_EQ(titles(8), "name");
+  EXPECT_EQ(titles(1), "name") << "the first column stays";
+  EXPECT_EQ(table.str(13),
+            "name    b\n"
+            "─────────\n"
+            "x     200\n");
+}
+
+TEST(Tables, FitTheWidth) {
+  const RunResult run = example_run();
+  const auto header = [](const std::string& table) { return lines_of(table).at(1); };
+  for (const std::string& table : {stage_table(run, 80), breakdown_table(run, 80),
+                                   latency_table(run, 80), memory_table(run, 80)})
+    EXPECT_LE(display_width(header(table)), 80) << table;
+  EXPECT_NE(header(stage_table(run, 80)).find("speed-up"), std::string::npos);
+  EXPECT_EQ(header(stage_table(run, 80)).find("calls"), std::string::npos);
+  EXPECT_NE(header(breakdown_table(run, 80)).find("serial"), std::string::npos);
+  EXPECT_EQ(header(breakdown_table(run, 80)).find("core-Mcycles"), std::string::npos);
+}
+
 TEST(TextTable, WrapsListsWhereTheyWouldExceedTheWidth) {
   EXPECT_EQ(wrap({"aaaa", "bbbb", "cccc"}, " · ", 2, 13), "aaaa · bbbb\n  cccc");
   EXPECT_EQ(wrap({"aaaa", "bbbb"}, " · ", 2, 12), "aaaa\n  bbbb");
@@ -129,6 +163,38 @@ TEST(LatencyTable, TellsTheKindsOfFrameApart) {
   EXPECT_NE(text.find("waited for the front end: 1, the longest 2.50 ms"), std::string::npos);
 }
 
+TEST(LatencyTable, PredictedFramesAreAKindOfTheirOwn) {
+  RunResult run = example_run();
+  EXPECT_EQ(latency_table(run).find("predicted"), std::string::npos);
+  run.frames[4].source = PoseSource::Predicted;
+  const std::string text = latency_table(run);
+  EXPECT_EQ(cells_after(line_of(text, "EPnP  "), 4),
+            (Cells{"1", "30.00", "30.00", "60.0", "60.0", "0"}));
+  EXPECT_EQ(cells_after(line_of(text, "predicted  "), 9),
+            (Cells{"1", "40.00", "40.00", "80.0", "80.0", "0"}));
+  EXPECT_EQ(line_of(text, "tracked"), "");
+  run.frames[3].source = PoseSource::Tracked;
+  const std::string both = latency_table(run);
+  EXPECT_EQ(cells_after(line_of(both, "tracked  "), 7).front(), "1");
+  EXPECT_EQ(cells_after(line_of(both, "predicted  "), 9).front(), "1");
+  EXPECT_EQ(cells_after(line_of(both, "other (first, pose kept)"), 24).front(), "1");
+}
+
+/// Every source is named, and the restarts of the map are.
+TEST(FrameSummary, AddsUp) {
+  RunResult run = example_run();
+  run.frames.clear();
+  for (int k = 0; k <= static_cast<int>(PoseSource::Tracked); ++k)
+    for (int i = 0; i <= k; ++i)
+      run.frames.push_back(testing::frame(k, static_cast<PoseSource>(k), false, 10'000'000));
+  run.frames[0].map_restarts = run.frames[7].map_restarts = 1;
+  const std::string line = line_of(frame_summary(run), "frames: ");
+  EXPECT_EQ(
+      line,
+      "frames: 21 (tracked 6, EPnP 2, 8-point 3, predicted 5, pose kept 4, first of a map 1), "
+      "keyframes 0, restarts of the map 2");
+}
+
 TEST(LatencyTable, EveryFrameIsInOneScenario) {
   const RunResult run = example_run();
   std::int64_t frames = 0;
@@ -168,6 +234,24 @@ TEST(TrajectorySummary, GivesTheProtocolBesideTheError) {
   EXPECT_NE(text.find(example_run().ate->protocol), std::string::npos);
 }
 
+/// Positions alone were aligned, so the angle after that alignment says nothing.
+TEST(TrajectorySummary, GivesAttitudesAfterAnAlignmentOfTheirOwn) {
+  RunResult run = example_run();
+  EXPECT_EQ(trajectory_summary(run).find("°"), std::string::npos) << "a replay knows no poses";
+  traces::Trajectory truth;
+  for (const FrameResult& f : run.frames) truth.push_back(f.pose);
+  truth[2].T_world_body.translation().y() = 1;
+  const Eigen::AngleAxisd lying(1.5707963267948966, Eigen::Vector3d::UnitX());
+  traces::Trajectory estimate = truth;
+  for (traces::StampedPose& pose : estimate) pose.T_world_body = lying * pose.T_world_body;
+  run.ate = traces::evaluate(estimate, truth);
+  const std::string text = trajectory_summary(run);
+  EXPECT_NE(text.find("attitude: tilt 0.00° RMSE, heading 0.00° RMSE, best aligned\n"
+                      "     not gravity-aligned: its vertical is 90.0° off the true one\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST(TrajectorySummary, SaysWhereThereIsNoGroundTruth) {
   RunResult run = example_run();
   run.ate.reset();
@@ -195,6 +279,16 @@ TEST(Report, OnlyItsLastLineIsAboutTheHost) {
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i + 1 < first.size(); ++i) EXPECT_EQ(first[i], second[i]);
   EXPECT_EQ(first.back(), "host: 5 frames in 2.5 s (2.0 frames/s)");
+}
+
+TEST(Report, TablesAreChosenByName) {
+  const RunResult run = example_run();
+  const std::string latency = report(run, {"latency"});
+  EXPECT_NE(latency.find("pose from"), std::string::npos);
+  EXPECT_EQ(latency.find("kcycles"), std::string::npos);
+  EXPECT_EQ(report(run, table_names()), report(run));
+  const std::string two = report(run, {"memory", "stages"});
+  EXPECT_LT(two.find("kcycles"), two.find("blocks alive"));
 }
 
 TEST(Report, OfANativeRunHasNoTiming) {

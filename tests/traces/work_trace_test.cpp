@@ -104,7 +104,7 @@ TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
   for (int i = 0; reader.next(frame); ++i) testing::expect_equal(frame, example_frame(i));
   EXPECT_FALSE(golden.has_offload());
   expect_input_error([&] { WorkFrames(golden, true); },
-                     {"version_1.trace", "version 1", "kernels", "record it again"});
+                     {"version_1.trace", "version 1", "offload regions", "record it again"});
 }
 
 TEST(WorkTrace, ReadsTheSecondVersion) {

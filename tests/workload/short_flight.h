@@ -190,7 +190,8 @@ struct Flown {
   std::vector<PoseSource> sources;
   double ate = 0;      ///< SE3-aligned [m]
   bool finite = true;  ///< all poses
-  double skew = 0;     ///< how far a rotation is from being one: largest element of RᵀR − I
+  int map_restarts = 0;
+  double skew = 0;  ///< how far a rotation is from being one: largest element of RᵀR − I
 
   int count(PoseSource source) const {
     return static_cast<int>(std::count(sources.begin(), sources.end(), source));
@@ -224,6 +225,7 @@ inline Flown fly(const ShortFlight& flight, const Profile& profile) {
     T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
     flown.trajectory.push_back({frame.t_ns, T * flight.T_body_camera.inverse()});
     flown.sources.push_back(report.source);
+    flown.map_restarts += report.map_restarts;
   }
   if (flown.finite) flown.ate = traces::evaluate(flown.trajectory, flight.truth).translation.rmse;
   return flown;

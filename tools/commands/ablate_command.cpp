@@ -17,8 +17,13 @@ void run(const CLI::App& command, const BatchWords& words, const Words& command_
   const std::vector<Point> runs = ablation_runs(plan);
   const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
   const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, paper_accuracy());
-  const std::string text = fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
-                                       ablation_text(plan, rows));
+  const Printout text = printout(
+      words.json,
+      [&] {
+        return fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
+                           ablation_text(plan, rows));
+      },
+      [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
   publish(*plan.out, text, [&] {
     plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
     plan.out->write("table.md", ablation_markdown(plan, rows));
@@ -34,6 +39,7 @@ Command add_ablate_command(CLI::App& app, const Words& words) {
       "ablate", "The paper's table of pipeline configurations, over given sequences");
   const auto typed = std::make_shared<BatchWords>();
   add_batch_options(*command, *typed);
+  add_json_option(*command, typed->json);
   return {command, [=, &words] { run(*command, *typed, words); }};
 }
 

@@ -42,7 +42,10 @@ void run(const CalibrateOptions& options) {
   const std::string yaml =
       out ? platform::to_yaml(calibrated_platform(platform, calibration)) : std::string();
   publish({{out, yaml, "platform file"}},
-          heading(options.run, result) + calibration_report(calibration));
+          printout(
+              options.run.json,
+              [&] { return heading(options.run, result) + calibration_report(calibration); },
+              [&] { return json_text(calibration_json(calibration), 2) + '\n'; }));
 }
 
 }  // namespace
@@ -58,6 +61,7 @@ Command add_calibrate_command(CLI::App& app) {
       ->type_name("PATH,…");
   command->add_option("--out", options->run.out, "platform file to write")->type_name("FILE");
   command->add_flag("--force", options->run.force, "replace the file");
+  add_json_option(*command, options->run.json);
   return {command, [=] { run(*options); }};
 }
 

@@ -33,8 +33,7 @@ void check_options(const CLI::App& command, const CheckOptions& options) {
     throw InputError("check: --json and --annotations both print to stdout; leave out one");
 }
 
-std::string report(const CheckOptions& options, const CheckResult& result) {
-  if (options.json) return json_text(check_json(result), 2) + '\n';
+std::string text_report(const CheckOptions& options, const CheckResult& result) {
   if (options.annotations == "gitlab") return gitlab_report(result);
   if (options.annotations == "github") return check_text(result) + github_annotations(result);
   return check_text(result);
@@ -49,7 +48,10 @@ void run(const CLI::App& command, const CheckOptions& options) {
                     .replace = options.force,
                     .inputs = {options.run, options.gate.budget, options.gate.baseline}});
   const CheckResult result = gate.check(read_record(options.run, options));
-  publish({{junit, junit_xml(result), ""}}, report(options, result));
+  publish({{junit, junit_xml(result), ""}},
+          printout(
+              options.json, [&] { return text_report(options, result); },
+              [&] { return json_text(check_json(result), 2) + '\n'; }));
   if (result.missed() > 0) throw LimitNotMet();
 }
 
@@ -68,7 +70,7 @@ Command add_check_command(CLI::App& app) {
       ->add_option("--annotations", options->annotations,
                    "github: lines that mark the limits; gitlab: a code quality report on stdout")
       ->type_name("github|gitlab");
-  command->add_flag("--json", options->json, "print JSON");
+  add_json_option(*command, options->json);
   add_record_options(*command, *options);
   return {command, [=] { run(*command, *options); }};
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim/base/error.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison_report.h"
@@ -17,6 +18,7 @@ struct CompareOptions : RecordOptions {
   std::vector<std::string> runs;
   std::string allow;
   std::string format = "text";
+  bool json = false;
 };
 
 /// All runs that are compared with the first. One run with a chip is compared with itself there.
@@ -42,7 +44,10 @@ std::vector<RunRecord> records(const CompareOptions& options) {
 
 void run(const CLI::App& command, const CompareOptions& options) {
   require(command, "RUN", "two or more run folders or work traces");
-  const ReportFormat format = parse_report_format(options.format);
+  if (options.json && command.count("--format") > 0)
+    throw InputError("compare: --json is --format json; leave out one");
+  const ReportFormat format =
+      options.json ? ReportFormat::json : parse_report_format(options.format);
   const Allowed allowed = parse_allowed(options.allow);
   if (format == ReportFormat::csv && options.runs.size() > 2)
     throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
@@ -65,6 +70,7 @@ Command add_compare_command(CLI::App& app) {
       ->type_name("data,frames,profile,seed,size");
   command->add_option("--format", options->format, "text, markdown, json or csv [text]")
       ->type_name("FORMAT");
+  add_json_option(*command, options->json);
   add_record_options(*command, *options);
   return {command, [=] { run(*command, *options); }};
 }

@@ -148,9 +148,13 @@ void run(const CLI::App& command, const EvalOptions& options) {
   std::vector<Evaluated> all{evaluated(options.estimate, options, request)};
   for (const std::string& estimate : options.also)
     all.push_back(evaluated(estimate, options, request));
-  std::string text;
-  for (const Evaluated& one : all) text += report(one.pair, request, one.accuracy);
-  if (all.size() > 1) text += side_by_side(all);
+  const auto lines = [&] {
+    std::string text;
+    for (const Evaluated& one : all) text += report(one.pair, request, one.accuracy);
+    return all.size() > 1 ? text + side_by_side(all) : text;
+  };
+  const bool prints_json = command.count("--json") > 0 && !request.json;
+  const Printout text = printout(prints_json, lines, [&] { return json_of(all, request); });
   publish({{request.json, json_of(all, request), "figures"},
            {request.plot, trajectory_plot(all[0].pair, all[0].accuracy.evaluation), "plot"}},
           text);

@@ -8,6 +8,7 @@
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/study/explore/exploration_report.h"
 #include "tools/app/study/explore/scatter_plot.h"
 
@@ -74,8 +75,13 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   const std::vector<Point> runs = exploration_runs(plan, points);
   const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
   const std::vector<ExploredPoint> explored = explored_points(plan, points, runs, outcomes);
-  const std::string text = fmt::format("leviosim {}: {} points, {} native runs\n{}", version(),
-                                       points.size(), runs.size(), best_text(plan, explored));
+  const Printout text = printout(
+      words.batch.json,
+      [&] {
+        return fmt::format("leviosim {}: {} points, {} native runs\n{}", version(), points.size(),
+                           runs.size(), best_text(plan, explored));
+      },
+      [&] { return table_document("exploration", points_csv(dimensions, explored)); });
   publish(*plan.out, text, [&] {
     base::OutputFolder& out = *plan.out;
     out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
@@ -94,6 +100,7 @@ Command add_explore_command(CLI::App& app, const Words& words) {
       "explore", "The paper's parameter sweep: accuracy over parameters of the workload");
   const auto typed = std::make_shared<ExploreWords>();
   add_batch_options(*command, typed->batch);
+  add_json_option(*command, typed->batch.json);
   command
       ->add_option("--vary", typed->vary,
                    "parameter to vary, off and on if it is a switch; repeatable [the paper's five]")

@@ -7,6 +7,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/flow/flow_report.h"
 #include "tools/app/flow/flow_source.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 
@@ -78,7 +79,10 @@ void run(const CLI::App& command, const FlowOptions& options, const Words& words
   request.data = data_folder(options, style);
   const FlowRun flow = run_flow(options, request, style);
   const Manifest manifest = make_manifest(options, request, words);
-  publish(out, heading(options, flow.run) + flow_report(flow),
+  const Printout shown = printout(
+      options.json, [&] { return heading(options, flow.run) + flow_report(flow); },
+      [&] { return table_document("flow", flow_csv(flow)); });
+  publish(out, shown,
           [&] { write_folder(out, flow, manifest, platform::to_yaml(request.platform)); });
 }
 
@@ -100,6 +104,7 @@ Command add_flow_command(CLI::App& app, const Words& words) {
   command->add_flag("--gyro", options->gyro, "take off the rotation of the camera");
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
+  add_json_option(*command, options->json);
   return {command, [=, &words] { run(*command, *options, words); }};
 }
 

@@ -8,6 +8,7 @@
 #include "platform_models/loader/loader.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/validation/microbench/board_kernels.h"
 #include "tools/app/validation/microbench/report.h"
 #include "tools/app/validation/microbench/unit_benches.h"
@@ -23,6 +24,7 @@ struct MicrobenchOptions {
   std::vector<std::string> overrides;
   std::string out;
   bool force = false;
+  bool json = false;
 };
 
 void run(const MicrobenchOptions& options) {
@@ -43,7 +45,10 @@ void run(const MicrobenchOptions& options) {
       board_rows(is_board ? chip.config : platform::load_platform("gap8"));
   tables += microbench_table(kBoard, board);
   rows.insert(rows.end(), board.begin(), board.end());
-  publish({{out, microbench_csv(rows), ""}}, tables);
+  publish({{out, microbench_csv(rows), ""}},
+          printout(
+              options.json, [&] { return tables; },
+              [&] { return table_document("microbenchmarks", microbench_csv(rows)); }));
 }
 
 }  // namespace
@@ -61,6 +66,7 @@ Command add_microbench_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--out", options->out, "write the rows to a CSV file")->type_name("FILE");
   command->add_flag("--force", options->force, "replace the file");
+  add_json_option(*command, options->json);
   return {command, [=] { run(*options); }};
 }
 

@@ -9,11 +9,13 @@
 #include <optional>
 
 #include "platform_models/loader/loader.h"
+#include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
+#include "sim/base/printable_text.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/feasibility/feasibility_report.h"
@@ -31,9 +33,22 @@ constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
 constexpr std::array kOfFeasibility{"--data", "--frames", "--profile", "--seed",
                                     "--out",  "--force",  "--quiet"};
 
-void list() {
-  for (const std::string& name : platform::platform_names())
-    print_result("{}: {}\n", name, printable(platform::resolve_platform(name).description));
+void list(const PlatformsOptions& options) {
+  const auto lines = [] {
+    std::string text;
+    for (const std::string& name : platform::platform_names())
+      text +=
+          fmt::format("{}: {}\n", name, printable(platform::resolve_platform(name).description));
+    return text;
+  };
+  const auto document = [] {
+    const base::CsvTable<std::string> table{{"name", [](const std::string& name) { return name; }},
+                                            {"description", [](const std::string& name) {
+                                               return platform::resolve_platform(name).description;
+                                             }}};
+    return table_document("platforms", table.text(platform::platform_names()));
+  };
+  print(printout(options.run.json, lines, document));
 }
 
 std::string in_words(const platform::Parameter* parameter) {
@@ -42,18 +57,22 @@ std::string in_words(const platform::Parameter* parameter) {
                                  : fmt::format("{} {}", parameter->value, parameter->unit);
 }
 
-/// Parameters with their places in `a` and `b`, nullptr where one does not have them, in the order
-/// of the schema.
-void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform& b) {
+/// A parameter of two chips; nullptr where one does not have it.
+struct Difference {
+  std::string path;
+  const platform::Parameter* a;
+  const platform::Parameter* b;
+};
+
+/// In the order of the schema.
+std::vector<Difference> differences(const platform::ResolvedPlatform& a,
+                                    const platform::ResolvedPlatform& b) {
   std::map<std::string, const platform::Parameter*> of_b;
   for (const platform::Parameter& parameter : b.parameters) of_b[parameter.path] = &parameter;
-  TextTable table({{"parameter", TextTable::Align::Left}, {a.name}, {b.name}});
-  int differences = 0;
+  std::vector<Difference> all;
   const auto compare = [&](const std::string& path, const platform::Parameter* left,
                            const platform::Parameter* right) {
-    if (in_words(left) == in_words(right)) return;
-    table.add({path, in_words(left), in_words(right)});
-    ++differences;
+    if (in_words(left) != in_words(right)) all.push_back({path, left, right});
   };
   for (const platform::Parameter& parameter : a.parameters) {
     const auto found = of_b.find(parameter.path);
@@ -62,9 +81,28 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
   }
   for (const platform::Parameter& parameter : b.parameters)
     if (of_b.count(parameter.path) > 0) compare(parameter.path, nullptr, &parameter);
-  if (differences > 0) print_result("{}", table.str());
-  print_result("{} of {} parameters differ\n", differences,
-               std::max(a.parameters.size(), b.parameters.size()));
+  return all;
+}
+
+void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform& b, bool json) {
+  const std::vector<Difference> all = differences(a, b);
+  const auto lines = [&] {
+    TextTable table({{"parameter", TextTable::Align::Left}, {a.name}, {b.name}});
+    for (const Difference& d : all) table.add({d.path, in_words(d.a), in_words(d.b)});
+    return fmt::format("{}{} of {} parameters differ\n", all.empty() ? "" : table.str(), all.size(),
+                       std::max(a.parameters.size(), b.parameters.size()));
+  };
+  const auto document = [&] {
+    using D = Difference;
+    const auto value = [](const platform::Parameter* p) { return p == nullptr ? "" : p->value; };
+    const base::CsvTable<D> table{
+        {"parameter", [](const D& d) { return d.path; }},
+        {"a", [&](const D& d) { return value(d.a); }},
+        {"b", [&](const D& d) { return value(d.b); }},
+        {"unit", [](const D& d) { return d.a == nullptr ? d.b->unit : d.a->unit; }}};
+    return table_document(fmt::format("differences of {} and {}", a.name, b.name), table.text(all));
+  };
+  print(printout(json, lines, document));
 }
 
 /// Computes the work and times it on the chips: on all workers of each, and, if `alone`, on one.
@@ -102,27 +140,46 @@ void feasibility(const PlatformsOptions& options) {
   wanted.inputs.insert(wanted.inputs.end(), options.names.begin(), options.names.end());
   std::optional<base::OutputFile> out = claimed_file(wanted);
   const std::vector<Feasibility> rows = rows_for(options, true);
-  publish({{out, feasibility_csv(rows), "table"}},
-          fmt::format("{} on {}\n\n{}", run.profile, printable(run.data), feasibility_table(rows)));
+  const auto lines = [&] {
+    return fmt::format("{} on {}\n\n{}", run.profile, printable(run.data), feasibility_table(rows));
+  };
+  publish({{out, feasibility_csv(rows), "table"}}, printout(run.json, lines, [&] {
+            return table_document("feasibility", feasibility_csv(rows));
+          }));
 }
 
 void stages(const PlatformsOptions& options) {
   if (!options.run.out.empty())
     throw InputError("platforms stages: prints a table only; leave out --out");
   const std::vector<Feasibility> rows = rows_for(options, false);
-  print_result("{} on {}\n\n{}", options.run.profile, printable(options.run.data),
-               stage_comparison(rows));
+  const auto lines = [&] {
+    return fmt::format("{} on {}\n\n{}", options.run.profile, printable(options.run.data),
+                       stage_comparison(rows));
+  };
+  const auto document = [&] { return table_document("stages", stage_comparison_csv(rows)); };
+  print(printout(options.run.json, lines, document));
 }
 
 void show(const PlatformsOptions& options) {
-  print_result(
-      "{}", platform::to_yaml(platform::resolve_platform(options.names[0], options.run.overrides)));
+  const platform::ResolvedPlatform chip =
+      platform::resolve_platform(options.names[0], options.run.overrides);
+  const auto document = [&] {
+    using P = platform::Parameter;
+    const base::CsvTable<P> table{{"parameter", [](const P& p) { return p.path; }},
+                                  {"value", [](const P& p) { return p.value; }},
+                                  {"unit", [](const P& p) { return p.unit; }},
+                                  {"confidence", [](const P& p) { return p.confidence; }},
+                                  {"source", [](const P& p) { return p.source; }}};
+    return table_document("platform " + chip.name, table.text(chip.parameters));
+  };
+  print(printout(
+      options.run.json, [&] { return platform::to_yaml(chip); }, document));
 }
 
 /// Changes are of the second: what a chip would differ in from itself can be asked too.
 void show_differences(const PlatformsOptions& options) {
   diff(platform::resolve_platform(options.names[0]),
-       platform::resolve_platform(options.names[1], options.run.overrides));
+       platform::resolve_platform(options.names[1], options.run.overrides), options.run.json);
 }
 
 struct Action {
@@ -133,7 +190,7 @@ struct Action {
 };
 
 const std::array<Action, 5> kActions = {{
-    {"list", 0, "no platform", [](const PlatformsOptions&) { list(); }},
+    {"list", 0, "no platform", list},
     {"show", 1, "one platform", show},
     {"diff", 2, "two platforms", show_differences},
     {"feasibility", kAnyNumber, "platforms", feasibility},
@@ -190,6 +247,7 @@ Command add_platforms_command(CLI::App& app) {
   add("--out", run_options.out, "FILE", "CSV file to write");
   command->add_flag("--force", run_options.force, "feasibility: replace the file");
   command->add_flag("--quiet", run_options.quiet, "feasibility: no progress");
+  add_json_option(*command, run_options.json);
   return {command, [=] { run(*command, *options); }};
 }
 

@@ -10,10 +10,10 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/cycle_parts.h"
-#include "tools/app/report/tables.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
 
@@ -78,6 +78,7 @@ Manifest manifest_of(const traces::WorkTrace& trace, const RunOptions& options,
 void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   require(command, "TRACE", "the work.trace of a run with --record, or its folder");
   require(command, "--out", "a folder for the results");
+  check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   base::OutputRequest wanted = out_request(options);
@@ -91,12 +92,11 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = manifest_of(trace, options, words);
   options.data = trace.info().data;
-  publish(out, heading(options, result.run) + replay_report(result, trace) + report(result.run),
-          [&] {
-            write_run_folder(out, result.run, manifest, platform::to_yaml(request.platform));
-            out.write(kReplayFile, replay_csv(result));
-            out.write(kCyclesFile, cycles_csv(parts.stages()));
-          });
+  publish(out, run_printout(options, result.run, replay_report(result, trace)), [&] {
+    write_run_folder(out, result.run, manifest, platform::to_yaml(request.platform));
+    out.write(kReplayFile, replay_csv(result));
+    out.write(kCyclesFile, cycles_csv(parts.stages()));
+  });
   if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result.run, parts.stages()));
 }
 
@@ -112,6 +112,7 @@ Command add_replay_command(CLI::App& app, const Words& words) {
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
   add_gate_options(*command, options->gate);
+  add_print_options(*command, *options);
   return {command, [=, &words] { run(*command, *options, words); }};
 }
 

@@ -9,9 +9,9 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
-#include "tools/app/report/tables.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
 
 namespace leviosim::tools {
@@ -38,6 +38,7 @@ struct GatedRunOptions : RunOptions {
 
 void run(const CLI::App& command, const GatedRunOptions& options, const Words& words) {
   RunRequest request = make_request(command, options);
+  check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   base::OutputFolder out(out_request(options));
@@ -49,7 +50,7 @@ void run(const CLI::App& command, const GatedRunOptions& options, const Words& w
   if (!request.native) request.observer = &parts;
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
-  publish(out, heading(options, result) + report(result), [&] {
+  publish(out, run_printout(options, result), [&] {
     write_run_folder(out, result, manifest,
                      request.native ? std::string() : platform::to_yaml(request.platform));
     if (!request.native) out.write(kCyclesFile, cycles_csv(parts.stages()));
@@ -67,6 +68,7 @@ Command add_run_command(CLI::App& app, const Words& words) {
   const auto options = std::make_shared<GatedRunOptions>();
   add_run_options(*command, *options);
   add_gate_options(*command, options->gate);
+  add_print_options(*command, *options);
   return {command, [=, &words] { run(*command, *options, words); }};
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "tools/app/cli/outputs.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/sensitivity/sensitivity_report.h"
@@ -24,7 +25,10 @@ void run(const RunOptions& options) {
   const Sensitivity found = sensitivity(platform::Variants(std::move(request.platform)),
                                         request.cores, trace, {.noun = "chip", .progress = style});
   publish({{out, sensitivity_csv(found), "table"}},
-          heading(options, result) + sensitivity_table(found, result.cores));
+          printout(
+              options.json,
+              [&] { return heading(options, result) + sensitivity_table(found, result.cores); },
+              [&] { return table_document("sensitivity", sensitivity_csv(found)); }));
 }
 
 }  // namespace
@@ -37,6 +41,7 @@ Command add_sensitivity_command(CLI::App& app) {
   add_chip_run_options(*command, *options);
   command->add_option("--out", options->out, "CSV file to write")->type_name("FILE");
   command->add_flag("--force", options->force, "replace the file");
+  add_json_option(*command, options->json);
   return {command, [=] { run(*options); }};
 }
 

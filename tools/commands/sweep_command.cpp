@@ -7,9 +7,12 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/input_file.h"
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/study/runner.h"
 #include "tools/app/study/sweep/points.h"
@@ -35,6 +38,7 @@ struct SweepWords {
   bool list = false;
   bool force = false;
   bool quiet = false;
+  bool json = false;
 };
 
 /// Numbers of the points that --point or --shard ask for.
@@ -66,6 +70,11 @@ struct Sweep {
   const Expansion& expansion;
   SweepInputs& inputs;
 };
+
+/// The rows of sweep.csv, wherever it was put.
+std::string document(const base::OutputFile& csv) {
+  return table_document("sweep", base::read_file(csv.shown_path(), base::InputKind::table));
+}
 
 /// What of the points is neither in the file nor in the cache.
 Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, SweepStore& store,
@@ -107,8 +116,11 @@ void merge(const SweepWords& words) {
     store.merge(part);
   }
   const std::optional<std::string> elsewhere = store.publish(out.csv());
-  print_result("leviosim {}: {} folders merged\n{}results: {}\n", version(), words.merge.size() - 1,
-               sweep_report(store), printable(words.merge.front()));
+  const auto lines = [&] {
+    return fmt::format("leviosim {}: {} folders merged\n{}results: {}\n", version(),
+                       words.merge.size() - 1, sweep_report(store), printable(words.merge.front()));
+  };
+  print(printout(words.json, lines, [&] { return document(out.csv()); }));
   if (elsewhere) throw InputError(*elsewhere);
 }
 
@@ -147,11 +159,14 @@ void run_plan(const SweepWords& words) {
   const std::optional<std::string> elsewhere = store.publish(out.csv());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  print_result(
-      "leviosim {}: {}\n{} computed in {:.1f} s, {} found in the cache, {} done before\n{}"
-      "results: {}\n",
-      version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.before,
-      sweep_report(store), printable(words.out));
+  const auto lines = [&] {
+    return fmt::format(
+        "leviosim {}: {}\n{} computed in {:.1f} s, {} found in the cache, {} done before\n{}"
+        "results: {}\n",
+        version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.before,
+        sweep_report(store), printable(words.out));
+  };
+  print(printout(words.json, lines, [&] { return document(out.csv()); }));
   if (elsewhere) throw InputError(*elsewhere);
 }
 
@@ -190,6 +205,7 @@ Command add_sweep_command(CLI::App& app) {
   add_memory_option(*command, words->memory);
   command->add_flag("--force", words->force, "begin anew; finished points are found in the cache");
   command->add_flag("--quiet", words->quiet, "no progress");
+  add_json_option(*command, words->json);
   return {command, [=] { run(*command, *words); }};
 }
 

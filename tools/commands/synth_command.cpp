@@ -70,8 +70,12 @@ void render(const CLI::App& command, const SynthOptions& options) {
   traces::write_rendered_flight(
       options.motion, options.out, rendered, [&](std::size_t done, std::size_t total) {
         throw_if_interrupted();
-        line.show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total),
-                  [&] { return fmt::format("rendered flight: image {}/{}", done, total); });
+        const auto drawn = static_cast<std::int64_t>(done);
+        const auto all = static_cast<std::int64_t>(total);
+        line.show(drawn, all, [&] {
+          return fmt::format("rendered flight: image {}/{}{}", done, total,
+                             time_left_text(drawn, all, line.host_seconds()));
+        });
       });
   line.clear();
   print_result("rendered flight: {}\n", printable(options.out));

@@ -6,7 +6,9 @@
 
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
-#include "tools/app/cli/terminal.h"
+#include "sim/base/printable_text.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/run/replay.h"
 #include "tools/app/run/trace_summary.h"
@@ -18,16 +20,47 @@ struct TraceOptions {
   std::string action;
   std::string file;
   std::string memory;
+  bool json = false;
 };
 
+/// Reads the summary only.
+std::string trace_document(const traces::WorkTrace& trace) {
+  const traces::WorkTraceInfo& info = trace.info();
+  const Json document{{"format", "leviosim work trace"},
+                      {"version", 1},
+                      {"file", trace.name()},
+                      {"program", info.program},
+                      {"platform", info.platform},
+                      {"cores", info.cores},
+                      {"profile", info.profile},
+                      {"seed", info.seed},
+                      {"data", info.data},
+                      {"first_frame", info.first_frame},
+                      {"frames", trace.frames()},
+                      {"image_width", info.image_width},
+                      {"image_height", info.image_height},
+                      {"frame_period_ns", info.frame_period_ns},
+                      {"facts", info.facts},
+                      {"bytes", trace.file_size()}};
+  return json_text(document, 2) + '\n';
+}
+
+void show_trace(const traces::WorkTrace& trace, bool json) {
+  print(printout(
+      json, [&] { return trace_summary(trace); }, [&] { return trace_document(trace); }));
+}
+
 /// Everything that replay reads, its platform too.
-void check_trace(const traces::WorkTrace& trace) {
+void check_trace(const traces::WorkTrace& trace, bool json) {
   recorded_platform(trace);
   traces::WorkFrames reader(trace, trace.has_offload());
   for (traces::WorkFrame frame; reader.next(frame);) {
   }
-  print_result("{}: {} frames, all of them can be replayed\n", printable(trace.name()),
-               trace.frames());
+  const auto lines = [&] {
+    return fmt::format("{}: {} frames, all of them can be replayed\n", printable(trace.name()),
+                       trace.frames());
+  };
+  print(printout(json, lines, [&] { return trace_document(trace); }));
 }
 
 void run(const CLI::App& command, const TraceOptions& options) {
@@ -35,9 +68,9 @@ void run(const CLI::App& command, const TraceOptions& options) {
   require(command, "FILE", "a work trace");
   const Bytes memory = trace_memory(options.memory);
   if (options.action == "info")
-    print_result("{}", trace_summary(traces::WorkTrace(options.file, memory)));
+    show_trace(traces::WorkTrace(options.file, memory), options.json);
   else if (options.action == "check")
-    check_trace(traces::WorkTrace(options.file, memory));
+    check_trace(traces::WorkTrace(options.file, memory), options.json);
   else
     throw InputError(fmt::format("trace: unknown action '{}'; expected info or check{}",
                                  options.action,
@@ -52,6 +85,7 @@ Command add_trace_command(CLI::App& app) {
   command->add_option("ACTION", options->action, "info, or check: read all of it");
   command->add_option("FILE", options->file, "work.trace of a run with --record");
   add_memory_option(*command, options->memory);
+  add_json_option(*command, options->json);
   return {command, [=] { run(*command, *options); }};
 }
 

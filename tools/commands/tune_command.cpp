@@ -5,10 +5,11 @@
 #include <memory>
 
 #include "sim/base/error.h"
+#include "sim/base/printable_text.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
@@ -65,10 +66,13 @@ void run(const CLI::App& command, const TuneWords& words, const Words& command_l
                   plan.request.cores, plan.sequence.frames, printable(plan.options.data),
                   runs.size(), tune_table(plan, points), choice_text(plan, all));
   if (again) text += "run again by itself, it gave the same figures: confirmed\n";
+  const Printout shown = printout(
+      words.run.json, [&] { return text; },
+      [&] { return table_document("tuning", tune_csv(plan, points)); });
   if (plan.out)
-    publish(*plan.out, text, [&] { write_folder(plan, points, again, command_line); });
+    publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });
   else
-    print_result("{}", text);
+    print(shown);
 }
 
 }  // namespace
@@ -79,6 +83,7 @@ Command add_tune_command(CLI::App& app, const Words& words) {
       "Accuracy and power over the clock, in closed loops; the lowest clock that meets the limits");
   const auto typed = std::make_shared<TuneWords>();
   add_tune_options(*command, *typed);
+  add_json_option(*command, typed->run.json);
   return {command, [=, &words] { run(*command, *typed, words); }};
 }
 

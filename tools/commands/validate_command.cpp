@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/validation/validation_report.h"
@@ -38,11 +37,11 @@ void run(const RunOptions& options, const Words& words) {
   request.observer = &log;
   const RunResult result = simulate_with_progress(request, style);
   const Validation validation = validate(result, log, profile_of(request), references);
-  const std::string text = heading(options, result) + validation_report(validation, result.cores);
-  if (!out) {
-    print_result("{}", text);
-    return;
-  }
+  const Printout text = printout(
+      options.json,
+      [&] { return heading(options, result) + validation_report(validation, result.cores); },
+      [&] { return json_text(validation_json(validation), 2) + '\n'; });
+  if (!out) return print(text);
   const Manifest manifest = make_manifest(options, request, words);
   publish(*out, text, [&] {
     write_folder(*out, validation, result, manifest, platform::to_yaml(request.platform));
@@ -59,6 +58,7 @@ Command add_validate_command(CLI::App& app, const Words& words) {
   command->add_option("--out", options->out, "folder for the results; must be new or empty")
       ->type_name("DIR");
   command->add_flag("--force", options->force, "replace the results of an earlier run");
+  add_json_option(*command, options->json);
   return {command, [=, &words] { run(*options, words); }};
 }
 

@@ -4,7 +4,9 @@
 
 #include <memory>
 
-#include "tools/app/cli/terminal.h"
+#include "sim/base/csv_table.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload_overrides.h"
 
@@ -13,14 +15,26 @@ namespace {
 
 struct WorkloadOptions {
   std::string profile = "levio";
+  bool json = false;
 };
 
 std::string range_text(const vio::Parameter& p) {
   return fmt::format("{} … {}", vio::value_text(p, p.low), vio::value_text(p, p.high));
 }
 
-void run(const WorkloadOptions& options) {
-  const vio::Profile profile = vio::profile_named(options.profile, 1);
+std::string document(const WorkloadOptions& options, const vio::Profile& profile) {
+  using P = vio::Parameter;
+  const base::CsvTable<P> table{
+      {"name", [](const P& p) { return p.name; }},
+      {"value", [&](const P& p) { return vio::value_text(p, p.get(profile)); }},
+      {"low", [](const P& p) { return vio::value_text(p, p.low); }},
+      {"high", [](const P& p) { return vio::value_text(p, p.high); }},
+      {"unit", [](const P& p) { return p.unit; }},
+      {"meaning", [](const P& p) { return p.description; }}};
+  return table_document("parameters of " + options.profile, table.text(vio::parameters()));
+}
+
+std::string lines(const WorkloadOptions& options, const vio::Profile& profile) {
   std::string text = "profiles (--profile NAME)\n";
   for (const std::string& name : vio::profile_names())
     text += fmt::format("  {}: {}\n", name, vio::profile_description(name));
@@ -32,7 +46,14 @@ void run(const WorkloadOptions& options) {
   for (const vio::Parameter& p : vio::parameters())
     table.add({std::string(p.name), vio::value_text(p, p.get(profile)), range_text(p),
                std::string(p.unit), std::string(p.description)});
-  print_result("{}\n{}", text, table.str());
+  return fmt::format("{}\n{}", text, table.str());
+}
+
+void run(const WorkloadOptions& options) {
+  const vio::Profile profile = vio::profile_named(options.profile, 1);
+  print(printout(
+      options.json, [&] { return lines(options, profile); },
+      [&] { return document(options, profile); }));
 }
 
 }  // namespace
@@ -43,6 +64,7 @@ Command add_workload_command(CLI::App& app) {
   const auto options = std::make_shared<WorkloadOptions>();
   command->add_option("--profile", options->profile, "whose values are shown [levio]")
       ->type_name("NAME");
+  add_json_option(*command, options->json);
   return {command, [=] { run(*options); }};
 }
 

@@ -1,5 +1,6 @@
 # The figures of the pages: tools/figures.sh reads this file and says what its words mean. `data` are
 # 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `slow` takes minutes.
+# Tables have all their columns: 200 fit.
 # No figure shows the host's times, the commit, or anything else that differs from run to run.
 
 # README.md
@@ -22,7 +23,7 @@ cut 'table stage stage "kcycles, 8 cores" speed-up ms | rows ^EPnP ^8-point'
 figure missed-deadlines
 needs data
 shows 'leviosim run --platform gap9 -p cluster.clock=130MHz -p controller.clock=130MHz \
-      -p supply.voltage=0.65V --data euroc/MH_01_easy_t05_t20 --camera-fps 10 --deadline drop --out slow'
+      -p supply.voltage=0.65V --data euroc/MH_01_easy_t05_t20 --camera-fps 10 --deadline drop --tables camera,trajectory --out slow'
 cut 'lines "^frames: .* arrived" ^latency ^ATE'
 
 figure sweep
@@ -58,12 +59,12 @@ cut 'table "input, mean"'
 
 figure breakdown
 needs data
-shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --tables all --out tables'
 cut 'sed "1,/^where the core-cycles go/d" | table stage stage useful I-cache FPU divider banks imbalance transfer serial'
 
 figure latency
 needs data
-shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --tables all --out tables'
 cut 'table "pose from"'
 
 figure sensitivity
@@ -87,22 +88,22 @@ cut 'sed "1,/^GAP9: /d; /^GAP8: /d; /^─/d; /^$/d; s/  *\(SDK-12\|source\).*//"
 # workload/ACCURACY.md
 figure next-stages
 needs data
-shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
+shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --tables all --out next'
 cut 'table stage stage calls "kcycles, 1 core" "kcycles, 8 cores" speed-up ms "worst ms"'
 
 figure next-error
 needs data
-shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
+shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --tables all --out next'
 cut 'lines ^ATE SE3'
 
 figure levio-error
 needs data
-shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --tables all --out tables'
 cut 'lines ^ATE SE3'
 
 figure next-memory
 needs data
-shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
+shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --tables all --out next'
 cut 'table peak | rows ^feature ^triangulation "L2  "'
 
 # platform_models/CHIPS.md
@@ -145,7 +146,7 @@ cut 'sed -n "/^the lowest of these/,/^run again/p"'
 figure replay
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
-shows 'leviosim replay recorded -p controller.clock=100MHz --out slow-controller'
+shows 'leviosim replay recorded -p controller.clock=100MHz --tables stages --out slow-controller'
 cut 'sed -n "/^replay of/,/^stages/p" | first 10'
 
 figure trace-info

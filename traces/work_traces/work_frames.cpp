@@ -25,7 +25,7 @@ WorkFrames::WorkFrames(const WorkTrace& trace, bool offload)
   if (offload && !trace.has_offload())
     throw InputError(
         fmt::format("{}: is of version 1, which does not say what of the work was done in offload "
-                    "offload regions: record it again",
+                    "regions: record it again",
                     trace.name()));
 }
 

@@ -50,6 +50,7 @@ struct FrameFacts {
   int frame_matches = 0;
   int inliers = 0;
   int landmarks = 0;
+  int map_restarts = 0;
 };
 
 /// A number that is never negative.
@@ -66,6 +67,8 @@ inline constexpr std::array kFrameFacts{
     FrameFact{"frame_matches", "matches with the last keyframe", &FrameFacts::frame_matches},
     FrameFact{"inliers", "inliers of the RANSAC that gave the pose", &FrameFacts::inliers},
     FrameFact{"landmarks", "landmarks alive after the frame", &FrameFacts::landmarks},
+    FrameFact{"map_restarts", "restarts of the map, since what it had become could not be true",
+              &FrameFacts::map_restarts},
 };
 
 }  // namespace leviosim::vio

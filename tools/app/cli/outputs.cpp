@@ -20,7 +20,7 @@ std::optional<std::string> fault_of(const std::function<std::optional<std::strin
 
 }  // namespace
 
-void publish(base::OutputFolder& out, const std::string& report, const std::function<void()>& write,
+void publish(base::OutputFolder& out, const Printout& report, const std::function<void()>& write,
              const std::string& label) {
   bool is_written = false;
   const std::optional<std::string> fault = fault_of([&] {
@@ -30,8 +30,8 @@ void publish(base::OutputFolder& out, const std::string& report, const std::func
     is_written = true;
     return elsewhere;
   });
-  print_result("{}", report);
-  if (is_written) print_result("{}: {}\n", label, printable(out.shown_path()));
+  print(report);
+  if (is_written && !report.is_whole) print_result("{}: {}\n", label, printable(out.shown_path()));
   if (fault) throw InputError(*fault);
 }
 
@@ -40,7 +40,7 @@ std::optional<base::OutputFile> claimed_file(const base::OutputRequest& request)
   return std::optional<base::OutputFile>(std::in_place, request);
 }
 
-void publish(std::initializer_list<FileOutput> files, const std::string& report) {
+void publish(std::initializer_list<FileOutput> files, const Printout& report) {
   std::string lines;
   std::optional<std::string> first_fault;
   throw_if_interrupted();
@@ -52,11 +52,12 @@ void publish(std::initializer_list<FileOutput> files, const std::string& report)
       is_written = true;
       return elsewhere;
     });
-    if (is_written && !output.label.empty())
+    if (is_written && !output.label.empty() && !report.is_whole)
       lines += fmt::format("{}: {}\n", output.label, printable(output.file->shown_path()));
     if (fault && !first_fault) first_fault = fault;
   }
-  print_result("{}{}", report, lines);
+  print(report);
+  print_result_text(lines);
   if (first_fault) throw InputError(*first_fault);
 }
 

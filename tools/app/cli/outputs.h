@@ -9,13 +9,14 @@
 
 #include "sim/base/output_file.h"
 #include "sim/base/output_folder.h"
+#include "tools/app/cli/printout.h"
 
 namespace leviosim::tools {
 
 /// Writes a folder of results, gives it its name, and prints the report with the line
-/// "results: DIR". @param write  the files
+/// "results: DIR", which a whole printout goes without. @param write  the files
 /// @throws InputError, after the report, if the results are not under their name; Interrupted
-void publish(base::OutputFolder& out, const std::string& report, const std::function<void()>& write,
+void publish(base::OutputFolder& out, const Printout& report, const std::function<void()>& write,
              const std::string& label = "results");
 
 /// The file of an option; none if the option is empty. @throws InputError if it cannot be written
@@ -28,6 +29,6 @@ struct FileOutput {
 };
 
 /// The same for single files: those that were claimed.
-void publish(std::initializer_list<FileOutput> files, const std::string& report);
+void publish(std::initializer_list<FileOutput> files, const Printout& report);
 
 }  // namespace leviosim::tools

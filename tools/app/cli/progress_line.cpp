@@ -53,13 +53,24 @@ double ProgressLine::host_seconds() const {
   return std::chrono::duration<double>(Clock::now() - begin_).count();
 }
 
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<std::int64_t>(seconds + 0.5);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string time_left_text(std::int64_t done, std::int64_t total, double host_seconds) {
+  if (done <= 0 || done >= total || !(host_seconds > 0)) return {};
+  const double left = static_cast<double>(total - done) / static_cast<double>(done);
+  return fmt::format(" · done in {}", duration_text(left * host_seconds));
+}
+
 std::string frame_progress(std::int64_t done, std::int64_t total, std::int64_t simulated_ns,
                            double host_seconds) {
   std::string text = fmt::format("frame {}/{} · simulated {:.2f} s", done, total,
                                  static_cast<double>(simulated_ns) * 1e-9);
   if (host_seconds > 0)
     text += fmt::format(" · {:.0f} frames/s", static_cast<double>(done) / host_seconds);
-  return text;
+  return text + time_left_text(done, total, host_seconds);
 }
 
 }  // namespace leviosim::tools

@@ -39,7 +39,14 @@ class ProgressLine {
   bool visible_ = false;
 };
 
-/// "frame 123/300 · simulated 6.15 s · 42 frames/s"
+/// "0:01:13"
+std::string duration_text(double seconds);
+
+/// " · done in 0:01:13", if the rest takes as long as what is done; empty before the first and
+/// after the last.
+std::string time_left_text(std::int64_t done, std::int64_t total, double host_seconds);
+
+/// "frame 123/300 · simulated 6.15 s · 42 frames/s · done in 0:00:04"
 std::string frame_progress(std::int64_t done, std::int64_t total, std::int64_t simulated_ns,
                            double host_seconds);
 

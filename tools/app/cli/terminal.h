@@ -1,11 +1,13 @@
 // All that leviosim prints. stdout has results, stderr one line per error; progress is in
-// progress_line.h. Nothing raw leaves: control characters and bytes that are no UTF-8 are escaped
+// progress_line.h. Results are coloured on a terminal only, and not where NO_COLOR is set
+// (no-color.org). Nothing raw leaves: control characters and bytes that are no UTF-8 are escaped
 // (sim/base/printable_text.h). Newlines and tabs of results stay, so texts from outside are made
 // printable() where they enter a result.
 #pragma once
 
 #include <fmt/core.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -20,6 +22,13 @@ template <class... Args>
 void print_result(fmt::format_string<Args...> format, Args&&... args) {
   print_result_text(fmt::format(format, std::forward<Args>(args)...));
 }
+
+/// Columns that text on stdout may take: those of the terminal, 80 where it is none. COLUMNS in the
+/// environment takes precedence.
+int output_width();
+
+/// Lines that say whether all is well, in colour: "verdict: …" and "warning: …".
+std::string coloured_lines(std::string_view text);
 
 /// Hands what was printed to the system, which may refuse it only now: a full disk. Throws as
 /// print_result_text() does.

@@ -80,7 +80,11 @@ void add_eval_options(CLI::App& command, EvalOptions& options) {
       "completion is of N poses, e.g. the frames fed in [of the ground truth's duration]");
   add("--format", options.format, "FORMAT", "of both files: tum, euroc or kitti [as they look]");
   add("--times", options.times, "FILE", "time stamps of KITTI files, seconds, one a line");
-  add("--json", options.json, "FILE", "write the figures");
+  command
+      .add_option("--json", options.json,
+                  "write the figures to a file; without one, at the end, print them as JSON")
+      ->type_name("FILE")
+      ->expected(0, 1);
   add("--plot", options.plot, "FILE.svg", "draw views from top and side, and errors over time");
   command.add_flag("--force", options.force, "replace these files");
 }

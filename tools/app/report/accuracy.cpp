@@ -5,6 +5,7 @@
 #include <array>
 
 #include "tools/app/report/text_table.h"
+#include "traces/trajectories/attitude_error.h"
 
 namespace leviosim::tools {
 namespace {
@@ -47,9 +48,21 @@ std::string table_of(const std::vector<RelativeErrors>& errors) {
 std::string ate_text(const Evaluation& evaluation) {
   const ErrorSummary& t = evaluation.translation;
   return fmt::format(
-      "ATE: {:.3f} m RMSE ({:.3f} mean, {:.3f} median, {:.3f} worst), rotation {:.2f}° RMSE\n"
-      "     {}\n",
-      t.rmse, t.mean, t.median, t.max, evaluation.rotation_rmse_deg, evaluation.protocol);
+             "ATE: {:.3f} m RMSE ({:.3f} mean, {:.3f} median, {:.3f} worst)\n"
+             "     {}\n",
+             t.rmse, t.mean, t.median, t.max, evaluation.protocol) +
+         attitude_text(evaluation);
+}
+
+std::string attitude_text(const Evaluation& evaluation) {
+  const std::optional<traces::AttitudeErrors> errors = attitude_errors(evaluation);
+  if (!errors) return {};
+  std::string text = fmt::format("attitude: tilt {:.2f}° RMSE, heading {:.2f}° RMSE, best aligned",
+                                 errors->tilt_rmse_deg, errors->heading_rmse_deg);
+  if (!errors->is_gravity_aligned())
+    text += fmt::format("\n     not gravity-aligned: its vertical is {:.1f}° off the true one",
+                        errors->world_tilt_deg);
+  return text + '\n';
 }
 
 std::string relative_text(const Evaluation& evaluation, const std::vector<RelativeErrors>& errors) {

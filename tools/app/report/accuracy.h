@@ -11,8 +11,12 @@
 
 namespace leviosim::tools {
 
-/// "ATE: … m RMSE (…), rotation …° RMSE", and the protocol in a second line.
+/// "ATE: … m RMSE (…)", the protocol in a second line, and attitude_text() in a third.
 std::string ate_text(const traces::Evaluation& evaluation);
+
+/// "attitude: tilt …° RMSE, heading …° RMSE", after an alignment of the attitudes, and whether the
+/// estimate knows the vertical. Empty where the evaluation holds no poses.
+std::string attitude_text(const traces::Evaluation& evaluation);
 
 /// A row per length that has sub-trajectories, with the protocol below, and a line that names the
 /// lengths that are too long for the path. Empty for no lengths.

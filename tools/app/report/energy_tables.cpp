@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 
@@ -68,11 +67,11 @@ double front_end_ms(const RunResult& run, Hertz cluster_clock) {
 
 }  // namespace
 
-std::string energy_table(const RunResult& run) {
+std::string energy_table(const RunResult& run, int width) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return {};
   TextTable table(
-      {{"stage", kLeft}, {"call", kLeft}, {"uJ of a call"}, {"band"}, {"mW"}, {"band"}});
+      {{"stage", kLeft}, {"call", kLeft, 1}, {"uJ of a call"}, {"band"}, {"mW"}, {"band"}});
   for (const EnergyRow& row : energy->rows) {
     std::vector<std::string> cells{name_of(row), row.unit};
     add_figure(cells, row.per_call(), 1e-6);
@@ -82,7 +81,7 @@ std::string energy_table(const RunResult& run) {
   return fmt::format("energy at {:g} V, cluster {:g} MHz, controller {:g} MHz\n",
                      run.chip.supply.voltage.count(), megahertz(run.cluster_clock),
                      megahertz(run.controller_clock)) +
-         table.str() +
+         table.str(width) +
          (any_on_controller(*energy) ? "¹ what the controller adds; the rest of the chip is in the "
                                        "rows of the cluster\n"
                                      : "") +
@@ -90,11 +89,12 @@ std::string energy_table(const RunResult& run) {
          totals(*energy);
 }
 
-std::string power_table(const RunResult& run) {
+std::string power_table(const RunResult& run, int width) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return {};
   std::vector<TextTable::Column> columns{{"stage", kLeft}};
-  for (const sim::DomainInfo& info : sim::kDomains) columns.push_back({std::string(info.name)});
+  for (const sim::DomainInfo& info : sim::kDomains)
+    columns.push_back({std::string(info.name), TextTable::Align::Right, 1});
   columns.push_back({"total"});
   TextTable table(std::move(columns));
   const auto add = [&](std::string name, const sim::DomainEnergies& energies, Seconds time) {
@@ -108,17 +108,17 @@ std::string power_table(const RunResult& run) {
   };
   for (const EnergyRow& row : energy->rows) add(name_of(row), row.energy, row.time);
   add("all the time", energy->total(), energy->time);
-  return "where the power goes while a stage runs [mW]\n" + table.str();
+  return "where the power goes while a stage runs [mW]\n" + table.str(width);
 }
 
-std::string operating_point_table(const RunResult& run) {
+std::string operating_point_table(const RunResult& run, int width) {
   if (!energy_of(run) || run.camera || run.frames.empty()) return {};
   TextTable table({{"supply", kLeft},
                    {"clock"},
                    {"front end ms"},
                    {"mJ of a frame"},
                    {"band"},
-                   {"frames/s"},
+                   {"frames/s", TextTable::Align::Right, 1},
                    {"mean mW"},
                    {"band"}});
   const sim::SupplyConfig& supply = run.chip.supply;
@@ -136,7 +136,7 @@ std::string operating_point_table(const RunResult& run) {
     add_figure(cells, energy->mean_power(), 1e-3);
     table.add(std::move(cells));
   }
-  return "the same cycles at the ends of the supply\n" + table.str();
+  return "the same cycles at the ends of the supply\n" + table.str(width);
 }
 
 }  // namespace leviosim::tools

@@ -3,15 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "sim/base/printable_text.h"
 #include "sim/chip/accelerator.h"
-#include "tools/app/report/accuracy.h"
 #include "tools/app/report/energy_tables.h"
-#include "tools/app/report/text_table.h"
-#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
@@ -19,12 +17,8 @@ namespace {
 
 constexpr int kWidth = 100;
 
-std::string number(std::optional<double> value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
-}
-
 std::string kilo(std::optional<double> value, int decimals) {
-  return number(value ? std::optional(*value / 1000.0) : std::nullopt, decimals);
+  return figure_text(value ? std::optional(*value / 1000.0) : std::nullopt, decimals);
 }
 
 std::string kilobytes(Bytes bytes) { return kilo(static_cast<double>(bytes.count()), 1); }
@@ -32,13 +26,20 @@ std::string kilobytes(Bytes bytes) { return kilo(static_cast<double>(bytes.count
 std::string on_cores(int cores) { return cores == 1 ? "1 core" : fmt::format("{} cores", cores); }
 
 std::string milliseconds_text(std::optional<double> cycles, Hertz clock) {
-  return number(cycles ? std::optional(milliseconds(*cycles, clock)) : std::nullopt, 3);
+  return figure_text(cycles ? std::optional(milliseconds(*cycles, clock)) : std::nullopt, 3);
 }
 
 /// Columns of the table of breakdowns, in its order.
 constexpr std::array<std::string_view, 11> kBreakdownColumns{
     "useful", "served",    "queue", "I-cache",  "FPU",   "divider",
     "banks",  "imbalance", "sync",  "transfer", "serial"};
+/// Those that are small on most chips, so that they go first where the width is short.
+constexpr std::array<std::string_view, 4> kSmallColumns{"divider", "banks", "sync", "transfer"};
+
+int rank_of(std::string_view column) {
+  return std::find(kSmallColumns.begin(), kSmallColumns.end(), column) == kSmallColumns.end() ? 0
+                                                                                              : 1;
+}
 
 /// What stands in a column, summed up. Absent for a column that no part belongs to.
 std::optional<double> sum_of(std::string_view column, const std::vector<BreakdownPart>& parts,
@@ -64,8 +65,8 @@ std::vector<std::string> breakdown_cells(const std::vector<BreakdownPart>& parts
     if (const auto sum = sum_of(column, parts, breakdown)) sums.push_back(*sum);
   if (!(breakdown.total() > 0)) return std::vector<std::string>(sums.size() + 1, kNothing);
   std::vector<std::string> cells;
-  for (const double percent : tenths_of_percent(sums)) cells.push_back(number(percent, 1));
-  cells.push_back(number(breakdown.total() * 1e-6, 1));
+  for (const double percent : tenths_of_percent(sums)) cells.push_back(figure_text(percent, 1));
+  cells.push_back(figure_text(breakdown.total() * 1e-6, 1));
   return cells;
 }
 
@@ -113,7 +114,7 @@ std::vector<Occupant> occupants(const RunResult& run) {
   return all;
 }
 
-std::string blocks_at_peak(const std::vector<Occupant>& rows) {
+std::string blocks_at_peak(const std::vector<Occupant>& rows, int width) {
   int indent = 0;
   for (const Occupant& row : rows) indent = std::max(indent, display_width(row.name) + 4);
   std::string text = "blocks alive at the peak [kB]\n";
@@ -121,26 +122,9 @@ std::string blocks_at_peak(const std::vector<Occupant>& rows) {
     const std::vector<std::string> items = block_list(*row.blocks);
     const int padding = indent - 2 - display_width(row.name);
     text += fmt::format("  {}{}{}\n", row.name, std::string(static_cast<std::size_t>(padding), ' '),
-                        items.empty() ? kNothing : wrap(items, " · ", indent, kWidth));
+                        items.empty() ? kNothing : wrap(items, " · ", indent, width));
   }
   return text;
-}
-
-std::string waiting_line(const RunResult& run) {
-  const Waiting waiting = frames_that_waited(run);
-  return fmt::format("frames that waited for the front end: {}, the longest {:.2f} ms\n",
-                     waiting.frames, static_cast<double>(waiting.longest_ns) * 1e-6);
-}
-
-double mean_of(const RunResult& run, int FrameResult::*field) {
-  double sum = 0;
-  for (const FrameResult& frame : run.frames) sum += frame.*field;
-  return run.frames.empty() ? 0 : sum / static_cast<double>(run.frames.size());
-}
-
-std::int64_t count_of(const RunResult& run, PoseSource source) {
-  return std::count_if(run.frames.begin(), run.frames.end(),
-                       [&](const FrameResult& frame) { return frame.source == source; });
 }
 
 }  // namespace
@@ -163,36 +147,46 @@ std::vector<double> tenths_of_percent(const std::vector<double>& parts) {
   return tenths;
 }
 
-std::string stage_table(const RunResult& run) {
+TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
+                    std::string_view mark_of_controller) {
   TextTable table({{"stage", kLeft},
-                   {"call", kLeft},
-                   {"calls"},
+                   {"call", kLeft, 3},
+                   {"calls", kRight, 2},
                    {"kcycles, 1 core"},
                    {"kcycles, " + on_cores(run.cores)},
                    {"speed-up"},
                    {"ms"},
-                   {"worst ms"}});
-  for (const StageResult& stage : run.stages) {
-    const std::optional<double> parallel = mean(stage.parallel, stage.calls);
-    const std::optional<double> worst = mean(stage.worst_parallel, stage.calls > 0 ? 1 : 0);
-    const Hertz clock = clock_of(run, stage);
-    table.add({stage.on_controller ? stage.name + " ¹" : stage.name, stage.unit,
-               fmt::format("{}", stage.calls), kilo(mean(stage.single, stage.calls), 2),
-               kilo(parallel, 2), number(speedup(stage), 2), milliseconds_text(parallel, clock),
+                   {"worst ms", kRight, 1}});
+  for (const StageResult* stage : stages) {
+    const std::optional<double> parallel = mean(stage->parallel, stage->calls);
+    const std::optional<double> worst = mean(stage->worst_parallel, stage->calls > 0 ? 1 : 0);
+    const Hertz clock = clock_of(run, *stage);
+    table.add({stage->name + (stage->on_controller ? std::string(mark_of_controller) : ""),
+               stage->unit, fmt::format("{}", stage->calls),
+               kilo(mean(stage->single, stage->calls), 2), kilo(parallel, 2),
+               figure_text(speedup(*stage), 2), milliseconds_text(parallel, clock),
                milliseconds_text(worst, clock)});
   }
+  return table;
+}
+
+std::string stage_table(const RunResult& run, int width) {
+  std::vector<const StageResult*> all;
+  for (const StageResult& stage : run.stages) all.push_back(&stage);
   const bool any_on_controller = std::any_of(run.stages.begin(), run.stages.end(),
                                              [](const StageResult& s) { return s.on_controller; });
-  return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) + table.str() +
+  return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) +
+         stages_of(run, all, " ¹").str(width) +
          (any_on_controller ? "¹ on the fabric controller, which is one core\n" : "");
 }
 
-std::string breakdown_table(const RunResult& run) {
+std::string breakdown_table(const RunResult& run, int width) {
   std::vector<TextTable::Column> columns{{"stage", kLeft}};
   const std::vector<BreakdownPart> parts = cluster_parts(run);
   for (const std::string_view column : kBreakdownColumns)
-    if (sum_of(column, parts, {})) columns.push_back({std::string(column)});
-  columns.push_back({"core-Mcycles"});
+    if (sum_of(column, parts, {}))
+      columns.push_back({std::string(column), kRight, rank_of(column)});
+  columns.push_back({"core-Mcycles", kRight, 2});
   TextTable table(std::move(columns));
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;
@@ -200,61 +194,13 @@ std::string breakdown_table(const RunResult& run) {
     cells.insert(cells.begin(), stage.name);
     table.add(std::move(cells));
   }
-  return fmt::format("where the core-cycles go on {} [%]\n", on_cores(run.cores)) + table.str() +
+  return fmt::format("where the core-cycles go on {} [%]\n", on_cores(run.cores)) +
+         table.str(width) +
          "serial: the team idles while the master works alone; imbalance: waiting for the slowest "
          "core of a fork\n";
 }
 
-std::string latency_table(const RunResult& run) {
-  const auto period_ns = static_cast<double>(run.frame_period_ns);
-  TextTable table({{"pose from", kLeft},
-                   {"frames"},
-                   {"mean ms"},
-                   {"worst ms"},
-                   {"mean/period %"},
-                   {"worst/period %"},
-                   {"over period"}});
-  const auto percent = [&](std::optional<double> ns) {
-    return number(ns ? std::optional(100.0 * *ns / period_ns) : std::nullopt, 1);
-  };
-  const auto ms = [](std::optional<double> ns) {
-    return number(ns ? std::optional(*ns * 1e-6) : std::nullopt, 2);
-  };
-  for (const Scenario& scenario : scenarios(run)) {
-    std::optional<double> worst;
-    if (scenario.frames > 0) worst = static_cast<double>(scenario.worst_latency_ns);
-    const std::optional<double> average = scenario.mean_latency_ns();
-    table.add({std::string(scenario.name), fmt::format("{}", scenario.frames), ms(average),
-               ms(worst), percent(average), percent(worst),
-               fmt::format("{}", scenario.over_period)});
-  }
-  return fmt::format(
-             "frame latency, from the camera's frame to its pose (frame period {:.2f} ms)\n",
-             period_ns * 1e-6) +
-         table.str() + waiting_line(run);
-}
-
-std::string camera_summary(const RunResult& run) {
-  const std::optional<CameraFigures> figures = camera_figures(run);
-  if (!figures) return {};
-  const auto counted = [&](std::int64_t frames) {
-    return fmt::format("{} ({:.1f} %)", frames, 100 * figures->share_of(frames));
-  };
-  const auto ms = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-6; };
-  const CameraFigures::Latencies& latency = figures->latency;
-  return fmt::format(
-      "closed loop: camera at {:g} frames/s; {}\n"
-      "frames: {} arrived, {} processed, {} dropped; {} late, so {} missed the deadline of a "
-      "period\n"
-      "        {} waited; most frames found in the camera's two buffers: {}\n"
-      "latency [ms]: p50 {:.2f}, p95 {:.2f}, p99 {:.2f}, worst {:.2f}; the period is {:.2f}\n",
-      run.camera->fps, info_of(run.camera->deadline).description, figures->arrived,
-      figures->processed, counted(figures->dropped), counted(figures->late),
-      counted(figures->missed()), counted(figures->waited), figures->most_found, ms(latency.p50_ns),
-      ms(latency.p95_ns), ms(latency.p99_ns), ms(latency.max_ns), ms(run.frame_period_ns));
-}
-
-std::string memory_table(const RunResult& run) {
+std::string memory_table(const RunResult& run, int width) {
   TextTable table({{"peak", kLeft},
                    {"memory", kLeft},
                    {"kB, 1 core"},
@@ -265,62 +211,58 @@ std::string memory_table(const RunResult& run) {
   for (const Occupant& row : rows) {
     const auto kb = [](std::optional<Bytes> b) { return b ? kilobytes(*b) : kNothing; };
     const auto percent = [&](std::optional<Bytes> b) {
-      return b ? number(percent_of_nominal(*b, row.size), 2) : kNothing;
+      return b ? figure_text(percent_of_nominal(*b, row.size), 2) : kNothing;
     };
     table.add({row.name, row.memory, kb(row.single), kb(row.parallel), percent(row.single),
                percent(row.parallel)});
   }
   return fmt::format("memory (kB of 1000 bytes, % of {} kB L1 and {} kB L2)\n",
                      run.l1_size.count() / 1024, run.l2_size.count() / 1024) +
-         table.str() + blocks_at_peak(rows);
+         table.str(width) + blocks_at_peak(rows, std::min(width, kWidth));
 }
 
-std::string frame_summary(const RunResult& run) {
-  const std::int64_t keyframes = std::count_if(run.frames.begin(), run.frames.end(),
-                                               [](const FrameResult& f) { return f.keyframe; });
-  const std::int64_t tracked = count_of(run, PoseSource::Tracked);
-  std::string text = fmt::format(
-      "frames: {} ({}EPnP {}, 8-point {}, pose kept {}, predicted {}), keyframes {}\n"
-      "        per frame {:.1f} features, {:.1f} world matches, {:.1f} frame matches, "
-      "{:.1f} landmarks\n",
-      run.frames.size(), tracked > 0 ? fmt::format("tracked {}, ", tracked) : "",
-      count_of(run, PoseSource::Epnp), count_of(run, PoseSource::EightPoint),
-      count_of(run, PoseSource::Kept), count_of(run, PoseSource::Predicted), keyframes,
-      mean_of(run, &FrameResult::features), mean_of(run, &FrameResult::world_matches),
-      mean_of(run, &FrameResult::frame_matches), mean_of(run, &FrameResult::landmarks));
-  if (run.timed)
-    text += fmt::format("optimiser: {} results published, still busy at the start of {} frames\n",
-                        run.optimiser_published, run.optimiser_late);
-  return text;
+namespace {
+
+struct NamedTable {
+  std::string_view name;
+  bool is_of_chip;  ///< and absent from native runs
+  std::string (*text)(const RunResult& run, int width);
+};
+
+/// In the order in which they are printed.
+constexpr std::array kTables{
+    NamedTable{"stages", true, stage_table},
+    NamedTable{"breakdown", true, breakdown_table},
+    NamedTable{"latency", true, latency_table},
+    NamedTable{"camera", true, [](const RunResult& run, int) { return camera_summary(run); }},
+    NamedTable{"memory", true, memory_table},
+    NamedTable{"energy", true, energy_table},
+    NamedTable{"power", true, power_table},
+    NamedTable{"supply", true, operating_point_table},
+    NamedTable{"frames", false, [](const RunResult& run, int) { return frame_summary(run); }},
+    NamedTable{"trajectory", false,
+               [](const RunResult& run, int) { return trajectory_summary(run); }},
+};
+
+}  // namespace
+
+std::vector<std::string> table_names() {
+  std::vector<std::string> names;
+  for (const NamedTable& table : kTables) names.emplace_back(table.name);
+  return names;
 }
 
-std::string trajectory_summary(const RunResult& run) {
-  std::string text = fmt::format("trajectory: {} poses, {:.2f} m long\n", run.trajectory.size(),
-                                 path_length(run.trajectory));
-  if (run.poses_left_out > 0)
-    text += fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
-  if (const std::string why = why_incomparable(run); !why.empty())
-    return text + "ATE: none: " + why + '\n';
-  if (!run.ate) return text + "ATE: no ground truth in the data\n";
-  return text + ate_text(*run.ate);
-}
-
-std::string host_line(const RunResult& run) {
-  std::string text =
-      fmt::format("host: {} frames in {:.1f} s", run.frames.size(), run.host_seconds);
-  if (run.host_seconds > 0)
-    text += fmt::format(" ({:.1f} frames/s)",
-                        static_cast<double>(run.frames.size()) / run.host_seconds);
-  return text + '\n';
-}
-
-std::string report(const RunResult& run) {
+std::string report(const RunResult& run, const std::vector<std::string>& names, int width) {
+  const auto is_wanted = [&](std::string_view name) {
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  };
   std::string text;
-  if (run.timed)
-    for (const auto table : {stage_table, breakdown_table, latency_table, camera_summary,
-                             memory_table, energy_table, power_table, operating_point_table})
-      if (const std::string lines = table(run); !lines.empty()) text += lines + '\n';
-  return text + frame_summary(run) + trajectory_summary(run) + host_line(run);
+  for (const NamedTable& table : kTables) {
+    if (!is_wanted(table.name) || (table.is_of_chip && !run.timed)) continue;
+    if (const std::string lines = table.text(run, width); !lines.empty())
+      text += lines + (table.is_of_chip ? "\n" : "");
+  }
+  return text + host_line(run) + map_warning(run);
 }
 
 }  // namespace leviosim::tools

@@ -1,5 +1,7 @@
 #include "tools/app/report/text_table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -21,6 +23,10 @@ int display_width(std::string_view text) {
          static_cast<int>(std::count_if(text.begin(), text.end(), continues));
 }
 
+std::string figure_text(std::optional<double> value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "–";
+}
+
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {
   for (Column& column : columns_) column.title = printable(column.title);
 }
@@ -35,6 +41,7 @@ std::string TextTable::line(const std::vector<std::string>& cells,
                             const std::vector<int>& widths) const {
   std::string text;
   for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (widths[c] == 0) continue;
     const std::string padding = blanks(widths[c] - display_width(cells[c]));
     if (c > 0) text += kGap;
     text += columns_[c].align == Align::Left ? cells[c] + padding : padding + cells[c];
@@ -60,18 +67,34 @@ std::string TextTable::markdown() const {
   return text;
 }
 
-std::string TextTable::str() const {
-  std::vector<std::string> titles;
+std::vector<int> TextTable::widths_within(int width) const {
   std::vector<int> widths;
   int total = 0;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    titles.push_back(columns_[c].title);
-    int width = display_width(columns_[c].title);
-    for (const auto& row : rows_) width = std::max(width, display_width(row[c]));
-    widths.push_back(width);
-    total += width + (c > 0 ? display_width(kGap) : 0);
+    int widest = std::max(1, display_width(columns_[c].title));
+    for (const auto& row : rows_) widest = std::max(widest, display_width(row[c]));
+    widths.push_back(widest);
+    total += widest + (c > 0 ? display_width(kGap) : 0);
   }
+  while (total > width) {
+    std::size_t last = 0;
+    for (std::size_t c = 1; c < columns_.size(); ++c)
+      if (widths[c] > 0 && (last == 0 || columns_[c].rank >= columns_[last].rank)) last = c;
+    if (last == 0) break;
+    total -= widths[last] + display_width(kGap);
+    widths[last] = 0;
+  }
+  return widths;
+}
+
+std::string TextTable::str(int width) const {
+  std::vector<std::string> titles;
+  for (const Column& column : columns_) titles.push_back(column.title);
+  const std::vector<int> widths = widths_within(width);
   std::string text = line(titles, widths);
+  int total = -display_width(kGap);
+  for (const int one : widths)
+    if (one > 0) total += one + display_width(kGap);
   for (int i = 0; i < total; ++i) text += "─";
   text += '\n';
   for (const auto& row : rows_) text += line(row, widths);

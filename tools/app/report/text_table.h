@@ -1,14 +1,22 @@
 // Text in aligned columns for terminals.
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace leviosim::tools {
 
+/// Of text that may be as wide as it likes.
+inline constexpr int kAnyWidth = std::numeric_limits<int>::max();
+
 /// Columns that text takes on a terminal: code points of UTF-8.
 int display_width(std::string_view text);
+
+/// With so many decimals; "–" for what does not exist.
+std::string figure_text(std::optional<double> value, int decimals);
 
 class TextTable {
  public:
@@ -16,19 +24,24 @@ class TextTable {
   struct Column {
     std::string title;
     Align align = Align::Right;
+    int rank = 0;  ///< where the width is short, the highest rank is left out first
   };
 
   explicit TextTable(std::vector<Column> columns);
 
   /// One cell per column.
   void add(std::vector<std::string> cells);
-  /// Titles, a rule, and the rows; every line ends in a line break.
-  std::string str() const;
+  /// Titles, a rule, and the rows; every line ends in a line break. Columns that do not fit are
+  /// left out: those of the highest rank first, of equal ones the last, never the first column.
+  std::string str(int width = kAnyWidth) const;
   /// A table for Markdown files. Cells must hold no bars.
   std::string markdown() const;
 
  private:
+  /// A line of the columns that have a width.
   std::string line(const std::vector<std::string>& cells, const std::vector<int>& widths) const;
+  /// Of each column; 0 for those that are left out.
+  std::vector<int> widths_within(int width) const;
 
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
@@ -40,6 +53,7 @@ std::string wrap(const std::vector<std::string>& items, std::string_view separat
                  int width);
 
 inline constexpr auto kLeft = TextTable::Align::Left;
+inline constexpr auto kRight = TextTable::Align::Right;
 /// What stands in a cell of which nothing is known.
 inline constexpr const char* kNothing = "–";
 

@@ -9,20 +9,20 @@
 namespace leviosim::tools {
 namespace {
 
-enum Kind : std::size_t { kEpnp = 0, kEightPoint = 2, kTracked = 4, kOther = 6 };
+enum Kind : std::size_t { kEpnp = 0, kEightPoint = 2, kTracked = 4, kPredicted = 6, kOther = 8 };
 
-/// By the means that found the pose; the number after it is that of the kind with keyframe. EPnP
-/// has run for predicted poses, too.
+/// By the means that found the pose; the number after it is that of the kind with keyframe.
 std::size_t scenario_of(const FrameResult& frame) {
   const std::size_t keyframe = frame.keyframe ? 1 : 0;
   switch (frame.source) {
     case PoseSource::Epnp:
-    case PoseSource::Predicted:
       return kEpnp + keyframe;
     case PoseSource::EightPoint:
       return kEightPoint + keyframe;
     case PoseSource::Tracked:
       return kTracked + keyframe;
+    case PoseSource::Predicted:
+      return kPredicted + keyframe;
     default:
       return kOther;
   }
@@ -36,6 +36,8 @@ std::vector<Scenario> empty_scenarios() {
       {"8-point, keyframe", "eight_point_keyframe"},
       {"tracked", "tracked"},
       {"tracked, keyframe", "tracked_keyframe"},
+      {"predicted", "predicted"},
+      {"predicted, keyframe", "predicted_keyframe"},
       {"other (first, pose kept)", "other"},
   }};
   std::vector<Scenario> all;
@@ -107,9 +109,11 @@ std::vector<Scenario> scenarios(const RunResult& run) {
     scenario.single += frame.single_cycles;
     scenario.parallel += frame.cycles;
   }
-  // Profiles that do not track have no such frames.
-  if (all[kTracked].frames + all[kTracked + 1].frames == 0)
-    all.erase(all.begin() + kTracked, all.begin() + kOther);
+  // Those that not every profile has, from the last on, so that the numbers before stay right.
+  for (const std::size_t kind : {kPredicted, kTracked}) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(kind);
+    if (first[0].frames + first[1].frames == 0) all.erase(first, first + 2);
+  }
   return all;
 }
 

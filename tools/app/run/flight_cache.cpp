@@ -59,8 +59,12 @@ void write_flight(const fs::path& folder, const traces::SyntheticOptions& option
   ProgressLine line(progress);
   traces::write_synthetic_flight(folder, options, [&](std::size_t done, std::size_t total) {
     throw_if_interrupted();
-    line.show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total),
-              [&] { return fmt::format("synthetic flight: image {}/{}", done, total); });
+    const auto drawn = static_cast<std::int64_t>(done);
+    const auto all = static_cast<std::int64_t>(total);
+    line.show(drawn, all, [&] {
+      return fmt::format("synthetic flight: image {}/{}{}", done, total,
+                         time_left_text(drawn, all, line.host_seconds()));
+    });
   });
 }
 

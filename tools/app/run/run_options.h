@@ -25,6 +25,8 @@ struct RunOptions {
   bool record = false;
   bool force = false;
   bool quiet = false;
+  std::string tables;  ///< those to print in place of the summary
+  bool json = false;   ///< print JSON
 };
 
 /// Declares the options on the subcommand.

@@ -29,6 +29,7 @@ struct BatchWords {
   std::string out;
   bool force = false;
   bool quiet = false;
+  bool json = false;
 };
 
 /// Checked, and the sequences opened.

@@ -44,12 +44,6 @@ void show(ProgressLine& line, const std::string& noun, const Tally& tally) {
             [&] { return progress_text(noun, tally, line.host_seconds()); });
 }
 
-/// "0:01:13"
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<std::int64_t>(seconds + 0.5);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
 }  // namespace
 
 void add_runner_options(CLI::App& command, RunnerWords& words, const std::string& noun) {

@@ -34,6 +34,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
     start_at_rest(frame);
   } else if (!map_is_plausible(state_, prediction_)) {
     start_anew(frame);
+    report.map_restarts = 1;
   } else {
     locate(frame, report);
     report.keyframe = is_keyframe(frame, report);

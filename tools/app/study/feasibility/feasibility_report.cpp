@@ -116,6 +116,22 @@ std::string stage_comparison(const std::vector<Feasibility>& rows) {
   return table.str();
 }
 
+std::string stage_comparison_csv(const std::vector<Feasibility>& rows) {
+  struct Row {
+    const Feasibility& chip;
+    const StageTime& stage;
+  };
+  std::vector<Row> all;
+  for (const Feasibility& chip : rows)
+    for (const StageTime& stage : chip.stages) all.push_back({chip, stage});
+  const base::CsvTable<Row> table{
+      {"platform", [](const Row& row) { return row.chip.platform; }},
+      {"cores", [](const Row& row) { return row.chip.cores; }},
+      {"stage", [](const Row& row) { return row.stage.name; }},
+      {"kilocycles", [](const Row& row) { return fmt::format("{}", row.stage.kilocycles); }}};
+  return table.text(all);
+}
+
 std::string feasibility_csv(const std::vector<Feasibility>& rows) {
   using F = const Feasibility&;
   const auto text = [](double value) { return fmt::format("{}", value); };

@@ -19,4 +19,7 @@ std::string stage_comparison(const std::vector<Feasibility>& rows);
 /// The first table with all digits.
 std::string feasibility_csv(const std::vector<Feasibility>& rows);
 
+/// Kilocycles of a call: a row per chip and stage.
+std::string stage_comparison_csv(const std::vector<Feasibility>& rows);
+
 }  // namespace leviosim::tools

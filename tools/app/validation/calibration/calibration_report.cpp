@@ -78,4 +78,31 @@ std::string calibration_report(const Calibration& calibration) {
                      left_out_table(calibration));
 }
 
+Json calibration_json(const Calibration& calibration) {
+  Json document{{"format", "leviosim calibration"}, {"version", 1}};
+  Json& constants = document["constants"] = Json::array();
+  for (std::size_t i = 0; i < calibration.constants.size(); ++i) {
+    const Bounded& c = calibration.constants[i];
+    constants.push_back({{"path", c.path},
+                         {"unit", c.unit},
+                         {"before", c.value},
+                         {"fitted", calibration.fitted[i]},
+                         {"low", c.low},
+                         {"high", c.high}});
+  }
+  Json& residuals = document["residuals"] = Json::array();
+  for (const Residual& r : calibration.residuals)
+    residuals.push_back({{"stage", r.stage},
+                         {"paper_cycles", r.reference},
+                         {"cycles_before", r.before},
+                         {"cycles_fitted", r.after}});
+  Json& left_out = document["left_out"] = Json::array();
+  for (const LeftOut& l : calibration.left_out)
+    left_out.push_back({{"stage", l.stage},
+                        {"paper_cycles", l.reference},
+                        {"cycles_predicted", l.predicted},
+                        {"constants", l.constants}});
+  return document;
+}
+
 }  // namespace leviosim::tools

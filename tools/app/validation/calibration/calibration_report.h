@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/validation/calibration/calibration.h"
 
 namespace leviosim::tools {
@@ -11,5 +12,8 @@ std::string constants_table(const Calibration& calibration);
 std::string residual_table(const Calibration& calibration);
 std::string left_out_table(const Calibration& calibration);
 std::string calibration_report(const Calibration& calibration);
+
+/// Constants, residuals and stages left out, in the units of Calibration.
+Json calibration_json(const Calibration& calibration);
 
 }  // namespace leviosim::tools

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
@@ -59,13 +60,21 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
 }
 
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
-  std::string text =
-      "group,name,cores,unit,reference,reference_high,simulated,error,tolerance,tier,source\n";
-  for (const MicrobenchRow& row : rows)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.group, row.name, row.cores,
-                        row.unit, row.reference, row.reference_high, row.simulated, row.error(),
-                        row.tolerance, row.tier, row.source);
-  return text;
+  using R = MicrobenchRow;
+  const auto all_digits = [](double value) { return fmt::format("{}", value); };
+  const base::CsvTable<R> table{
+      {"group", [](const R& r) { return r.group; }},
+      {"name", [](const R& r) { return r.name; }},
+      {"cores", [](const R& r) { return r.cores; }},
+      {"unit", [](const R& r) { return r.unit; }},
+      {"reference", [=](const R& r) { return all_digits(r.reference); }},
+      {"reference_high", [=](const R& r) { return all_digits(r.reference_high); }},
+      {"simulated", [=](const R& r) { return all_digits(r.simulated); }},
+      {"error", [=](const R& r) { return all_digits(r.error()); }},
+      {"tolerance", [=](const R& r) { return all_digits(r.tolerance); }},
+      {"tier", [](const R& r) { return r.tier; }},
+      {"source", [](const R& r) { return r.source; }}};
+  return table.text(rows);
 }
 
 }  // namespace leviosim::tools

@@ -1,0 +1,175 @@
+// What commands print: the summary of a run on a screen of its size, tables by name, colours on a
+// terminal only, and JSON from every command with results.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <sstream>
+
+#include "tests/support/run_program.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/report/statistic_list.h"
+#include "tools/app/report/text_table.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using base::read_text_file;
+using testing::ProgramResult;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+class PrintoutTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::temp_directory_path() / fmt::format("leviosim-{}-printout", ::getpid());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    traces::write_synthetic_flight(path("flight"), {.duration_s = 1.5, .texel_m = 0.05});
+    recorded_ = run({"run", "--platform", "gap9", "--data", path("flight"), "--record", "--quiet",
+                     "--out", path("run")});
+    ASSERT_EQ(recorded_.status, 0) << recorded_.err;
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+
+  static std::string path(const std::string& name) { return (folder_ / name).string(); }
+  static ProgramResult run(std::vector<std::string> words) {
+    return testing::run_program(folder_, std::move(words));
+  }
+  static ProgramResult replay(const std::string& out, std::vector<std::string> further) {
+    std::vector<std::string> words{"replay", path("run"), "--quiet", "--out", path(out)};
+    words.insert(words.end(), further.begin(), further.end());
+    return run(std::move(words));
+  }
+  /// Exit status and output of a shell's line, in which $L is the program. What ends in `script`
+  /// is a terminal of 70 columns.
+  static std::string on_terminal(const std::string& line) {
+    const std::string words = fmt::format("stty cols 70; {}", line);
+    ::setenv("L", leviosim::tests::program_path().c_str(), 1);
+    ::setenv("WORDS", words.c_str(), 1);
+    const std::string command =
+        fmt::format("script -qec \"bash -c '$WORDS'\" /dev/null >'{}' </dev/null", path("typed"));
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;  // NOLINT: the line is the test's own
+    return base::read_text_file(folder_ / "typed");
+  }
+
+  static fs::path folder_;
+  static ProgramResult recorded_;
+};
+fs::path PrintoutTest::folder_;
+ProgramResult PrintoutTest::recorded_;
+
+TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
+  const std::vector<std::string> lines = lines_of(recorded_.out);
+  EXPECT_LE(lines.size(), 24u) << recorded_.out;
+  for (const std::string& line : lines)
+    EXPECT_TRUE(line.starts_with("results: ") || display_width(line) <= 80) << line;
+  for (const char* part : {"verdict: fits: all 30 frames", "feature extraction", "latency: p50 ",
+                           "memory: fits, L1 ", "energy: ", "trajectory: ", "--tables all"})
+    EXPECT_NE(recorded_.out.find(part), std::string::npos) << part << " is not in:\n"
+                                                           << recorded_.out;
+  EXPECT_EQ(lines.back(), "results: " + path("run"));
+}
+
+TEST_F(PrintoutTest, TablesAreChosenByName) {
+  const ProgramResult all = replay("all", {"--tables", "all"});
+  for (const char* part : {"where the core-cycles go", "pose from", "blocks alive at the peak",
+                           "where the power goes", "the same cycles at the ends", "per frame "})
+    EXPECT_NE(all.out.find(part), std::string::npos) << part << " is not in:\n" << all.out;
+  const ProgramResult two = replay("two", {"--tables", "memory,latency"});
+  EXPECT_NE(two.out.find("pose from"), std::string::npos) << two.out;
+  EXPECT_EQ(two.out.find("where the core-cycles go"), std::string::npos) << two.out;
+  testing::expect_refused(replay("none", {"--tables", "latancy"}),
+                          {"--tables", "latancy", "did you mean 'latency'?"});
+  testing::expect_refused(replay("none", {"--tables", "latency", "--json"}), {"--json"});
+  testing::expect_refused(replay("none", {"--budget", "x", "--json"}), {"--json and --budget"});
+  EXPECT_FALSE(fs::exists(path("none")));
+}
+
+/// Every command that prints results prints a document that says what it is, and nothing else.
+TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
+  const ProgramResult replayed = replay("json", {"--json"});
+  EXPECT_EQ(replayed.out, base::read_text_file(folder_ / "json/stats.json"));
+  const std::string est = path("run/trajectory.tum"), flight = path("flight");
+  const std::vector<std::string> few{"--frames",    "0:30",   "--quiet", "--cache",
+                                     path("cache"), "--seed", "1"};
+  const auto with_few = [&](std::vector<std::string> words) {
+    words.insert(words.end(), few.begin(), few.end());
+    return words;
+  };
+  base::write_file_atomically(
+      folder_ / "plan.yaml",
+      "base: { trace: run }\npoints: { grid: { platform.cluster.clock: [200, 240] } }\n");
+  const std::vector<std::vector<std::string>> commands{
+      {"run", "--native", "--data", flight, "--quiet", "--out", path("native")},
+      {"eval", est, flight},
+      {"compare", path("run"), path("json")},
+      {"trace", "info", path("run/work.trace")},
+      {"trace", "check", path("run/work.trace")},
+      {"workload", "--profile", "next"},
+      {"platforms"},
+      {"platforms", "show", "gap9"},
+      {"platforms", "diff", "gap8", "gap9"},
+      {"platforms", "feasibility", "gap9", "--data", flight, "--frames", "0:8", "--quiet"},
+      {"platforms", "stages", "gap9", "--data", flight, "--frames", "0:8", "--quiet"},
+      {"flow", "--platform", "gap8", "--data", flight, "--quiet", "--out", path("flow")},
+      {"validate", "--data", flight, "--quiet"},
+      {"microbench"},
+      {"sweep", path("plan.yaml"), "--quiet", "--cache", path("cache"), "--out", path("sweep")},
+      with_few({"tune", "--data", flight, "--clock", "300", "--fps", "10", "--ate", "1000",
+                "--miss-rate", "1"}),
+      with_few({"ablate", "--data", flight, "--size", "32x24", "--relative", "0.0001", "--out",
+                path("ablate")}),
+      with_few({"explore", "--data", flight, "--size", "32x24", "--points", "1", "--relative",
+                "0.0001", "--out", path("explore")}),
+  };
+  for (std::vector<std::string> words : commands) {
+    words.emplace_back("--json");
+    const ProgramResult result = run(words);
+    EXPECT_EQ(result.status, 0) << words[0] << ": " << result.err;
+    const Json document = Json::parse(result.out, nullptr, false);
+    ASSERT_TRUE(document.is_object()) << words[0] << " printed:\n" << result.out;
+    EXPECT_TRUE(document.value("format", "").starts_with("leviosim ")) << words[0];
+    EXPECT_GE(document.value("version", 0), 1) << words[0];
+  }
+}
+
+TEST_F(PrintoutTest, JsonOfRowsHoldsTheNumbersOfTheFile) {
+  const ProgramResult listed = run({"platforms", "--json"});
+  const Json chips = Json::parse(listed.out);
+  EXPECT_EQ(chips.at("rows").at(0).size(), 2u);
+  const ProgramResult flown = run({"flow", "--platform", "gap8", "--data", path("flight"),
+                                   "--quiet", "--out", path("flow2"), "--json"});
+  const Json rows = Json::parse(flown.out).at("rows");
+  EXPECT_EQ(rows.size() + 1, lines_of(base::read_text_file(folder_ / "flow2/flow.csv")).size());
+}
+
+TEST(Colours, AreForVerdictsAndWarnings) {
+  EXPECT_EQ(coloured_lines("a\nverdict: fits: x\nverdict: does not\nwarning: y\n"),
+            "a\n\x1b[32mverdict: fits: x\x1b[0m\n\x1b[31mverdict: does not\x1b[0m\n"
+            "\x1b[33mwarning: y\x1b[0m\n");
+  EXPECT_EQ(coloured_lines("no warning: y"), "no warning: y");
+  EXPECT_EQ(coloured_lines(""), "");
+}
+
+TEST_F(PrintoutTest, ColoursAndWidthAreThoseOfTheTerminal) {
+  const std::string words =
+      fmt::format("$L replay {} --quiet --force --out {}", path("run"), path("coloured"));
+  EXPECT_EQ(recorded_.out.find('\x1b'), std::string::npos);
+  const std::string coloured = on_terminal("TERM=xterm " + words);
+  EXPECT_NE(coloured.find("\x1b[32mverdict: fits"), std::string::npos) << coloured;
+  for (const std::string& line : lines_of(coloured))  // with the terminal's carriage return
+    EXPECT_TRUE(!line.starts_with("─") || display_width(line) <= 71) << line;
+  EXPECT_EQ(on_terminal("NO_COLOR=1 TERM=xterm " + words).find("\x1b[32m"), std::string::npos);
+  EXPECT_EQ(on_terminal("TERM=dumb " + words).find("\x1b[32m"), std::string::npos);
+  EXPECT_NE(on_terminal("COLUMNS=150 TERM=xterm " + words).find("worst ms"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,126 @@
+// The summary of a run fits a screen, whatever the run.
+#include "tools/app/report/run_summary.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "sim/energy/model.h"
+#include "tests/sim/energy_test_config.h"
+#include "tests/tools/example_run.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kHeading =
+    "leviosim 0.1.0: next on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, controller at "
+    "370 MHz, 0.8 V, camera at 20 frames/s (drop)";
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// As much as can be said of a run: many stages, energy, late frames, a wrong map.
+RunResult eventful_run() {
+  RunResult run = testing::example_run();
+  run.chip = sim::energy_chip();
+  const StageResult stage = run.stages.front();
+  run.stages.clear();
+  for (int i = 0; i < 20; ++i) {
+    run.stages.push_back(stage);
+    run.stages.back().name = fmt::format("optimiser iteration {:02}", i);
+    run.stages.back().parallel = Cycles(1000 * (i + 1));
+  }
+  for (const FrameResult& frame : run.frames) {
+    traces::MatchedPose pose{frame.t_ns, frame.pose.T_world_body, frame.pose.T_world_body};
+    pose.estimate.translation() *= 3;
+    run.ate->poses.push_back(pose);
+  }
+  run.ate->translation.rmse = 5;
+  run.frames[2].map_restarts = 1;
+  run.poses_left_out = 0;
+  return run;
+}
+
+void expect_fits(const std::string& text, int width) {
+  const std::vector<std::string> lines = lines_of(text);
+  EXPECT_LE(lines.size() + 1, static_cast<std::size_t>(kSummaryLines)) << text;
+  for (const std::string& line : lines) EXPECT_LE(display_width(line), width) << line;
+}
+
+TEST(RunSummary, FitsAScreen) {
+  for (const RunResult& run : {testing::example_run(), eventful_run(), RunResult()})
+    for (const int width : {80, 120, 200}) expect_fits(run_summary(kHeading, run, width), width);
+  const std::string deep = "leviosim: 5 frames of /" + std::string(300, 'x') + "/flight, 160x120";
+  expect_fits(run_summary(deep, testing::example_run(), 80), 80);
+  RunResult native = eventful_run();
+  native.timed = false;
+  expect_fits(run_summary(kHeading, native, 80), 80);
+}
+
+TEST(RunSummary, SaysAllThatMatters) {
+  const std::string text = run_summary(kHeading, eventful_run(), 80);
+  for (const char* part :
+       {"verdict: does not fit: 1 of 5 frames (20.0 %) miss the deadline of 50 ms",
+        "latency: p50 30.00, p99 60.00, worst 60.00 ms, deadline 50 ms",
+        "memory: fits, L1 64.0 kB (50.0 %) in optimiser iteration", "L2 794.5 kB (49.7 %)",
+        "energy: ", "mJ per frame", "trajectory: ATE 5.000 m RMSE, 0.470 m worst",
+        "SE3-aligned, 5 of 5 poses matched, completion 100.0 %, 5.40 m of path",
+        "restarts of the map 1", "warning: the map is wrong", "the scale is 3.00", "--tables all"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
+}
+
+/// Of the twenty stages those with the most cycles, in their order.
+TEST(RunSummary, LeavesOutTheSmallestStages) {
+  const std::string text = run_summary(kHeading, eventful_run(), 80);
+  std::vector<std::string> shown;
+  int left_out = 0;
+  for (const std::string& line : lines_of(text)) {
+    if (line.starts_with("optimiser iteration ")) shown.push_back(line.substr(20, 2));
+    if (line.starts_with("… ")) left_out = std::stoi(line.substr(std::string("… ").size()));
+  }
+  ASSERT_GE(shown.size(), 5u) << text;
+  EXPECT_EQ(shown.size() + static_cast<std::size_t>(left_out), 20u) << text;
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    EXPECT_EQ(std::stoi(shown[i]), static_cast<int>(20 - shown.size() + i));
+}
+
+TEST(RunSummary, AllStagesStandWhereThereIsRoom) {
+  const std::string text = run_summary(kHeading, testing::example_run(), 80);
+  for (const char* name : {"\nfeature extraction", "\nEPnP RANSAC", "\noptimiser iteration"})
+    EXPECT_NE(text.find(name), std::string::npos) << text;
+  EXPECT_EQ(text.find("more with fewer cycles"), std::string::npos);
+}
+
+TEST(RunSummary, VerdictCountsFramesThatAreDroppedOrLate) {
+  RunResult run = testing::example_run();
+  run.frames[2].end_ns = run.frames[2].arrival_ns + 50'000'000;
+  EXPECT_EQ(verdict(run), "verdict: fits: all 5 frames meet the deadline of 50 ms");
+  run.camera = CameraRecord{};
+  for (int i = 0; i < 8; ++i) run.camera->deliveries.push_back({});
+  run.camera->deliveries[3].dropped = run.camera->deliveries[4].dropped = true;
+  run.camera->deliveries[5].dropped = true;
+  EXPECT_EQ(verdict(run),
+            "verdict: does not fit: 3 of 8 frames (37.5 %) miss the deadline of 50 ms");
+  EXPECT_EQ(verdict(RunResult()), "verdict: no frames");
+}
+
+TEST(RunSummary, OfANativeRunHasNoTiming) {
+  RunResult run = testing::example_run();
+  run.timed = false;
+  const std::string text = run_summary(kHeading, run, 80);
+  EXPECT_EQ(text.find("verdict"), std::string::npos);
+  EXPECT_EQ(text.find("kcycles"), std::string::npos);
+  EXPECT_NE(text.find("frames: 5 (EPnP 2, 8-point 2, first of a map 1)"), std::string::npos);
+}
+
+TEST(RunSummary, RemarksStandAboveTheStages) {
+  const std::string text = run_summary(kHeading, testing::example_run(), 80, "a remark\n\n");
+  EXPECT_LT(text.find("a remark\n\n"), text.find("stage "));
+}
+
+}  // namespace
+}  // namespace leviosim::tools

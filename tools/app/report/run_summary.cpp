@@ -1,0 +1,187 @@
+#include "tools/app/report/run_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/base/printable_text.h"
+#include "tools/app/report/tables.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
+#include "traces/trajectories/attitude_error.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr std::string_view kComma = ", ";
+
+double ms(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
+
+/// The text without its middle, if it is wider than that.
+std::string shortened(const std::string& text, int width) {
+  if (display_width(text) <= width) return text;
+  const auto at = [&](int column) {  // the byte at which that character begins
+    std::size_t byte = 0;
+    for (int c = -1; byte < text.size(); ++byte)
+      if ((static_cast<unsigned char>(text[byte]) & 0xC0u) != 0x80u && ++c == column) break;
+    return byte;
+  };
+  const int head = (width - 1) / 3;
+  return text.substr(0, at(head)) + "…" + text.substr(at(display_width(text) - (width - 1 - head)));
+}
+
+/// The text, broken behind commas where it exceeds the width.
+std::string wrapped(const std::string& text, int width) {
+  constexpr int kIndent = 2;
+  std::vector<std::string> items;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(kComma, begin), text.size());
+    const bool last = end == text.size();
+    items.push_back(
+        shortened(text.substr(begin, end - begin) + (last ? "" : ","), width - kIndent));
+    begin = last ? end : end + kComma.size();
+  }
+  return wrap(items, " ", kIndent, width) + '\n';
+}
+
+/// Frames without a pose at their deadline, of all that arrived.
+struct Missed {
+  std::int64_t frames = 0;
+  std::int64_t of = 0;
+};
+
+Missed missed(const RunResult& run) {
+  if (const auto camera = camera_figures(run)) return {camera->missed(), camera->arrived};
+  return {std::count_if(run.frames.begin(), run.frames.end(),
+                        [&](const FrameResult& frame) { return is_late(frame, run); }),
+          std::ssize(run.frames)};
+}
+
+std::string latency_line(const RunResult& run) {
+  const CameraFigures::Latencies latency = latencies_of(run);
+  std::string text = fmt::format(
+      "latency: p50 {:.2f}, p99 {:.2f}, worst {:.2f} ms, deadline {:.4g} ms", ms(latency.p50_ns),
+      ms(latency.p99_ns), ms(latency.max_ns), ms(run.frame_period_ns));
+  if (const auto camera = camera_figures(run))
+    text += fmt::format(", dropped {}, late {}", camera->dropped, camera->late);
+  return text;
+}
+
+std::string occupied(Bytes used, Bytes size) {
+  return fmt::format("{:.1f} kB ({:.1f} %)", static_cast<double>(used.count()) * 1e-3,
+                     percent_of_nominal(used, size));
+}
+
+/// What does not fit ends a run, so all that there is fits.
+std::string memory_line(const RunResult& run) {
+  const StageResult* worst = nullptr;
+  for (const StageResult& stage : run.stages)
+    if (!stage.on_controller &&
+        (worst == nullptr || stage.memory.parallel > worst->memory.parallel))
+      worst = &stage;
+  std::string text = "memory: fits";
+  if (worst != nullptr)
+    text += fmt::format(", L1 {} in {}", occupied(worst->memory.parallel, run.l1_size),
+                        printable(worst->name));
+  Bytes l2;
+  for (const L2Row& row : run.l2) l2 += row.bytes;
+  return text + fmt::format(", L2 {}", occupied(l2, run.l2_size));
+}
+
+/// Empty where the platform has no energy figures.
+std::string energy_line(const RunResult& run) {
+  const std::optional<RunEnergy> energy = energy_of(run);
+  if (!energy || !energy->per_frame() || !energy->mean_power()) return {};
+  const auto banded = [](const auto& figure, double unit) {
+    return fmt::format("{:.3f} ({:.3f}–{:.3f})", figure.value.count() / unit,
+                       figure.low().count() / unit, figure.high().count() / unit);
+  };
+  return fmt::format("energy: {} mJ per frame, mean power {} mW",
+                     banded(*energy->per_frame(), 1e-3), banded(*energy->mean_power(), 1e-3));
+}
+
+/// Alignment, matched poses and completion: the protocol as far as a line takes it.
+std::string short_protocol(const traces::Evaluation& ate) {
+  return fmt::format("{}, {} of {} poses matched, completion {:.1f} %, {:.2f} m of path",
+                     ate.protocol.substr(0, ate.protocol.find(kComma)), ate.matched, ate.estimates,
+                     100 * ate.completion, ate.path_length_m);
+}
+
+std::vector<std::string> trajectory_lines(const RunResult& run) {
+  const std::int64_t restarts = map_restarts(run);
+  const std::string again = restarts > 0 ? fmt::format(", restarts of the map {}", restarts) : "";
+  const std::string length = fmt::format("trajectory: {} poses, {:.2f} m", run.trajectory.size(),
+                                         path_length(run.trajectory));
+  if (const std::string why = why_incomparable(run); !why.empty())
+    return {length + again, "ATE: none: " + why};
+  if (!run.ate) return {length + again + ", no ground truth in the data"};
+  std::string text = fmt::format("trajectory: ATE {:.3f} m RMSE, {:.3f} m worst",
+                                 run.ate->translation.rmse, run.ate->translation.max);
+  if (const auto attitude = traces::attitude_errors(*run.ate))
+    text += fmt::format(", tilt {:.1f}°, heading {:.1f}°{}", attitude->tilt_rmse_deg,
+                        attitude->heading_rmse_deg,
+                        attitude->is_gravity_aligned() ? "" : ", not gravity-aligned");
+  return {text + again, "  " + short_protocol(*run.ate)};
+}
+
+/// The `rows` stages with the most cycles, in the order of the workload.
+std::string stage_lines(const RunResult& run, int rows, int width) {
+  std::vector<const StageResult*> stages;
+  for (const StageResult& stage : run.stages) stages.push_back(&stage);
+  const int all = static_cast<int>(stages.size());
+  std::string left_out;
+  if (all > rows) {
+    std::vector<const StageResult*> by_cycles = stages;
+    std::stable_sort(by_cycles.begin(), by_cycles.end(),
+                     [](const auto* a, const auto* b) { return a->parallel > b->parallel; });
+    const int shown = std::max(rows - 1, 1);
+    const Cycles least = by_cycles[static_cast<std::size_t>(shown - 1)]->parallel;
+    std::erase_if(stages, [&](const auto* stage) { return stage->parallel < least; });
+    left_out = fmt::format("… {} more with fewer cycles\n", all - static_cast<int>(stages.size()));
+  }
+  return stages_of(run, stages, "").str(width) + left_out;
+}
+
+}  // namespace
+
+std::string verdict(const RunResult& run) {
+  const auto [frames, of] = missed(run);
+  if (of == 0) return "verdict: no frames";
+  const double deadline = ms(run.frame_period_ns);
+  if (frames == 0)
+    return fmt::format("verdict: fits: all {} frames meet the deadline of {:.4g} ms", of, deadline);
+  return fmt::format(
+      "verdict: does not fit: {} of {} frames ({:.1f} %) miss the deadline of {:.4g} ms", frames,
+      of, 100 * static_cast<double>(frames) / static_cast<double>(of), deadline);
+}
+
+std::string run_summary(const std::string& heading, const RunResult& run, int width,
+                        const std::string& remarks) {
+  std::vector<std::string> below;
+  if (run.timed)
+    below = {latency_line(run), memory_line(run), energy_line(run)};
+  else
+    below = {frame_summary(run).substr(0, frame_summary(run).find('\n'))};
+  for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));
+  below.push_back(map_warning(run));
+  std::string end;
+  for (std::string& line : below) {
+    if (line.ends_with('\n')) line.pop_back();
+    if (!line.empty()) end += wrapped(line, width);
+  }
+  end += "more: --tables all, or some of them\n";
+  std::string text = wrapped(heading, width) + '\n';
+  if (!run.timed) return text + remarks + end;
+  text += wrapped(verdict(run), width);
+  constexpr int kTitleRuleAndFolder = 3;
+  const auto lines = std::count(text.begin(), text.end(), '\n') +
+                     std::count(end.begin(), end.end(), '\n') + kTitleRuleAndFolder;
+  return text + remarks + stage_lines(run, kSummaryLines - static_cast<int>(lines), width) + end;
+}
+
+}  // namespace leviosim::tools

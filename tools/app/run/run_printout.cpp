@@ -1,0 +1,71 @@
+#include "tools/app/run/run_printout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "sim/base/error.h"
+#include "sim/base/nearest.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/report/run_summary.h"
+#include "tools/app/report/statistics.h"
+#include "tools/app/report/tables.h"
+#include "tools/app/run/run_session.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kAll = "all";
+
+/// The names in "latency,memory"; none for all.
+std::vector<std::string> parse_tables(const std::string& text) {
+  std::vector<std::string> valid = table_names();
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    names.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (names.size() == 1 && names.front() == kAll) return {};
+  for (const std::string& name : names)
+    if (std::find(valid.begin(), valid.end(), name) == valid.end())
+      throw InputError(
+          fmt::format("--tables '{}': there is no table '{}'; expected all, or some of {}{}", text,
+                      name, fmt::join(valid, ","), base::did_you_mean(name, valid)));
+  return names;
+}
+
+}  // namespace
+
+void add_print_options(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("--tables", options.tables,
+                  fmt::format("print tables in place of the summary: all, or some of {}; columns "
+                              "that do not fit the terminal are left out, COLUMNS=200 shows more",
+                              fmt::join(table_names(), ",")))
+      ->type_name("NAME,…");
+  add_json_option(command, options.json);
+}
+
+void check_print_options(const RunOptions& options, const std::string& budget) {
+  if (options.json && !budget.empty())
+    throw InputError(
+        "--json and --budget both print to stdout; leave out one (leviosim check --json RUN)");
+  if (options.tables.empty()) return;
+  if (options.json) throw InputError("--tables is for text; expected it without --json");
+  parse_tables(options.tables);
+}
+
+Printout run_printout(const RunOptions& options, const RunResult& run, const std::string& remarks) {
+  const auto lines = [&] {
+    const std::string title = heading(options, run);
+    const int width = output_width();
+    if (!options.tables.empty())
+      return title + remarks + report(run, parse_tables(options.tables), width);
+    return run_summary(title.substr(0, title.find('\n')), run, width, remarks);
+  };
+  return printout(options.json, lines, [&] { return statistics_text(run); });
+}
+
+}  // namespace leviosim::tools
