@@ -1,5 +1,5 @@
 // How fast cores progress while they share units: a fluid model, solved anew whenever the set of
-// running segments changes (design section 4).
+// running segments changes.
 //
 // A core's rate is the share of each cycle in which it progresses as if it were alone: 1 without
 // contention. A shared unit serves requests in turn (round robin by request,

@@ -25,7 +25,7 @@ enum class Space : std::uint8_t { Local, L2, Shared };
 
 /// Storage of a byte under the counting policy. A type of its own, because a store through
 /// `unsigned char*` may touch any object, so that the compiler would have to keep the counters in
-/// memory (design section 3).
+/// memory.
 enum class Byte : std::uint8_t {};
 
 /// The scalar that a load of T yields: narrow integers are extended to 32 bits.

@@ -1,5 +1,5 @@
 // What the optimiser works on: a snapshot of the pose graph, taken when a keyframe was added, and
-// published back when an iteration has finished (design section 4, "Values and time"). Meanwhile
+// published back when an iteration has finished, so that nobody sees half of it. Meanwhile
 // the front end goes on with the graph; a keyframe or landmark slot that it gave to somebody else
 // is not written.
 //
