@@ -23,9 +23,13 @@ ChipConfig in_cluster_cycles(ChipConfig chip) {
 
 }  // namespace
 
+Timebase timebase_of(const ChipConfig& config) {
+  return Timebase({{"cluster", config.cluster.clock}, {"controller", config.controller.clock}});
+}
+
 Chip::Chip(const ChipConfig& config, int workers)
     : config_(in_cluster_cycles(config)),
-      timebase_({{"cluster", config.cluster.clock}, {"controller", config.controller.clock}}),
+      timebase_(timebase_of(config)),
       cluster_(kernel_, timebase_.clock("cluster"), config_.cluster, workers),
       controller_(kernel_, timebase_.clock("controller"), config.controller),
       core_(kernel_, "core", 1) {}

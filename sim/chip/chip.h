@@ -9,6 +9,9 @@
 
 namespace leviosim::sim {
 
+/// Exact time over the clocks of a chip. @throws InputError for clocks without a common tick
+Timebase timebase_of(const ChipConfig& config);
+
 class Chip {
  public:
   /// @param workers  size of the cluster's team

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
@@ -49,6 +50,7 @@ Task<JobTiming> Cluster::run(const work::Job& job) {
   for (const work::StageRun& stage : job.stages) {
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
     for (const work::Step& variant : stage.steps) {
+      begin_step(variant, s);
       // Not std::visit: a coroutine must not be awaited inside a plain lambda.
       if (const auto* serial = std::get_if<work::Serial>(&variant))
         co_await step(*serial, s.breakdown);
@@ -58,18 +60,32 @@ Task<JobTiming> Cluster::run(const work::Job& job) {
         co_await step(*transfer, s.breakdown);
       else
         co_await step(std::get<work::TransferWait>(variant), s.breakdown);
+      end_step();
     }
     s.end = kernel_.now();
     s.cycles = clock_.whole_cycles(s.end - s.begin);
-    timing.stages.push_back(s);
+    timing.stages.push_back(std::move(s));
   }
   timing.end = kernel_.now();
   co_return timing;
 }
 
+void Cluster::begin_step(const work::Step& step, StageTiming& stage) {
+  if (keep_steps_) step_ = &stage.steps.emplace_back(StepTiming{&step, kernel_.now(), {}});
+}
+
+void Cluster::end_step() {
+  if (StepTiming* ended = std::exchange(step_, nullptr)) ended->end = kernel_.now();
+}
+
+void Cluster::note(int core, Time begin, const SegmentTime& time) {
+  if (step_ != nullptr) step_->cores.push_back({core, begin, kernel_.now(), time});
+}
+
 Task<> Cluster::step(const work::Serial& serial, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
-  co_await team_.execute(workers_, serial.counts);
+  const SegmentTime time = co_await team_.execute(workers_, serial.counts);
+  note(workers_, begin, time);
   breakdown.serial += workers_ * cycles_since(begin, kernel_.now());
 }
 
@@ -77,11 +93,12 @@ Task<> Cluster::step(const work::Transfer& transfer, CycleBreakdown& breakdown) 
   const Time begin = kernel_.now();
   if (const Time room = dma_.room(); room > begin) co_await kernel_.at(room);
   co_await kernel_.delay(cycles(config_.dma.programming));
-  const Time arrival = dma_.start(transfer);
+  const DataTiming data = dma_.start(transfer);
+  if (step_ != nullptr) step_->data = data;
   if (transfer.background)
-    background_.push_back(arrival);
+    background_.push_back(data.end);
   else
-    co_await until_arrived(arrival);
+    co_await until_arrived(data.end);
   breakdown.transfer += workers_ * cycles_since(begin, kernel_.now());
 }
 
@@ -103,7 +120,11 @@ Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
   arrivals_ = 0;
   co_await kernel_.delay(cycles(config_.events.fork_master));
   for (auto& channel : dispatch_) co_await channel->push({&fork, &breakdown, begin});
-  if (fork.master_takes_part) co_await team_.execute(workers_, fork.shares.back());
+  if (fork.master_takes_part) {
+    const Time share_begin = kernel_.now();
+    const SegmentTime time = co_await team_.execute(workers_, fork.shares.back());
+    note(workers_, share_begin, time);
+  }
   co_await end_of_fork_.arrive();
   const double last = cycles_since(begin, last_arrival_);
   const double start_up = cycles_since(
@@ -112,6 +133,7 @@ Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
   const double barrier = std::min(after, config_.events.barrier);
   breakdown.imbalance += workers_ * (last + after - barrier) - arrivals_;
   breakdown.synchronisation += workers_ * (start_up + barrier);
+  if (step_ != nullptr) step_->synchronisation = start_up + barrier;
 }
 
 Process Cluster::worker(int id) {
@@ -119,7 +141,9 @@ Process Cluster::worker(int id) {
   for (;;) {
     const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
     co_await kernel_.delay(cycles(config_.events.fork_worker));
+    const Time begin = kernel_.now();
     const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork, sum));
+    note(id, begin, time);
     CycleBreakdown& breakdown = *dispatch.breakdown;
     breakdown.useful += time.alone;
     breakdown.fpu += time.fpu;

@@ -26,6 +26,9 @@ class Cluster {
   /// worker w of W runs shares w, w+W, … one after the other. One job at a time.
   Task<JobTiming> run(const work::Job& job);
 
+  /// Whether the timings of jobs hold their steps, for who wants to see what each core did when.
+  void keep_steps(bool keep) { keep_steps_ = keep; }
+
   const ClockDomain& clock() const { return clock_; }
   int workers() const { return workers_; }
 
@@ -45,6 +48,10 @@ class Cluster {
   Task<> until_arrived(Time arrival);
   /// The worker's share; where it has several, their sum, which is put into `sum`.
   const work::Segment& shares_of(int id, const work::Fork& fork, work::Segment& sum) const;
+  void begin_step(const work::Step& step, StageTiming& stage);
+  void end_step();
+  /// Of a core that has done its work.
+  void note(int core, Time begin, const SegmentTime& time);
   Duration cycles(double n) const;
   double cycles_since(Time begin, Time end) const;
 
@@ -57,6 +64,8 @@ class Cluster {
   std::vector<Time> background_;  ///< arrivals of the job's background transfers
   Barrier end_of_fork_;
   std::vector<std::unique_ptr<Channel<Dispatch>>> dispatch_;
+  bool keep_steps_ = false;
+  StepTiming* step_ = nullptr;  ///< that runs, if steps are kept
   Time last_arrival_;
   double arrivals_ =
       0;  ///< arrival times of the workers after the begin of the fork, summed, cycles

@@ -34,7 +34,7 @@ Time Dma::room() {
   return *std::min_element(under_way_.begin(), under_way_.end());
 }
 
-Time Dma::start(const work::Transfer& transfer) {
+DataTiming Dma::start(const work::Transfer& transfer) {
   check(work::is_between_l1_and_l2(transfer.direction), "the cluster's DMA reaches L1 and L2 only");
   Channel& channel = channels_[transfer.direction == work::Direction::L2ToL1 ? 0 : 1];
   const Time begin = std::max(channel.free, kernel_.now() + cycles(config_.first_data));
@@ -43,7 +43,7 @@ Time Dma::start(const work::Transfer& transfer) {
   if (config_.commands > 0) under_way_.push_back(channel.free);
   // Nobody computes during a transfer that the master waits for.
   if (transfer.background) kernel_.spawn("DMA data", disturb(begin, channel.free));
-  return channel.free;
+  return {begin, channel.free};
 }
 
 Process Dma::disturb(Time begin, Time end) {

@@ -29,8 +29,9 @@ class Dma {
 
   /// When another command finds room in the queue: now, or as soon as one fewer is under way.
   Time room();
-  /// A transfer that has just been programmed. Returns when its last data arrive.
-  Time start(const work::Transfer& transfer);
+  /// A transfer that has just been programmed. Returns when its data flow: the last ones arrive at
+  /// the end.
+  DataTiming start(const work::Transfer& transfer);
 
  private:
   struct Channel {

@@ -10,25 +10,13 @@
 #include "sim/chip/accelerator.h"
 #include "sim/chip/contention.h"
 #include "sim/chip/cost.h"
+#include "sim/chip/timing.h"
 #include "sim/events/kernel.h"
 #include "sim/events/sync.h"
 #include "sim/events/task.h"
 #include "sim/events/timer.h"
 
 namespace leviosim::sim {
-
-/// Where the time of one work segment went, in cycles.
-struct SegmentTime {
-  UsefulCycles alone;
-  double fpu = 0;
-  double divider = 0;
-  double banks = 0;
-  double fetch = 0;
-  double accelerator = 0;
-  double rounding = 0;
-
-  double waiting() const { return fpu + divider + banks + fetch + accelerator; }
-};
 
 class Team {
  public:

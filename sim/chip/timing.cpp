@@ -17,4 +17,15 @@ CycleBreakdown& CycleBreakdown::operator+=(const CycleBreakdown& o) {
   return *this;
 }
 
+SegmentTime& SegmentTime::operator+=(const SegmentTime& o) {
+  alone += o.alone;
+  fpu += o.fpu;
+  divider += o.divider;
+  banks += o.banks;
+  fetch += o.fetch;
+  accelerator += o.accelerator;
+  rounding += o.rounding;
+  return *this;
+}
+
 }  // namespace leviosim::sim

@@ -1,5 +1,6 @@
 // What timing a job on a chip yields: for every stage its time, and where the core-cycles of the
-// team went. The breakdowns add up: see CycleBreakdown::total().
+// team went. The breakdowns add up: see CycleBreakdown::total(). Who asks for it
+// (Cluster::keep_steps) also gets every step with what each core did in it.
 #pragma once
 
 #include <string_view>
@@ -7,6 +8,7 @@
 
 #include "sim/chip/cost.h"
 #include "sim/events/timebase.h"
+#include "sim/work/program.h"
 
 namespace leviosim::sim {
 
@@ -32,6 +34,44 @@ struct CycleBreakdown {
   CycleBreakdown& operator+=(const CycleBreakdown& o);
 };
 
+/// Where the time of one work segment went, in cycles.
+struct SegmentTime {
+  UsefulCycles alone;
+  double fpu = 0;
+  double divider = 0;
+  double banks = 0;
+  double fetch = 0;
+  double accelerator = 0;
+  double rounding = 0;
+
+  double waiting() const { return fpu + divider + banks + fetch + accelerator; }
+  SegmentTime& operator+=(const SegmentTime& o);
+};
+
+/// One work segment on one core.
+struct CoreTiming {
+  int core = 0;  ///< the master's number is the size of the team
+  Time begin;
+  Time end;
+  SegmentTime time;
+};
+
+/// When the data of a transfer flowed.
+struct DataTiming {
+  Time begin;
+  Time end;
+};
+
+/// One execution of a step.
+struct StepTiming {
+  const work::Step* step = nullptr;  ///< of the job
+  Time begin;
+  Time end;
+  double synchronisation = 0;       ///< of a fork: cycles of each worker, as in CycleBreakdown
+  std::vector<CoreTiming> cores{};  ///< that worked, in the order in which they ended
+  DataTiming data{};                ///< of a transfer
+};
+
 /// One execution of a stage. Cycles are of the clock of the cores that ran it.
 struct StageTiming {
   std::string_view stage;
@@ -39,6 +79,7 @@ struct StageTiming {
   Time end;
   Cycles cycles;
   CycleBreakdown breakdown;
+  std::vector<StepTiming> steps{};  ///< of a cluster that was told to keep them
 };
 
 struct JobTiming {

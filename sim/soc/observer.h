@@ -44,6 +44,8 @@ struct OptimiserJob {
 class Observer {
  public:
   virtual ~Observer() = default;
+  /// Whether timings of jobs on the run's cores shall hold their steps (sim/chip/timing.h).
+  virtual bool wants_steps() const { return false; }
   virtual void on_front_end(const FrontEndJob&) {}
   virtual void on_optimiser(const OptimiserJob&) {}
 };

@@ -16,6 +16,7 @@
 #include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
+#include "tools/app/timeline/requested_timeline.h"
 
 namespace leviosim::tools {
 namespace {
@@ -24,6 +25,7 @@ struct ReplayOptions : RunOptions {
   std::string trace;
   std::string memory;
   GateOptions gate;
+  TimelineOptions timeline;
 };
 
 /// Of a run folder its trace is taken.
@@ -83,11 +85,15 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   base::OutputRequest wanted = out_request(options);
   wanted.inputs.push_back(trace_file(options.trace));
-  base::OutputFolder out(std::move(wanted));
+  base::OutputFolder out(wanted);
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
   RunRequest request = request_for(trace, options);
+  std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);
   CycleParts parts(request.platform.config, request.cores);
-  request.observer = &parts;
+  RunObservers observers;
+  observers.add(parts);
+  if (timeline) observers.add(timeline->observer());
+  request.observer = &observers;
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = manifest_of(trace, options, words);
@@ -97,6 +103,7 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
     out.write(kReplayFile, replay_csv(result));
     out.write(kCyclesFile, cycles_csv(parts.stages()));
   });
+  if (timeline) timeline->publish(result.run);
   if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result.run, parts.stages()));
 }
 
@@ -111,6 +118,7 @@ Command add_replay_command(CLI::App& app, const Words& words) {
   add_memory_option(*command, options->memory);
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
+  add_timeline_options(*command, options->timeline);
   add_gate_options(*command, options->gate);
   add_print_options(*command, *options);
   return {command, [=, &words] { run(*command, *options, words); }};

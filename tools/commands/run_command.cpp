@@ -13,6 +13,7 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/timeline/requested_timeline.h"
 
 namespace leviosim::tools {
 namespace {
@@ -32,22 +33,28 @@ void complete(traces::WorkTraceInfo& info, const RunOptions& options, const RunR
     info.inputs.emplace_back(input.name, input.sha256);
 }
 
-struct GatedRunOptions : RunOptions {
+struct RunCommandOptions : RunOptions {
   GateOptions gate;
+  TimelineOptions timeline;
 };
 
-void run(const CLI::App& command, const GatedRunOptions& options, const Words& words) {
+void run(const CLI::App& command, const RunCommandOptions& options, const Words& words) {
   RunRequest request = make_request(command, options);
   check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   base::OutputFolder out(out_request(options));
+  std::optional<RequestedTimeline> timeline =
+      requested_timeline(options.timeline, out_request(options), request);
   request.data = data_folder(options, style);
   out.reserve(expected_bytes(request, options.record));
   WorkRecording recording(request.cores);
   if (options.record) request.recording = &recording;
   CycleParts parts(request.platform.config, request.cores);
-  if (!request.native) request.observer = &parts;
+  RunObservers observers;
+  observers.add(parts);
+  if (timeline) observers.add(timeline->observer());
+  if (!request.native) request.observer = &observers;
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
   publish(out, run_printout(options, result), [&] {
@@ -58,6 +65,7 @@ void run(const CLI::App& command, const GatedRunOptions& options, const Words& w
     complete(recording.info, options, request, manifest);
     out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
   });
+  if (timeline) timeline->publish(result);
   if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result, parts.stages()));
 }
 
@@ -65,8 +73,9 @@ void run(const CLI::App& command, const GatedRunOptions& options, const Words& w
 
 Command add_run_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand("run", "Run the workload on a chip, or natively");
-  const auto options = std::make_shared<GatedRunOptions>();
+  const auto options = std::make_shared<RunCommandOptions>();
   add_run_options(*command, *options);
+  add_timeline_options(*command, options->timeline);
   add_gate_options(*command, options->gate);
   add_print_options(*command, *options);
   return {command, [=, &words] { run(*command, *options, words); }};

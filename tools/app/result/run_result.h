@@ -32,6 +32,10 @@ struct FrameResult : vio::FrameFacts, soc::FrameTiming {
   traces::StampedPose pose;
 };
 
+/// Names of the rows of L2 that do not come from the workload.
+inline constexpr const char* kOptimiserL2 = "optimiser";
+inline constexpr const char* kCameraL2 = "camera";
+
 /// One row of the L2 part of the memory table.
 struct L2Row {
   std::string name;  ///< "last keyframe", "pose graph", "optimiser"

@@ -7,6 +7,9 @@
 // workload, or the trace's.
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "sim/soc/observer.h"
 #include "tools/app/result/run_result.h"
 
@@ -27,8 +30,37 @@ using soc::OptimiserJob;
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
+  /// As of soc::Observer.
+  virtual bool wants_steps() const { return false; }
+  /// The run is about to begin. @param frames  of the camera
+  /// @throws InputError if the run is none that can be looked at as was asked
+  virtual void on_start([[maybe_unused]] int frames) {}
   virtual void on_front_end(const FrontEndJob&) {}
   virtual void on_optimiser(const OptimiserJob&) {}
+};
+
+/// Several that look on, in their order.
+class RunObservers : public RunObserver {
+ public:
+  /// @param observer  outlives this
+  void add(RunObserver& observer) { observers_.push_back(&observer); }
+
+  bool wants_steps() const override {
+    return std::any_of(observers_.begin(), observers_.end(),
+                       [](const RunObserver* observer) { return observer->wants_steps(); });
+  }
+  void on_start(int frames) override {
+    for (RunObserver* observer : observers_) observer->on_start(frames);
+  }
+  void on_front_end(const FrontEndJob& job) override {
+    for (RunObserver* observer : observers_) observer->on_front_end(job);
+  }
+  void on_optimiser(const OptimiserJob& job) override {
+    for (RunObserver* observer : observers_) observer->on_optimiser(job);
+  }
+
+ private:
+  std::vector<RunObserver*> observers_;
 };
 
 }  // namespace leviosim::tools

@@ -17,6 +17,8 @@ class FrameCollector : public soc::Observer {
   FrameCollector(const RunSource& source, RunObserver* observer)
       : source_(source), observer_(observer) {}
 
+  bool wants_steps() const override { return observer_ != nullptr && observer_->wants_steps(); }
+
   void on_front_end(const soc::FrontEndJob& e) override {
     FrameResult& frame = frames.emplace_back(source_.frame());
     static_cast<soc::FrameTiming&>(frame) = e.times;
@@ -57,17 +59,17 @@ void describe(RunResult& result, const RunRequest& request, const RunSource& sou
 void add_l2_rows(RunResult& result) {
   Bytes persistent;
   for (const L2Row& row : result.l2) persistent += row.bytes;
-  L2Row optimiser{"optimiser", Bytes(0), {}};
+  L2Row optimiser{kOptimiserL2, Bytes(0), {}};
   for (const StageResult& stage : result.stages) {
     if (!stage.on_controller || stage.memory.parallel <= optimiser.bytes + persistent) continue;
-    optimiser = {"optimiser", stage.memory.parallel - persistent, stage.memory.blocks};
+    optimiser = {kOptimiserL2, stage.memory.parallel - persistent, stage.memory.blocks};
     std::erase_if(optimiser.blocks,
                   [](const work::Block& block) { return block.name == vio::kPersistentBlock; });
   }
   if (optimiser.bytes > Bytes(0)) result.l2.push_back(optimiser);
   if (result.camera) {
     const Bytes size = soc::second_buffer(result.image_width, result.image_height);
-    result.l2.push_back({"camera", size, {{"second image buffer", Bytes(0), size}}});
+    result.l2.push_back({kCameraL2, size, {{"second image buffer", Bytes(0), size}}});
   }
 }
 
@@ -107,6 +109,7 @@ RunResult simulate_source(const RunRequest& request, RunSource& source,
                           const ProgressCallback& progress) {
   soc::Setup setup{request.platform.config, request.cores, {}};
   if (request.camera) setup.deadline = request.camera->deadline;
+  if (request.observer != nullptr) request.observer->on_start(source.frames());
   FrameCollector collector(source, request.observer);
   soc::Outcome outcome = soc::Simulation(setup, source, collector, progress).run();
   RunResult result;

@@ -1,0 +1,283 @@
+// The timeline of work that is known: what lies where, what is joined, and what it costs.
+#include "tools/app/timeline/perfetto_timeline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/tools/constant_source.h"
+#include "tests/tools/timeline_checks.h"
+#include "tests/traces/test_folder.h"
+#include "tools/app/timeline/protobuf_writer.h"
+#include "tools/app/timeline/short_steps.h"
+#include "tools/app/timeline/timeline_collector.h"
+
+namespace leviosim::tools {
+namespace {
+
+using testing::expect_sums_of;
+using tests::PerfettoEvent;
+using tests::PerfettoTrace;
+using tests::ProtoReader;
+using traces::testing::expect_input_error;
+using work::Op;
+
+work::Segment segment(std::uint64_t alu, std::uint64_t fpu = 0, std::uint64_t divisions = 0) {
+  work::Segment counts;
+  counts[Op::IntAlu] = alu;
+  counts[Op::F32Add] = fpu;
+  counts[Op::F32Div] = divisions;
+  return counts;
+}
+
+work::Fork fork(std::string_view name, int shares, std::uint64_t alu, std::uint64_t fpu,
+                std::uint64_t divisions) {
+  work::Fork fork{name, {}, false};
+  for (int i = 0; i < shares; ++i)
+    fork.shares.push_back(segment(alu + 17 * static_cast<std::uint64_t>(i), fpu, divisions));
+  return fork;
+}
+
+/// Every kind of step, in two stages; the second has many short ones.
+class MixedSource : public testing::ConstantSource {
+ public:
+  MixedSource(const testing::ConstantWork& constant, int cores, int short_forks)
+      : ConstantSource(constant) {
+    const work::Transfer in{work::Direction::L2ToL1, Bytes(4800)};
+    const work::Transfer out{work::Direction::L1ToL2, Bytes(123)};
+    const work::Transfer behind{work::Direction::L2ToL1, Bytes(800), true};
+    work::Fork with_master = fork("with the master", cores + 1, 300, 100, 3);
+    with_master.master_takes_part = true;
+    work::StageRun first{"first",
+                         {in, work::Serial{segment(321, 7)}, fork("heavy", cores, 5000, 3000, 40),
+                          behind, with_master, work::TransferWait{0}, out},
+                         {}};
+    first.memory.parallel = Bytes(777);
+    work::StageRun second{"second", {}, {}};
+    for (int i = 0; i < short_forks; ++i) {
+      second.steps.emplace_back(fork("short", cores, 20, 5, 1));
+      second.steps.emplace_back(work::Serial{segment(11)});
+      second.steps.emplace_back(out);
+    }
+    job_.stages = {first, second};
+  }
+  const work::Job& process(FrameResult& result) override {
+    ConstantSource::process(result);
+    return job_;
+  }
+
+ private:
+  work::Job job_;
+};
+
+struct Shown {
+  RunResult run;
+  std::string bytes;
+  PerfettoTrace trace;
+};
+
+Shown shown(int short_forks, std::size_t most_bytes = kMostBytesOfFrame, int cores = 8,
+            testing::ConstantWork constant = {.frames = 4, .iteration = 5'000},
+            std::optional<Deadline> deadline = {}, std::optional<traces::FrameRange> range = {}) {
+  MixedSource source(constant, cores, short_forks);
+  RunRequest request = testing::request_at(Hertz(370'000'000), deadline);
+  request.cores = cores;
+  request.platform.config.cluster.icache.line = Bytes(0);
+  TimelineCollector collector(request.platform.config, cores, range);
+  request.observer = &collector;
+  RunResult run = simulate_source(request, source, [](const Progress&) {});
+  std::string bytes = perfetto_timeline(collector.events(), run, most_bytes);
+  PerfettoTrace trace(bytes);
+  return {std::move(run), std::move(bytes), std::move(trace)};
+}
+
+TEST(Protobuf, WritesNumbersAndMessagesAsTheirDescriptionHasIt) {
+  // The examples of the description of the encoding: 150, and a message with it.
+  ProtobufWriter inner;
+  inner.add_uint(1, 150);
+  EXPECT_EQ(inner.bytes(), "\x08\x96\x01");
+  ProtobufWriter outer;
+  outer.add_message(3, inner);
+  EXPECT_EQ(outer.bytes(), "\x1a\x03\x08\x96\x01");
+  for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{127}, std::uint64_t{128},
+                                    std::uint64_t{1} << 35, ~std::uint64_t{0}}) {
+    ProtobufWriter message;
+    message.add_uint(1000, value);
+    message.add_fixed64(2, value);
+    message.add_double(3, -0.1);
+    ProtoReader reader(message.bytes());
+    EXPECT_EQ(reader.next()->value, value);
+    EXPECT_EQ(reader.next()->value, value);
+    EXPECT_EQ(reader.next()->real(), -0.1);
+    EXPECT_FALSE(reader.next());
+  }
+}
+
+TEST(Timeline, AddsUpToTheRun) {
+  for (const int cores : {1, 3, 8}) {
+    SCOPED_TRACE(cores);
+    const Shown all = shown(3, kMostBytesOfFrame, cores);
+    expect_sums_of(all.trace, all.run);
+    const Shown joined = shown(3, 0, cores);
+    expect_sums_of(joined.trace, joined.run);
+    EXPECT_LT(joined.bytes.size(), all.bytes.size());
+  }
+}
+
+TEST(Timeline, IsTheSameBytesEachTime) { EXPECT_EQ(shown(5).bytes, shown(5).bytes); }
+
+TEST(Timeline, SlicesLieWithinTheirFrameAndWaitsWithinTheirWork) {
+  const Shown all = shown(3);
+  const std::vector<PerfettoEvent> frames = all.trace.on("front end");
+  ASSERT_EQ(std::count_if(frames.begin(), frames.end(),
+                          [](const PerfettoEvent& e) {
+                            return e.depth == 0 && e.type == PerfettoEvent::kBegin;
+                          }),
+            4);
+  // Begin and end of what lies within something, as a reader nests them.
+  std::map<std::uint64_t, std::vector<PerfettoEvent>> stacks;
+  int waits = 0;
+  for (const PerfettoEvent& event : all.trace.events()) {
+    if (event.type != PerfettoEvent::kBegin) continue;
+    std::vector<PerfettoEvent>& stack = stacks[event.track];
+    stack.resize(static_cast<std::size_t>(event.depth));
+    EXPECT_LE(event.begin_ns, event.end_ns);
+    if (!stack.empty()) {
+      EXPECT_GE(event.begin_ns, stack.back().begin_ns);
+      EXPECT_LE(event.end_ns, stack.back().end_ns);
+    }
+    if (event.name.rfind("wait: ", 0) == 0 && event.name != "wait: DMA") {
+      ++waits;
+      ASSERT_FALSE(stack.empty());
+      const std::string part = event.name.substr(6);
+      const double drawn = static_cast<double>(event.end_ns - event.begin_ns) * 0.37;
+      EXPECT_NEAR(drawn, stack.back().number(part), 1.5) << part;
+    }
+    stack.push_back(event);
+  }
+  EXPECT_GT(waits, 50);
+}
+
+TEST(Timeline, CyclesAreExact) {
+  const Shown all = shown(2);
+  for (const char* track : {"master", "core 0", "core 7", "DMA, L2 to L1"})
+    for (const PerfettoEvent& event : all.trace.on(track)) {
+      if (event.numbers.count("cycle") == 0) continue;
+      const std::vector<PerfettoEvent> frames = all.trace.on("front end");
+      const auto stage = std::find_if(frames.begin(), frames.end(), [&](const PerfettoEvent& e) {
+        return e.name == "first" && e.begin_ns <= event.begin_ns &&
+               event.begin_ns < e.begin_ns + 1'000'000;
+      });
+      ASSERT_NE(stage, frames.end());
+      const double ns = event.number("cycle") / 0.37;
+      EXPECT_NEAR(static_cast<double>(event.begin_ns - stage->begin_ns), ns, 1.0) << event.name;
+    }
+}
+
+TEST(Timeline, TransfersHaveTheirBytesAndDirections) {
+  const Shown all = shown(2);
+  double in = 0;
+  double out = 0;
+  for (const PerfettoEvent& event : all.trace.on("DMA, L2 to L1")) in += event.number("bytes");
+  for (const PerfettoEvent& event : all.trace.on("DMA, L1 to L2")) out += event.number("bytes");
+  EXPECT_EQ(in, 4 * (4800 + 800));
+  EXPECT_EQ(out, 4 * 3 * 123);
+}
+
+TEST(Timeline, JoinsShortStepsUntilAFrameFits) {
+  const Shown fits = shown(5, 1 << 30);
+  EXPECT_EQ(fits.trace.on("master")[1].name, "serial work");
+  for (const PerfettoEvent& event : fits.trace.events()) EXPECT_NE(event.name, "short steps");
+  const Shown many = shown(400);
+  expect_sums_of(many.trace, many.run);
+  EXPECT_LE(many.bytes.size(), 4u * 50'000 + 5'000);
+  const std::vector<PerfettoEvent> master = many.trace.on("master");
+  const auto joined = std::find_if(master.begin(), master.end(),
+                                   [](const PerfettoEvent& e) { return e.name == "short steps"; });
+  ASSERT_NE(joined, master.end());
+  EXPECT_EQ(joined->number("steps"), 1200);
+  // What is long is still told apart.
+  EXPECT_TRUE(std::any_of(master.begin(), master.end(),
+                          [](const PerfettoEvent& e) { return e.name == "fork: heavy"; }));
+}
+
+TEST(Timeline, JoinsNeighboursOfAStageThatAreShortAndNothingElse) {
+  StageEvents stage;
+  const auto add = [&](std::int64_t cycles) {
+    StepEvents& step = stage.steps.emplace_back();
+    step.cycles = step.serial = Cycles(cycles);
+  };
+  for (const std::int64_t cycles : {50, 99, 100, 10, 200, 1, 2, 3}) add(cycles);
+  const StageEvents joined = with_short_steps_joined(stage, Cycles(100));
+  std::vector<std::int64_t> cycles;
+  for (const StepEvents& step : joined.steps) cycles.push_back(step.cycles.count());
+  EXPECT_EQ(cycles, (std::vector<std::int64_t>{149, 100, 10, 200, 6}));
+  EXPECT_EQ(joined.steps[0].kind, StepKind::Several);
+  EXPECT_EQ(joined.steps[0].steps, 2);
+  EXPECT_EQ(joined.steps[0].serial, Cycles(149));
+  EXPECT_EQ(joined.steps[2].kind, StepKind::Serial);
+  EXPECT_EQ(joined.steps[4].steps, 3);
+}
+
+/// Arrows that begin at one and end at the other.
+int arrows(const PerfettoTrace& trace, const std::string& from, const std::string& name,
+           const std::string& to, const std::string& end) {
+  int found = 0;
+  for (const PerfettoEvent& a : trace.on(from))
+    for (const PerfettoEvent& b : trace.on(to))
+      for (const std::uint64_t flow : a.flows)
+        found += a.name.rfind(name, 0) == 0 && b.name.rfind(end, 0) == 0 &&
+                 std::count(b.flow_ends.begin(), b.flow_ends.end(), flow) > 0;
+  return found;
+}
+
+TEST(Timeline, ArrowsLeadToThePoseAndToThePublication) {
+  const Shown all = shown(2);
+  EXPECT_EQ(arrows(all.trace, "camera", "frame", "front end", "pose"), 4);
+  EXPECT_EQ(arrows(all.trace, "front end", "frame", "front end", "pose"), 4);
+  EXPECT_EQ(arrows(all.trace, "front end", "snapshot", "controller", "published"),
+            all.run.optimiser_published);
+  EXPECT_GT(all.run.optimiser_published, 0);
+}
+
+TEST(Timeline, AClosedLoopShowsWhatIsDroppedAndLate) {
+  testing::ConstantWork constant{.frames = 30, .period_ns = 40'000};
+  const Shown all = shown(40, kMostBytesOfFrame, 8, constant, Deadline::Drop);
+  ASSERT_TRUE(all.run.camera);
+  expect_sums_of(all.trace, all.run);
+  int dropped = 0;
+  for (const PerfettoEvent& event : all.trace.on("camera"))
+    dropped += event.number("dropped") == 1 && event.name.find("dropped") != std::string::npos;
+  EXPECT_EQ(dropped, 30 - static_cast<int>(all.run.frames.size()));
+  EXPECT_GT(dropped, 0);
+  int missed = 0;
+  for (const PerfettoEvent& event : all.trace.on("deadlines"))
+    missed += event.name == "deadline missed";
+  EXPECT_EQ(missed, 30);
+  for (const PerfettoEvent& event : all.trace.on("front end"))
+    if (event.depth == 0 && event.type == PerfettoEvent::kBegin) EXPECT_EQ(event.number("late"), 1);
+}
+
+TEST(Timeline, OccupationOfL1IsThePeakOfTheStage) {
+  const std::vector<PerfettoEvent> l1 = shown(2).trace.on("L1, peak of the stage");
+  ASSERT_EQ(l1.size(), 12u);
+  EXPECT_EQ(l1[0].value, 777);
+  EXPECT_EQ(l1[1].value, 0);
+}
+
+TEST(Timeline, ARangeTakesItsFramesOnly) {
+  const Shown some = shown(2, kMostBytesOfFrame, 8, {.frames = 9, .iteration = 5'000}, {},
+                           traces::FrameRange{3, 5});
+  std::vector<std::string> frames;
+  for (const PerfettoEvent& event : some.trace.on("front end"))
+    if (event.depth == 0 && event.type == PerfettoEvent::kBegin) frames.push_back(event.name);
+  EXPECT_EQ(frames, (std::vector<std::string>{"frame 3", "frame 4"}));
+  EXPECT_EQ(some.trace.on("camera").size(), 2u);
+  const traces::FrameRange beyond{3, 10};
+  expect_input_error(
+      [&] { shown(2, kMostBytesOfFrame, 8, {.frames = 9, .iteration = 5'000}, {}, beyond); },
+      {"--timeline-frames", "3:10", "9 frames"});
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,74 @@
+#include "tools/app/timeline/requested_timeline.h"
+
+#include <fmt/core.h>
+
+#include "sim/base/error.h"
+#include "sim/base/file_system.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/timeline/perfetto_timeline.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::optional<traces::FrameRange> range_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  try {
+    return traces::parse_frame_range(text);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("--timeline-frames: {}", error.what()));
+  }
+}
+
+/// A folder of results appears as a whole; a file in it would be lost or in its way.
+void refuse_within(const base::OutputRequest& results, const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path folder = base::resolved(results.path, error);
+  const std::filesystem::path path = base::resolved(file, error);
+  if (*path.lexically_relative(folder).begin() != "..")
+    throw InputError(
+        fmt::format("--timeline {}: lies in the folder of {}; choose a place beside it", file,
+                    results.shown()));
+}
+
+base::OutputRequest file_request(const std::string& file, const base::OutputRequest& results) {
+  refuse_within(results, file);
+  return {
+      .option = "--timeline", .path = file, .replace = results.replace, .inputs = results.inputs};
+}
+
+}  // namespace
+
+void add_timeline_options(CLI::App& command, TimelineOptions& options) {
+  command
+      .add_option("--timeline", options.file,
+                  "when everything happened, for ui.perfetto.dev, which opens the file locally")
+      ->type_name("FILE");
+  command
+      .add_option("--timeline-frames", options.frames,
+                  "frames of the timeline as frames.csv numbers them, B exclusive [all]")
+      ->type_name("A:B");
+}
+
+RequestedTimeline::RequestedTimeline(const TimelineOptions& options,
+                                     const base::OutputRequest& results, const RunRequest& request)
+    : collector_(request.platform.config, request.cores, range_of(options.frames)),
+      file_(claimed_file(file_request(options.file, results))) {}
+
+void RequestedTimeline::publish(const RunResult& run) {
+  tools::publish({{file_, perfetto_timeline(collector_.events(), run), "timeline"}}, "");
+}
+
+std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& options,
+                                                    const base::OutputRequest& results,
+                                                    const RunRequest& request) {
+  if (options.file.empty()) {
+    if (!options.frames.empty())
+      throw InputError("--timeline-frames is for a timeline; expected --timeline as well");
+    return std::nullopt;
+  }
+  if (request.native)
+    throw InputError("run: --native computes without a chip; leave out --timeline");
+  return std::optional<RequestedTimeline>(std::in_place, options, results, request);
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,46 @@
+// The timeline that a command was asked for: its options, and what the command does with it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "sim/base/output_file.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/timeline/timeline_collector.h"
+
+namespace leviosim::tools {
+
+struct TimelineOptions {
+  std::string file;
+  std::string frames;
+};
+
+/// Declares --timeline and --timeline-frames.
+void add_timeline_options(CLI::App& command, TimelineOptions& options);
+
+class RequestedTimeline {
+ public:
+  /// Claims the file.
+  /// @param results  what the command was asked to write else: a folder, in which the file is not
+  /// @throws InputError for options that contradict the request, or a file that cannot be written
+  RequestedTimeline(const TimelineOptions& options, const base::OutputRequest& results,
+                    const RunRequest& request);
+
+  /// To look on while the run happens.
+  RunObserver& observer() { return collector_; }
+  /// Writes the file and prints its name. @throws InputError if that fails
+  void publish(const RunResult& run);
+
+ private:
+  TimelineCollector collector_;
+  std::optional<base::OutputFile> file_;
+};
+
+/// None without --timeline. @throws InputError as RequestedTimeline, and for --timeline-frames
+/// alone
+std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& options,
+                                                    const base::OutputRequest& results,
+                                                    const RunRequest& request);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,36 @@
+// Looks on while a run happens and keeps when everything happened (frame_events.h).
+#pragma once
+
+#include <optional>
+
+#include "tools/app/run/run_observer.h"
+#include "tools/app/timeline/frame_events.h"
+#include "traces/datasets/frame_range.h"
+
+namespace leviosim::tools {
+
+class TimelineCollector : public RunObserver {
+ public:
+  /// @param cores  of the team
+  /// @param range  frames to keep, by their numbers in the run; all if absent
+  TimelineCollector(const sim::ChipConfig& chip, int cores,
+                    std::optional<traces::FrameRange> range = {});
+
+  bool wants_steps() const override { return true; }
+  /// @throws InputError for a range that is not of the run
+  void on_start(int frames) override;
+  void on_front_end(const FrontEndJob& job) override;
+  void on_optimiser(const OptimiserJob& job) override;
+
+  const TimelineEvents& events() const { return events_; }
+
+ private:
+  std::vector<StageEvents> stages_of(const work::Job& job, const sim::JobTiming& timing,
+                                     bool on_controller);
+  StepEvents step_of(const sim::StepTiming& timing) const;
+
+  RunResult job_run_;  ///< a run of one job, for its energy
+  TimelineEvents events_;
+};
+
+}  // namespace leviosim::tools
