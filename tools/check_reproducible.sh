@@ -33,7 +33,7 @@ run() { # run NAME PRESET
   "build/$2/leviosim" run --platform gap9 --data "$data" "${frames[@]}" --record --quiet \
     --out "$results/$1/run" >/dev/null
   "build/$2/leviosim" run --platform gap9 -p cluster.clock=100MHz -p controller.clock=100MHz \
-    --camera-fps 15 --deadline drop --data "$data" "${frames[@]}" --quiet \
+    --fps 15 --deadline drop --data "$data" "${frames[@]}" --quiet \
     --out "$results/$1/loop" >/dev/null
 }
 run release release

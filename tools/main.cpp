@@ -55,6 +55,7 @@ int end_after_report() {
 int run_program(const Words& words) {
   CLI::App app("Runs visual-inertial odometry on models of ultra-low-power multicore chips.",
                "leviosim");
+  app.footer("leviosim help COMMAND: its options, with examples");
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
   try {
     const int status = run_command_line(

@@ -1,9 +1,13 @@
 #include "platform_models/loader/supply_rules.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <array>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "platform_models/loader/energy_fields.h"
 #include "platform_models/loader/rules.h"
@@ -56,16 +60,27 @@ class SupplyRules {
                                  volts(supply_.step)));
   }
 
-  void reaches(std::string_view path, Hertz clock) const {
+  /// A voltage allows clocks up to a limit; the message offers both ways out.
+  void reaches_clocks(const sim::ChipConfig& chip) const {
     const Hertz limit = sim::highest_clock(supply_, supply_.voltage);
-    if (clock <= limit) return;
-    const auto voltage = sim::lowest_voltage(supply_, clock);
-    contradict(path, "supply.voltage",
-               fmt::format("at most {}; {}", megahertz(limit),
-                           voltage ? fmt::format("{} needs supply.voltage={}", megahertz(clock),
-                                                 volts(*voltage))
-                                   : fmt::format("no voltage allows more than {}",
-                                                 megahertz(supply_.highest.clock))));
+    const std::array clocks{std::pair{"cluster.clock", chip.cluster.clock},
+                            std::pair{"controller.clock", chip.controller.clock}};
+    std::vector<std::string> slower;
+    for (const auto& [path, clock] : clocks)
+      if (clock > limit)
+        slower.push_back(
+            fmt::format("{}={:.9g}MHz", path, static_cast<double>(limit.count()) * 1e-6));
+    for (const auto& [path, clock] : clocks) {
+      if (clock <= limit) continue;
+      const auto voltage = sim::lowest_voltage(supply_, clock);
+      contradict(
+          path, "supply.voltage",
+          fmt::format(
+              "at most {}, as with {}; {}", megahertz(limit), fmt::join(slower, " and "),
+              voltage ? fmt::format("{} needs supply.voltage={}", megahertz(clock), volts(*voltage))
+                      : fmt::format("no voltage allows more than {}",
+                                    megahertz(supply_.highest.clock))));
+    }
   }
 
  private:
@@ -92,8 +107,7 @@ void check_supply(const Schema& schema, const Settings& settings, const sim::Chi
   const SupplyRules rules(schema, settings, chip.supply);
   rules.points_in_order();
   rules.voltage_exists();
-  rules.reaches("cluster.clock", chip.cluster.clock);
-  rules.reaches("controller.clock", chip.controller.clock);
+  rules.reaches_clocks(chip);
 }
 
 }  // namespace leviosim::platform

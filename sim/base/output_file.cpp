@@ -57,8 +57,7 @@ void OutputFile::judge() const {
   if (!record || !record->describes(folder, target_.filename().string()))
     refuse(
         "exists, and is not a file that leviosim wrote, or was changed since; choose a new file");
-  if (!request_.replace)
-    refuse(fmt::format("exists; choose a new file, or {} to replace it", request_.replace_option));
+  if (!request_.replace) refuse("exists; choose a new file, or --force to replace it");
 }
 
 fs::path OutputFile::hidden() const {

@@ -93,8 +93,7 @@ void OutputFolder::judge() const {
                     "which was changed since; choose a new folder",
                     foreign));
   if (!request_.replace)
-    refuse(fmt::format("exists and holds results; choose a new folder, or {} to replace them",
-                       request_.replace_option));
+    refuse("exists and holds results; choose a new folder, or --force to replace them");
 }
 
 void OutputFolder::make_parents() {

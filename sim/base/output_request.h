@@ -12,7 +12,6 @@ struct OutputRequest {
   std::string path;                                ///< as the user gave it
   bool replace = false;                            ///< what leviosim wrote there before
   std::vector<std::filesystem::path> inputs = {};  ///< that stay as they are; need not exist
-  std::string replace_option = "--force";          ///< for messages
   /// Of a folder: replace its files also if they were changed since, as those of a cache may be.
   bool repair = false;
 

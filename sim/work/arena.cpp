@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/base/check.h"
-#include "sim/base/error.h"
+#include "sim/work/memory_overflow.h"
 
 namespace leviosim::work {
 namespace {
@@ -40,7 +40,7 @@ Bytes Arena::place(std::string_view name, Bytes size) {
   const Bytes offset(round_up((base_ + used_).count(), alignment_));
   const Bytes end = offset - base_ + size;
   if (end > capacity_) {
-    throw InputError(
+    throw MemoryOverflow(
         fmt::format("{}: block '{}' of {} bytes does not fit in {}: {} of {} bytes are in use, {} "
                     "bytes are missing",
                     user_.empty() ? "set-up" : user_, name, size.count(), name_, used_.count(),

@@ -99,6 +99,30 @@ TEST_F(CommandLine, SuggestsCommandsAndOptions) {
   expect_refusal({"run", "--outt=x"}, {"unknown option '--outt'; did you mean '--out'?"});
   expect_refusal({"synth", "flight"}, {"synth: unexpected argument 'flight'"});
   expect_refusal({"--verison"}, {"did you mean '--version'?"});
+  expect_refusal({"compar"}, {"did you mean 'compare'?"});
+  expect_refusal({"hepl", "run"}, {"did you mean 'help'?"});
+}
+
+/// The names of before still work, and no help shows them.
+TEST_F(CommandLine, OptionsHaveOneNameEach) {
+  const auto help = [&](const std::string& command) {
+    return run_program(folder_.path(), {command, "--help"}).out;
+  };
+  for (const char* command : {"run", "tune", "flow"})
+    EXPECT_NE(help(command).find("  --fps F"), std::string::npos) << command;
+  EXPECT_EQ(help("run").find("--camera-fps"), std::string::npos);
+  EXPECT_EQ(help("synth").find("--overwrite"), std::string::npos);
+  for (const char* command : {"sensitivity", "microbench", "platforms", "calibrate"})
+    EXPECT_EQ(help(command).find("  --out"), std::string::npos) << command;
+  for (const char* command : {"run", "replay", "tune", "sweep", "flow", "validate", "ablate"})
+    EXPECT_NE(help(command).find("  --out DIR"), std::string::npos) << command;
+  for (const char* command : {"tune", "sweep", "ablate", "explore", "sensitivity", "platforms"})
+    EXPECT_NE(help(command).find("  --jobs N"), std::string::npos) << command;
+  expect_run_refused({"--camera-fps", "0"}, {"--fps '0'"});
+  expect_run_refused({"--camera-fps=0"}, {"--fps '0'"});
+  fs::create_directory(folder_ / "folder");
+  for (const char* option : {"--out", "--csv"})
+    expect_refusal({"microbench", option, (folder_ / "folder").string()}, {"--csv", "is a folder"});
 }
 
 TEST_F(CommandLine, NamesMissingOptions) {
@@ -113,6 +137,8 @@ TEST_F(CommandLine, SuggestsPlatformsAndTheirParameters) {
   expect_refusal({"run", "--platform", "gap7", "--data", "x", "--out", out()}, {"gap7", "gap8"});
   expect_run_refused({"-p", "cluster.fpus=2"}, {"cluster.fpus", "did you mean 'cluster.fpu"});
   expect_run_refused({"--profile", "levoi"}, {"levoi", "levio"});
+  expect_run_refused({"-p", "supply.voltage=0.65V"},
+                     {"cluster.clock=240MHz and controller.clock=240MHz"});
 }
 
 TEST_F(CommandLine, RefusesDataThatIsNotThere) {
@@ -133,6 +159,7 @@ TEST_F(CommandLine, RefusesNumbersOutOfRange) {
   for (const char* cores : {"0", "99", "-1", "four", "2.5"})
     expect_run_refused({"--cores", cores},
                        {std::string("--cores '") + cores + "': expected a whole number from 1 to"});
+  expect_run_refused({"--cores", "16"}, {"from 1 to 8, the chip's cluster.max_workers"});
   expect_run_refused({"--seed", "-1"}, {"--seed '-1'"});
   expect_refusal({"synth", "--out", out(), "--duration", "0"}, {"--duration '0'"});
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/run_program.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/feasibility/feasibility_report.h"
 #include "traces/synthesis/synthetic.h"
@@ -86,6 +87,71 @@ TEST_F(Feasible, NamesTheBlockThatDoesNotFitAndGivesTheTimeAllTheSame) {
 TEST_F(Feasible, PublishedTimesStandBesideTheirChips) {
   EXPECT_NE(feasibility_table({on("gap9", 1)}).find("≈ 300"), std::string::npos);
   EXPECT_EQ(feasibility_table({on("gap9-240mhz", 1)}).find("≈ 300"), std::string::npos);
+}
+
+TEST_F(Feasible, StagesHaveWhatTheMemoriesAreFilledTo) {
+  const Feasibility row = on("gap9", 8);
+  EXPECT_NE(stage_comparison({row}).find(fmt::format(
+                "{:.1f} of 131.1", static_cast<double>(row.l1.occupied.count()) * 1e-3)),
+            std::string::npos)
+      << stage_comparison({row});
+}
+
+TEST_F(Feasible, StagesRefuseChipsOnWhichARunIsRefused) {
+  const traces::testing::TempFolder log;
+  const auto stages = [&](std::vector<std::string> further) {
+    std::vector<std::string> words{"platforms", "stages",   "--data", folder_.string(),
+                                   "--quiet",   "--frames", "0:12"};
+    words.insert(words.end(), further.begin(), further.end());
+    return testing::run_program(log.path(), words);
+  };
+  testing::expect_refused(stages({"gap9", "cortex-m4f"}),
+                          {"cortex-m4f: ", " kB short of L1 at '", "platforms feasibility"});
+  const testing::ProgramResult all = stages({"--jobs", "1"});
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_NE(all.out.find("left out: cortex-m4f: "), std::string::npos) << all.out;
+  EXPECT_NE(all.out.find("L2 peak kB"), std::string::npos) << all.out;
+}
+
+TEST_F(Feasible, SystemsStandBesideWhatIsPredicted) {
+  const traces::testing::TempFolder log;
+  const auto systems = [&](std::vector<std::string> further) {
+    std::vector<std::string> words{"platforms", "systems",  "--data", folder_.string(),
+                                   "--quiet",   "--frames", "0:12"};
+    words.insert(words.end(), further.begin(), further.end());
+    return testing::run_program(log.path(), words);
+  };
+  const testing::ProgramResult result =
+      systems({"--svg", (log / "s.svg").string(), "--csv", (log / "s.csv").string()});
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"Navion", "flow on gap8", "flow on cortex-m4f", "levio on gap9"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in:\n" << result.out;
+  const std::string picture = base::read_text_file(log / "s.svg");
+  for (const char* part : {"LEVIO, here", "PX4FLOW, here"})
+    EXPECT_NE(picture.find(part), std::string::npos) << part;
+  // The prediction for LEVIO is that of the feasibility.
+  const Feasibility row = on("gap9", 8);
+  EXPECT_GT(row.frames_per_second(), 20);
+  EXPECT_NE(base::read_text_file(log / "s.csv").find(",levio on gap9,20"), std::string::npos);
+  testing::expect_refused(systems({"gap9"}), {"expected no platform, found 1"});
+  testing::expect_refused(systems({"--profile", "next"}), {"leave out --profile"});
+  testing::expect_refused(systems({"--svg", "x.png"}), {"ends in .svg"});
+}
+
+/// The workload of all chips can be set, as that of a run.
+TEST_F(Feasible, StagesTakeParametersOfTheWorkload) {
+  const traces::testing::TempFolder log;
+  testing::expect_refused(
+      testing::run_program(log.path(), {"platforms", "stages", "-p", "workload.windw=6"}),
+      {"workload.windw", "did you mean 'workload.window'"});
+}
+
+TEST_F(Feasible, ARunOfALargeImageNamesTheCellsThatFillTheMemory) {
+  const traces::testing::TempFolder log;
+  testing::expect_refused(
+      testing::run_program(log.path(), {"run", "--platform", "gap9", "--data", folder_.string(),
+                                        "--size", "752x480", "--quiet", "--out", "big"}),
+      {"does not fit in", "cell of 8 px", "-p workload.cell=N"});
 }
 
 TEST_F(Feasible, AChipOfMoreCoresThanTheOthersHasItsOwnWork) {

@@ -47,10 +47,9 @@ class Outputs : public ::testing::Test {
     expect_refused(program(words), parts);
     EXPECT_EQ(picture_of(folder_.path()), before);
   }
-  void expect_kept_by_force(std::vector<std::string> words, const std::vector<std::string>& parts,
-                            const std::string& force = "--force") {
+  void expect_kept_by_force(std::vector<std::string> words, const std::vector<std::string>& parts) {
     expect_kept(words, parts);
-    words.push_back(force);
+    words.emplace_back("--force");
     expect_kept(words, parts);
   }
   /// A run into `out` that stands still between its first file and its last.
@@ -129,7 +128,7 @@ TEST_F(Outputs, SingleFilesOfOthersStay) {
   write_text(folder_ / "f.json", "mine");
   expect_kept_by_force(eval, {"--json", "exists"});
   write_text(folder_ / "f", "mine");
-  expect_kept_by_force({"microbench", "--out", path("f")}, {"--out", "exists"});
+  expect_kept_by_force({"microbench", "--csv", path("f")}, {"--csv", "exists"});
   fs::remove(folder_ / "f.json");
   expect_done(eval);
   const std::string figures = read_text(folder_ / "f.json");
@@ -148,13 +147,12 @@ TEST_F(Outputs, SynthReplacesNoRecordings) {
     all.push_back(path(out));
     return all;
   };
-  expect_kept_by_force(into("real"), {"real", "mav0"}, "--overwrite");
-  expect_kept_by_force({"synth", "--motion", path("real"), "--out", path("real")}, {"is read"},
-                       "--overwrite");
+  expect_kept_by_force(into("real"), {"real", "mav0"});
+  expect_kept_by_force({"synth", "--motion", path("real"), "--out", path("real")}, {"is read"});
   expect_done(into("flight"));
-  expect_kept(into("flight"), {"--overwrite"});
+  expect_kept(into("flight"), {"--force"});
   write_text(folder_ / "flight/notes", "x");
-  expect_kept_by_force(into("flight"), {"notes"}, "--overwrite");
+  expect_kept_by_force(into("flight"), {"notes"});
 }
 
 TEST_F(Outputs, AFolderMadeMeanwhileStaysAndTheResultsGoBeside) {

@@ -54,12 +54,12 @@ TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
   base::write_file_atomically(folder_ / "mine.yaml", "mine");
   fs::create_directory(folder_ / "folder");
   base::write_file_atomically(folder_ / "folder/thesis.tex", "mine");
-  expect_refusal({"calibrate", "--data", "x", "--out", path("mine.yaml")},
+  expect_refusal({"calibrate", "--data", "x", "--yaml", path("mine.yaml")},
                  {"exists", "not a file that leviosim wrote"});
-  expect_refusal({"calibrate", "--data", "x", "--out", path("mine.csv")}, {"ends in .yaml"});
-  expect_refusal({"sensitivity", "--data", "x", "--out", path("mine.yaml"), "--force"}, {"exists"});
-  expect_refusal({"sensitivity", "--data", "x", "--out", path("folder")}, {"is a folder"});
-  expect_refusal({"sensitivity", "--data", "x", "--out", path("none/a.csv")}, {"no folder"});
+  expect_refusal({"calibrate", "--data", "x", "--yaml", path("mine.csv")}, {"ends in .yaml"});
+  expect_refusal({"sensitivity", "--data", "x", "--csv", path("mine.yaml"), "--force"}, {"exists"});
+  expect_refusal({"sensitivity", "--data", "x", "--csv", path("folder")}, {"is a folder"});
+  expect_refusal({"sensitivity", "--data", "x", "--csv", path("none/a.csv")}, {"no folder"});
   expect_refusal({"validate", "--data", "x", "--out", path("folder"), "--force"},
                  {"something else than results"});
   EXPECT_EQ(base::read_text_file(folder_ / "mine.yaml"), "mine");
@@ -85,13 +85,13 @@ TEST_F(StudyCommands, RunOnASyntheticFlight) {
     EXPECT_TRUE(fs::exists(work / "validated" / name)) << name;
 
   const ProgramResult swept = run_program(
-      work.path(), words({"sensitivity", "--frames", "0:8", "--out", path("sweep.csv")}));
+      work.path(), words({"sensitivity", "--frames", "0:8", "--csv", path("sweep.csv")}));
   EXPECT_EQ(swept.status, 0) << swept.err;
   EXPECT_NE(swept.out.find("isa.instruction_overhead"), std::string::npos);
   EXPECT_TRUE(fs::exists(work / "sweep.csv"));
 
   const ProgramResult fitted =
-      run_program(work.path(), words({"calibrate", "--out", path("fitted.yaml")}));
+      run_program(work.path(), words({"calibrate", "--yaml", path("fitted.yaml")}));
   EXPECT_EQ(fitted.status, 0) << fitted.err;
   EXPECT_NE(fitted.out.find("left out"), std::string::npos);
   bool calibrated = false;
@@ -101,7 +101,7 @@ TEST_F(StudyCommands, RunOnASyntheticFlight) {
   EXPECT_TRUE(calibrated);
 
   // Three frames never come to EPnP: nothing is fitted and nothing written.
-  expect_refusal(words({"calibrate", "--frames", "0:3", "--out", path("never.yaml")}),
+  expect_refusal(words({"calibrate", "--frames", "0:3", "--yaml", path("never.yaml")}),
                  {"no frame of the run came to"});
   EXPECT_FALSE(fs::exists(work / "never.yaml"));
 }

@@ -113,6 +113,43 @@ TEST_F(SweepCommand, GivesTheFiguresOfReplaysAndRunsNothingTwice) {
   EXPECT_EQ(csv("elsewhere"), csv("whole"));  // what failed is tried again
 }
 
+TEST_F(SweepCommand, HoldsEveryPointAgainstABudget) {
+  base::write_file_atomically(folder_ / "budgets.yaml",
+                              "budgets:\n"
+                              "  - limits:\n"
+                              "      - frame latency p99 <= 1 s\n"
+                              "      - stage: feature*\n"
+                              "        limit: cycles <= +5 %\n");
+  const ProgramResult held =
+      sweep({"--out", path("held"), "--budget", path("budgets.yaml")}, "whole");
+  EXPECT_EQ(held.status, 1) << held.err;
+  EXPECT_EQ(held.err, "");
+  // All that run are near point 1. Point 9 cannot run.
+  for (const char* part : {"9 points against ", ": 1 do not meet it", "cannot run"})
+    EXPECT_NE(held.out.find(part), std::string::npos) << part << " is not in:\n" << held.out;
+  EXPECT_NE(csv("held").find(",frame.latency.p99,"), std::string::npos);
+  EXPECT_EQ(csv("whole").find(",frame.latency.p99,"), std::string::npos);
+
+  base::write_file_atomically(folder_ / "budgets.yaml",
+                              "budgets:\n  - limits: [frame latency p99 <= 1 ns]\n");
+  const ProgramResult again =
+      sweep({"--out", path("held"), "--budget", path("budgets.yaml")}, "whole");
+  EXPECT_EQ(again.status, 1);
+  EXPECT_NE(again.out.find(": 9 do not meet it"), std::string::npos) << again.out;
+  EXPECT_NE(again.out.find("frame latency p99 <= 1 ns"), std::string::npos) << again.out;
+  testing::expect_refused(
+      sweep({"--out", path("never"), "--budget", path("nowhere.yaml")}, "whole"), {"nowhere.yaml"});
+}
+
+TEST_F(SweepCommand, AFinishedSweepWithoutBudgetKeepsTooLittleForOne) {
+  base::write_file_atomically(folder_ / "budgets.yaml",
+                              "budgets:\n  - limits: [L1 peak <= 1 MB]\n");
+  const ProgramResult late =
+      sweep({"--out", path("whole"), "--budget", path("budgets.yaml")}, "whole");
+  EXPECT_EQ(late.status, 2);
+  EXPECT_NE(late.err.find("finished without --budget"), std::string::npos) << late.err;
+}
+
 TEST_F(SweepCommand, GoesOnAfterBeingKilledAtAnyMoment) {
   traces::Rng rng(11);
   for (int trial = 0; trial < 3; ++trial) {

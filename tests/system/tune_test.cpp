@@ -173,8 +173,8 @@ TEST(Tuning, SaysWhatItFound) {
   for (const char* part :
        {"at most 5 % missed", "10 frames/s: 200 MHz, 0.65 V: 5.0 % missed, ATE 0.190 m, 12.5 mW",
         "but not at 1 of 1 higher clocks: 300 (6.0 %, 0.100)", "the lowest of all: 200 MHz",
-        "leviosim run --platform gap9 -p supply.voltage=0.65V --data 'my flight' --camera-fps 10 "
-        "--deadline drop\n"})
+        "leviosim run --platform gap9 -p supply.voltage=0.65V --data 'my flight' --fps 10 "
+        "--deadline drop --out chosen\n"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
   EXPECT_NE(tune_table(example.plan, example.points).find("diverged"), std::string::npos);
   const std::string csv = tune_csv(example.plan, example.points);
@@ -191,6 +191,28 @@ TEST(Tuning, SaysWhatItFound) {
   EXPECT_EQ(testing::xml_fault(picture), "");
   for (const char* part : {"absolute trajectory error [m]", "mean power [mW]", "my flight"})
     EXPECT_NE(picture.find(part), std::string::npos) << part;
+}
+
+/// A line from clock to clock would say more than one draw can.
+TEST(Tuning, OnlyPowerIsALineInThePicture) {
+  const Example example;
+  const std::string picture =
+      tune_plot(example.plan, example.points, choices(example.plan, example.points));
+  const auto count = [&](const std::string& part) {
+    std::size_t n = 0;
+    for (std::size_t at = 0; (at = picture.find(part, at)) != std::string::npos; ++at) ++n;
+    return n;
+  };
+  EXPECT_EQ(count("<polyline"), 2u);          // frame rates
+  EXPECT_EQ(count("fill-opacity"), 2u + 1u);  // bands, and the legend's
+}
+
+TEST(Tuning, TheCommandOfSeveralSeedsIsALoopOverThem) {
+  Example example;
+  example.plan.seeds = {2, 7};
+  const std::string text = run_command_text(example.plan, example.points[1]);
+  EXPECT_EQ(text.rfind("for seed in 2 7; do leviosim run ", 0), 0u) << text;
+  EXPECT_NE(text.find(" --seed $seed --out chosen-$seed; done"), std::string::npos) << text;
 }
 
 TEST(RunOutcome, KeepsAllOfAClosedLoop) {
@@ -269,21 +291,25 @@ TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
   ASSERT_EQ(first.status, 0) << first.err;
   for (const char* part : {"12 closed loops", "the lowest of all: ", "confirmed", "results: "})
     EXPECT_NE(first.out.find(part), std::string::npos) << part << " is not in:\n" << first.out;
+  const Json manifest = Json::parse(base::read_text_file(folder_ / "out/manifest.json"));
+  const auto line = manifest.at("chosen").get<std::string>();
+  EXPECT_NE(first.out.find("\n  " + line + '\n'), std::string::npos) << first.out;
   auto files = contents(folder_ / "out");
   for (const char* name : {"runs.csv", "tune.svg", "manifest.json", "chosen/frames.csv"})
     EXPECT_TRUE(files.count(name)) << name;
   EXPECT_EQ(testing::xml_fault(files["tune.svg"]), "");
 
-  // What is printed runs the chosen point.
-  const Json manifest = Json::parse(files["manifest.json"]);
-  std::istringstream command(manifest.at("chosen").get<std::string>());
-  std::vector<std::string> run;
-  for (std::string word; command >> word;) run.push_back(word);
-  run.erase(run.begin());
-  run.insert(run.end(), {"--out", path("run"), "--quiet"});
-  EXPECT_EQ(run_program(folder_.path(), run).status, 0);
+  // What is printed, pasted into a shell, runs the chosen point with each seed.
+  fs::create_directory(folder_ / "bin");
+  fs::create_symlink(leviosim::tests::program_path(), folder_ / "bin/leviosim");
+  const std::string pasted = fmt::format("cd '{}' && PATH='{}':$PATH && {{ {}\n}} >pasted.txt 2>&1",
+                                         path(""), path("bin"), line);
+  EXPECT_EQ(std::system(pasted.c_str()), 0)  // NOLINT: the command is leviosim's own
+      << base::read_text_file(folder_ / "pasted.txt");
+  EXPECT_TRUE(fs::exists(folder_ / "chosen-1/stats.json"));
   for (const char* name : {"frames.csv", "stats.json", "trajectory.tum", "platform.yaml"})
-    EXPECT_EQ(base::read_text_file(folder_ / "run" / name), files[std::string("chosen/") + name])
+    EXPECT_EQ(base::read_text_file(folder_ / "chosen-2" / name),
+              files[std::string("chosen/") + name])
         << name;
 
   // One of the loops is lost: the others are found, and everything is as before.
@@ -306,6 +332,25 @@ TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
   EXPECT_EQ(files_again, files);
 }
 
+TEST_F(TuneCommand, HasThreeSeedsByDefaultAndHoldsTheChosenPointAgainstABudget) {
+  base::write_file_atomically(folder_ / "budgets.yaml",
+                              "budgets:\n  - limits: [L1 peak <= 1 kB, completion >= 1 %]\n");
+  const ProgramResult result =
+      run_program(folder_.path(), words({"--clock", "6", "--ate", "1000", "--miss-rate", "1",
+                                         "--budget", path("budgets.yaml")}));
+  EXPECT_EQ(result.status, 1) << result.err;
+  EXPECT_EQ(result.err.find("leviosim: "), std::string::npos) << result.err;
+  for (const char* part : {"3 closed loops", "for seed in 1 2 3; do", "L1 peak <= 1 kB", "NOT MET",
+                           "medians over 3 seeds", "2 limits, 1 not met"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in:\n" << result.out;
+  EXPECT_TRUE(fs::exists(folder_ / "out/chosen/stats.json"));
+  const ProgramResult none =
+      run_program(folder_.path(), words({"--force", "--clock", "6", "--ate", "0.000001",
+                                         "--miss-rate", "0", "--budget", path("budgets.yaml")}));
+  EXPECT_EQ(none.status, 1) << none.err;
+  EXPECT_NE(none.out.find("no point to hold against the budget"), std::string::npos) << none.out;
+}
+
 TEST_F(TuneCommand, RunsRefuseContradictoryLoops) {
   const auto refused = [&](std::vector<std::string> further,
                            const std::vector<std::string>& parts) {
@@ -316,7 +361,7 @@ TEST_F(TuneCommand, RunsRefuseContradictoryLoops) {
     EXPECT_FALSE(fs::exists(folder_ / "out"));
   };
   refused({"--native", "--deadline", "drop"}, {"--native", "leave out --deadline"});
-  refused({"--platform", "gap9", "--camera-fps", "30"},
+  refused({"--platform", "gap9", "--fps", "30"},
           {"30 frames/s", "recorded at 20 frames/s", "at most 20"});
   refused({"--platform", "gap9", "--deadline", "drop", "--record"}, {"--record", "open loops"});
 }
@@ -328,7 +373,7 @@ TEST(RunOptions, AskForALoopByRateOrDeadline) {
   EXPECT_FALSE(parse_camera("", "queue")->fps);
   EXPECT_EQ(parse_camera("", "queue")->deadline, Deadline::Queue);
   for (const char* fps : {"0", "-1", "fast", "nan"})
-    expect_input_error([&] { parse_camera(fps, ""); }, {"--camera-fps", "above 0"});
+    expect_input_error([&] { parse_camera(fps, ""); }, {"--fps", "above 0"});
   expect_input_error([] { parse_camera("", "late"); }, {"--deadline 'late'", "drop or queue"});
 }
 

@@ -99,7 +99,7 @@ TEST(Synthetic, OverwritesOnlyWhatItMay) {
   options.duration_s = 0.1;
   write_synthetic_flight(folder / "a", options);
   expect_input_error([&] { write_synthetic_flight(folder / "a", options); },
-                     {"a: exists and holds results", "--overwrite"});
+                     {"a: exists and holds results", "--force"});
   options.overwrite = true;
   options.duration_s = 0.2;
   write_synthetic_flight(folder / "a", options);

@@ -7,6 +7,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/study/ablate/ablation_report.h"
+#include "tools/app/study/ablate/other_accuracy.h"
 #include "tools/app/study/runs_csv.h"
 
 namespace leviosim::tools {
@@ -20,8 +21,9 @@ void run(const CLI::App& command, const BatchWords& words, const Words& command_
   const Printout text = printout(
       words.json,
       [&] {
-        return fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
-                           ablation_text(plan, rows));
+        return fmt::format("leviosim {}: {} native runs\n{}{}", version(), runs.size(),
+                           ablation_text(plan, rows),
+                           accuracy_comparison(plan, rows, paper_accuracy(), other_accuracy()));
       },
       [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
   publish(*plan.out, text, [&] {
@@ -39,6 +41,8 @@ Command add_ablate_command(CLI::App& app, const Words& words) {
       "ablate", "The paper's table of pipeline configurations, over given sequences");
   const auto typed = std::make_shared<BatchWords>();
   add_batch_options(*command, *typed);
+  add_examples(*command, {"leviosim ablate --data flight --profile levio,next --size "
+                          "160x120,320x240 --seed 1 --relative 0.5 --out ablated"});
   add_json_option(*command, typed->json);
   return {command, [=, &words] { run(*command, *typed, words); }};
 }

@@ -50,6 +50,8 @@ Command add_budget_command(CLI::App& app) {
   command->add_option("--margin", options->margin, "init: what limits leave [5 %]")
       ->type_name("PERCENT");
   add_record_options(*command, *options);
+  add_examples(*command, {"leviosim budget record recorded >baseline.json",
+                          "leviosim budget init recorded --margin '3 %' >first.yaml"});
   return {command, [=] { run(*command, *options); }};
 }
 

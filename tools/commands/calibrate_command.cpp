@@ -22,8 +22,8 @@ std::optional<base::OutputFile> claimed_platform_file(const RunOptions& options)
   const std::string extension = std::filesystem::path(options.out).extension().string();
   if (!options.out.empty() && extension != ".yaml" && extension != ".yml")
     throw InputError(
-        fmt::format("--out {}: expected a platform file that ends in .yaml", options.out));
-  return claimed_file(out_request(options));
+        fmt::format("--yaml {}: expected a platform file that ends in .yaml", options.out));
+  return claimed_file(out_request(options, "--yaml"));
 }
 
 void run(const CalibrateOptions& options) {
@@ -59,10 +59,13 @@ Command add_calibrate_command(CLI::App& app) {
       ->add_option("--constants", options->constants,
                    fmt::format("up to {} [{}]", kMostConstants, kDefaultConstants))
       ->type_name("PATH,…");
-  command->add_option("--out", options->run.out, "platform file to write")->type_name("FILE");
+  command->add_option("--yaml", options->run.out, "platform file to write")->type_name("FILE");
   command->add_flag("--force", options->run.force, "replace the file");
+  add_examples(
+      *command,
+      {"leviosim calibrate --data flight --constants isa.instruction_overhead --yaml fitted.yaml"});
   add_json_option(*command, options->run.json);
-  return {command, [=] { run(*options); }};
+  return {command, [=] { run(*options); }, {{"--out", "--yaml"}}};
 }
 
 }  // namespace leviosim::tools

@@ -72,6 +72,8 @@ Command add_check_command(CLI::App& app) {
       ->type_name("github|gitlab");
   add_json_option(*command, options->json);
   add_record_options(*command, *options);
+  add_examples(*command, {"leviosim budget init recorded >budgets.yaml",
+                          "leviosim check recorded --budget budgets.yaml --junit junit.xml"});
   return {command, [=] { run(*command, *options); }};
 }
 

@@ -72,6 +72,8 @@ Command add_compare_command(CLI::App& app) {
       ->type_name("FORMAT");
   add_json_option(*command, options->json);
   add_record_options(*command, *options);
+  add_examples(*command, {"leviosim compare recorded one-fpu",
+                          "leviosim compare recorded -p cluster.fpu.dividers=2 --format markdown"});
   return {command, [=] { run(*command, *options); }};
 }
 

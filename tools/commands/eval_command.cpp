@@ -166,6 +166,9 @@ Command add_eval_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("eval", "Compare a trajectory with the ground truth");
   const auto options = std::make_shared<EvalOptions>();
   add_eval_options(*command, *options);
+  add_examples(*command,
+               {"leviosim eval recorded flight --relative 0.5 --plot errors.svg",
+                "leviosim eval golden flight --align sim3 --relative 0.5 --also recorded"});
   return {command, [=] { run(*command, *options); }};
 }
 

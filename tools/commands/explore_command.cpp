@@ -111,6 +111,9 @@ Command add_explore_command(CLI::App& app, const Words& words) {
       ->type_name("N");
   command->add_option("--sample-seed", typed->sample_seed, "of the points' random draws [1]")
       ->type_name("N");
+  add_examples(*command,
+               {"leviosim explore --data flight --profile levio --vary workload.window=6:12 "
+                "--points 3 --seed 1 --relative 0.5 --out explored"});
   return {command, [=, &words] { run(*command, *typed, words); }};
 }
 

@@ -104,6 +104,9 @@ Command add_flow_command(CLI::App& app, const Words& words) {
   command->add_flag("--gyro", options->gyro, "take off the rotation of the camera");
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
+  add_examples(*command,
+               {"leviosim flow --platform gap8 -p cluster.clock=50MHz -p controller.clock=50MHz -p "
+                "supply.voltage=1.0V --data flight --fps 500 --out flow"});
   add_json_option(*command, options->json);
   return {command, [=, &words] { run(*command, *options, words); }};
 }

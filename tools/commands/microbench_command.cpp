@@ -22,7 +22,7 @@ constexpr std::string_view kBoard = "GAP8";
 struct MicrobenchOptions {
   std::string platform = "gap9";
   std::vector<std::string> overrides;
-  std::string out;
+  std::string csv;
   bool force = false;
   bool json = false;
 };
@@ -30,8 +30,8 @@ struct MicrobenchOptions {
 void run(const MicrobenchOptions& options) {
   const platform::ResolvedPlatform chip =
       platform::resolve_platform(options.platform, options.overrides);
-  std::optional<base::OutputFile> out = claimed_file({.option = "--out",
-                                                      .path = options.out,
+  std::optional<base::OutputFile> out = claimed_file({.option = "--csv",
+                                                      .path = options.csv,
                                                       .replace = options.force,
                                                       .inputs = {options.platform}});
   const bool is_board = chip.name == kBoard;
@@ -64,10 +64,12 @@ Command add_microbench_command(CLI::App& app) {
       ->type_name("PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--out", options->out, "write the rows to a CSV file")->type_name("FILE");
+  command->add_option("--csv", options->csv, "write the rows to a file")->type_name("FILE");
   command->add_flag("--force", options->force, "replace the file");
+  add_examples(*command,
+               {"leviosim microbench", "leviosim microbench --platform gap8 --csv board.csv"});
   add_json_option(*command, options->json);
-  return {command, [=] { run(*options); }};
+  return {command, [=] { run(*options); }, {{"--out", "--csv"}}};
 }
 
 }  // namespace leviosim::tools

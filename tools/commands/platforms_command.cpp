@@ -1,9 +1,11 @@
 #include "tools/commands/platforms_command.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,7 +20,9 @@
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/run/workload_overrides.h"
 #include "tools/app/study/feasibility/feasibility_report.h"
+#include "tools/app/study/systems/systems_report.h"
 
 namespace leviosim::tools {
 namespace {
@@ -26,12 +30,15 @@ namespace {
 struct PlatformsOptions {
   std::string action = "list";
   std::vector<std::string> names;
-  RunOptions run;  ///< of feasibility; the overrides are those of all actions
+  RunOptions run;  ///< of feasibility and stages; the overrides are those of all actions
+  std::string jobs;
+  std::string svg;
 };
 
 constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
-constexpr std::array kOfFeasibility{"--data", "--frames", "--profile", "--seed",
-                                    "--out",  "--force",  "--quiet"};
+/// Options that some actions take.
+constexpr std::array kOfSome{"--data", "--frames", "--profile", "--seed", "--csv",
+                             "--svg",  "--force",  "--quiet",   "--jobs"};
 
 void list(const PlatformsOptions& options) {
   const auto lines = [] {
@@ -110,13 +117,15 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
   const RunOptions& run = options.run;
   const std::vector<std::string> names =
       options.names.empty() ? platform::platform_names() : options.names;
+  const SplitOverrides overrides = split_overrides(run.overrides);
+  const unsigned jobs = parse_jobs(options.jobs);
   RunOptions recording = run;
   recording.platform = "gap9";
-  recording.overrides = {};
+  recording.overrides = overrides.workload;
   RunRequest request = make_chip_request(recording);
   std::vector<platform::ResolvedPlatform> chips;
   for (const std::string& name : names)
-    chips.push_back(platform::resolve_platform(name, run.overrides));
+    chips.push_back(platform::resolve_platform(name, overrides.chip));
   std::vector<FeasibilityPoint> points;
   for (std::size_t i = 0; i < chips.size(); ++i) {
     const int workers = chips[i].config.cluster.workers;
@@ -131,12 +140,12 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
     line.show(p.done, p.total,
               [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
   });
-  return study.on(points, {.noun = "chip", .progress = style});
+  return study.on(points, {.noun = "chip", .threads = jobs, .progress = style});
 }
 
 void feasibility(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
-  base::OutputRequest wanted = out_request(run);
+  base::OutputRequest wanted = out_request(run, "--csv");
   wanted.inputs.insert(wanted.inputs.end(), options.names.begin(), options.names.end());
   std::optional<base::OutputFile> out = claimed_file(wanted);
   const std::vector<Feasibility> rows = rows_for(options, true);
@@ -148,16 +157,70 @@ void feasibility(const PlatformsOptions& options) {
           }));
 }
 
+/// Takes out the chips that are too small, on which a run is refused.
+/// @returns what to say of them
+/// @throws InputError if they were asked for by name
+std::string without_small_chips(std::vector<Feasibility>& rows, bool by_name) {
+  std::string text;
+  for (const Feasibility& row : rows) {
+    if (row.fits()) continue;
+    const std::string why = fmt::format("{}: {}", printable(row.platform), memory_verdict(row));
+    if (by_name)
+      throw InputError(
+          fmt::format("platforms stages: {}; expected chips on which the workload runs (platforms "
+                      "feasibility times it as though it fitted)",
+                      why));
+    text += fmt::format("left out: {}\n", why);
+  }
+  std::erase_if(rows, [](const Feasibility& row) { return !row.fits(); });
+  return text;
+}
+
 void stages(const PlatformsOptions& options) {
-  if (!options.run.out.empty())
-    throw InputError("platforms stages: prints a table only; leave out --out");
-  const std::vector<Feasibility> rows = rows_for(options, false);
+  std::vector<Feasibility> rows = rows_for(options, false);
+  const std::string left_out = without_small_chips(rows, !options.names.empty());
   const auto lines = [&] {
-    return fmt::format("{} on {}\n\n{}", options.run.profile, printable(options.run.data),
-                       stage_comparison(rows));
+    return fmt::format("{} on {}\n\n{}{}", options.run.profile, printable(options.run.data),
+                       stage_comparison(rows), left_out);
   };
   const auto document = [&] { return table_document("stages", stage_comparison_csv(rows)); };
   print(printout(options.run.json, lines, document));
+}
+
+/// Each system has its own workload and chip.
+void systems(const PlatformsOptions& options) {
+  const RunOptions& run = options.run;
+  if (!run.overrides.empty())
+    throw InputError("platforms systems: the chips are those of the systems; leave out --set");
+  if (!options.svg.empty() && std::filesystem::path(options.svg).extension() != ".svg")
+    throw InputError(fmt::format("--svg {}: expected a file that ends in .svg", options.svg));
+  RunOptions any_chip = run;
+  any_chip.platform = "gap9";
+  RunRequest request = make_chip_request(any_chip);
+  base::OutputRequest wanted = out_request(run, "--csv");
+  std::optional<base::OutputFile> csv = claimed_file(wanted);
+  wanted.option = "--svg";
+  wanted.path = options.svg;
+  std::optional<base::OutputFile> svg = claimed_file(wanted);
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
+  request.data = data_folder(run, style);
+  ProgressLine line(style);
+  const std::vector<SystemRow> rows =
+      predict_systems(published_systems(), request, [&](const Progress& p) {
+        throw_if_interrupted();
+        line.show(p.done, p.total, [&] {
+          return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds());
+        });
+      });
+  line.clear();
+  publish({{csv, systems_csv(rows), "table"}, {svg, systems_plot(rows), "picture"}},
+          printout(
+              run.json,
+              [&] {
+                return fmt::format("systems that estimate motion; predictions on {}\n\n{}",
+                                   printable(run.data), systems_table(rows));
+              },
+              [&] { return table_document("systems", systems_csv(rows)); }));
 }
 
 void show(const PlatformsOptions& options) {
@@ -186,15 +249,29 @@ struct Action {
   std::string name;
   std::size_t names;  ///< of platforms that it takes
   std::string expected;
+  std::vector<std::string> options;  ///< that it takes, besides --set
   void (*run)(const PlatformsOptions&);
 };
 
-const std::array<Action, 5> kActions = {{
-    {"list", 0, "no platform", list},
-    {"show", 1, "one platform", show},
-    {"diff", 2, "two platforms", show_differences},
-    {"feasibility", kAnyNumber, "platforms", feasibility},
-    {"stages", kAnyNumber, "platforms", stages},
+const std::array<Action, 6> kActions = {{
+    {"list", 0, "no platform", {}, list},
+    {"show", 1, "one platform", {}, show},
+    {"diff", 2, "two platforms", {}, show_differences},
+    {"feasibility",
+     kAnyNumber,
+     "platforms",
+     {"--data", "--frames", "--profile", "--seed", "--csv", "--force", "--quiet", "--jobs"},
+     feasibility},
+    {"stages",
+     kAnyNumber,
+     "platforms",
+     {"--data", "--frames", "--profile", "--seed", "--quiet", "--jobs"},
+     stages},
+    {"systems",
+     0,
+     "no platform",
+     {"--data", "--frames", "--seed", "--csv", "--svg", "--force", "--quiet"},
+     systems},
 }};
 
 void run(const CLI::App& command, const PlatformsOptions& options) {
@@ -203,17 +280,18 @@ void run(const CLI::App& command, const PlatformsOptions& options) {
   const auto action = std::find_if(kActions.begin(), kActions.end(),
                                    [&](const Action& a) { return a.name == options.action; });
   if (action == kActions.end())
-    throw InputError(fmt::format(
-        "platforms: unknown action '{}'; expected list, show, diff, feasibility or stages{}",
-        options.action, base::did_you_mean(options.action, known)));
+    throw InputError(fmt::format("platforms: unknown action '{}'; expected {}{}", options.action,
+                                 fmt::join(known, ", "),
+                                 base::did_you_mean(options.action, known)));
   if (action->names != kAnyNumber && options.names.size() != action->names)
     throw InputError(fmt::format("platforms {}: expected {}, found {}", action->name,
                                  action->expected, options.names.size()));
-  if (action->names != kAnyNumber)
-    for (const char* option : kOfFeasibility)
-      if (command.count(option) > 0)
-        throw InputError(
-            fmt::format("platforms {}: runs nothing; leave out {}", action->name, option));
+  for (const char* option : kOfSome)
+    if (command.count(option) > 0 &&
+        std::count(action->options.begin(), action->options.end(), option) == 0)
+      throw InputError(fmt::format("platforms {}: {}; leave out {}", action->name,
+                                   action->options.empty() ? "runs nothing" : "has no use for it",
+                                   option));
   action->run(options);
 }
 
@@ -228,7 +306,7 @@ Command add_platforms_command(CLI::App& app) {
   run_options.data = "synthetic";
   command->add_option(
       "ACTION", options->action,
-      "list (the default), show NAME, diff NAME NAME, feasibility or stages [NAME ...]");
+      "list (the default), show NAME, diff NAME NAME, feasibility or stages [NAME ...], systems");
   command->add_option("NAME", options->names, "chips: names or files");
   command
       ->add_option("-p,--set", run_options.overrides,
@@ -236,19 +314,32 @@ Command add_platforms_command(CLI::App& app) {
       ->type_name("PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
+  const char* const group = "With feasibility, stages and systems";
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, std::string("feasibility, stages: ") + help)->type_name(type);
+    command->add_option(name, value, help)->type_name(type)->group(group);
   };
   add("--data", run_options.data, "DIR|synthetic",
       "ASL/EuRoC folder, or the synthetic flight [synthetic]");
   add("--frames", run_options.frames, "A:B", "frames, B exclusive [all]");
-  add("--profile", run_options.profile, "NAME", "of the workload [levio]");
+  add("--profile", run_options.profile, "NAME", "of the workload [levio]; not of systems");
   add("--seed", run_options.seed, "N", "of the workload's random draws [1]");
+  add("--csv", run_options.out, "FILE", "write the rows to a file; not of stages");
+  add("--svg", options->svg, "FILE", "systems: draw power over frame rate");
+  command->add_flag("--force", run_options.force, "replace these files")->group(group);
+  add_jobs_option(*command, options->jobs, "chip");
+  command->get_option("--jobs")->group(group);
+  command->add_flag("--quiet", run_options.quiet, "no progress")->group(group);
+  add_examples(*command, {"leviosim platforms", "leviosim platforms show gap9 -p cluster.workers=4",
+                          "leviosim platforms diff gap9 gap8",
+                          "leviosim platforms feasibility gap9 cortex-m7 --data flight "
+                          "--csv chips.csv",
+                          "leviosim platforms stages gap9 gap9-eigen --data flight",
+                          "leviosim platforms systems --data flight --svg systems.svg"});
   add("--out", run_options.out, "FILE", "CSV file to write");
   command->add_flag("--force", run_options.force, "feasibility: replace the file");
   command->add_flag("--quiet", run_options.quiet, "feasibility: no progress");
   add_json_option(*command, run_options.json);
-  return {command, [=] { run(*command, *options); }};
+  return {command, [=] { run(*command, *options); }, {{"--out", "--csv"}}};
 }
 
 }  // namespace leviosim::tools

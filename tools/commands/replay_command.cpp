@@ -120,6 +120,8 @@ Command add_replay_command(CLI::App& app, const Words& words) {
   add_out_options(*command, *options);
   add_timeline_options(*command, options->timeline);
   add_gate_options(*command, options->gate);
+  add_examples(*command, {"leviosim replay recorded -p cluster.fpu.units=1 --out one-fpu",
+                          "leviosim replay recorded/work.trace --platform gap9-eigen --out eigen"});
   add_print_options(*command, *options);
   return {command, [=, &words] { run(*command, *options, words); }};
 }

@@ -77,8 +77,14 @@ Command add_run_command(CLI::App& app, const Words& words) {
   add_run_options(*command, *options);
   add_timeline_options(*command, options->timeline);
   add_gate_options(*command, options->gate);
+  add_examples(*command,
+               {"leviosim run --platform gap9 --data flight --record --out recorded",
+                "leviosim run --platform gap9 -p cluster.clock=240MHz -p controller.clock=240MHz "
+                "-p supply.voltage=0.65V --data flight --out slow",
+                "leviosim run --platform gap9 --data flight --fps 10 --deadline drop --out loop",
+                "leviosim run --native --data flight --size 320x240 --out golden"});
   add_print_options(*command, *options);
-  return {command, [=, &words] { run(*command, *options, words); }};
+  return {command, [=, &words] { run(*command, *options, words); }, {{"--camera-fps", "--fps"}}};
 }
 
 }  // namespace leviosim::tools

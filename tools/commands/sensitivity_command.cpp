@@ -13,17 +13,23 @@ namespace {
 
 constexpr const char* kFramesByDefault = "0:100";
 
-void run(const RunOptions& options) {
+struct SensitivityOptions : RunOptions {
+  std::string jobs;
+};
+
+void run(const SensitivityOptions& options) {
+  const unsigned jobs = parse_jobs(options.jobs);
   RunRequest request = make_chip_request(options);
-  std::optional<base::OutputFile> out = claimed_file(out_request(options));
+  std::optional<base::OutputFile> out = claimed_file(out_request(options, "--csv"));
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);
   request.recording = &recording;
   const RunResult result = simulate_with_progress(request, style);
   const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
-  const Sensitivity found = sensitivity(platform::Variants(std::move(request.platform)),
-                                        request.cores, trace, {.noun = "chip", .progress = style});
+  const Sensitivity found =
+      sensitivity(platform::Variants(std::move(request.platform)), request.cores, trace,
+                  {.noun = "chip", .threads = jobs, .progress = style});
   publish({{out, sensitivity_csv(found), "table"}},
           printout(
               options.json,
@@ -36,13 +42,16 @@ void run(const RunOptions& options) {
 Command add_sensitivity_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "sensitivity", "Sweep every uncertain number of a chip over its range, one at a time");
-  const auto options = std::make_shared<RunOptions>();
+  const auto options = std::make_shared<SensitivityOptions>();
   options->frames = kFramesByDefault;
   add_chip_run_options(*command, *options);
-  command->add_option("--out", options->out, "CSV file to write")->type_name("FILE");
+  command->add_option("--csv", options->out, "write the rows to a file")->type_name("FILE");
   command->add_flag("--force", options->force, "replace the file");
+  add_jobs_option(*command, options->jobs, "chip");
+  add_examples(*command,
+               {"leviosim sensitivity --data flight --frames 0:20 --csv sensitivity.csv"});
   add_json_option(*command, options->json);
-  return {command, [=] { run(*options); }};
+  return {command, [=] { run(*options); }, {{"--out", "--csv"}}};
 }
 
 }  // namespace leviosim::tools

@@ -8,7 +8,9 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "sim/base/sha256.h"
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
@@ -16,6 +18,7 @@
 #include "tools/app/run/memory_option.h"
 #include "tools/app/study/runner.h"
 #include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/sweep_check.h"
 #include "tools/app/study/sweep/sweep_folder.h"
 #include "tools/app/study/sweep/sweep_report.h"
 #include "tools/app/study/sweep/sweep_store.h"
@@ -34,6 +37,7 @@ struct SweepWords {
   std::string shard;
   RunnerWords runner;
   std::string memory;
+  std::string budget;
   std::vector<std::string> merge;
   bool list = false;
   bool force = false;
@@ -76,9 +80,16 @@ std::string document(const base::OutputFile& csv) {
   return table_document("sweep", base::read_file(csv.shown_path(), base::InputKind::table));
 }
 
+/// Outcomes for budgets hold more, so that they have keys of their own in the cache.
+std::string budget_key(const std::string& key) {
+  base::Sha256 digest;
+  digest.add(key + " with the figures of budgets");
+  return digest.hex();
+}
+
 /// What of the points is neither in the file nor in the cache.
 Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, SweepStore& store,
-                 const RunnerOptions& options) {
+                 const RunnerOptions& options, bool for_budget) {
   const std::set<int> finished = store.finished();
   const SweepPoints& points = sweep.expansion.points;
   PointBatch batch{.keeps_failures = false};
@@ -87,12 +98,13 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
     if (finished.count(static_cast<int>(i) + 1) > 0) continue;
     throw_if_interrupted();
     open.push_back(i);
-    batch.keys.push_back(points.key(i));
+    batch.keys.push_back(for_budget ? budget_key(points.key(i)) : points.key(i));
   }
   batch.before = chosen.size() - open.size();
   batch.compute = [&](std::size_t i) {
     return run_point(resolve(sweep.plan, points.settings(open[i]), sweep.inputs,
-                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)));
+                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)),
+                     for_budget);
   };
   batch.take = [&](std::size_t i, const Outcome& outcome) {
     store.put(static_cast<int>(open[i]) + 1, outcome);
@@ -149,13 +161,17 @@ void run_plan(const SweepWords& words) {
   }
   if (words.out.empty())
     throw InputError("sweep: --out is missing; expected a folder for the results");
+  expect_json_or_budget(words.json, words.budget);
+  std::optional<Budget> budget;
+  if (!words.budget.empty()) budget = read_budget(words.budget);
   const std::vector<std::size_t> chosen = chosen_points(words, expansion.points.size());
   const RunnerOptions options = runner_options(words.runner, "point", words.quiet);
   SweepFolder out({"--out", words.out, {words.plan}, options.cache});
   if (words.force) out.empty();
   const auto begin = std::chrono::steady_clock::now();
   SweepStore store(out.path(), plan.text, expansion.points);
-  const Tally tally = run_points({plan, expansion, inputs}, chosen, store, options);
+  const Tally tally =
+      run_points({plan, expansion, inputs}, chosen, store, options, budget.has_value());
   const std::optional<std::string> elsewhere = store.publish(out.csv());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -168,6 +184,10 @@ void run_plan(const SweepWords& words) {
   };
   print(printout(words.json, lines, [&] { return document(out.csv()); }));
   if (elsewhere) throw InputError(*elsewhere);
+  if (!budget) return;
+  const SweepCheck check = check_sweep(*budget, plan, expansion.points, inputs, store);
+  print_result("\n{}", check.text);
+  if (check.missed > 0) throw LimitNotMet();
 }
 
 void run(const CLI::App& command, const SweepWords& words) {
@@ -176,7 +196,7 @@ void run(const CLI::App& command, const SweepWords& words) {
     run_plan(words);
     return;
   }
-  for (const char* option : {"PLAN", "--out", "--list", "--point", "--shard"})
+  for (const char* option : {"PLAN", "--out", "--list", "--point", "--shard", "--budget"})
     if (command.count(option) > 0)
       throw InputError(fmt::format("sweep: --merge OUT IN... takes no {}", option));
   merge(words);
@@ -193,6 +213,8 @@ Command add_sweep_command(CLI::App& app) {
   };
   command->add_option("PLAN", words->plan, "YAML file: tools/app/study/sweep/README.md");
   add("--out", words->out, "DIR", "folder for the results; goes on with what it holds");
+  add("--budget", words->budget, "FILE",
+      "limits that every point has to meet; those with a sign are relative to point 1");
   command->add_flag("--list", words->list, "print the points with their numbers, run nothing");
   add("--point", words->point, "K", "run this point only");
   add("--shard", words->shard, "I/N", "run the I-th of N shares only");
@@ -205,6 +227,10 @@ Command add_sweep_command(CLI::App& app) {
   add_memory_option(*command, words->memory);
   command->add_flag("--force", words->force, "begin anew; finished points are found in the cache");
   command->add_flag("--quiet", words->quiet, "no progress");
+  add_examples(*command,
+               {"echo 'base: { trace: recorded }' >fpus.yaml",
+                "echo 'points: { grid: { platform.cluster.fpu.units: [1, 2, 4] } }' >>fpus.yaml",
+                "leviosim sweep fpus.yaml --list", "leviosim sweep fpus.yaml --out swept"});
   add_json_option(*command, words->json);
   return {command, [=] { run(*command, *words); }};
 }

@@ -120,14 +120,18 @@ Command add_synth_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("synth", "Make a flight: synthetic, or rendered along a recorded motion");
   const auto options = std::make_shared<SynthOptions>();
-  command->add_option("--out", options->out, "folder, which becomes an ASL folder");
-  command->add_option("--seed", options->seed, "of world, path and noise [1]");
-  command->add_option("--duration", options->duration, "seconds [20]");
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  add("--out", options->out, "DIR", "folder, which becomes an ASL folder");
+  add("--seed", options->seed, "N", "of world, path and noise [1]");
+  add("--duration", options->duration, "S", "seconds [20]");
   add_motion_options(*command, *options);
-  command->add_flag("--overwrite,--force", options->overwrite,
-                    "replace a flight that was written before");
+  command->add_flag("--force", options->overwrite, "replace a flight that was written before");
   command->add_flag("--quiet", options->quiet, "no progress");
-  return {command, [=] { run(*command, *options); }};
+  add_examples(*command, {"leviosim synth --duration 3 --out flight",
+                          "leviosim synth --motion flight --frames 0:20 --out rendered"});
+  return {command, [=] { run(*command, *options); }, {{"--overwrite", "--force"}}};
 }
 
 }  // namespace leviosim::tools

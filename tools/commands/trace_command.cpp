@@ -85,6 +85,8 @@ Command add_trace_command(CLI::App& app) {
   command->add_option("ACTION", options->action, "info, or check: read all of it");
   command->add_option("FILE", options->file, "work.trace of a run with --record");
   add_memory_option(*command, options->memory);
+  add_examples(*command, {"leviosim trace info recorded/work.trace",
+                          "leviosim trace check recorded/work.trace"});
   add_json_option(*command, options->json);
   return {command, [=] { run(*command, *options); }};
 }

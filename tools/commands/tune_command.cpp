@@ -6,10 +6,13 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
+#include "tools/app/budget/gate.h"
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/table_document.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
@@ -19,46 +22,74 @@
 namespace leviosim::tools {
 namespace {
 
+struct GatedTuneWords : TuneWords {
+  GateOptions gate;
+};
+
+/// A loop with the first seed.
+struct ChosenRun {
+  RunRequest request;
+  RunResult result;
+  std::vector<StageParts> cycles;
+};
+
 /// Runs a point by itself with all seeds, whatever the cache holds. @returns what the first gave
-RunResult run_again(const TunePlan& plan, const TunePoint& point) {
-  std::vector<RunResult> results;
+ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
+  std::optional<ChosenRun> first;
   for (std::size_t i = 0; i < plan.seeds.size(); ++i) {
-    results.push_back(simulate(request_of(plan, point.fps, point.setting, plan.seeds[i]),
-                               [](const Progress&) { throw_if_interrupted(); }));
-    const RunOutcome outcome = outcome_of(results.back(), plan.sequence.truth, plan.measure);
+    RunRequest request = request_of(plan, point.fps, point.setting, plan.seeds[i]);
+    CycleParts parts(request.platform.config, request.cores);
+    if (i == 0) request.observer = &parts;
+    RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
+    request.observer = nullptr;
+    const RunOutcome outcome = outcome_of(result, plan.sequence.truth, plan.measure);
     if (to_text(figures_of(outcome)) != to_text(figures_of(point.outcomes[i])))
       throw InputError(
           "tune: run again, the chosen point gave other figures than were found in the cache of "
           "finished runs; remove it, or choose another with --cache");
+    if (i == 0) first = ChosenRun{std::move(request), std::move(result), parts.stages()};
   }
-  return std::move(results.front());
+  return std::move(*first);
 }
 
-void write_chosen(const TunePlan& plan, const TunePoint& point, const RunResult& result,
-                  const Words& command_line) {
-  const RunRequest request = request_of(plan, point.fps, point.setting, plan.seeds.front());
-  write_run_folder(*plan.out, result,
-                   make_manifest(run_options_of(plan, point), request, command_line),
-                   platform::to_yaml(request.platform), "chosen/");
+Manifest manifest_of(const TunePlan& plan, const TunePoint& point, const ChosenRun& run,
+                     const Words& command_line) {
+  return make_manifest(run_options_of(plan, point), run.request, command_line);
 }
 
 void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
-                  const std::optional<RunResult>& again, const Words& command_line) {
+                  const std::optional<ChosenRun>& again, const Words& command_line) {
   const std::vector<Choice> all = choices(plan, points);
   plan.out->write("runs.csv", tune_csv(plan, points));
   plan.out->write("tune.svg", tune_plot(plan, points, all));
-  if (again) write_chosen(plan, *chosen(all), *again, command_line);
+  if (again)
+    write_run_folder(*plan.out, again->result,
+                     manifest_of(plan, *chosen(all), *again, command_line),
+                     platform::to_yaml(again->request.platform), "chosen/");
   plan.out->write("manifest.json", json_text(tune_manifest(plan, all, command_line), 2) + '\n');
 }
 
-void run(const CLI::App& command, const TuneWords& words, const Words& command_line) {
+/// Holds the chosen point against the budget, with the first seed.
+void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
+          const std::optional<ChosenRun>& again, const Words& command_line) {
+  if (!again) {
+    print_result("\nno point to hold against the budget\n");
+    throw LimitNotMet();
+  }
+  print_check(gate, make_record("the chosen point", manifest_of(plan, *best, *again, command_line),
+                                again->result, again->cycles));
+}
+
+void run(const CLI::App& command, const GatedTuneWords& words, const Words& command_line) {
+  expect_json_or_budget(words.run.json, words.gate.budget);
+  const std::optional<Gate> gate = optional_gate(words.gate, {});
   const TunePlan plan = make_tune_plan(command, words);
   const std::vector<Point> runs = tune_runs(plan);
   const std::vector<TunePoint> points =
       tune_points(plan, runs, run_outcomes(runs, plan.measure, plan.runner));
   const std::vector<Choice> all = choices(plan, points);
   const TunePoint* best = chosen(all);
-  std::optional<RunResult> again;
+  std::optional<ChosenRun> again;
   if (best != nullptr) again = run_again(plan, *best);
   std::string text =
       fmt::format("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}",
@@ -73,6 +104,7 @@ void run(const CLI::App& command, const TuneWords& words, const Words& command_l
     publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });
   else
     print(shown);
+  if (gate) hold(*gate, plan, best, again, command_line);
 }
 
 }  // namespace
@@ -81,9 +113,12 @@ Command add_tune_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand(
       "tune",
       "Accuracy and power over the clock, in closed loops; the lowest clock that meets the limits");
-  const auto typed = std::make_shared<TuneWords>();
+  const auto typed = std::make_shared<GatedTuneWords>();
   add_tune_options(*command, *typed);
+  add_gate_options(*command, typed->gate);
   add_json_option(*command, typed->run.json);
+  add_examples(*command,
+               {"leviosim tune --data flight --clock 240:370:130 --fps 10,20 --out tuned"});
   return {command, [=, &words] { run(*command, *typed, words); }};
 }
 

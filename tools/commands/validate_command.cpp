@@ -58,6 +58,9 @@ Command add_validate_command(CLI::App& app, const Words& words) {
   command->add_option("--out", options->out, "folder for the results; must be new or empty")
       ->type_name("DIR");
   command->add_flag("--force", options->force, "replace the results of an earlier run");
+  add_examples(*command,
+               {"leviosim validate --data flight",
+                "leviosim validate --data flight -p isa.instruction_overhead=1.1 --out validated"});
   add_json_option(*command, options->json);
   return {command, [=, &words] { run(*options, words); }};
 }

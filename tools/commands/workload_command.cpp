@@ -64,6 +64,7 @@ Command add_workload_command(CLI::App& app) {
   const auto options = std::make_shared<WorkloadOptions>();
   command->add_option("--profile", options->profile, "whose values are shown [levio]")
       ->type_name("NAME");
+  add_examples(*command, {"leviosim workload", "leviosim workload --profile next"});
   add_json_option(*command, options->json);
   return {command, [=] { run(*options); }};
 }

@@ -23,7 +23,7 @@ cut 'table stage stage "kcycles, 8 cores" speed-up ms | rows ^EPnP ^8-point'
 figure missed-deadlines
 needs data
 shows 'leviosim run --platform gap9 -p cluster.clock=130MHz -p controller.clock=130MHz \
-      -p supply.voltage=0.65V --data euroc/MH_01_easy_t05_t20 --camera-fps 10 --deadline drop --tables camera,trajectory --out slow'
+      -p supply.voltage=0.65V --data euroc/MH_01_easy_t05_t20 --fps 10 --deadline drop --tables camera,trajectory --out slow'
 cut 'lines "^frames: .* arrived" ^latency ^ATE'
 
 figure sweep
@@ -124,6 +124,11 @@ figure accelerators
 needs data
 shows 'leviosim platforms stages gap9 gap9-eigen gap9-hamming gap9-corners --data euroc/MH_01_easy_t05_t20'
 cut 'table "kilocycles of a call"'
+
+figure systems
+needs data
+shows 'leviosim platforms systems --data euroc/MH_01_easy_t05_t20 --svg systems.svg'
+cut 'table system'
 
 # workload/flow/VALIDATION.md
 figure flow

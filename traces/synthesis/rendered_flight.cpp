@@ -202,8 +202,7 @@ void write_rendered_flight(const fs::path& motion_dir, const fs::path& out_dir,
   base::OutputFolder out({.option = {},
                           .path = out_dir.string(),
                           .replace = options.overwrite,
-                          .inputs = {motion_dir, motion_dir / "mav0"},
-                          .replace_option = "--overwrite"});
+                          .inputs = {motion_dir, motion_dir / "mav0"}});
   const Plan plan = make_plan(motion_dir, options);
   const CameraModel& camera = plan.record.camera;
   const ImageSize size = options.prepared.value_or(ImageSize{camera.width, camera.height});

@@ -100,7 +100,6 @@ void write_synthetic_flight(const std::filesystem::path& out_dir, const Syntheti
   base::OutputFolder out({.option = {},
                           .path = out_dir.string(),
                           .replace = options.overwrite || options.repair,
-                          .replace_option = "--overwrite",
                           .repair = options.repair});
   const HandHeldFlight motion(derive_seed(options.seed, kMotionSeed));
   const std::vector<std::int64_t> frames = frame_stamps(options);

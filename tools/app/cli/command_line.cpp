@@ -14,6 +14,8 @@
 namespace leviosim::tools {
 namespace {
 
+constexpr const char* kHelp = "help";
+
 std::vector<std::string> names_of(const std::vector<Command>& commands) {
   std::vector<std::string> names;
   for (const Command& command : commands) names.push_back(command.app->get_name());
@@ -58,20 +60,60 @@ void refuse_empty_values(const Words& words) {
   }
 }
 
+[[noreturn]] void fail_unknown_command(const std::vector<Command>& commands,
+                                       const std::string& word) {
+  std::vector<std::string> names = names_of(commands);
+  names.emplace_back(kHelp);
+  throw InputError(fmt::format("unknown command '{}'{}", word, base::did_you_mean(word, names)));
+}
+
 [[noreturn]] void fail_without_command(const std::vector<Command>& commands, const Words& unknown,
                                        const CLI::App& app) {
-  const std::vector<std::string> names = names_of(commands);
   if (unknown.empty())
-    throw InputError(fmt::format("expected a command: {}", fmt::join(names, ", ")));
+    throw InputError(fmt::format("expected a command: {}", fmt::join(names_of(commands), ", ")));
   const std::string& word = unknown.front();
   if (word.rfind('-', 0) == 0) fail_unknown("", word, options_of(app));
-  throw InputError(fmt::format("unknown command '{}'{}", word, base::did_you_mean(word, names)));
+  fail_unknown_command(commands, word);
+}
+
+const Command* command_named(const std::vector<Command>& commands, const std::string& name) {
+  const auto it = std::find_if(commands.begin(), commands.end(),
+                               [&](const Command& c) { return c.app->get_name() == name; });
+  return it == commands.end() ? nullptr : &*it;
+}
+
+/// "help run" as "run --help", and "help" as "--help".
+Words help_as_option(const Words& words, const std::vector<Command>& commands) {
+  if (words.empty() || words.front() != kHelp) return words;
+  if (words.size() == 1) return {"--help"};
+  if (command_named(commands, words[1]) == nullptr) fail_unknown_command(commands, words[1]);
+  if (words.size() > 2) fail_unknown("help: ", words[2], {});
+  return {words[1], "--help"};
+}
+
+/// The words with options by their present names.
+Words in_present_spelling(Words words, const std::vector<Command>& commands) {
+  const Command* command = words.empty() ? nullptr : command_named(commands, words.front());
+  if (command == nullptr) return words;
+  for (std::string& word : words)
+    for (const auto& [old, now] : command->old_spellings)
+      if (word == old || word.rfind(old + '=', 0) == 0) word.replace(0, old.size(), now);
+  return words;
 }
 
 }  // namespace
 
-int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& words) {
-  refuse_empty_values(words);
+void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
+  command.footer(fmt::format("Examples:\n  {}", fmt::join(lines, "\n  ")));
+}
+
+int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& typed) {
+  refuse_empty_values(typed);
+  const Words words = in_present_spelling(help_as_option(typed, commands), commands);
+  // CLI11 would go on to a later word that is a command.
+  if (!words.empty() && words.front().front() != '-' &&
+      command_named(commands, words.front()) == nullptr)
+    fail_unknown_command(commands, words.front());
   // Unknown words are collected instead of refused, so that they can be answered with a suggestion.
   app.allow_extras();
   // One command: after it, a folder may be called "run".
@@ -99,13 +141,13 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands, const 
 }
 
 std::int64_t parse_whole(const std::string& option, const std::string& text, std::int64_t min,
-                         std::int64_t max) {
+                         std::int64_t max, std::string_view about_max) {
   std::int64_t value = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || stop != end || value < min || value > max)
-    throw InputError(
-        fmt::format("{} '{}': expected a whole number from {} to {}", option, text, min, max));
+    throw InputError(fmt::format("{} '{}': expected a whole number from {} to {}{}", option, text,
+                                 min, max, about_max));
   return value;
 }
 

@@ -4,27 +4,41 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace leviosim::tools {
+
+/// An option by the name that it had before. It works, but no help shows it.
+struct OldSpelling {
+  std::string old;  ///< "--camera-fps"
+  std::string now;  ///< "--fps"
+};
 
 /// A subcommand after its options have been declared.
 struct Command {
   CLI::App* app = nullptr;
   std::function<void()> run;  ///< with the options as parsed
+  std::vector<OldSpelling> old_spellings{};
 };
+
+/// Puts command lines at the end of the command's help. All work as they stand in one folder: those
+/// of synth, of run, and then of the other commands in the order in which the program lists them
+/// (tests/system/examples_test.cpp).
+void add_examples(CLI::App& command, const std::vector<std::string>& lines);
 
 /// Words of the command line without the program's name.
 using Words = std::vector<std::string>;
 
-/// Parses the words and runs the command they name.
+/// Parses the words and runs the command they name. "help COMMAND" is "COMMAND --help".
 /// @returns the exit status: 0 also where only help or version was asked for
 /// @throws InputError for anything that is not understood, with the nearest valid name
-int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& words);
+int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& typed);
 
 /// Option checks: the text of an option, or InputError "--name 'text': expected …".
+/// @param about_max  says where the greatest number comes from, after it
 std::int64_t parse_whole(const std::string& option, const std::string& text, std::int64_t min,
-                         std::int64_t max);
+                         std::int64_t max, std::string_view about_max = {});
 double parse_positive(const std::string& option, const std::string& text);
 /// @throws InputError if the option was not given
 void require(const CLI::App& command, const std::string& option, const std::string& expected);

@@ -1,5 +1,7 @@
 #include "tools/app/cli/printout.h"
 
+#include "sim/base/error.h"
+
 #include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
@@ -9,5 +11,11 @@ void add_json_option(CLI::App& command, bool& json) {
 }
 
 void print(const Printout& printout) { print_result_text(printout.text); }
+
+void expect_json_or_budget(bool json, const std::string& budget) {
+  if (json && !budget.empty())
+    throw InputError(
+        "--json and --budget both print to stdout; leave out one (leviosim check --json RUN)");
+}
 
 }  // namespace leviosim::tools

@@ -22,6 +22,11 @@ struct Printout {
 /// Declares --json.
 void add_json_option(CLI::App& command, bool& json);
 
+/// One document is all that goes to stdout, so it does not go with the text of a check.
+/// @param budget  what --budget was given; empty if it was not
+/// @throws InputError if both were asked for
+void expect_json_or_budget(bool json, const std::string& budget);
+
 /// Prints it as it is.
 void print(const Printout& printout);
 

@@ -19,7 +19,7 @@ void refuse_chip_options(const CLI::App& command, const RunOptions& options) {
   const auto refuse = [](const std::string& option) {
     throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
   };
-  for (const char* option : {"--platform", "--cores", "--record", "--camera-fps", "--deadline"})
+  for (const char* option : {"--platform", "--cores", "--record", "--fps", "--deadline"})
     if (command.count(option) > 0) refuse(option);
   for (const std::string& text : split_overrides(options.overrides).chip) refuse("--set " + text);
 }
@@ -79,7 +79,9 @@ void add_out_options(CLI::App& command, RunOptions& options) {
 
 int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster) {
   if (options.cores.empty()) return cluster.workers;
-  return static_cast<int>(parse_whole("--cores", options.cores, 1, cluster.max_workers));
+  return static_cast<int>(
+      parse_whole("--cores", options.cores, 1, cluster.max_workers,
+                  ", the chip's cluster.max_workers (-p cluster.max_workers=N sets it)"));
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
@@ -87,7 +89,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--native", options.native, "no chip, no timing: the golden model");
   add_workload_options(command, options, "");
   add_text(command, "--size", options.size, "WxH", "image size [160x120]");
-  add_text(command, "--camera-fps", options.camera_fps, "F",
+  add_text(command, "--fps", options.camera_fps, "F",
            "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
   add_text(command, "--deadline", options.deadline, "drop|queue",
            "closed loop: what becomes of a frame that finds the front end busy [drop]");
@@ -105,7 +107,7 @@ void add_chip_run_options(CLI::App& command, RunOptions& options) {
 std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline) {
   if (fps.empty() && deadline.empty()) return std::nullopt;
   CameraRequest camera;
-  if (!fps.empty()) camera.fps = parse_positive("--camera-fps", fps);
+  if (!fps.empty()) camera.fps = parse_positive("--fps", fps);
   if (!deadline.empty()) camera.deadline = soc::parse_deadline(deadline);
   return camera;
 }
@@ -133,7 +135,7 @@ RunRequest make_request(const CLI::App& command, const RunOptions& options) {
     if (request.camera && options.record)
       throw InputError(
           "run: --record is for open loops, whose trace holds the work of every frame; with "
-          "--camera-fps or --deadline, frames are dropped as the chip's speed has it");
+          "--fps or --deadline, frames are dropped as the chip's speed has it");
   }
   return request;
 }

@@ -51,7 +51,7 @@ RunRequest make_chip_request(const RunOptions& options);
 /// @throws InputError for more cores than the chip serves
 int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster);
 
-/// The closed loop that --camera-fps and --deadline ask for, if one of them is given; the other
+/// The closed loop that --fps and --deadline ask for, if one of them is given; the other
 /// is then the recorded rate or `drop`. @throws InputError
 std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline);
 

@@ -49,9 +49,7 @@ void add_print_options(CLI::App& command, RunOptions& options) {
 }
 
 void check_print_options(const RunOptions& options, const std::string& budget) {
-  if (options.json && !budget.empty())
-    throw InputError(
-        "--json and --budget both print to stdout; leave out one (leviosim check --json RUN)");
+  expect_json_or_budget(options.json, budget);
   if (options.tables.empty()) return;
   if (options.json) throw InputError("--tables is for text; expected it without --json");
   parse_tables(options.tables);

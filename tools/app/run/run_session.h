@@ -14,8 +14,9 @@
 
 namespace leviosim::tools {
 
-/// What --out and --force ask for; what the run reads stays as it is.
-base::OutputRequest out_request(const RunOptions& options);
+/// What --out and --force ask for, or another option that RunOptions::out keeps; what the run reads
+/// stays as it is.
+base::OutputRequest out_request(const RunOptions& options, const char* option = "--out");
 
 /// What --data stands for: the folder, and the one in it that may be a link.
 std::vector<std::filesystem::path> data_inputs(const std::string& data);

@@ -1,9 +1,13 @@
 #include "tools/app/run/simulate.h"
 
+#include <fmt/core.h>
+
 #include <chrono>
 #include <utility>
 
+#include "sim/base/error.h"
 #include "sim/soc/simulation.h"
+#include "sim/work/memory_overflow.h"
 #include "tools/app/run/live_source.h"
 #include "tools/app/run/recording_source.h"
 #include "workload/vio/odometry/odometry.h"
@@ -94,13 +98,33 @@ RunResult run_natively(const RunRequest& request, const ProgressCallback& progre
   return result;
 }
 
+/// What of images larger than by default fills the memories, and how to have less of it; empty for
+/// other images.
+std::string advice_on_size(const RunRequest& request) {
+  const auto extractor = profile_of(request).extractor;
+  const auto features = [&](const traces::ImageSize& size) {
+    return extractor.max_features(size.width, size.height);
+  };
+  const traces::ImageSize size = request.image_size;
+  if (features(size) <= features(RunRequest().image_size)) return {};
+  return fmt::format(
+      "; an image of {}x{} has up to {} features, {} of each cell of {} px: expected larger cells "
+      "(-p workload.cell=N), fewer features of each (-p workload.features_per_cell=N), or a "
+      "smaller image",
+      size.width, size.height, features(size), extractor.per_cell, extractor.cell);
+}
+
 RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progress) {
-  LiveSource live(request);
-  if (request.recording == nullptr) return simulate_source(request, live, progress);
-  RecordingSource recorded(live, *request.recording);
-  RunResult result = simulate_source(request, recorded, progress);
-  recorded.finish();
-  return result;
+  try {
+    LiveSource live(request);
+    if (request.recording == nullptr) return simulate_source(request, live, progress);
+    RecordingSource recorded(live, *request.recording);
+    RunResult result = simulate_source(request, recorded, progress);
+    recorded.finish();
+    return result;
+  } catch (const work::MemoryOverflow& overflow) {
+    throw InputError(overflow.what() + advice_on_size(request));
+  }
 }
 
 }  // namespace

@@ -46,9 +46,16 @@ void show(ProgressLine& line, const std::string& noun, const Tally& tally) {
 
 }  // namespace
 
+void add_jobs_option(CLI::App& command, std::string& jobs, const std::string& noun) {
+  command.add_option("--jobs", jobs, noun + "s at a time [cores of the host]")->type_name("N");
+}
+
+unsigned parse_jobs(const std::string& jobs) {
+  return jobs.empty() ? 0 : static_cast<unsigned>(parse_whole("--jobs", jobs, 1, kMostJobs));
+}
+
 void add_runner_options(CLI::App& command, RunnerWords& words, const std::string& noun) {
-  command.add_option("--jobs", words.jobs, noun + "s at a time [cores of the host]")
-      ->type_name("N");
+  add_jobs_option(command, words.jobs, noun);
   command
       .add_option("--cache", words.cache,
                   fmt::format("where finished {}s are cached [user's cache]", noun))
@@ -56,9 +63,9 @@ void add_runner_options(CLI::App& command, RunnerWords& words, const std::string
 }
 
 RunnerOptions runner_options(const RunnerWords& words, const std::string& noun, bool quiet) {
-  RunnerOptions options{.noun = noun, .progress = ProgressLine::style_of_stderr(quiet)};
-  if (!words.jobs.empty())
-    options.threads = static_cast<unsigned>(parse_whole("--jobs", words.jobs, 1, kMostJobs));
+  RunnerOptions options{.noun = noun,
+                        .threads = parse_jobs(words.jobs),
+                        .progress = ProgressLine::style_of_stderr(quiet)};
   options.cache =
       words.cache.empty() ? default_outcome_cache() : std::filesystem::path(words.cache);
   return options;

@@ -25,6 +25,11 @@ struct RunnerOptions {
   ProgressLine::Style progress = ProgressLine::Style::None;
 };
 
+/// --jobs alone, for studies that keep no outcomes. @param noun  what a point is called
+void add_jobs_option(CLI::App& command, std::string& jobs, const std::string& noun);
+/// RunnerOptions::threads. @throws InputError naming the option
+unsigned parse_jobs(const std::string& jobs);
+
 /// --jobs and --cache. @param noun  what a point is called
 void add_runner_options(CLI::App& command, RunnerWords& words, const std::string& noun);
 /// @throws InputError naming the option

@@ -128,12 +128,15 @@ void Svg::circle(Point centre, double radius, std::string_view fill, const Strok
                  px(centre.y), px(radius), fill, stroke_attributes(stroke));
 }
 
-void Svg::polygon(const std::vector<Point>& corners, std::string_view fill, const Stroke& stroke) {
+void Svg::polygon(const std::vector<Point>& corners, std::string_view fill, const Stroke& stroke,
+                  double opacity) {
   std::string points;
   for (const Point& p : corners)
     points += fmt::format("{}{},{}", points.empty() ? "" : " ", px(p.x), px(p.y));
-  fmt::format_to(std::back_inserter(body_), "<polygon points=\"{}\" fill=\"{}\" {}/>\n", points,
-                 fill, stroke_attributes(stroke));
+  const std::string see_through =
+      opacity < 1 ? fmt::format(" fill-opacity=\"{:g}\"", opacity) : std::string();
+  fmt::format_to(std::back_inserter(body_), "<polygon points=\"{}\" fill=\"{}\"{} {}/>\n", points,
+                 fill, see_through, stroke_attributes(stroke));
 }
 
 void Svg::text(Point at, std::string_view text, const TextStyle& style) {

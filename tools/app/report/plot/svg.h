@@ -55,7 +55,8 @@ class Svg {
   void frame(const Box& box, const Stroke& stroke);
   void circle(Point centre, double radius, std::string_view fill, const Stroke& stroke);
   /// Closed.
-  void polygon(const std::vector<Point>& corners, std::string_view fill, const Stroke& stroke);
+  void polygon(const std::vector<Point>& corners, std::string_view fill, const Stroke& stroke,
+               double opacity = 1);
   void text(Point at, std::string_view text, const TextStyle& style);
   /// What is added until the end of the group is cut off at the box.
   void begin_clip(const Box& box);

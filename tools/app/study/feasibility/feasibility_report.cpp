@@ -40,13 +40,6 @@ std::string missing(const char* memory, const MemoryVerdict& verdict) {
                      verdict.block);
 }
 
-std::string memory(const Feasibility& row) {
-  if (row.fits()) return "fits";
-  if (row.l1.fits()) return missing("L2", row.l2);
-  if (row.l2.fits()) return missing("L1", row.l1);
-  return missing("L1", row.l1) + "; " + missing("L2", row.l2);
-}
-
 template <class Unit>
 std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, int decimals) {
   if (!e) return "–";
@@ -55,6 +48,13 @@ std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, in
 }
 
 }  // namespace
+
+std::string memory_verdict(const Feasibility& row) {
+  if (row.fits()) return "fits";
+  if (row.l1.fits()) return missing("L2", row.l2);
+  if (row.l2.fits()) return missing("L1", row.l1);
+  return missing("L1", row.l1) + "; " + missing("L2", row.l2);
+}
 
 std::string feasibility_table(const std::vector<Feasibility>& rows) {
   TextTable table({{"chip", kLeft},
@@ -78,7 +78,8 @@ std::string feasibility_table(const std::vector<Feasibility>& rows) {
                fmt::format("{:.1f}{}", row.worst_ms, mark), published(row),
                fmt::format("{:.1f}{}", row.optimiser_ms, mark),
                fmt::format("{:.1f}{}", row.frames_per_second(), mark),
-               banded(row.energy_per_frame, 1e3, 2), banded(row.power, 1e3, 1), memory(row)});
+               banded(row.energy_per_frame, 1e3, 2), banded(row.power, 1e3, 1),
+               memory_verdict(row)});
   }
   std::string text = table.str();
   text +=
@@ -113,6 +114,17 @@ std::string stage_comparison(const std::vector<Feasibility>& rows) {
     add("mJ/frame", 3, [](const Feasibility& row) {
       return row.energy_per_frame ? row.energy_per_frame->value.count() * 1e3 : 0.0;
     });
+  const auto add_memory = [&](const char* name, MemoryVerdict Feasibility::*memory) {
+    constexpr double kKilo = 1e-3;
+    std::vector<std::string> cells{name};
+    for (const Feasibility& row : rows)
+      cells.push_back(fmt::format("{:.1f} of {:.1f}",
+                                  kKilo * static_cast<double>((row.*memory).occupied.count()),
+                                  kKilo * static_cast<double>((row.*memory).size.count())));
+    table.add(std::move(cells));
+  };
+  add_memory("L1 peak kB", &Feasibility::l1);
+  add_memory("L2 peak kB", &Feasibility::l2);
   return table.str();
 }
 

@@ -9,11 +9,14 @@
 
 namespace leviosim::tools {
 
+/// "fits", or which memory is short of how much, and at which block.
+std::string memory_verdict(const Feasibility& row);
+
 /// A row per chip, and how to read it.
 std::string feasibility_table(const std::vector<Feasibility>& rows);
 
 /// Stages by chip: kilocycles of a call, and how many times as fast as on the first; then the
-/// frame.
+/// frame, and what L1 and L2 are filled to.
 std::string stage_comparison(const std::vector<Feasibility>& rows);
 
 /// The first table with all digits.

@@ -5,6 +5,7 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/run/replay.h"
@@ -71,13 +72,23 @@ void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& f
   }
 }
 
-Outcome computed(const ResolvedPoint& point) {
+/// What the record of a run has besides its statistics.
+void add_budget_figures(const RunResult& run, std::vector<Figure>& figures) {
+  for (const Statistic& s : make_record("", Manifest(), run, {}).statistics) {
+    const bool known = s.name.starts_with("frame.") || s.name.ends_with(".operations") ||
+                       s.name == "memory.l1.peak" || s.name == "memory.l2.peak";
+    if (known && s.value) figures.push_back({s.name, s.unit, s.description, *s.value});
+  }
+}
+
+Outcome computed(const ResolvedPoint& point, bool for_budget) {
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
   Outcome outcome;
   if (point.trace == nullptr) {
     const RunResult run = simulate(point.request, progress);
     add_objectives(run, true, outcome.figures);
     add_statistics(run, true, outcome.figures);
+    if (for_budget) add_budget_figures(run, outcome.figures);
     return outcome;
   }
   const Replay replayed = replay(*point.trace, point.request, progress);
@@ -86,14 +97,15 @@ Outcome computed(const ResolvedPoint& point) {
   add_objectives(replayed.run, same, outcome.figures);
   add_comparison(replayed, outcome.figures);
   add_statistics(replayed.run, same, outcome.figures);
+  if (for_budget) add_budget_figures(replayed.run, outcome.figures);
   return outcome;
 }
 
 }  // namespace
 
-Outcome run_point(const ResolvedPoint& point) {
+Outcome run_point(const ResolvedPoint& point, bool for_budget) {
   try {
-    return computed(point);
+    return computed(point, for_budget);
   } catch (const InputError& error) {
     return {error.what(), {}};
   }

@@ -25,7 +25,9 @@ inline constexpr std::array kObjectives{
     Objective{"objective.ate", "m", "ATE m", 4, 1}};
 
 /// Computes the point, or times its recorded work. A chip too small for the work is a failure.
+/// @param for_budget  keeps also what limits of budgets may be about besides: frame.*, the peaks of
+///                    L1 and L2, operations of stages
 /// @throws Interrupted
-Outcome run_point(const ResolvedPoint& point);
+Outcome run_point(const ResolvedPoint& point, bool for_budget = false);
 
 }  // namespace leviosim::tools

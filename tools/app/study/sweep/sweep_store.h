@@ -45,6 +45,8 @@ class SweepStore {
   /// Makes a new file with the same points and nothing finished, if there is none.
   void copy_plan_to(const std::filesystem::path& folder);
 
+  /// What is kept of a point; nothing of one that is not finished.
+  std::optional<Outcome> result_of(int point);
   /// In the order of their numbers.
   std::vector<SweepOutcome> outcomes();
   /// "platform.cluster.clock=240MHz" of a point.
@@ -65,7 +67,6 @@ class SweepStore {
   Keys keys();
   bool holds(const SweepPoints& points);
   void plan(const SweepPoints& points);
-  std::optional<Outcome> result_of(int point);
   void write(int point, const Outcome& result);
   std::vector<std::string> figure_names();
   void write_front();

@@ -156,8 +156,8 @@ void add_tune_options(CLI::App& command, TuneWords& words) {
     command.add_option(name, value, help)->type_name(type);
   };
   add_chip_run_options(command, words.run);
-  command.get_option("--seed")->type_name("N,...")->description(
-      "of the workload's random draws; figures are medians over them [1]");
+  command.get_option("--seed")->type_name("N,...")->description(fmt::format(
+      "of the workload's random draws; figures are medians over them [{}]", kTunedSeeds));
   add("--size", words.run.size, "WxH", "image size [160x120]");
   add("--clock", words.clocks, "LOW:HIGH:STEP", "clocks in MHz; also a list 120,240,370");
   add("--fps", words.fps, "F,...", "frames per second of the camera [the recorded rate]");

@@ -30,32 +30,53 @@ constexpr double kFirstPanel = 92;
 constexpr double kPanelStep = 282;
 constexpr double kLegendX = 762;
 constexpr double kLineHeight = 20;
+constexpr double kApart = 8;  ///< frame rates, where they are points [px]
 constexpr const char* kInk = "#1c2733";
 constexpr const char* kLimit = "#8a939c";
 constexpr std::array kColours{"#203e8c", "#2a7f62", "#d98e04", "#be202e", "#7a3b9a", "#5c6670"};
 
-/// One of the curves' figures.
+/// One of the figures over the clock. Each seed is a draw, whose value says little about that of
+/// the next clock: such figures are points. Power depends on the draws hardly, and is a line in its
+/// band.
 struct Panel {
   const char* label;
   Scale scale;
-  std::function<std::optional<double>(const TunePoint&)> of;
+  std::function<std::optional<double>(const TunePoint&)> of;  ///< median
   std::optional<double> limit;
+  /// Of one seed; none where the figure is a line.
+  std::function<std::optional<double>(const RunOutcome&)> of_seed{};
+  std::function<std::optional<Banded>(const TunePoint&)> band{};
   bool marks_missing = false;  ///< what has no value is marked at the top
 };
 
 std::vector<Panel> panels_of(const TunePlan& plan) {
-  const auto error = [](const TunePoint& p) {
-    const std::optional<double> ate = p.ate().median;
+  const auto above_0 = [](const std::optional<double>& ate) {
     return ate && *ate > 0 ? ate : std::nullopt;
   };
+  const auto error = [=](const TunePoint& p) { return above_0(p.ate().median); };
+  const auto error_of_seed = [=](const RunOutcome& o) { return above_0(error_of(o)); };
   const auto missed = [](const TunePoint& p) { return std::optional(100 * p.miss_rate()); };
-  const auto power = [](const TunePoint& p) {
-    const std::optional<Banded> watts = p.median(&LoopOutcome::power_w);
-    return watts ? std::optional(watts->value * 1e3) : std::nullopt;
+  const auto missed_of_seed = [](const RunOutcome& o) {
+    return std::optional(100 * o.loop->camera.share_of(o.loop->camera.missed()));
   };
-  return {{"absolute trajectory error [m]", Scale::logarithmic, error, plan.ate_m, true},
-          {"missed frames [%]", Scale::linear, missed, 100 * plan.miss_rate, false},
-          {"mean power [mW]", Scale::linear, power, std::nullopt, false}};
+  const auto band = [](const TunePoint& p) -> std::optional<Banded> {
+    const std::optional<Banded> watts = p.median(&LoopOutcome::power_w);
+    if (!watts) return std::nullopt;
+    return Banded{watts->value * 1e3, watts->low * 1e3, watts->high * 1e3};
+  };
+  const auto power = [=](const TunePoint& p) {
+    const std::optional<Banded> milliwatts = band(p);
+    return milliwatts ? std::optional(milliwatts->value) : std::nullopt;
+  };
+  return {{"absolute trajectory error [m]",
+           Scale::logarithmic,
+           error,
+           plan.ate_m,
+           error_of_seed,
+           {},
+           true},
+          {"missed frames [%]", Scale::linear, missed, 100 * plan.miss_rate, missed_of_seed},
+          {"mean power [mW]", Scale::linear, power, std::nullopt, {}, band}};
 }
 
 double megahertz(const TunePoint& point) {
@@ -71,7 +92,15 @@ Range range_of(const Panel& panel, const std::vector<TunePoint>& points) {
     if (!range) range = Range{*value, *value};
     range->include(*value);
   };
-  for (const TunePoint& point : points) include(panel.of(point));
+  for (const TunePoint& point : points) {
+    include(panel.of(point));
+    if (panel.of_seed)
+      for (const RunOutcome& outcome : point.outcomes) include(panel.of_seed(outcome));
+    if (const auto band = panel.band ? panel.band(point) : std::nullopt) {
+      include(band->low);
+      include(band->high);
+    }
+  }
   include(panel.limit);
   if (panel.scale == Scale::logarithmic)
     return plot::widened_logarithmically(range.value_or(Range{0.1, 1}), 0.06);
@@ -87,27 +116,57 @@ void draw_cross(Svg& svg, Point at, const Stroke& stroke) {
   svg.line({at.x - kHalf, at.y + kHalf}, {at.x + kHalf, at.y - kHalf}, stroke);
 }
 
-/// The line of a frame rate, interrupted where there is no value.
-/// @param cross_y  where such points are marked, below the top of the box
+/// The points of a frame rate: every seed, the median, and from the least to the greatest value.
+/// @param shift    that keeps frame rates apart [px]
+/// @param cross_y  where medians without a value are marked, below the top of the box
+void draw_points(Svg& svg, const Axes& axes, const Panel& panel,
+                 const std::vector<const TunePoint*>& points, const std::string& colour,
+                 double shift, double cross_y) {
+  for (const TunePoint* point : points) {
+    const auto at = [&](double value) {
+      const Point exact = axes.at(megahertz(*point), value);
+      return Point{exact.x + shift, exact.y};
+    };
+    std::optional<Range> all;
+    for (const RunOutcome& outcome : point->outcomes) {
+      const std::optional<double> value = panel.of_seed(outcome);
+      if (!value) continue;
+      if (!all) all = Range{*value, *value};
+      all->include(*value);
+      svg.circle(at(*value), 1.5, colour, {colour, 0});
+    }
+    if (all) svg.line(at(all->low), at(all->high), {colour, 0.8});
+    if (const std::optional<double> median = panel.of(*point))
+      svg.circle(at(*median), 3.2, colour, {colour, 0});
+    else if (panel.marks_missing)
+      draw_cross(svg, {at(axes.y().high).x, axes.box().y + cross_y}, {colour, 1.6});
+  }
+}
+
+/// The line of a frame rate in its band, interrupted where there is no value.
 void draw_line(Svg& svg, const Axes& axes, const Panel& panel,
-               const std::vector<const TunePoint*>& points, const std::string& colour,
-               double cross_y) {
+               const std::vector<const TunePoint*>& points, const std::string& colour) {
+  constexpr double kBandOpacity = 0.15;
   std::vector<Point> line;
+  std::vector<Point> outline;  // of the band: its upper side, and before that its lower one
   const auto finish = [&] {
-    if (line.size() > 1) svg.polyline(line, {colour, 1.6});
+    if (line.size() > 1) {
+      svg.polygon(outline, colour, {colour, 0}, kBandOpacity);
+      svg.polyline(line, {colour, 1.6});
+    }
     for (const Point& at : line) svg.circle(at, 2.2, colour, {colour, 0});
     line.clear();
+    outline.clear();
   };
   for (const TunePoint* point : points) {
-    const std::optional<double> value = panel.of(*point);
-    if (value) {
-      line.push_back(axes.at(megahertz(*point), *value));
+    const std::optional<Banded> band = panel.band(*point);
+    if (!band) {
+      finish();
       continue;
     }
-    finish();
-    if (panel.marks_missing)
-      draw_cross(svg, {axes.at(megahertz(*point), axes.y().high).x, axes.box().y + cross_y},
-                 {colour, 1.6});
+    line.push_back(axes.at(megahertz(*point), band->value));
+    outline.push_back(axes.at(megahertz(*point), band->high));
+    outline.insert(outline.begin(), axes.at(megahertz(*point), band->low));
   }
   finish();
 }
@@ -122,10 +181,18 @@ void draw_panel(Svg& svg, const TunePlan& plan, const Panel& panel, const Axes& 
     std::vector<const TunePoint*> of_rate;
     for (const TunePoint& point : points)
       if (point.fps == plan.fps[rate]) of_rate.push_back(&point);
-    draw_line(svg, axes, panel, of_rate, colour_of(rate), 8 + 9 * static_cast<double>(rate));
+    const auto i = static_cast<double>(rate);
+    const double shift =
+        panel.of_seed ? kApart * (i - 0.5 * static_cast<double>(plan.fps.size() - 1)) : 0;
+    if (panel.of_seed)
+      draw_points(svg, axes, panel, of_rate, colour_of(rate), shift, 8 + 9 * i);
+    else
+      draw_line(svg, axes, panel, of_rate, colour_of(rate));
     const TunePoint* lowest = choices[rate].lowest;
     const std::optional<double> value = lowest != nullptr ? panel.of(*lowest) : std::nullopt;
-    if (value) svg.circle(axes.at(megahertz(*lowest), *value), 6.5, "none", {colour_of(rate), 2});
+    if (!value) continue;
+    const Point at = axes.at(megahertz(*lowest), *value);
+    svg.circle({at.x + shift, at.y}, 6.5, "none", {colour_of(rate), 2});
   }
 }
 
@@ -137,6 +204,19 @@ void draw_legend(Svg& svg, const TunePlan& plan) {
     svg.line({kLegendX, y - 4}, {kLegendX + 18, y - 4}, {colour_of(rate), 2});
     svg.text({kLegendX + 26, y}, fmt::format("{:g}", plan.fps[rate]), {});
   }
+  y += 1.5 * kLineHeight;
+  svg.circle({kLegendX + 9, y - 4}, 3.2, kInk, {kInk, 0});
+  svg.text({kLegendX + 26, y}, plan.seeds.size() > 1 ? "median" : "the seed", {});
+  if (plan.seeds.size() > 1) {
+    y += kLineHeight;
+    svg.circle({kLegendX + 9, y - 4}, 1.5, kInk, {kInk, 0});
+    svg.text({kLegendX + 26, y}, "each seed", {});
+  }
+  y += kLineHeight;
+  svg.polygon(
+      {{kLegendX, y - 9}, {kLegendX + 18, y - 9}, {kLegendX + 18, y + 1}, {kLegendX, y + 1}}, kInk,
+      {kInk, 0}, 0.15);
+  svg.text({kLegendX + 26, y}, "band of power", {});
   y += 1.5 * kLineHeight;
   svg.line({kLegendX, y - 4}, {kLegendX + 18, y - 4}, {kLimit, 1.2, "6 4"});
   svg.text({kLegendX + 26, y}, "limit", {});

@@ -1,4 +1,4 @@
-// The picture of a tuning: error, missed frames and power over the clock, a line per frame rate.
+// The picture of a tuning: error, missed frames and power over the clock, a colour per frame rate.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace leviosim::tools {
 
-/// A file of SVG, of medians. What a point is without (an error where the estimate diverged, which
-/// a cross says; power where the chip has no energies) interrupts its line. Errors are on a
-/// logarithmic axis. Dashed lines are the limits; rings are the lowest clocks that are enough.
+/// A file of SVG. Errors, on a logarithmic axis, and missed frames are points: of every seed, and
+/// their medians; a cross is a median that diverged. Power is a line of medians in its band,
+/// interrupted where the chip has no energies. Dashed lines are the limits; rings are the lowest
+/// clocks that are enough.
 std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points,
                       const std::vector<Choice>& choices);
 

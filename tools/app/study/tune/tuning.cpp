@@ -54,17 +54,17 @@ double TunePoint::drop_rate() const {
   return median([](const LoopOutcome& l) { return l.camera.share_of(l.camera.dropped); });
 }
 
-Spread TunePoint::ate() const {
-  return spread_of(values_of(outcomes, [](const RunOutcome& outcome) {
-    const bool diverged = !outcome.ate_m || *outcome.ate_m > outcome.path_m;
-    return diverged ? std::nullopt : outcome.ate_m;
-  }));
-}
+Spread TunePoint::ate() const { return spread_of(values_of(outcomes, error_of)); }
 
 double TunePoint::completion() const {
   double least = 1;
   for (const RunOutcome& outcome : outcomes) least = std::min(least, outcome.completion);
   return least;
+}
+
+std::optional<double> error_of(const RunOutcome& outcome) {
+  const bool diverged = !outcome.ate_m || *outcome.ate_m > outcome.path_m;
+  return diverged ? std::nullopt : outcome.ate_m;
 }
 
 RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
@@ -153,11 +153,15 @@ std::string run_command_text(const TunePlan& plan, const TunePoint& point) {
   add("--profile", options.profile, defaults.profile);
   add("--frames", options.frames, "");
   add("--cores", options.cores, "");
-  add("--seed", options.seed, defaults.seed);
   add("--size", options.size, defaults.size);
-  add("--camera-fps", options.camera_fps, "");
+  add("--fps", options.camera_fps, "");
   add("--deadline", options.deadline, "");
-  return fmt::format("{}", fmt::join(words, " "));
+  if (plan.seeds.size() == 1) {
+    add("--seed", options.seed, defaults.seed);
+    return fmt::format("{} --out chosen", fmt::join(words, " "));
+  }
+  return fmt::format("for seed in {}; do {} --seed $seed --out chosen-$seed; done",
+                     fmt::join(plan.seeds, " "), fmt::join(words, " "));
 }
 
 }  // namespace leviosim::tools

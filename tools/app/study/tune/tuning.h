@@ -28,6 +28,9 @@ struct TunePoint {
   double completion() const;
 };
 
+/// The absolute error; none if it diverged: above the length of the path.
+std::optional<double> error_of(const RunOutcome& outcome);
+
 /// The closed loop of a point.
 RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
                       std::uint32_t seed);
@@ -55,9 +58,10 @@ std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& 
 /// enough.
 const TunePoint* chosen(const std::vector<Choice>& choices);
 
-/// What is typed to run a point by itself, with the first seed: all words but those of --out.
+/// A line for a shell that runs a point by itself, with each seed into a folder of its own: chosen,
+/// or chosen-1, chosen-2, … if there are several.
 std::string run_command_text(const TunePlan& plan, const TunePoint& point);
-/// The same as the options of that command.
+/// The options of that command, with the first seed.
 RunOptions run_options_of(const TunePlan& plan, const TunePoint& point);
 
 }  // namespace leviosim::tools

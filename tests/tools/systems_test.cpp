@@ -1,0 +1,123 @@
+// Published systems beside predictions, and published errors beside an ablation's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "platform_models/loader/loader.h"
+#include "tests/tools/well_formed.h"
+#include "tests/traces/test_folder.h"
+#include "tools/app/study/ablate/other_accuracy.h"
+#include "tools/app/study/systems/systems_report.h"
+
+namespace leviosim::tools {
+namespace {
+
+using traces::testing::expect_input_error;
+
+const std::string kTitles =
+    "system,year,class,chip,frames_per_s,power_mw,bound,workload,platform,set,source\n";
+
+TEST(PublishedSystems, EnergyOfAFrameIsPowerOverRate) {
+  const auto systems = parse_systems(
+      "s.csv", kTitles + "A,2019,VIO,ASIC,20,2,,,,,us\n" + "B,2021,VIO,board,,,,,,,us\n" +
+                   "C,2022,flow,GAP8,500,25,at most,flow,gap8,a=1 b=2,us\n");
+  ASSERT_EQ(systems.size(), 3u);
+  EXPECT_DOUBLE_EQ(*systems[0].frame_mj(), 0.1);
+  EXPECT_FALSE(systems[1].frame_mj());
+  EXPECT_TRUE(systems[2].is_bound);
+  EXPECT_EQ(systems[2].overrides, (std::vector<std::string>{"a=1", "b=2"}));
+}
+
+TEST(PublishedSystems, FaultsAreNamed) {
+  const auto refused = [](const std::string& row, std::initializer_list<std::string> parts) {
+    expect_input_error([&] { parse_systems("s.csv", kTitles + row); }, parts);
+  };
+  refused("A,2019,VIO,ASIC,-1,2,,,,,us\n", {"s.csv", "above 0"});
+  refused("A,2019,VIO,ASIC,20,2,below,,,,us\n", {"'at most'"});
+  refused("A,2019,VIO,ASIC,20,2,,levio,,,us\n", {"a workload and a platform"});
+  refused("A,2019,VIO,ASIC,20,2,,,,,\n", {"no source"});
+  expect_input_error([] { parse_systems("s.csv", "a,b,c,d,e,f,g,h,i,j,k\n"); }, {"the title"});
+}
+
+/// What is modelled can be: its platform takes the overrides, and its workload is known.
+TEST(PublishedSystems, ThoseOfTheProgramCanBeModelled) {
+  const auto systems = published_systems();
+  EXPECT_EQ(systems.size(), 9u);
+  const auto modelled = std::count_if(systems.begin(), systems.end(), [](const PublishedSystem& s) {
+    if (s.workload.empty()) return false;
+    EXPECT_NO_THROW(platform::resolve_platform(s.platform, s.overrides)) << s.name;
+    if (s.workload != kFlowWorkload) {
+      EXPECT_NO_THROW(vio::profile_named(s.workload, 1));
+    }
+    return true;
+  });
+  EXPECT_EQ(modelled, 3);
+}
+
+std::vector<SystemRow> example() {
+  std::vector<SystemRow> rows;
+  for (const PublishedSystem& system : published_systems()) rows.push_back({system, {}});
+  Prediction here;
+  here.frames_per_s = 20;
+  here.most_frames_per_s = 29.9;
+  here.power = sim::Estimate<Watts>{Watts(0.0302)};
+  here.frame = sim::Estimate<Joules>{Joules(0.00151)};
+  here.power->down[0] = here.power->up[0] = Watts(0.01);
+  here.memory = "7 kB short of L1 at 'x'";
+  rows[3].here = here;
+  return rows;
+}
+
+TEST(SystemsReport, PredictionsStandBesideTheirSystems) {
+  const std::string table = systems_table(example());
+  for (const char* part : {"Navion, 2019", "   0.1\n", "< 0.4", "levio on gap9", "30.2 (20.2–40.2)",
+                           "1.51 (1.51–1.51)", "29.9", "LEVIO as though it fitted: 7 kB short",
+                           "Jetson Xavier NX", "BotVIO: Wei et al. 2025"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << " is not in:\n" << table;
+  const std::string csv = systems_csv(example());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 10);
+  EXPECT_NE(csv.find(",levio on gap9,20,29.9,30.2"), std::string::npos) << csv;
+}
+
+TEST(SystemsReport, ThePictureHasASpotForEachRateWithAPower) {
+  const std::string picture = systems_plot(example());
+  EXPECT_EQ(testing::xml_fault(picture), "");
+  for (const char* part : {"Navion", "Gu et al.", "LEVIO, here", "0.1 mJ", "100 mJ"})
+    EXPECT_NE(picture.find(part), std::string::npos) << part;
+  EXPECT_EQ(picture.find("Bahnam"), std::string::npos);
+  EXPECT_EQ(testing::xml_fault(systems_plot({})), "");
+}
+
+TEST(OtherAccuracy, StandsBesideTheAblationOfTheSameSequences) {
+  BatchPlan plan;
+  plan.sequences.resize(2);
+  plan.sequences[0].name = "MH_01_easy";
+  plan.sequences[1].name = "mine";
+  AblationRow row;
+  row.sequence = "MH_01_easy";
+  row.profile = "next";
+  row.size = {160, 120};
+  row.ate = spread_of({0.031, 0.5, 0.1});
+  const std::string table = accuracy_comparison(plan, {row}, paper_accuracy(), other_accuracy());
+  for (const char* part : {"next, here", "160x120", "0.10", "VINS-Mono", "0.14", "0.20",
+                           "ORB-SLAM3", "LEVIO", "0.96", "1.82"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << " is not in:\n" << table;
+  EXPECT_EQ(table.find("mine"), std::string::npos);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 2 + 1 + 2 + 6 + 1);
+  plan.sequences.erase(plan.sequences.begin());
+  EXPECT_EQ(accuracy_comparison(plan, {row}, paper_accuracy(), other_accuracy()), "");
+}
+
+TEST(OtherAccuracy, ThePaperHasFiveSequencesOfEach) {
+  EXPECT_EQ(other_accuracy().size(), 30u);
+  expect_input_error(
+      [] {
+        parse_other_accuracy("o.csv",
+                             "sequence,estimator,loop_closure,width,height,value,unit,source\n"
+                             "a,b,maybe,1,1,1,m,us\n");
+      },
+      {"o.csv", "yes or no"});
+}
+
+}  // namespace
+}  // namespace leviosim::tools

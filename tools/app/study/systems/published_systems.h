@@ -1,0 +1,39 @@
+// Low-power systems that estimate motion, as they were published:
+// tools/app/validation/published/systems.csv, which is part of the program. Columns: system, year,
+// class, chip, frames_per_s, power_mw, bound ("at most", or empty), workload (a profile of LEVIO or
+// "flow"; empty: not modelled), platform, set (overrides of the platform, apart by blanks), source.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leviosim::tools {
+
+struct PublishedSystem {
+  std::string name;
+  int year = 0;
+  std::string kind;
+  std::string chip;
+  std::optional<double> frames_per_s;
+  std::optional<double> power_mw;
+  bool is_bound = false;  ///< the power is at most that
+  std::string workload;   ///< empty: not modelled
+  std::string platform;
+  std::vector<std::string> overrides;
+  std::string source;
+
+  /// mJ; absent if rate or power is.
+  std::optional<double> frame_mj() const;
+};
+
+/// What `workload` says of the optical flow.
+inline constexpr std::string_view kFlowWorkload = "flow";
+
+/// @throws InputError with file and line
+std::vector<PublishedSystem> parse_systems(const std::string& file, std::string_view text);
+
+std::vector<PublishedSystem> published_systems();
+
+}  // namespace leviosim::tools

@@ -1,0 +1,23 @@
+// Published systems beside what leviosim predicts, as a table, as CSV and as a picture of power
+// over frame rate.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/app/study/systems/predictions.h"
+
+namespace leviosim::tools {
+
+/// A row per system, how to read it, and the sources.
+std::string systems_table(const std::vector<SystemRow>& rows);
+
+/// The same with all digits.
+std::string systems_csv(const std::vector<SystemRow>& rows);
+
+/// A file of SVG with logarithmic axes: dots are published, rings predicted with the band of their
+/// power, an arrow points below a bound. Lines join points of equal energy per frame. Systems
+/// without a rate or a power are left out.
+std::string systems_plot(const std::vector<SystemRow>& rows);
+
+}  // namespace leviosim::tools
