@@ -1,7 +1,6 @@
 #include "tools/app/cli/printout.h"
 
 #include "sim/base/error.h"
-
 #include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
