@@ -16,6 +16,7 @@
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
@@ -155,6 +156,9 @@ void feasibility(const PlatformsOptions& options) {
   publish({{out, feasibility_csv(rows), "table"}}, printout(run.json, lines, [&] {
             return table_document("feasibility", feasibility_csv(rows));
           }));
+  const bool all_fit =
+      std::all_of(rows.begin(), rows.end(), [](const Feasibility& row) { return row.fits(); });
+  if (!options.names.empty() && !all_fit) throw LimitNotMet();
 }
 
 /// Takes out the chips that are too small, on which a run is refused.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -147,6 +148,12 @@ std::string expansion_text(const Expansion& expansion) {
   return text;
 }
 
+bool has_failures(SweepStore& store) {
+  const std::vector<SweepOutcome> outcomes = store.outcomes();
+  return std::any_of(outcomes.begin(), outcomes.end(),
+                     [](const SweepOutcome& o) { return !o.failure.empty(); });
+}
+
 void run_plan(const SweepWords& words) {
   SweepInputs inputs(fs::absolute(words.plan).parent_path(),
                      ProgressLine::style_of_stderr(words.quiet), trace_memory(words.memory));
@@ -184,10 +191,13 @@ void run_plan(const SweepWords& words) {
   };
   print(printout(words.json, lines, [&] { return document(out.csv()); }));
   if (elsewhere) throw InputError(*elsewhere);
-  if (!budget) return;
-  const SweepCheck check = check_sweep(*budget, plan, expansion.points, inputs, store);
-  print_result("\n{}", check.text);
-  if (check.missed > 0) throw LimitNotMet();
+  bool is_met = !has_failures(store);
+  if (budget) {
+    const SweepCheck check = check_sweep(*budget, plan, expansion.points, inputs, store);
+    print_result("\n{}", check.text);
+    is_met = is_met && check.missed == 0;
+  }
+  if (!is_met) throw LimitNotMet();
 }
 
 void run(const CLI::App& command, const SweepWords& words) {

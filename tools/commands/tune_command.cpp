@@ -107,6 +107,7 @@ void run(const CLI::App& command, const GatedTuneWords& words, const Words& comm
   else
     print(shown);
   if (gate) hold(*gate, plan, best, again, command_line);
+  if (best == nullptr) throw LimitNotMet();
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
@@ -26,6 +28,12 @@ void write_folder(base::OutputFolder& out, const Validation& validation, const R
             updated_references("paper.csv", paper_references_text(), values, kNotExamined));
 }
 
+/// Whether a figure is outside its tolerance, or the guard of what was missed before.
+bool is_worse(const Validation& validation) {
+  return std::any_of(validation.comparisons.begin(), validation.comparisons.end(),
+                     [](const Comparison& c) { return c.verdict == Verdict::Worse; });
+}
+
 void run(const RunOptions& options, const Words& words) {
   RunRequest request = make_chip_request(options);
   const std::vector<Reference> references = paper_references();
@@ -41,11 +49,15 @@ void run(const RunOptions& options, const Words& words) {
       options.json,
       [&] { return heading(options, result) + validation_report(validation, result.cores); },
       [&] { return json_text(validation_json(validation), 2) + '\n'; });
-  if (!out) return print(text);
-  const Manifest manifest = make_manifest(options, request, words);
-  publish(*out, text, [&] {
-    write_folder(*out, validation, result, manifest, platform::to_yaml(request.platform));
-  });
+  if (!out) {
+    print(text);
+  } else {
+    const Manifest manifest = make_manifest(options, request, words);
+    publish(*out, text, [&] {
+      write_folder(*out, validation, result, manifest, platform::to_yaml(request.platform));
+    });
+  }
+  if (is_worse(validation)) throw LimitNotMet();
 }
 
 }  // namespace

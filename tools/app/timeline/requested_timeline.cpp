@@ -55,7 +55,7 @@ RequestedTimeline::RequestedTimeline(const TimelineOptions& options,
       file_(claimed_file(file_request(options.file, results))) {}
 
 void RequestedTimeline::publish(const RunResult& run) {
-  tools::publish({{file_, perfetto_timeline(collector_.events(), run), "timeline"}}, "");
+  tools::publish({{file_, perfetto_timeline(collector_.events(), run), "timeline"}}, std::string());
 }
 
 std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& options,

@@ -18,7 +18,7 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr std::size_t kMostRows = 40;
+constexpr std::size_t kMostMisses = 40;
 
 std::vector<StageName> stages_of(const ResolvedPoint& point) {
   std::vector<StageName> stages;
@@ -113,14 +113,14 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan, const SweepP
       miss = Miss{"cannot run", outcome->failure};
     }
     if (!miss) continue;
-    if (++check.missed <= kMostRows)
+    if (++check.missed <= kMostMisses)
       table.add({fmt::format("{}", number), miss->limit, miss->found, points.settings_text(i)});
   }
   check.text = fmt::format("{} points against {}: {} do not meet it\n", check.held,
                            printable(budget.file), check.missed);
   if (check.missed > 0) check.text += table.str();
-  if (check.missed > kMostRows)
-    check.text += fmt::format("  and {} more\n", check.missed - kMostRows);
+  if (check.missed > kMostMisses)
+    check.text += fmt::format("  and {} more\n", check.missed - kMostMisses);
   return check;
 }
 
