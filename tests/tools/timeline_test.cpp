@@ -65,6 +65,12 @@ class MixedSource : public testing::ConstantSource {
     ConstantSource::process(result);
     return job_;
   }
+  std::vector<StageResult> empty_stages() const override {
+    StageResult stage;
+    stage.name = "optimiser";
+    stage.on_controller = true;
+    return {stage};
+  }
 
  private:
   work::Job job_;
@@ -155,7 +161,7 @@ TEST(Timeline, SlicesLieWithinTheirFrameAndWaitsWithinTheirWork) {
     }
     stack.push_back(event);
   }
-  EXPECT_GT(waits, 50);
+  EXPECT_GE(waits, 4 * 8);  // of every worker for the divider
 }
 
 TEST(Timeline, CyclesAreExact) {
@@ -192,10 +198,9 @@ TEST(Timeline, JoinsShortStepsUntilAFrameFits) {
   expect_sums_of(many.trace, many.run);
   EXPECT_LE(many.bytes.size(), 4u * 50'000 + 5'000);
   const std::vector<PerfettoEvent> master = many.trace.on("master");
-  const auto joined = std::find_if(master.begin(), master.end(),
-                                   [](const PerfettoEvent& e) { return e.name == "short steps"; });
-  ASSERT_NE(joined, master.end());
-  EXPECT_EQ(joined->number("steps"), 1200);
+  double most = 0;
+  for (const PerfettoEvent& event : master) most = std::max(most, event.number("steps"));
+  EXPECT_EQ(most, 3 * 400);
   // What is long is still told apart.
   EXPECT_TRUE(std::any_of(master.begin(), master.end(),
                           [](const PerfettoEvent& e) { return e.name == "fork: heavy"; }));
@@ -254,8 +259,10 @@ TEST(Timeline, AClosedLoopShowsWhatIsDroppedAndLate) {
   for (const PerfettoEvent& event : all.trace.on("deadlines"))
     missed += event.name == "deadline missed";
   EXPECT_EQ(missed, 30);
-  for (const PerfettoEvent& event : all.trace.on("front end"))
-    if (event.depth == 0 && event.type == PerfettoEvent::kBegin) EXPECT_EQ(event.number("late"), 1);
+  for (const PerfettoEvent& event : all.trace.on("front end")) {
+    if (event.depth > 0 || event.type != PerfettoEvent::kBegin) continue;
+    EXPECT_EQ(event.number("late"), 1) << event.name;
+  }
 }
 
 TEST(Timeline, OccupationOfL1IsThePeakOfTheStage) {

@@ -35,7 +35,6 @@ std::string model_of(const SystemRow& row) {
 }  // namespace
 
 std::string systems_table(const std::vector<SystemRow>& rows) {
-  constexpr auto kLeft = TextTable::Align::Left;
   TextTable table({{"system", kLeft},
                    {"class", kLeft},
                    {"chip", kLeft},
