@@ -339,9 +339,6 @@ Command add_platforms_command(CLI::App& app) {
                           "--csv chips.csv",
                           "leviosim platforms stages gap9 gap9-eigen --data flight",
                           "leviosim platforms systems --data flight --svg systems.svg"});
-  add("--out", run_options.out, "FILE", "CSV file to write");
-  command->add_flag("--force", run_options.force, "feasibility: replace the file");
-  command->add_flag("--quiet", run_options.quiet, "feasibility: no progress");
   add_json_option(*command, run_options.json);
   return {command, [=] { run(*command, *options); }, {{"--out", "--csv"}}};
 }
