@@ -139,6 +139,15 @@ TEST_F(TimelineOfFlight, TakesTheFramesThatWereAskedFor) {
   EXPECT_EQ(PerfettoTrace(bytes).on("camera").size(), 2u);
 }
 
+TEST_F(TimelineOfFlight, LeavesJsonOnStdoutAsItIs) {
+  const ProgramResult result =
+      program({"replay", path("run"), "--out", path("json"), "--quiet", "--json", "--timeline",
+               path("json.pftrace"), "--timeline-frames", "0:1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, text("json/stats.json"));
+  EXPECT_TRUE(fs::exists(path("json.pftrace")));
+}
+
 TEST_F(TimelineOfFlight, RefusesWhatItCannotDo) {
   const auto replay = [](const std::vector<std::string>& more) {
     std::vector<std::string> words{"replay", path("run"), "--out", path("none"), "--quiet"};

@@ -103,7 +103,7 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
     out.write(kReplayFile, replay_csv(result));
     out.write(kCyclesFile, cycles_csv(parts.stages()));
   });
-  if (timeline) timeline->publish(result.run);
+  if (timeline) timeline->publish(result.run, !options.json);
   if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result.run, parts.stages()));
 }
 

@@ -65,7 +65,7 @@ void run(const CLI::App& command, const RunCommandOptions& options, const Words&
     complete(recording.info, options, request, manifest);
     out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
   });
-  if (timeline) timeline->publish(result);
+  if (timeline) timeline->publish(result, !options.json);
   if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result, parts.stages()));
 }
 

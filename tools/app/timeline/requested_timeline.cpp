@@ -54,8 +54,9 @@ RequestedTimeline::RequestedTimeline(const TimelineOptions& options,
     : collector_(request.platform.config, request.cores, range_of(options.frames)),
       file_(claimed_file(file_request(options.file, results))) {}
 
-void RequestedTimeline::publish(const RunResult& run) {
-  tools::publish({{file_, perfetto_timeline(collector_.events(), run), "timeline"}}, std::string());
+void RequestedTimeline::publish(const RunResult& run, bool prints_name) {
+  tools::publish({{file_, perfetto_timeline(collector_.events(), run), "timeline"}},
+                 Printout("", !prints_name));
 }
 
 std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& options,

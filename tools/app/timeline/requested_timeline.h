@@ -29,8 +29,9 @@ class RequestedTimeline {
 
   /// To look on while the run happens.
   RunObserver& observer() { return collector_; }
-  /// Writes the file and prints its name. @throws InputError if that fails
-  void publish(const RunResult& run);
+  /// Writes the file. @throws InputError if that fails
+  /// @param prints_name  with a line that tells its name; not where the printout is whole (JSON)
+  void publish(const RunResult& run, bool prints_name);
 
  private:
   TimelineCollector collector_;
