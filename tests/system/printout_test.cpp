@@ -132,7 +132,7 @@ TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
   for (std::vector<std::string> words : commands) {
     words.emplace_back("--json");
     const ProgramResult result = run(words);
-    EXPECT_EQ(result.status, 0) << words[0] << ": " << result.err;
+    EXPECT_LE(result.status, 1) << words[0] << ": " << result.err;  // 1: a limit is not met
     const Json document = Json::parse(result.out, nullptr, false);
     ASSERT_TRUE(document.is_object()) << words[0] << " printed:\n" << result.out;
     EXPECT_TRUE(document.value("format", "").starts_with("leviosim ")) << words[0];

@@ -44,7 +44,7 @@ class SweepCommand : public ::testing::Test {
                                 "  - list:\n"
                                 "      - { platform.cluster.l1.size: 64KiB }\n");
     const ProgramResult whole = sweep({"--out", path("whole")}, "whole");
-    ASSERT_EQ(whole.status, 0) << whole.err;
+    ASSERT_EQ(whole.status, 1) << "L1 is too small at a point" << whole.err;
     whole_out_ = whole.out;
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
@@ -161,15 +161,15 @@ TEST_F(SweepCommand, GoesOnAfterBeingKilledAtAnyMoment) {
       program.wait();
     }
     const ProgramResult rest = sweep({"--out", path(name)}, name);
-    ASSERT_EQ(rest.status, 0) << rest.err;
+    ASSERT_EQ(rest.status, 1) << rest.err;
     EXPECT_EQ(csv(name), csv("whole"));
   }
 }
 
 TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
   for (const char* share : {"1/3", "2/3", "3/3"})
-    ASSERT_EQ(
-        sweep({"--out", path(fmt::format("share-{:.1}", share)), "--shard", share}, "s").status, 0);
+    ASSERT_LE(
+        sweep({"--out", path(fmt::format("share-{:.1}", share)), "--shard", share}, "s").status, 1);
   EXPECT_NE(csv("share-1"), csv("whole"));
   const ProgramResult merged =
       run_program(folder_, {"sweep", "--merge", path("merged"), path("share-3"), path("share-1"),
@@ -177,7 +177,7 @@ TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
   ASSERT_EQ(merged.status, 0) << merged.err;
   EXPECT_EQ(csv("merged"), csv("whole"));
   for (const char* point : {"9", "2"})
-    ASSERT_EQ(sweep({"--out", path("singly"), "--point", point}, "s").status, 0);
+    ASSERT_LE(sweep({"--out", path("singly"), "--point", point}, "s").status, 1);
   EXPECT_EQ(SweepStore(folder_ / "singly").finished(), (std::set<int>{2, 9}));
 
   base::write_file_atomically(folder_ / "other.yaml",

@@ -94,7 +94,7 @@ TEST_F(Terminal, ErrorsAreOneLineWhateverTheyName) {
 TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   const auto expect_done = [&](std::vector<std::string> words, const std::string& out) {
     const ProgramResult result = run(std::move(words));
-    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_LE(result.status, 1) << result.err;  // 1: a limit is not met, such as of tune
     EXPECT_TRUE(fs::exists(path(out))) << result.out << result.err;
   };
   const std::string out = "out" + kHostile;

@@ -84,7 +84,7 @@ TEST(TuneOptions, AClockComesWithTheLowestVoltageThatAllowsIt) {
   EXPECT_FALSE(setting_for(without_supply, "x", Hertz(900 * kMega)).voltage);
 }
 
-/// Points by rate, then clock, of which some are enough.
+/// Points by rate, then clock, of which some meet the limits.
 struct Example {
   TunePlan plan;
   std::vector<TunePoint> points;
@@ -142,8 +142,9 @@ TEST(Tuning, ChoosesTheLowestClockThatIsEnough) {
   EXPECT_EQ(chosen(choices(equal.plan, equal.points)), &equal.points[4]);
   equal.plan.ate_m = 0.05;
   EXPECT_EQ(chosen(choices(equal.plan, equal.points)), nullptr);
-  EXPECT_NE(choice_text(equal.plan, choices(equal.plan, equal.points)).find("no point is enough"),
-            std::string::npos);
+  EXPECT_NE(
+      choice_text(equal.plan, choices(equal.plan, equal.points)).find("no point meets the limits"),
+      std::string::npos);
 }
 
 TEST(Tuning, FiguresAreMediansOverTheSeeds) {

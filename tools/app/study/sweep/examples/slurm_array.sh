@@ -16,5 +16,5 @@ out=${2:?usage: sbatch --array=1-N slurm_array.sh PLAN.yaml OUT}
 task=${SLURM_ARRAY_TASK_ID:?is set by sbatch --array=1-N}
 tasks=${SLURM_ARRAY_TASK_COUNT:?is set by sbatch --array=1-N}
 
-exec "${LEVIOSIM:-leviosim}" sweep "$plan" --shard "$task/$tasks" --out "$out/shard-$task" \
-  --cache "$out/cache" --jobs "${SLURM_CPUS_PER_TASK:-1}" --quiet
+"${LEVIOSIM:-leviosim}" sweep "$plan" --shard "$task/$tasks" --out "$out/shard-$task" \
+  --cache "$out/cache" --jobs "${SLURM_CPUS_PER_TASK:-1}" --quiet || (($? == 1)) # 1: points failed
