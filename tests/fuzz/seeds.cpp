@@ -34,8 +34,7 @@ std::string joined(const std::vector<std::string>& parts) {
 void write_trace(const fs::path& folder, const std::string& name, const std::string& trace) {
   write(folder / "work_trace" / name, trace);
   std::vector<std::string> contents;
-  for (const traces::Section& section :
-       traces::sections_of({"LEVIOWT\n", "a work trace", 2}, name, trace)) {
+  for (const traces::Section& section : traces::sections_of(traces::kWorkTraceFile, name, trace)) {
     traces::MemoryBudget budget(traces::kTraceMemory);
     contents.push_back(traces::unpacked(section, name, budget));
   }

@@ -17,7 +17,6 @@
 namespace leviosim::traces {
 namespace {
 
-constexpr FileKind kKind{"LEVIOWT\n", "a work trace", 3};
 constexpr std::uint32_t kWithOffload = 2;
 constexpr std::uint32_t kWithNamesOfFacts = 3;
 /// Of frames in files of older versions.
@@ -196,7 +195,7 @@ WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
     : name_(std::move(name)), bytes_(std::move(bytes)), budget_(memory) {
   if (!budget_.take(bytes_.size()))
     throw InputError(fmt::format("{}: {}", name_, budget_.refusal("the file", bytes_.size())));
-  const std::vector<Section> sections = sections_of(kKind, name_, bytes_);
+  const std::vector<Section> sections = sections_of(kWorkTraceFile, name_, bytes_);
   if (sections.empty())
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",
                                  name_, bytes_.size()));
@@ -308,7 +307,7 @@ std::string WorkTraceWriter::finish(WorkTraceInfo info) {
   info.cores = state_->cores;
   if (state_->facts) check_equal(info.facts.size(), *state_->facts, "names of facts of frames");
   info.stamps_ns = state_->stamps_ns;
-  return file_head(kKind) +
+  return file_head(kWorkTraceFile) +
          packed_section(summary_of(info, state_->names, state_->chunk_frames), kLevel) +
          state_->sections + state_->offload;
 }

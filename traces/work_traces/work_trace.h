@@ -26,6 +26,9 @@
 
 namespace leviosim::traces {
 
+/// Work traces as files.
+inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 3};
+
 class ByteReader;
 
 /// One frame as it was recorded. Names in it are the trace's, and valid as long as that.
