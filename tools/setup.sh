@@ -12,7 +12,9 @@ packages=(
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
   libsqlite3-dev                                              # results of sweeps
   parallel                                                    # an example of sweeps, tested
+  libjs-chart.js                                              # charts of reports, embedded
   libgtest-dev libexpat1-dev                                  # tests
+  chromium                                                    # tests of pages (120 MB, half a minute)
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
 )
 

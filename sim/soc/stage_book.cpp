@@ -55,7 +55,11 @@ void StageBook::add_parallel(const sim::JobTiming& timing) {
 }
 
 void StageBook::add_single(const sim::JobTiming& timing) {
-  for (const sim::StageTiming& run : timing.stages) find(run.stage).single += run.cycles;
+  for (const sim::StageTiming& run : timing.stages) {
+    StageResult& stage = find(run.stage);
+    stage.single += run.cycles;
+    stage.single_account += run.breakdown;
+  }
 }
 
 }  // namespace leviosim::soc

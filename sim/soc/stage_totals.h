@@ -22,6 +22,7 @@ struct StageResult {
   Cycles parallel;                        ///< N cores, summed over the calls
   Cycles worst_parallel;                  ///< longest call on N cores
   sim::CycleBreakdown breakdown;          ///< of the N-core execution, core-cycles
+  sim::CycleBreakdown single_account;     ///< of the execution on one core
   work::Counts counts;                    ///< operations executed by cores
   std::vector<work::OffloadWork> served;  ///< calls that accelerators served
   work::MemoryPeak memory;  ///< highest peak over the calls, of L1 (L2 for the controller)

@@ -99,6 +99,32 @@ TEST(FramesCsv, EveryFactOfAFrameIsAColumn) {
   EXPECT_EQ(rows[2].at("map_restarts"), "0");
 }
 
+TEST(FramesCsv, HasTheCyclesOfEachStageOfTheCluster) {
+  RunResult run = example_run();
+  run.frames[3].stage_cycles = {{"feature extraction", Cycles(700)}, {"EPnP RANSAC", Cycles(30)}};
+  const std::vector<Row> rows = parse_csv(frames_csv(run));
+  EXPECT_EQ(rows[3].at("cycles_feature_extraction"), "700");
+  EXPECT_EQ(rows[3].at("cycles_epnp_ransac"), "30");
+  EXPECT_EQ(rows[2].at("cycles_epnp_ransac"), "0");
+  EXPECT_EQ(rows[3].count("cycles_optimiser_iteration"), 0u);
+}
+
+TEST(ErrorsCsv, HasARowPerPoseWithATruth) {
+  RunResult run = example_run();
+  EXPECT_EQ(errors_csv(run), "");
+  traces::MatchedPose pose;
+  pose.t_ns = 5;
+  pose.estimate.translation() = Eigen::Vector3d(3, 4, 1);
+  pose.truth.translation() = Eigen::Vector3d(0, 0, 1);
+  run.ate->poses = {pose};
+  const std::vector<Row> rows = parse_csv(errors_csv(run));
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].at("t_ns"), "5");
+  EXPECT_EQ(rows[0].at("position_error_m"), "5.000000000");
+  EXPECT_EQ(rows[0].at("estimate_y_m"), "4.000000000");
+  EXPECT_EQ(rows[0].at("truth_z_m"), "1.000000000");
+}
+
 TEST(FramesCsv, OfANativeRunHasNoTimingColumns) {
   RunResult run = example_run();
   run.timed = false;

@@ -10,6 +10,8 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -19,6 +21,7 @@ struct CheckOptions : RecordOptions {
   GateOptions gate;
   std::string junit;
   std::string annotations;
+  std::string report;
   bool json = false;
 };
 
@@ -47,8 +50,14 @@ void run(const CLI::App& command, const CheckOptions& options) {
                     .path = options.junit,
                     .replace = options.force,
                     .inputs = {options.run, options.gate.budget, options.gate.baseline}});
-  const CheckResult result = gate.check(read_record(options.run, options));
-  publish({{junit, junit_xml(result), ""}},
+  std::optional<base::OutputFile> page = claimed_report(
+      options.report, options.force, {options.run, options.gate.budget, options.gate.baseline});
+  RunFiles files;
+  const RunRecord record = read_record(options.run, options, &files);
+  const CheckResult result = gate.check(record);
+  std::string html;
+  if (page) html = html_page(runs_report({{record, files}}, {}, &result));
+  publish({{junit, junit_xml(result), ""}, {page, html, ""}},
           printout(
               options.json, [&] { return text_report(options, result); },
               [&] { return json_text(check_json(result), 2) + '\n'; }));
@@ -65,7 +74,8 @@ Command add_check_command(CLI::App& app) {
   add_gate_options(*command, options->gate);
   command->add_option("--junit", options->junit, "report for CI servers to write")
       ->type_name("FILE");
-  command->add_flag("--force", options->force, "replace that file");
+  add_report_option(*command, options->report);
+  command->add_flag("--force", options->force, "replace these files");
   command
       ->add_option("--annotations", options->annotations,
                    "github: lines that mark the limits; gitlab: a code quality report on stdout")

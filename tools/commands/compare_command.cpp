@@ -5,11 +5,14 @@
 #include <memory>
 
 #include "sim/base/error.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/comparison/record_source.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -19,11 +22,12 @@ struct CompareOptions : RecordOptions {
   std::string allow;
   std::string format = "text";
   bool json = false;
+  std::string report;
 };
 
 /// All runs that are compared with the first. One run with a chip is compared with itself there.
-std::vector<RunRecord> records(const CompareOptions& options) {
-  std::vector<RunRecord> list;
+std::vector<ReportedRun> records(const CompareOptions& options) {
+  std::vector<ReportedRun> list;
   if (options.runs.size() == 1) {
     if (!options.names_chip())
       throw InputError(fmt::format(
@@ -35,10 +39,16 @@ std::vector<RunRecord> records(const CompareOptions& options) {
     as_recorded.overrides.clear();
     as_recorded.cores.clear();
     const std::string trace = trace_of(options.runs.front());
-    list.push_back(trace.empty() ? read_record(options.runs.front(), options)
-                                 : replay_record(trace, as_recorded));
+    RunFiles files;
+    RunRecord record = trace.empty() ? read_record(options.runs.front(), options, &files)
+                                     : replay_record(trace, as_recorded, &files);
+    list.push_back({std::move(record), std::move(files)});
   }
-  for (const std::string& run : options.runs) list.push_back(read_record(run, options));
+  for (const std::string& run : options.runs) {
+    RunFiles files;
+    RunRecord record = read_record(run, options, &files);
+    list.push_back({std::move(record), std::move(files)});
+  }
   return list;
 }
 
@@ -51,12 +61,17 @@ void run(const CLI::App& command, const CompareOptions& options) {
   const Allowed allowed = parse_allowed(options.allow);
   if (format == ReportFormat::csv && options.runs.size() > 2)
     throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
-  const std::vector<RunRecord> runs = records(options);
+  std::optional<base::OutputFile> page =
+      claimed_report(options.report, options.force, {options.runs.begin(), options.runs.end()});
+  const std::vector<ReportedRun> runs = records(options);
   std::vector<RunComparison> comparisons;
   for (std::size_t i = 1; i < runs.size(); ++i)
     comparisons.push_back(
-        compare_runs(runs.front(), runs[i], check_comparable(runs.front(), runs[i], allowed)));
-  print_result("{}", comparison_report(comparisons, format));
+        compare_runs(runs.front().record, runs[i].record,
+                     check_comparable(runs.front().record, runs[i].record, allowed)));
+  std::string html;
+  if (page) html = html_page(runs_report(runs, comparisons, nullptr));
+  publish({{page, html, ""}}, comparison_report(comparisons, format));
 }
 
 }  // namespace
@@ -71,6 +86,8 @@ Command add_compare_command(CLI::App& app) {
   command->add_option("--format", options->format, "text, markdown, json or csv [text]")
       ->type_name("FORMAT");
   add_json_option(*command, options->json);
+  add_report_option(*command, options->report);
+  command->add_flag("--force", options->force, "replace that file");
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim compare recorded one-fpu",
                           "leviosim compare recorded -p cluster.fpu.dividers=2 --format markdown"});

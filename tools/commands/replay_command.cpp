@@ -10,6 +10,7 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/html_report/report_file.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
@@ -26,6 +27,7 @@ struct ReplayOptions : RunOptions {
   std::string memory;
   GateOptions gate;
   TimelineOptions timeline;
+  std::string report;
 };
 
 /// Of a run folder its trace is taken.
@@ -83,6 +85,8 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  std::optional<base::OutputFile> page =
+      claimed_report(options.report, options.force, {trace_file(options.trace)});
   base::OutputRequest wanted = out_request(options);
   wanted.inputs.push_back(trace_file(options.trace));
   base::OutputFolder out(wanted);
@@ -98,13 +102,14 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = manifest_of(trace, options, words);
   options.data = trace.info().data;
-  publish(out, run_printout(options, result.run, replay_report(result, trace)), [&] {
-    write_run_folder(out, result.run, manifest, platform::to_yaml(request.platform));
-    out.write(kReplayFile, replay_csv(result));
-    out.write(kCyclesFile, cycles_csv(parts.stages()));
-  });
+  RunFiles files = run_files(result.run, manifest, platform::to_yaml(request.platform));
+  files[kReplayFile] = replay_csv(result);
+  files[kCyclesFile] = cycles_csv(parts.stages());
+  publish(out, run_printout(options, result.run, replay_report(result, trace)),
+          [&] { write_run_files(out, files); });
   if (timeline) timeline->publish(result.run, !options.json);
-  if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result.run, parts.stages()));
+  report_and_check({make_record(out.shown_path(), manifest, result.run, parts.stages()), files},
+                   page, gate, !options.json);
 }
 
 }  // namespace
@@ -123,6 +128,7 @@ Command add_replay_command(CLI::App& app, const Words& words) {
   add_examples(*command, {"leviosim replay recorded -p cluster.fpu.units=1 --out one-fpu",
                           "leviosim replay recorded/work.trace --platform gap9-eigen --out eigen"});
   add_print_options(*command, *options);
+  add_report_option(*command, options->report);
   return {command, [=, &words] { run(*command, *options, words); }};
 }
 

@@ -9,6 +9,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/html_report/report_file.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_printout.h"
@@ -36,6 +37,7 @@ void complete(traces::WorkTraceInfo& info, const RunOptions& options, const RunR
 struct RunCommandOptions : RunOptions {
   GateOptions gate;
   TimelineOptions timeline;
+  std::string report;
 };
 
 void run(const CLI::App& command, const RunCommandOptions& options, const Words& words) {
@@ -43,6 +45,7 @@ void run(const CLI::App& command, const RunCommandOptions& options, const Words&
   check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  std::optional<base::OutputFile> page = claimed_report(options.report, options.force);
   base::OutputFolder out(out_request(options));
   std::optional<RequestedTimeline> timeline =
       requested_timeline(options.timeline, out_request(options), request);
@@ -57,16 +60,18 @@ void run(const CLI::App& command, const RunCommandOptions& options, const Words&
   if (!request.native) request.observer = &observers;
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
+  RunFiles files = run_files(result, manifest,
+                             request.native ? std::string() : platform::to_yaml(request.platform));
+  if (!request.native) files[kCyclesFile] = cycles_csv(parts.stages());
   publish(out, run_printout(options, result), [&] {
-    write_run_folder(out, result, manifest,
-                     request.native ? std::string() : platform::to_yaml(request.platform));
-    if (!request.native) out.write(kCyclesFile, cycles_csv(parts.stages()));
+    write_run_files(out, files);
     if (!options.record) return;
     complete(recording.info, options, request, manifest);
     out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
   });
   if (timeline) timeline->publish(result, !options.json);
-  if (gate) print_check(*gate, make_record(out.shown_path(), manifest, result, parts.stages()));
+  report_and_check({make_record(out.shown_path(), manifest, result, parts.stages()), files}, page,
+                   gate, !options.json);
 }
 
 }  // namespace
@@ -77,6 +82,7 @@ Command add_run_command(CLI::App& app, const Words& words) {
   add_run_options(*command, *options);
   add_timeline_options(*command, options->timeline);
   add_gate_options(*command, options->gate);
+  add_report_option(*command, options->report);
   add_examples(*command,
                {"leviosim run --platform gap9 --data flight --record --out recorded",
                 "leviosim run --platform gap9 -p cluster.clock=240MHz -p controller.clock=240MHz "

@@ -15,12 +15,14 @@
 #include "tools/app/cli/printout.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/study/runner.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_check.h"
 #include "tools/app/study/sweep/sweep_folder.h"
+#include "tools/app/study/sweep/sweep_page.h"
 #include "tools/app/study/sweep/sweep_report.h"
 #include "tools/app/study/sweep/sweep_store.h"
 
@@ -40,6 +42,7 @@ struct SweepWords {
   std::string memory;
   std::string budget;
   std::vector<std::string> merge;
+  std::string report;
   bool list = false;
   bool force = false;
   bool quiet = false;
@@ -173,6 +176,7 @@ void run_plan(const SweepWords& words) {
   if (!words.budget.empty()) budget = read_budget(words.budget);
   const std::vector<std::size_t> chosen = chosen_points(words, expansion.points.size());
   const RunnerOptions options = runner_options(words.runner, "point", words.quiet);
+  std::optional<base::OutputFile> page = claimed_report(words.report, words.force, {words.plan});
   SweepFolder out({"--out", words.out, {words.plan}, options.cache});
   if (words.force) out.empty();
   const auto begin = std::chrono::steady_clock::now();
@@ -190,6 +194,7 @@ void run_plan(const SweepWords& words) {
         sweep_report(store), printable(words.out));
   };
   print(printout(words.json, lines, [&] { return document(out.csv()); }));
+  if (page) publish_report(page, sweep_page(store), !words.json);
   if (elsewhere) throw InputError(*elsewhere);
   bool is_met = !has_failures(store);
   if (budget) {
@@ -206,7 +211,8 @@ void run(const CLI::App& command, const SweepWords& words) {
     run_plan(words);
     return;
   }
-  for (const char* option : {"PLAN", "--out", "--list", "--point", "--shard", "--budget"})
+  for (const char* option :
+       {"PLAN", "--out", "--list", "--point", "--shard", "--budget", "--report"})
     if (command.count(option) > 0)
       throw InputError(fmt::format("sweep: --merge OUT IN... takes no {}", option));
   merge(words);
@@ -235,6 +241,7 @@ Command add_sweep_command(CLI::App& app) {
       ->expected(2, 1'000'000);
   add_runner_options(*command, words->runner, "point");
   add_memory_option(*command, words->memory);
+  add_report_option(*command, words->report);
   command->add_flag("--force", words->force, "begin anew; finished points are found in the cache");
   command->add_flag("--quiet", words->quiet, "no progress");
   add_examples(*command,

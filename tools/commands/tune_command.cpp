@@ -14,10 +14,12 @@
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/study/tune/tune_page.h"
 #include "tools/app/study/tune/tune_plot.h"
 #include "tools/app/study/tune/tune_report.h"
 
@@ -26,6 +28,7 @@ namespace {
 
 struct GatedTuneWords : TuneWords {
   GateOptions gate;
+  std::string report;
 };
 
 /// A loop with the first seed.
@@ -78,13 +81,15 @@ void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
     print_result("\nno point to hold against the budget\n");
     throw LimitNotMet();
   }
-  print_check(gate, make_record("the chosen point", manifest_of(plan, *best, *again, command_line),
-                                again->result, again->cycles));
+  print_check(
+      gate.check(make_record("the chosen point", manifest_of(plan, *best, *again, command_line),
+                             again->result, again->cycles)));
 }
 
 void run(const CLI::App& command, const GatedTuneWords& words, const Words& command_line) {
   expect_json_or_budget(words.run.json, words.gate.budget);
   const std::optional<Gate> gate = optional_gate(words.gate, {});
+  std::optional<base::OutputFile> page = claimed_report(words.report, words.run.force);
   const TunePlan plan = make_tune_plan(command, words);
   const std::vector<Point> runs = tune_runs(plan);
   const std::vector<TunePoint> points =
@@ -106,6 +111,7 @@ void run(const CLI::App& command, const GatedTuneWords& words, const Words& comm
     publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });
   else
     print(shown);
+  if (page) publish_report(page, tune_page(plan, points, all), !words.run.json);
   if (gate) hold(*gate, plan, best, again, command_line);
   if (best == nullptr) throw LimitNotMet();
 }
@@ -118,6 +124,7 @@ Command add_tune_command(CLI::App& app, const Words& words) {
       "Accuracy and power over the clock, in closed loops; the lowest clock that meets the limits");
   const auto typed = std::make_shared<GatedTuneWords>();
   add_tune_options(*command, *typed);
+  add_report_option(*command, typed->report);
   add_gate_options(*command, typed->gate);
   add_json_option(*command, typed->run.json);
   add_examples(*command,

@@ -39,7 +39,7 @@ class Gate {
 /// The gate of a command that does something else; none without --budget.
 std::optional<Gate> optional_gate(const GateOptions& options, const RecordOptions& chip);
 
-/// Prints what the gate says of a run. @throws LimitNotMet if a limit is not met
-void print_check(const Gate& gate, const RunRecord& run);
+/// Prints what a gate says of a run. @throws LimitNotMet if a limit is not met
+void print_check(const CheckResult& result);
 
 }  // namespace leviosim::tools

@@ -58,7 +58,7 @@ std::string trace_of(const std::string& name) {
              : std::string();
 }
 
-RunRecord replay_record(const std::string& name, const RecordOptions& options) {
+RunRecord replay_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
   const traces::WorkTrace trace(name, trace_memory(options.memory));
   RunRequest request = request_for(trace, options);
   CycleParts parts(request.platform.config, request.cores);
@@ -69,22 +69,32 @@ RunRecord replay_record(const std::string& name, const RecordOptions& options) {
     line.show(p.done, p.total,
               [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
   });
-  return make_record(name, manifest_of(trace, options), done.run, parts.stages());
+  const Manifest manifest = manifest_of(trace, options);
+  if (files != nullptr) {
+    *files = run_files(done.run, manifest, platform::to_yaml(request.platform));
+    (*files)[kCyclesFile] = cycles_csv(parts.stages());
+  }
+  return make_record(name, manifest, done.run, parts.stages());
 }
 
-RunRecord read_record(const std::string& name, const RecordOptions& options) {
+RunRecord read_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
   const std::filesystem::path path(name);
   if (!base::exists(path))
     throw InputError(
         fmt::format("{}: does not exist; expected a run folder or a work trace", name));
-  if (base::is_folder(path) && !options.names_chip()) return read_run_folder(path);
+  if (base::is_folder(path) && !options.names_chip()) {
+    RunFiles read = read_run_files(path);
+    RunRecord record = record_of_files(name, read);
+    if (files != nullptr) *files = std::move(read);
+    return record;
+  }
   const std::string trace = trace_of(name);
   if (trace.empty())
     throw InputError(
         fmt::format("{}: holds no {}, so it cannot be replayed on another chip; expected the "
                     "folder of a run with --record, or leave out --platform, -p and --cores",
                     name, kWorkTraceFile));
-  return replay_record(trace, options);
+  return replay_record(trace, options, files);
 }
 
 }  // namespace leviosim::tools

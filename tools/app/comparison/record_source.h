@@ -25,10 +25,13 @@ std::string trace_of(const std::string& name);
 
 /// Of a folder what lies in it, unless the options name a chip; then, and of a trace, what a replay
 /// yields, on the chip of the recording if none is named.
+/// @param files  gets what a run folder holds, or would; may be null
 /// @throws InputError for what is neither, and as replay()
-RunRecord read_record(const std::string& name, const RecordOptions& options);
+RunRecord read_record(const std::string& name, const RecordOptions& options,
+                      RunFiles* files = nullptr);
 
 /// The replay of a trace, with `overrides` of the chip of the recording or of options.platform.
-RunRecord replay_record(const std::string& trace, const RecordOptions& options);
+RunRecord replay_record(const std::string& trace, const RecordOptions& options,
+                        RunFiles* files = nullptr);
 
 }  // namespace leviosim::tools

@@ -9,7 +9,6 @@
 #include "tools/app/comparison/frame_statistics.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/summary.h"
-#include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {
 namespace {
@@ -140,7 +139,7 @@ RunRecord record_of(const std::string& where, const Json& manifest, const Json& 
   RunRecord record;
   record.name = where;
   reading(where + "/manifest.json", "a manifest", [&] {
-    check_format(where + "/manifest.json", manifest, "leviosim manifest", 1);
+    check_format(where + "/manifest.json", manifest, "leviosim manifest", kManifestVersion);
     record.facts = facts_of_manifest(manifest);
   });
   reading(where + "/stats.json", "statistics", [&] {
@@ -161,22 +160,33 @@ RunRecord make_record(std::string name, const Manifest& manifest, const RunResul
                    std::move(cycles));
 }
 
-RunRecord read_run_folder(const std::filesystem::path& folder) {
-  const std::string where = folder.string();
+RunFiles read_run_files(const std::filesystem::path& folder) {
   if (!base::exists(folder / "manifest.json") || !base::exists(folder / "stats.json"))
     throw InputError(fmt::format(
         "{}: no run folder; expected a folder that run or replay left, with manifest.json and "
         "stats.json",
-        where));
-  const auto text = [&](const char* name) {
-    return base::read_file(folder / name, base::InputKind::run_file);
+        folder.string()));
+  RunFiles files;
+  const auto read = [&](const char* name) {
+    files[name] = base::read_file(folder / name, base::InputKind::run_file);
   };
+  for (const char* name : {"manifest.json", "stats.json", kFramesFile}) read(name);
+  for (const char* name : {kCyclesFile, kStagesFile, kMemoryFile, kEnergyFile, kErrorsFile})
+    if (base::exists(folder / name)) read(name);
+  return files;
+}
+
+RunRecord record_of_files(const std::string& where, const RunFiles& files) {
   std::vector<StageParts> cycles;
-  if (base::exists(folder / kCyclesFile))
-    cycles = parse_cycles(folder / kCyclesFile, text(kCyclesFile));
-  return record_of(where, parse_json(where + "/manifest.json", text("manifest.json")),
-                   parse_json(where + "/stats.json", text("stats.json")), text("frames.csv"),
+  if (const auto file = files.find(kCyclesFile); file != files.end())
+    cycles = parse_cycles(std::filesystem::path(where) / kCyclesFile, file->second);
+  return record_of(where, parse_json(where + "/manifest.json", files.at("manifest.json")),
+                   parse_json(where + "/stats.json", files.at("stats.json")), files.at(kFramesFile),
                    std::move(cycles));
+}
+
+RunRecord read_run_folder(const std::filesystem::path& folder) {
+  return record_of_files(folder.string(), read_run_files(folder));
 }
 
 Json facts_json(const RunFacts& facts) {

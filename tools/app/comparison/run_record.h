@@ -15,6 +15,7 @@
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/manifest.h"
+#include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {
 
@@ -69,8 +70,15 @@ struct RunRecord {
 RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run,
                       std::vector<StageParts> cycles);
 
-/// @throws InputError if the folder is not that of a run, or a file in it does not hold what
-///         leviosim writes
+/// The files of a run folder that records and reports are made of; older folders lack some.
+/// @throws InputError if the folder is not that of a run
+RunFiles read_run_files(const std::filesystem::path& folder);
+
+/// @param where  begins messages, and is the name of the record
+/// @throws InputError if a file does not hold what leviosim writes
+RunRecord record_of_files(const std::string& where, const RunFiles& files);
+
+/// Both.
 RunRecord read_run_folder(const std::filesystem::path& folder);
 
 /// A record of texts, as a run folder has them. @param where  begins messages

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/base/units.h"
@@ -25,11 +26,25 @@ using soc::Deadline;
 using soc::StageResult;
 using vio::PoseSource;
 
+/// What a stage took in one frame, of all its calls.
+struct StageCycles {
+  std::string_view stage;  ///< a literal of the workload, or the trace's
+  Cycles cycles;
+};
+
 /// What a frame yielded, and when.
 struct FrameResult : vio::FrameFacts, soc::FrameTiming {
   int index = 0;          ///< in the data set
   std::int64_t t_ns = 0;  ///< camera timestamp
   traces::StampedPose pose;
+  std::vector<StageCycles> stage_cycles = {};  ///< on N cores, of the stages that ran, in order
+
+  /// None if the stage did not run.
+  Cycles cycles_of(std::string_view stage) const {
+    for (const StageCycles& s : stage_cycles)
+      if (s.stage == stage) return s.cycles;
+    return {};
+  }
 };
 
 /// Names of the rows of L2 that do not come from the workload.

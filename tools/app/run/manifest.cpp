@@ -30,7 +30,7 @@ Json platform_json(const Manifest& manifest, const RunResult& run) {
 Json manifest_json(const Manifest& manifest, const RunResult& run) {
   Json document;
   document["format"] = "leviosim manifest";
-  document["version"] = 1;
+  document["version"] = kManifestVersion;
   document["program"]["version"] = version();
   document["program"]["revision"] = revision();
   document["command_line"] = manifest.command_line;

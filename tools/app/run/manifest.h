@@ -11,6 +11,11 @@
 
 namespace leviosim::tools {
 
+/// Of manifests, and so of run folders. It rises when a file of the folder gets other columns.
+/// Those of all versions up to this one can be read.
+///   2  cycles of each stage in frames.csv, the breakdown on one core in stages.csv, errors.csv
+inline constexpr int kManifestVersion = 2;
+
 struct Manifest {
   std::vector<std::string> command_line;  ///< words as typed
   std::uint32_t seed = 1;                 ///< of the workload

@@ -39,6 +39,9 @@ CsvTable<StageResult> stage_table_of(const RunResult& run) {
   for (const BreakdownPart& part : breakdown_parts(run))
     table.add(fmt::format("{}_core_cycles", part.key),
               [part](const S& s) { return fixed(part.of(s.breakdown), 3); });
+  for (const BreakdownPart& part : breakdown_parts(run))
+    table.add(fmt::format("single_{}_cycles", part.key),
+              [part](const S& s) { return fixed(part.of(s.single_account), 3); });
   for (const work::OpInfo& op : work::kOps)
     table.add(fmt::format("{}_ops", op.name), [&op](const S& s) { return s.counts[op.op]; });
   return table;
@@ -79,6 +82,10 @@ CsvTable<FrameRow> frame_table_of(const RunResult& run) {
     add(of_result("latency_ns", [](const F& f) { return f.end_ns - f.arrival_ns; }));
     add(of_result("parallel_cycles", [](const F& f) { return f.cycles; }));
     add(of_result("single_cycles", [](const F& f) { return f.single_cycles; }));
+    for (const StageResult& stage : run.stages)
+      if (!stage.on_controller)
+        add(of_result(kStageColumn + key_of(stage.name),
+                      [name = stage.name](const F& f) { return f.cycles_of(name); }));
   }
   if (run.camera) {
     table.add("found_in_buffers", [](const FrameRow& r) { return r.delivery->found; });
@@ -177,6 +184,21 @@ void add_energy(std::vector<EnergyCsvRow>& rows, const EnergyRow& row) {
   if (row.time > Seconds(0)) add("power", "mW", 1e3 / row.time.count());
 }
 
+/// With the decimals of trajectory files.
+CsvTable<traces::MatchedPose> error_table() {
+  using P = traces::MatchedPose;
+  constexpr int kDecimals = 9;
+  CsvTable<P> table{{"t_ns", [](const P& p) { return p.t_ns; }},
+                    {"position_error_m",
+                     [](const P& p) { return fixed(traces::translation_error(p), kDecimals); }}};
+  for (const auto& [name, pose] : {std::pair{"estimate", &P::estimate}, {"truth", &P::truth}})
+    for (int axis = 0; axis < 3; ++axis)
+      table.add(fmt::format("{}_{}_m", name, "xyz"[axis]), [pose = pose, axis](const P& p) {
+        return fixed((p.*pose).translation()[axis], kDecimals);
+      });
+  return table;
+}
+
 }  // namespace
 
 std::string stages_csv(const RunResult& run) { return stage_table_of(run).text(run.stages); }
@@ -197,6 +219,11 @@ std::string memory_csv(const RunResult& run) {
   return memory_table().text(rows);
 }
 
+std::string errors_csv(const RunResult& run) {
+  if (!run.ate || run.ate->poses.empty()) return {};
+  return error_table().text(run.ate->poses);
+}
+
 std::string energy_csv(const RunResult& run) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return {};
@@ -206,20 +233,28 @@ std::string energy_csv(const RunResult& run) {
   return energy_table().text(rows);
 }
 
+RunFiles run_files(const RunResult& run, const Manifest& manifest,
+                   const std::string& platform_yaml) {
+  RunFiles files{{"manifest.json", json_text(manifest_json(manifest, run), 2) + '\n'},
+                 {"stats.json", statistics_text(run)},
+                 {kFramesFile, frames_csv(run)},
+                 {"trajectory.tum", traces::format_tum(run.trajectory)}};
+  if (std::string errors = errors_csv(run); !errors.empty()) files[kErrorsFile] = std::move(errors);
+  if (!run.timed) return files;
+  files["platform.yaml"] = platform_yaml;
+  files[kStagesFile] = stages_csv(run);
+  files[kMemoryFile] = memory_csv(run);
+  if (std::string energy = energy_csv(run); !energy.empty()) files[kEnergyFile] = std::move(energy);
+  return files;
+}
+
+void write_run_files(base::OutputFolder& out, const RunFiles& files, const std::string& below) {
+  for (const auto& [name, text] : files) out.write(below + name, text);
+}
+
 void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manifest& manifest,
                       const std::string& platform_yaml, const std::string& below) {
-  const auto write = [&](const char* name, const std::string& text) {
-    out.write(below + name, text);
-  };
-  write("manifest.json", json_text(manifest_json(manifest, run), 2) + '\n');
-  write("stats.json", statistics_text(run));
-  write("frames.csv", frames_csv(run));
-  write("trajectory.tum", traces::format_tum(run.trajectory));
-  if (!run.timed) return;
-  write("platform.yaml", platform_yaml);
-  write("stages.csv", stages_csv(run));
-  write("memory.csv", memory_csv(run));
-  if (const std::string energy = energy_csv(run); !energy.empty()) write("energy.csv", energy);
+  write_run_files(out, run_files(run, manifest, platform_yaml), below);
 }
 
 }  // namespace leviosim::tools

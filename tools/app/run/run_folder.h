@@ -4,8 +4,9 @@
 //   manifest.json    what the run was made from (manifest.h)
 //   platform.yaml    the resolved platform, overrides included; loads as a platform file
 //   stats.json       every statistic with name, unit and description (statistics.h)
-//   stages.csv       a row per stage: calls, cycles, breakdown, operations
-//   frames.csv       a row per frame
+//   stages.csv       a row per stage: calls, cycles, breakdown on N cores and on one, operations
+//   frames.csv       a row per frame, with the cycles of each stage on N cores
+//   errors.csv       a row per pose that has a truth: both positions after alignment, and the error
 //   memory.csv       a row per peak, and per block alive at it
 //   energy.csv       a row per stage, quantity and domain of the chip, with its band
 //   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
@@ -16,6 +17,7 @@
 // A platform without energy figures leaves no energy.csv.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "sim/base/output_folder.h"
@@ -26,8 +28,24 @@ namespace leviosim::tools {
 
 inline constexpr const char* kWorkTraceFile = "work.trace";
 inline constexpr const char* kReplayFile = "replay.csv";
+inline constexpr const char* kFramesFile = "frames.csv";
+inline constexpr const char* kStagesFile = "stages.csv";
+inline constexpr const char* kMemoryFile = "memory.csv";
+inline constexpr const char* kEnergyFile = "energy.csv";
+inline constexpr const char* kErrorsFile = "errors.csv";
 
-/// Writes into a folder that the caller has claimed.
+/// Begins the columns of frames.csv with the cycles of a stage: "cycles_epnp_ransac".
+inline constexpr const char* kStageColumn = "cycles_";
+
+/// Name → text, of what the folder of a run holds.
+using RunFiles = std::map<std::string, std::string>;
+RunFiles run_files(const RunResult& run, const Manifest& manifest,
+                   const std::string& platform_yaml);
+
+/// Writes into a folder that the caller has claimed. @throws InputError if a file cannot be written
+void write_run_files(base::OutputFolder& out, const RunFiles& files, const std::string& below = {});
+
+/// Both.
 /// @param platform_yaml  unused for a native run
 /// @param below          folder in it, "chosen/"
 /// @throws InputError if a file cannot be written
@@ -39,5 +57,7 @@ std::string stages_csv(const RunResult& run);
 std::string frames_csv(const RunResult& run);
 std::string memory_csv(const RunResult& run);
 std::string energy_csv(const RunResult& run);
+/// Empty where there is no truth, and for replays, whose traces hold no poses of it.
+std::string errors_csv(const RunResult& run);
 
 }  // namespace leviosim::tools

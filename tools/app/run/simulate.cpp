@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -15,6 +16,17 @@
 namespace leviosim::tools {
 namespace {
 
+std::vector<StageCycles> stage_cycles(const sim::JobTiming& timing) {
+  std::vector<StageCycles> list;
+  for (const sim::StageTiming& run : timing.stages) {
+    auto it = std::find_if(list.begin(), list.end(),
+                           [&](const StageCycles& s) { return s.stage == run.stage; });
+    if (it == list.end()) it = list.insert(it, {run.stage, Cycles(0)});
+    it->cycles += run.cycles;
+  }
+  return list;
+}
+
 /// Joins what the frames yielded with when they were processed.
 class FrameCollector : public soc::Observer {
  public:
@@ -26,6 +38,7 @@ class FrameCollector : public soc::Observer {
   void on_front_end(const soc::FrontEndJob& e) override {
     FrameResult& frame = frames.emplace_back(source_.frame());
     static_cast<soc::FrameTiming&>(frame) = e.times;
+    frame.stage_cycles = stage_cycles(e.parallel);
     if (observer_ != nullptr)
       observer_->on_front_end({e.frame, e.optimisation_begun, frame, e.job, e.parallel, e.single});
   }

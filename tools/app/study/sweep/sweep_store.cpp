@@ -62,7 +62,8 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const Sw
     if (!holds(points))
       database_.fail(
           "holds the results of another plan, of other data or of another leviosim; choose a new "
-          "folder, or --force to begin anew (finished points come from the cache where they are the "
+          "folder, or --force to begin anew (finished points come from the cache where they are "
+          "the "
           "same)");
     transaction.commit();
     return;
@@ -228,6 +229,15 @@ std::vector<SweepOutcome> SweepStore::outcomes() {
   return all;
 }
 
+std::vector<std::string> SweepStore::parameter_names() {
+  std::vector<std::string> names;
+  Statement select(database_,
+                   "SELECT name FROM parameters WHERE point = (SELECT MIN(point) FROM planned) "
+                   "ORDER BY place");
+  while (select.step()) names.push_back(select.text(0));
+  return names;
+}
+
 std::string SweepStore::settings_of(int point) {
   std::string text;
   Statement select(database_, "SELECT name, text FROM parameters WHERE point = ? ORDER BY place");
@@ -267,8 +277,9 @@ void SweepStore::make_views(const std::vector<std::string>& parameters,
   database_.run("DROP VIEW IF EXISTS wide; CREATE VIEW wide AS SELECT " + columns + " FROM points");
 }
 
-std::string SweepStore::csv(const std::vector<std::string>& parameters,
-                            const std::vector<std::string>& figures) {
+std::string SweepStore::csv() {
+  const std::vector<std::string> parameters = parameter_names();
+  const std::vector<std::string> figures = figure_names();
   std::vector<base::Cell> cells{"point", "status"};
   cells.insert(cells.end(), parameters.begin(), parameters.end());
   cells.insert(cells.end(), figures.begin(), figures.end());
@@ -308,16 +319,9 @@ std::set<int> SweepStore::front() {
 
 std::optional<std::string> SweepStore::publish(base::OutputFile& file) {
   Transaction transaction(database_);  // of several processes, the last sees what all have done
-  std::vector<std::string> parameters;
-  Statement select(database_,
-                   "SELECT name FROM parameters WHERE point = (SELECT MIN(point) FROM planned) "
-                   "ORDER BY place");
-  while (select.step()) parameters.push_back(select.text(0));
-  const std::vector<std::string> figures = figure_names();
-  make_views(parameters, figures);
+  make_views(parameter_names(), figure_names());
   write_front();
-  std::optional<std::string> elsewhere = file.publish(csv(parameters, figures));
-  select.reset();
+  std::optional<std::string> elsewhere = file.publish(csv());
   transaction.commit();
   return elsewhere;
 }

@@ -49,6 +49,8 @@ class SweepStore {
   std::optional<Outcome> result_of(int point);
   /// In the order of their numbers.
   std::vector<SweepOutcome> outcomes();
+  /// That the points set, in the order of the plan.
+  std::vector<std::string> parameter_names();
   /// "platform.cluster.clock=240MHz" of a point.
   std::string settings_of(int point);
   std::int64_t planned();
@@ -60,6 +62,8 @@ class SweepStore {
   /// and figure, in an order that does not depend on which was finished first.
   /// @returns nothing, or why sweep.csv has another name now
   [[nodiscard]] std::optional<std::string> publish(base::OutputFile& file);
+  /// The text of sweep.csv as of the last publish().
+  std::string csv();
 
  private:
   using Keys = std::vector<std::pair<int, std::string>>;
@@ -71,8 +75,6 @@ class SweepStore {
   std::vector<std::string> figure_names();
   void write_front();
   void make_views(const std::vector<std::string>& parameters,
-                  const std::vector<std::string>& figures);
-  std::string csv(const std::vector<std::string>& parameters,
                   const std::vector<std::string>& figures);
 
   std::filesystem::path folder_;

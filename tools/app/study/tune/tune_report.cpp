@@ -78,19 +78,6 @@ constexpr std::array kLatencies{
     LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p99_ns); }},
     LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.max_ns); }}};
 
-std::string notes(const TunePlan& plan) {
-  std::string text = fmt::format(
-      "missed: dropped, or the pose came later than a period after the frame; {}\n"
-      "latency from a frame to its pose; mean power over all of the time, with its band; mJ per "
-      "processed frame\n"
-      "ATE: {}-aligned RMSE of the processed frames, diverged if above the length of the path; "
-      "poses: frames with a pose\n",
-      info_of(plan.deadline).description, name_of(plan.measure.alignment));
-  if (plan.seeds.size() > 1)
-    text += fmt::format("medians over {} seeds; poses: the least\n", plan.seeds.size());
-  return text;
-}
-
 /// A row of runs.csv.
 struct Run {
   const TunePoint& point;
@@ -156,6 +143,19 @@ base::CsvTable<Run> runs_table(const TunePlan& plan) {
 
 }  // namespace
 
+std::string tune_notes(const TunePlan& plan) {
+  std::string text = fmt::format(
+      "missed: dropped, or the pose came later than a period after the frame; {}\n"
+      "latency from a frame to its pose; mean power over all of the time, with its band; mJ per "
+      "processed frame\n"
+      "ATE: {}-aligned RMSE of the processed frames, diverged if above the length of the path; "
+      "poses: frames with a pose\n",
+      info_of(plan.deadline).description, name_of(plan.measure.alignment));
+  if (plan.seeds.size() > 1)
+    text += fmt::format("medians over {} seeds; poses: the least\n", plan.seeds.size());
+  return text;
+}
+
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
   const bool several = plan.seeds.size() > 1;
   std::vector<TextTable::Column> columns{
@@ -179,7 +179,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
     cells.push_back(is_enough(point, plan) ? "yes" : "");
     table.add(std::move(cells));
   }
-  return table.str() + notes(plan);
+  return table.str() + tune_notes(plan);
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {

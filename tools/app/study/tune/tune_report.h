@@ -12,6 +12,8 @@ namespace leviosim::tools {
 
 /// A row per point.
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points);
+/// What stands below the table: what its figures are, with the protocol of the errors.
+std::string tune_notes(const TunePlan& plan);
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points);
 
 /// The lowest clock at each frame rate, and that of all.

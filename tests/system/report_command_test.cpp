@@ -1,0 +1,219 @@
+// leviosim report and --report: refusals, same bytes, size, names that are HTML; and the page in a
+// real browser, where there is one (Debian's chromium).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "sim/base/csv.h"
+#include "tests/support/run_program.h"
+#include "tests/support/suite_folder.h"
+#include "tools/app/comparison/run_record.h"
+#include "tools/app/html_report/csv_json.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using base::read_text_file;
+using testing::expect_refused;
+using testing::ProgramResult;
+using testing::run_program;
+using tests::SuiteFolder;
+
+constexpr const char* kBrowser = "/usr/bin/chromium";
+/// A folder that may be called so.
+constexpr const char* kEvilRun = "b<script>document.title='evil'<";
+
+/// Two runs of a second of flight, on one chip and on another, for all tests.
+class Report : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new SuiteFolder("report");
+    traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
+    expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("a"),
+                 "--record", "--quiet", "--report", path("a.html")});
+    expect_done({"run", "--platform", "gap9", "-p", "cluster.fpu.units=1", "--data", path("flight"),
+                 "--out", path(kEvilRun), "--quiet"});
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
+  static ProgramResult program(const std::vector<std::string>& words) {
+    return run_program(folder_->path(), words);
+  }
+  static void expect_done(const std::vector<std::string>& words) {
+    const ProgramResult result = program(words);
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+
+  inline static SuiteFolder* folder_ = nullptr;
+};
+
+TEST_F(Report, OfAFolderIsThatOfTheRunItself) {
+  expect_done({"report", path("a"), "-o", path("again.html")});
+  EXPECT_EQ(base::read_text_file(path("again.html")), base::read_text_file(path("a.html")));
+}
+
+TEST_F(Report, OfSeveralRunsHasTheirDifferencesAndIsSmall) {
+  expect_done({"report", path("a"), path(kEvilRun), "-o", path("two.html")});
+  const std::string page = base::read_text_file(path("two.html"));
+  EXPECT_NE(page.find("\"leviosim comparison\""), std::string::npos);
+  EXPECT_EQ(page.find("<script>document.title"), std::string::npos);
+  EXPECT_LT(page.size(), 1'000'000u);
+}
+
+TEST_F(Report, RefusesBeforeAnythingIsWritten) {
+  expect_refused(program({"report", "-o", path("x.html")}), {"RUN"});
+  expect_refused(program({"report", path("a")}), {"--out"});
+  expect_refused(program({"report", path("flight"), "-o", path("x.html")}), {"no run folder"});
+  expect_refused(program({"report", path("a"), "-o", path("a.html")}), {"a.html", "--force"});
+  EXPECT_FALSE(fs::exists(path("x.html")));
+}
+
+TEST_F(Report, OfAnOlderFolderSaysWhatItLacks) {
+  fs::copy(path("a"), path("old"));
+  Json frames = csv_json("frames.csv", base::read_text_file(path("old/frames.csv")));
+  std::string csv =
+      "frame,t_ns,source,keyframe,arrival_ns,start_ns,end_ns,latency_ns,"
+      "parallel_cycles,single_cycles\n";
+  for (std::size_t i = 0; i < frames["frame"].size(); ++i) {
+    std::string line;
+    for (const char* column : {"frame", "t_ns", "source", "keyframe", "arrival_ns", "start_ns",
+                               "end_ns", "latency_ns", "parallel_cycles", "single_cycles"}) {
+      const Json& cell = frames[column][i];
+      line +=
+          (line.empty() ? "" : ",") + (cell.is_string() ? cell.get<std::string>() : cell.dump());
+    }
+    csv += line + '\n';
+  }
+  std::ofstream(path("old/frames.csv")) << csv;
+  fs::remove(path("old/errors.csv"));
+  expect_done({"report", path("old"), "-o", path("old.html")});
+}
+
+TEST_F(Report, OfACheckHasItsLimits) {
+  const ProgramResult init = program({"budget", "init", path("a")});
+  ASSERT_EQ(init.status, 0) << init.err;
+  std::ofstream(path("budget.yaml")) << init.out;
+  expect_done({"check", path("a"), "--budget", path("budget.yaml"), "--report", path("c.html")});
+  EXPECT_NE(base::read_text_file(path("c.html")).find("\"leviosim check\""), std::string::npos);
+}
+
+/// Stages add up to the frame but for the call of the cluster and its answer; on one core, the
+/// breakdown of a stage to its cycles.
+TEST_F(Report, CyclesOfTheTablesAddUp) {
+  const Json frames = csv_json("frames.csv", base::read_text_file(path("a/frames.csv")));
+  for (std::size_t i = 0; i < frames["frame"].size(); ++i) {
+    double sum = 0;
+    for (const auto& [name, cells] : frames.items())
+      if (name.rfind("cycles_", 0) == 0) sum += cells[i].get<double>();
+    const double all = frames["parallel_cycles"][i];
+    EXPECT_LE(sum, all);
+    EXPECT_GT(sum, 0.99 * all);
+  }
+  const Json stages = csv_json("stages.csv", base::read_text_file(path("a/stages.csv")));
+  for (std::size_t i = 0; i < stages["stage"].size(); ++i) {
+    double sum = 0;
+    for (const auto& [name, cells] : stages.items())
+      if (name.rfind("single_", 0) == 0 && name != "single_cycles" &&
+          name != "single_cycles_per_call")
+        sum += cells[i].get<double>();
+    EXPECT_NEAR(sum, stages["single_cycles"][i].get<double>(), 1) << stages["stage"][i];
+  }
+}
+
+/// The mean square of the errors is that of the statistics.
+TEST_F(Report, ErrorsOfTheTableAreThoseOfTheAte) {
+  const Json errors = csv_json("errors.csv", base::read_text_file(path("a/errors.csv")));
+  double squares = 0;
+  for (const Json& error : errors["position_error_m"]) squares += std::pow(error.get<double>(), 2);
+  const double count = static_cast<double>(errors["position_error_m"].size());
+  const Json statistics = Json::parse(base::read_text_file(path("a/stats.json")));
+  std::optional<double> ate;
+  for (const Json& entry : statistics["statistics"])
+    if (entry["name"] == "accuracy.ate.rmse") ate = entry["value"].get<double>();
+  ASSERT_TRUE(ate);
+  EXPECT_NEAR(*ate, std::sqrt(squares / count), 1e-8);
+}
+
+/// A page in a frame of the browser's window, which may be narrower than a window can be. The frame
+/// tells what it looks like when it has been drawn.
+class InBrowser : public Report {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(kBrowser)) GTEST_SKIP() << kBrowser << " is not installed (package chromium)";
+  }
+
+  struct Seen {
+    Json page;        ///< what the page told
+    std::string log;  ///< of the browser, with the console's errors
+  };
+
+  static Seen open(const std::string& page, int width, bool dark) {
+    constexpr const char* kTold = R"(<script>addEventListener("load", () => parent.postMessage({
+      overflow: document.documentElement.scrollWidth > innerWidth,
+      requests: performance.getEntriesByType("resource").length,
+      canvases: document.querySelectorAll("canvas").length,
+      drawn: [...document.querySelectorAll("canvas")].filter((c) => Chart.getChart(c)).length,
+      tables: document.querySelectorAll("figure details").length,
+      verdict: document.querySelectorAll(".verdict, [aria-label=Runs]").length,
+      evil: document.title === "evil",
+      ink: getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()}, "*"));
+      </script></body>)";
+    std::string html = base::read_text_file(path(page));
+    html.replace(html.rfind("</body>"), 7, kTold);
+    std::ofstream(path("told.html")) << html;
+    std::ofstream(path("frame.html")) << fmt::format(
+        R"(<body><script>addEventListener("message", (told) =>
+          document.body.setAttribute("title", JSON.stringify(told.data)));</script>
+          <iframe src="told.html" style="border:0;width:{}px;height:900px"></iframe>)",
+        width);
+    const std::string command = fmt::format(
+        "timeout 240 {} --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage "
+        "--no-first-run --disable-background-networking --user-data-dir='{}' "
+        "--blink-settings=preferredColorScheme={} --window-size=1400,1000 "
+        "--enable-logging=stderr --virtual-time-budget=5000 --dump-dom 'file://{}' >'{}' 2>'{}'",
+        kBrowser, path("profile"), dark ? 0 : 1, path("frame.html"), path("dom.html"),
+        path("log.txt"));
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    const std::string dom = base::read_text_file(path("dom.html"));
+    const std::size_t begin = dom.find("title=\"") + 7;
+    std::string told = dom.substr(begin, dom.find('"', begin) - begin);
+    for (std::size_t at = told.find("&quot;"); at != std::string::npos; at = told.find("&quot;"))
+      told.replace(at, 6, "\"");
+    return {parse_json("what the page told", told), base::read_text_file(path("log.txt"))};
+  }
+
+  static void expect_fine(const std::string& page) {
+    for (const int width : {1280, 390})
+      for (const bool dark : {false, true}) {
+        const Seen seen = open(page, width, dark);
+        SCOPED_TRACE(fmt::format("{}, {} px, {}: {}", page, width, dark ? "dark" : "light",
+                                 seen.page.dump()));
+        EXPECT_EQ(seen.log.find("CONSOLE"), std::string::npos) << seen.log;
+        EXPECT_EQ(seen.page["overflow"], false);
+        EXPECT_EQ(seen.page["requests"], 0);
+        EXPECT_GT(seen.page["canvases"], 0);
+        EXPECT_EQ(seen.page["drawn"], seen.page["canvases"]);
+        EXPECT_EQ(seen.page["tables"], seen.page["canvases"]);
+        EXPECT_EQ(seen.page["verdict"], 1);
+        EXPECT_EQ(seen.page["evil"], false);
+        EXPECT_EQ(seen.page["ink"], dark ? "#e4e9ef" : "#1b2430");
+      }
+  }
+};
+
+TEST_F(InBrowser, APageOfARunIsDrawnWithoutErrorsRequestsOrOverflow) { expect_fine("a.html"); }
+
+TEST_F(InBrowser, APageOfSeveralRunsIsToo) {
+  expect_done({"report", path("a"), path(kEvilRun), "-o", path("both.html")});
+  expect_fine("both.html");
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,167 @@
+// The data of reports: verdicts, key figures, tables of a run folder, and the page around them.
+#include <gtest/gtest.h>
+
+#include "sim/base/error.h"
+#include "tests/tools/example_run.h"
+#include "tests/traces/test_folder.h"
+#include "tools/app/html_report/csv_json.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_file.h"
+#include "tools/app/html_report/study_json.h"
+#include "tools/app/html_report/verdict.h"
+
+namespace leviosim::tools {
+namespace {
+
+using testing::example_run;
+using traces::testing::expect_input_error;
+
+ReportedRun reported(const RunResult& run, const std::string& name = "out") {
+  Manifest manifest;
+  manifest.command_line = {"run"};
+  manifest.platform = "gap9";
+  manifest.data = "flight";
+  RunFiles files = run_files(run, manifest, "");
+  return {record_of_files(name, files), files};
+}
+
+Json json_of(const RunResult& run) {
+  const ReportedRun r = reported(run);
+  return run_json(r.record, r.files);
+}
+
+/// The example with latencies below its period of 50 ms.
+RunResult punctual_run() {
+  RunResult run = example_run();
+  for (FrameResult& frame : run.frames)
+    frame.end_ns = std::min(frame.end_ns, frame.arrival_ns + 45'000'000);
+  return run;
+}
+
+TEST(CsvJson, KeepsNumbersTextsAndNothingApart) {
+  const Json table = csv_json("x.csv", "a,b\n1,\"x, \"\"y\"\"\"\n2.5,\n");
+  EXPECT_EQ(table, Json::parse(R"({"a":[1,2.5],"b":["x, \"y\"",null]})"));
+}
+
+TEST(CsvJson, RefusesRowsOfAnotherWidth) {
+  expect_input_error([] { csv_json("x.csv", "a,b\n1\n"); }, {"x.csv", "row 2", "1 cells", "2"});
+}
+
+TEST(Verdict, OfARunThatKeepsItsDeadlineSaysByHowMuch) {
+  const Json run = json_of(punctual_run());
+  EXPECT_EQ(run["verdict"]["fits"], true);
+  const std::string text = run["verdict"]["sentence"];
+  EXPECT_EQ(text.rfind("Fits: all 5 frames", 0), 0u) << text;
+  EXPECT_NE(text.find("50 ms"), std::string::npos) << text;
+  EXPECT_NE(text.find("45 ms"), std::string::npos) << text;
+}
+
+TEST(Verdict, CountsFramesThatMissTheDeadline) {
+  const Json run = json_of(example_run());  // one of five takes 60 ms
+  EXPECT_EQ(run["verdict"]["fits"], false);
+  const std::string text = run["verdict"]["sentence"];
+  EXPECT_EQ(text.rfind("Does not fit: 1 of 5 frames", 0), 0u) << text;
+  EXPECT_NE(text.find("60 ms"), std::string::npos) << text;
+}
+
+TEST(Verdict, NamesTheStageThatTakesMostOfTheSlowestFrame) {
+  RunResult run = example_run();
+  run.frames[2].stage_cycles = {{"feature extraction", Cycles(1'000'000)},
+                                {"EPnP RANSAC", Cycles(4'000'000)}};
+  const std::string why = json_of(run)["verdict"]["why"];
+  EXPECT_NE(why.find("number 2"), std::string::npos) << why;
+  EXPECT_NE(why.find("40 ms of its 60 ms in EPnP RANSAC"), std::string::npos) << why;
+}
+
+TEST(Verdict, OfAMemoryThatIsTooSmallIsNo) {
+  RunResult run = punctual_run();
+  run.l1_size = Bytes(60'000);  // the example needs 64 000
+  EXPECT_EQ(json_of(run)["verdict"]["fits"], false);
+}
+
+TEST(Verdict, OfANativeRunIsNone) {
+  RunResult run = example_run();
+  run.timed = false;
+  const Json json = json_of(run);
+  EXPECT_TRUE(json["verdict"]["fits"].is_null());
+  EXPECT_TRUE(json["tables"]["stages"].is_null());
+}
+
+TEST(KeyFigures, AnErrorNeverStandsWithoutItsProtocol) {
+  const RunRecord run = reported(example_run()).record;
+  const auto has_error = [](const std::vector<KeyFigure>& figures) {
+    return std::any_of(figures.begin(), figures.end(),
+                       [](const KeyFigure& f) { return f.unit == "m RMSE"; });
+  };
+  EXPECT_FALSE(has_error(key_figures(run, "")));
+  const std::vector<KeyFigure> figures = key_figures(run, "aligned");
+  ASSERT_TRUE(has_error(figures));
+  EXPECT_EQ(figures.back().note, "aligned");
+  EXPECT_EQ(figures.back().value, "0.176");
+}
+
+TEST(RunJson, HasATableForEveryFileAndNamesItsStages) {
+  const Json run = json_of(example_run());
+  EXPECT_EQ(run["tables"]["frames"]["latency_ns"].size(), 5u);
+  EXPECT_EQ(run["tables"]["frames"]["t_s"][2], 0.1);
+  EXPECT_EQ(run["stages"][1]["name"], "EPnP RANSAC");
+  EXPECT_EQ(run["stages"][1]["key"], "epnp_ransac");
+  EXPECT_EQ(run["stages"][2]["on_controller"], true);
+  EXPECT_FALSE(run["tables"]["stages"].contains("f32_add_ops"));
+}
+
+TEST(RunJson, RefusesATableThatLacksAColumn) {
+  ReportedRun run = reported(example_run());
+  run.files[kMemoryFile] = "memory,owner\nL1,x\n";
+  expect_input_error([&] { run_json(run.record, run.files); }, {"out/memory.csv", "what"});
+}
+
+TEST(RunJson, IsTheSameOnAnyHost) {
+  RunResult slow = example_run();
+  slow.host_seconds = 99;
+  EXPECT_EQ(json_of(slow), json_of(example_run()));
+}
+
+TEST(Page, NoTextOfTheDataEndsItsElement) {
+  const std::string name = "</script><script>alert(1)</script><!--";
+  const ReportedRun run = reported(example_run(), name);
+  const std::string page = html_page(runs_report({run}, {}, nullptr));
+  EXPECT_EQ(page.find("alert(1)</script>"), std::string::npos);
+  EXPECT_NE(page.find("\\u003c/script>\\u003cscript>alert(1)"), std::string::npos);
+}
+
+TEST(Page, TitlesAreText) {
+  const std::string page = html_page(report_json("<b>&\"'", Json::array()));
+  EXPECT_NE(page.find("<title>&lt;b&gt;&amp;&quot;&#39; "), std::string::npos);
+}
+
+TEST(Page, HoldsTheLibraryAndItsLicenceAndLoadsNothing) {
+  const std::string page = html_page(report_json("x", Json::array()));
+  EXPECT_NE(page.find("Chart.js v3.9.1"), std::string::npos);
+  EXPECT_NE(page.find("Permission is hereby granted"), std::string::npos);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+  for (const char* loading : {"src=\"", "url(", "@import", "<link rel=\"stylesheet\""})
+    EXPECT_EQ(page.find(loading), std::string::npos) << loading;
+  EXPECT_EQ(page.find("{{"), std::string::npos);
+}
+
+TEST(StudyPage, LeavesOutWhatNoPointHasAndScales) {
+  const Json data = study_report({.title = "x",
+                                  .summary = "",
+                                  .points = "clock,missed,ate\n100,0.25,\n200,0.5,\n",
+                                  .columns = {{"clock", "clock", "MHz", true},
+                                              {"missed", "missed", "%", false, false, 100},
+                                              {"ate", "error", "m"},
+                                              {"power", "power", "mW"}},
+                                  .x = "power",
+                                  .y = "missed",
+                                  .colour = "power"});
+  const Json& study = data["study"];
+  EXPECT_EQ(study["columns"].size(), 2u);
+  EXPECT_EQ(study["table"]["missed"], Json::parse("[25.0,50.0]"));
+  EXPECT_EQ(study["axes"], Json::parse(R"(["clock","missed"])"));
+  EXPECT_EQ(study["colour"], "");
+}
+
+}  // namespace
+}  // namespace leviosim::tools

@@ -1,0 +1,52 @@
+// What a budget says of the run: each limit, and of those that are not met where and why.
+
+function checkSection(check) {
+  const status = (met) =>
+      element('span', {class: met ? 'status-good' : 'status-bad'}, met ? '✓ met' : '✗ not met');
+  const margin = (finding) => {
+    if (finding.value === null || !finding.bound) return null;
+    const atMost = !finding.limit.includes('>=');
+    return (100 * (atMost ? finding.bound - finding.value : finding.value - finding.bound)) /
+        Math.abs(finding.bound);
+  };
+  const columns = [
+    {title: '', text: true, node: (met) => status(met === 'met')},
+    {title: 'limit', text: true, wrap: true}, {title: 'stage', text: true},
+    {title: 'margin, %', node: (value) => signed(value)}, {title: 'found', digits: 5},
+    {title: 'bound', digits: 5}, {title: 'unit', text: true}, {title: 'statistic', text: true}
+  ];
+  const rows = check.findings.map(
+      (f) =>
+          [f.met ? 'met' : 'not met', f.limit, f.stage || '', margin(f), f.value, f.bound, f.unit,
+           f.statistic]);
+  rows.sort((a, b) => (a[0] === b[0] ? 0 : a[0] === 'met' ? 1 : -1));
+  const missed = check.findings.filter((finding) => !finding.met);
+  return section(
+      'budget', 'Budget',
+      element(
+          'div', {class: `card verdict ${check.not_met > 0 ? 'fails' : 'fits'}`},
+          element(
+              'p', {class: 'sentence'},
+              check.not_met > 0 ? `${check.not_met} of ${check.limits} limits are not met.` :
+                                  `All ${check.limits} limits are met.`),
+          element(
+              'p', {class: 'hint'},
+              `${check.budget}${
+                  check.baseline ? `, against the baseline ${check.baseline}` : ''}`)),
+      ...missed.map(
+          (finding) => element(
+              'div', {class: 'card'},
+              element(
+                  'h3', {}, element('span', {class: 'status-bad'}, '✗ '),
+                  `${finding.stage ? `${finding.stage}: ` : ''}${finding.limit}`),
+              element('p', {}, finding.excess),
+              element(
+                  'dl', {class: 'facts'},
+                  ...[['where', finding.where], ['why', (finding.why || []).join('; ')],
+                      ['reason', finding.reason], ['owner', finding.owner],
+                      ['line', `${check.budget}:${finding.line}`]]
+                      .filter(([, value]) => value)
+                      .flatMap(([name,
+                                 value]) => [element('dt', {}, name), element('dd', {}, value)])))),
+      element('div', {class: 'card'}, sortableTable(columns, rows, {label: 'Limits'})));
+}

@@ -1,0 +1,197 @@
+// What differs between two runs, and why: by stage and mechanism, by function, by block, by energy.
+
+const kMechanismColours = {};
+for (const [, colour, parts] of kGroups)
+  for (const part of parts) kMechanismColours[part] = colour;
+const kMoreColours = new Colours();
+
+function mechanismColour(name) {
+  return kMechanismColours[name] || kMoreColours.of(name);
+}
+
+function words(key) {
+  return key.replaceAll('_', ' ');
+}
+
+/** B minus A; sums of floating point that differ in their last digits are the same. */
+function differenceOf({a, b, difference}) {
+  if (difference === null) return null;
+  return Math.abs(difference) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b)) ? 0 : difference;
+}
+
+function percentOf(quantity) {
+  const difference = differenceOf(quantity);
+  return quantity.a && difference !== null ? (100 * difference) / Math.abs(quantity.a) : null;
+}
+
+function quantityTable(title, quantities, label) {
+  const rows = quantities.map((q) => [q.name, q.unit, q.a, q.b, differenceOf(q), percentOf(q)]);
+  return element(
+      'div', {class: 'card'}, element('h3', {}, title),
+      sortableTable(
+          [
+            {title: label, text: true}, {title: 'unit', text: true}, {title: 'A'}, {title: 'B'},
+            {title: 'B − A', node: (value) => signed(value)},
+            {title: '%', node: (value) => (value === null ? '–' : signed(value, 3))}
+          ],
+          rows, {whole: true, label: title}));
+}
+
+function mechanismFigure(comparison) {
+  const stages = comparison.stages.filter(
+      (stage) => stage.by_mechanism &&
+          (stage.by_mechanism.parts || []).some((p) => Math.abs(p.difference) > 0.5));
+  if (stages.length === 0) return null;
+  const names =
+      [...new Set(stages.flatMap((stage) => stage.by_mechanism.parts.map((part) => part.name)))];
+  const partOf = (stage, name) => {
+    const part = stage.by_mechanism.parts.find((p) => p.name === name);
+    return part ? part.difference / 1e3 : 0;
+  };
+  const seen = names.filter((name) => stages.some((stage) => Math.abs(partOf(stage, name)) > 1e-3));
+  return chartFigure({
+    title: 'Difference of a mean frame, by stage and mechanism',
+    hint:
+        'Kilocycles that B takes more (to the right) or less (to the left) than A. The parts of a stage add up to its difference.',
+    height: () => 80 + 30 * stages.length,
+    config: () => ({
+      type: 'bar',
+      data: {
+        labels: stages.map((stage) => stage.name),
+        datasets: seen.map((name) => ({
+                             label: words(name),
+                             backgroundColor: mechanismColour(name),
+                             barPercentage: 0.75,
+                             data: stages.map((stage) => partOf(stage, name))
+                           }))
+      },
+      options: {
+        indexAxis: 'y',
+        interaction: {mode: 'index', axis: 'y', intersect: false},
+        scales: {
+          x: {stacked: true, title: {display: true, text: 'kilocycles, B − A'}},
+          y: {
+            stacked: true,
+            grid: {display: false},
+            ticks: {
+              autoSkip: false,
+              callback(value) {
+                return shorten(this.getLabelForValue(value), this.chart.width);
+              }
+            }
+          },
+        },
+        plugins: {
+          tooltip: {
+            filter: (item) => Math.abs(item.raw) > 1e-3,
+            callbacks: {
+              label: (item) => ` ${item.dataset.label}: ${signed(item.raw)} kcycles`,
+              footer: (items) =>
+                  (items.length > 0 ?
+                       `in all ${
+                           signed(
+                               stages[items[0].dataIndex].by_mechanism.difference / 1e3)} kcycles` :
+                       '')
+            }
+          }
+        },
+      },
+    }),
+    table: () => ({
+      columns: [
+        {title: 'stage', text: true}, {title: 'mechanism', text: true}, {title: 'A, kcycles'},
+        {title: 'B, kcycles'}, {title: 'B − A'}
+      ],
+      rows: stages.flatMap(
+          (stage) => stage.by_mechanism.parts.map(
+              (part) =>
+                  [stage.name, words(part.name), part.a / 1e3, part.b / 1e3,
+                   part.difference / 1e3])),
+    }),
+  });
+}
+
+function functionTable(comparison) {
+  const rows = comparison.stages.filter((stage) => stage.by_place)
+                   .flatMap(
+                       (stage) => (stage.by_place.parts || [])
+                                      .filter((part) => Math.abs(part.difference) > 0.5)
+                                      .map(
+                                          (part) =>
+                                              [stage.name, part.name, part.a / 1e3, part.b / 1e3,
+                                               part.difference / 1e3]));
+  if (rows.length === 0) return null;
+  rows.sort((a, b) => Math.abs(b[4]) - Math.abs(a[4]));
+  return element(
+      'div', {class: 'card'}, element('h3', {}, 'By function, the largest difference first'),
+      sortableTable(
+          [
+            {title: 'stage', text: true}, {title: 'function', text: true},
+            {title: 'A, kcycles per frame'}, {title: 'B, kcycles per frame'},
+            {title: 'B − A', node: (value) => signed(value)}
+          ],
+          rows, {label: 'By function'}));
+}
+
+function causesTable(comparison) {
+  const rows =
+      comparison.stages.filter((stage) => stage.causes)
+          .map(
+              (stage) =>
+                  [stage.name, stage.same_work ? 'the same' : 'another',
+                   ...['work', 'price', 'meeting'].map((cause) => stage.causes[cause] / 1e3)]);
+  if (rows.length === 0) return null;
+  return element(
+      'div', {class: 'card'}, element('h3', {}, 'Work or price'),
+      element(
+          'p', {class: 'hint'},
+          'Kilocycles of a mean frame: from other numbers of operations, from another price of the same operations, from cores that wait for each other, for memory or for the DMA.'),
+      sortableTable(
+          [
+            {title: 'stage', text: true}, {title: 'its work is', text: true},
+            ...['work', 'price', 'meeting'].map(
+                (title) => ({title, node: (value) => signed(value)}))
+          ],
+          rows, {whole: true, label: 'Work or price'}));
+}
+
+function comparisonSections(comparisons) {
+  return comparisons.map((comparison, i) => {
+    const changed = (quantity) => quantity.parts || [quantity];
+    const notes = comparison.notes.length > 0 ?
+        element('ul', {class: 'hint'}, ...comparison.notes.map((note) => element('li', {}, note))) :
+        null;
+    const frame = comparison.frame;
+    return section(
+        `difference${i + 1}`, comparisons.length > 1 ? `Difference ${i + 1}` : 'Difference',
+        element(
+            'div', {class: 'card'},
+            element(
+                'p', {}, element('strong', {}, 'A '), comparison.a.name, element('br'),
+                element('strong', {}, 'B '), comparison.b.name),
+            element(
+                'p', {},
+                frame.a !== null && frame.b !== null ?
+                    `A mean frame takes ${numberText(frame.b / 1e3, 5)} kilocycles instead of ${
+                        numberText(frame.a / 1e3, 5)}: ${signed(percentOf(frame))} %. ` :
+                    '',
+                comparison.same_work ? 'Both did the same work.' : 'The work itself differs.'),
+            notes),
+        mechanismFigure(comparison), functionTable(comparison), causesTable(comparison),
+        quantityTable('The run as a whole', comparison.figures, 'figure'),
+        comparison.blocks.length > 0 ?
+            quantityTable(
+                'Blocks at the peaks of memory that appeared, went or changed', comparison.blocks,
+                'block') :
+            null,
+        (comparison.energy_by_stage.parts || []).length === 0 ?
+            null :
+            element(
+                'div', {class: 'pair'},
+                quantityTable(
+                    'Energy of a frame by stage', changed(comparison.energy_by_stage), 'stage'),
+                quantityTable(
+                    'Energy of a frame by domain', changed(comparison.energy_by_domain),
+                    'domain')));
+  });
+}

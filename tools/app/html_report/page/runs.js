@@ -1,0 +1,54 @@
+// A run from top to bottom, and the choice among several.
+
+/** The name of a run among others: the last parts of its path. */
+function runNames(runs) {
+  const names = runs.map((run) => run.name);
+  return names.map((name, i) => (names.indexOf(name) === i ? name : `${name} (${i + 1})`));
+}
+
+function runSections(run) {
+  return [
+    framesSection(run), stagesSection(run), memorySection(run), energySection(run),
+    trajectorySection(run),
+    section('made', 'How it was made', element('div', {class: 'card'}, factList(run)))
+  ].filter(Boolean);
+}
+
+function chipText(run) {
+  const facts = run.facts;
+  const chip = facts.platform ?
+      `${[facts.platform, ...facts.overrides].join(', ')}, ${facts.cores} cores at ${
+          numberText(facts.cluster_clock / 1e6)} MHz` :
+      'the host, natively';
+  return `${facts.profile} on ${chip}; ${facts.frames} frames of ${facts.data}`;
+}
+
+/** Figures of several runs beside each other. */
+function runsTable(runs, names) {
+  const titles = [...new Set(runs.flatMap((run) => run.figures.map((figure) => figure.title)))];
+  const columns = [{title: '', text: true}, ...names.map((name) => ({title: name}))];
+  const cell = (run, title) => {
+    const figure = run.figures.find((f) => f.title === title);
+    return figure ? `${figure.value} ${figure.unit}` : null;
+  };
+  return sortableTable(
+      columns,
+      [
+        [
+          'Verdict',
+          ...runs.map(
+              (run) =>
+                  (run.verdict.fits === null ? '–' :
+                       run.verdict.fits      ? '✓ fits' :
+                                               '✗ does not fit'))
+        ],
+        ...titles.map((title) => [title, ...runs.map((run) => cell(run, title))])
+      ],
+      {whole: true, label: 'Runs'});
+}
+
+/** What stands beside the errors of the runs: each protocol once. */
+function protocols(runs) {
+  const texts = [...new Set(runs.map((run) => run.protocol).filter(Boolean))];
+  return texts.map((text) => element('p', {class: 'hint'}, `ATE: ${text}`));
+}

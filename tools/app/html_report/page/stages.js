@@ -1,0 +1,178 @@
+// The stages of a run: their cycles on one core and on all, and what the cores did meanwhile.
+
+// In the groups and the order of the printed table; what cores do useful first.
+const kGroups = [
+  ['instructions', '#4477aa', ['issue']],
+  [
+    'stalls: loads, branches, arithmetic', '#7fb0d8',
+    ['load_use', 'control', 'memory', 'arithmetic']
+  ],
+  ['I-cache', '#b9d3ea', ['fetch', 'fetch_contention']],
+  ['FPU', '#ddaa33', ['fpu']],
+  ['divider', '#f0cf80', ['divider']],
+  ['L1 banks', '#ee7755', ['banks']],
+  ['imbalance', '#aa5588', ['imbalance', 'rounding']],
+  ['synchronisation', '#d29bc0', ['synchronisation']],
+  ['transfer', '#44aa88', ['transfer']],
+  ['serial', '#8c99a8', ['serial']],
+  ['accelerators', '#228833', ['accelerator', 'accelerator_contention']],
+];
+
+/** Rows of stages.csv as objects with name, calls, and cycles. */
+function stageRows(run) {
+  const table = run.tables.stages;
+  return table.stage.map((name, i) => {
+    const cell = (column) => (table[column] ? table[column][i] : null);
+    return {
+      name,
+      key: run.stages[i].key,
+      cell,
+      calls: cell('calls'),
+      unit: cell('call'),
+      onController: cell('runs_on') === 'controller',
+      single: cell('single_cycles'),
+      parallel: cell('parallel_cycles'),
+      speedup: cell('speedup')
+    };
+  });
+}
+
+/** Cycles of a mean frame in a group of parts, on one core or on N. */
+function groupCycles(run, row, parts, single, frames) {
+  const cores = single || row.onController ? 1 : run.facts.cores;
+  return sum(parts.map(
+             (part) => row.cell(single ? `single_${part}_cycles` : `${part}_core_cycles`))) /
+      cores / frames;
+}
+
+function breakdownFigure(run, rows) {
+  const frames = processedFrames(run);
+  const hasSingle = Boolean(run.tables.stages.single_issue_cycles);
+  const shown = rows.filter((row) => row.calls > 0);
+  const bars = shown.flatMap(
+      (row) => row.onController ? [{row, single: false, label: `${row.name} (controller)`}] : [
+        ...(hasSingle ? [{row, single: true, label: `${row.name}, 1 core`}] : []),
+        {row, single: false, label: `${row.name}, ${run.facts.cores} cores`}
+      ]);
+  const groups = kGroups.filter(
+      ([, , parts]) =>
+          bars.some((bar) => groupCycles(run, bar.row, parts, bar.single, frames) > 0));
+  const valuesOf = (bar) =>
+      groups.map(([, , parts]) => groupCycles(run, bar.row, parts, bar.single, frames) / 1e3);
+  let shares = false;
+  const select = element(
+      'select', {
+        onchange: () => {
+          shares = select.value === 'shares';
+          figure.redraw();
+        }
+      },
+      element('option', {value: 'cycles'}, 'kilocycles of a mean frame'),
+      element('option', {value: 'shares'}, 'shares of the stage'));
+  const figure = chartFigure({
+    title: 'Where the cycles of each stage go',
+    hint: hasSingle ?
+        'On one core and on all. Cycles of all cores are divided by the cores, so that a bar is as long as the stage takes.' :
+        'On all cores. This run folder has no breakdown on one core: an older leviosim wrote it.',
+    controls: element('div', {class: 'controls'}, element('label', {}, 'show', select)),
+    height: () => 80 + 23 * bars.length,
+    config: () => ({
+      type: 'bar',
+      data: {
+        labels: bars.map((bar) => bar.label),
+        datasets: groups.map(([name, colour], g) => ({
+                               label: name,
+                               backgroundColor: colour,
+                               barPercentage: 0.85,
+                               categoryPercentage: 0.95,
+                               data: bars.map((bar) => {
+                                 const values = valuesOf(bar);
+                                 return shares ? (100 * values[g]) / (sum(values) || 1) : values[g];
+                               })
+                             }))
+      },
+      options: {
+        indexAxis: 'y',
+        interaction: {mode: 'index', axis: 'y', intersect: false},
+        scales: {
+          x: {
+            stacked: true,
+            max: shares ? 100 : undefined,
+            title: {display: true, text: shares ? '%' : 'kilocycles'}
+          },
+          y: {
+            stacked: true,
+            grid: {display: false},
+            ticks: {
+              autoSkip: false,
+              callback(value) {
+                return shorten(this.getLabelForValue(value), this.chart.width);
+              }
+            }
+          },
+        },
+        plugins: {
+          tooltip: {
+            filter: (item) => item.raw > 0,
+            callbacks: {
+              label: (item) =>
+                  ` ${item.dataset.label}: ${numberText(item.raw, 3)}${shares ? ' %' : ' kcycles'}`,
+              footer: (items) =>
+                  (shares || items.length === 0 ?
+                       '' :
+                       `in all ${numberText(sum(items.map((i) => i.raw)))} kcycles`),
+            },
+          }
+        },
+      },
+    }),
+    table: () => ({
+      columns: [
+        {title: 'stage', text: true}, {title: 'in all, kcycles'},
+        ...groups.map(([name]) => ({title: name}))
+      ],
+      rows: bars.map((bar) => [bar.label, sum(valuesOf(bar)), ...valuesOf(bar)]),
+    }),
+  });
+  return figure;
+}
+
+/** Labels of axes get at most a good third of a narrow chart. */
+function shorten(text, width) {
+  const most = Math.max(12, Math.floor((width * 0.36) / 6));
+  return text.length > most ? `${text.slice(0, most - 1)}…` : text;
+}
+
+function processedFrames(run) {
+  const {frames} = run.tables;
+  return (frames.latency_ns ? frames.latency_ns.filter((latency) => latency !== null) :
+                              frames.frame)
+      .length;
+}
+
+function stagesSection(run) {
+  if (!run.tables.stages) return null;
+  const rows = stageRows(run);
+  const ofCluster = sum(rows.map((row) => (row.onController ? 0 : row.parallel)));
+  const columns = [
+    {title: 'stage', text: true, node: (name) => stageCell(name)}, {title: 'runs on', text: true},
+    {title: 'calls'}, {title: 'call is a', text: true}, {title: 'kcycles, 1 core'},
+    {title: `kcycles, ${run.facts.cores} cores`}, {title: 'speed-up', digits: 3},
+    {title: 'ms per call', digits: 3}, {title: 'share, %', digits: 3}, {title: 'memory, kB'}
+  ];
+  const table = sortableTable(
+      columns,
+      rows.map(
+          (row) =>
+              [row.name, row.cell('runs_on'), row.calls, row.unit,
+               row.calls ? row.single / row.calls / 1e3 : null,
+               row.calls ? row.parallel / row.calls / 1e3 : null,
+               row.onController ? null : row.speedup, row.cell('parallel_ms_per_call'),
+               row.onController || !ofCluster ? null : (100 * row.parallel) / ofCluster,
+               (row.cell('memory_parallel_bytes') || 0) / 1e3]),
+      {whole: true, label: 'Stages'});
+  return section(
+      'stages', 'Stages',
+      element('div', {class: 'card'}, element('h3', {}, 'Stages of the run, per call'), table),
+      breakdownFigure(run, rows));
+}

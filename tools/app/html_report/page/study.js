@@ -1,0 +1,258 @@
+// Many points: curves over a parameter, and a scatter of any two figures with its Pareto front,
+// where a point shows its set-up.
+
+/** The number that a cell begins with: of 240, "240MHz". */
+function leadingNumber(cell) {
+  if (typeof cell === 'number') return cell;
+  const number = parseFloat(cell);
+  return Number.isNaN(number) ? null : number;
+}
+
+/** Points that no other beats: less is better unless the column says more. */
+function paretoFront(points, moreX, moreY) {
+  const [x, y] = [(p) => (moreX ? -p.x : p.x), (p) => (moreY ? -p.y : p.y)];
+  let best = Infinity;
+  return [...points].sort((a, b) => x(a) - x(b) || y(a) - y(b)).filter((point) => {
+    if (y(point) >= best) return false;
+    best = y(point);
+    return true;
+  });
+}
+
+function medianOf(values) {
+  const sorted = [...values].sort((a, b) => a - b);
+  const middle = sorted.length / 2;
+  return sorted.length % 2 ? sorted[Math.floor(middle)] : (sorted[middle - 1] + sorted[middle]) / 2;
+}
+
+function axisTitle(column) {
+  return column.unit ? `${column.title}, ${column.unit}` : column.title;
+}
+
+function capital(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+function curveFigure(study, yName) {
+  const {x: xName, series: seriesName} = study.curves;
+  const cells = (name) => study.table[name];
+  const column = (name) => study.columns.find((c) => c.name === name);
+  const seriesOf = seriesName ? cells(seriesName) : cells(xName).map(() => '');
+  const values = [...new Set(seriesOf)];
+  const lines = values.map((value) => {
+    const at = new Map();
+    seriesOf.forEach((v, i) => {
+      const [x, y] = [leadingNumber(cells(xName)[i]), cells(yName)[i]];
+      if (v !== value || x === null || y === null) return;
+      if (!at.has(x)) at.set(x, []);
+      at.get(x).push(y);
+    });
+    return {
+      value,
+      points:
+          [...at]
+              .sort((a, b) => a[0] - b[0])
+              .map(([x, ys]) => ({x, y: medianOf(ys), low: Math.min(...ys), high: Math.max(...ys)}))
+    };
+  });
+  const limit = (study.limits || {})[yName];
+  return chartFigure({
+    title: `${capital(column(yName).title)} over ${column(xName).title}`,
+    hint: 'Medians of what else varies, such as seeds; a point shows the least and the greatest.',
+    config: () => ({
+      type: 'scatter',
+      data: {
+        datasets: lines.map(
+            ({value, points}, i) => ({
+              label: seriesName ? `${numberText(value)} ${column(seriesName).unit}`.trim() :
+                                  axisTitle(column(yName)),
+              data: points,
+              showLine: true,
+              borderWidth: 2,
+              pointRadius: 3,
+              borderColor: paletteColour(i + 1),
+              backgroundColor: paletteColour(i + 1)
+            }))
+      },
+      options: {
+        interaction: {mode: 'nearest', intersect: false},
+        scales: {
+          x: {title: {display: true, text: axisTitle(column(xName))}, grid: {display: false}},
+          y: {title: {display: true, text: axisTitle(column(yName))}, beginAtZero: true}
+        },
+        plugins: {
+          limitLines: {
+            lines: limit === undefined ?
+                [] :
+                [{axis: 'y', value: limit, label: `limit ${numberText(limit)}`}]
+          },
+          tooltip: {
+            callbacks: {
+              label: ({dataset, raw}) => ` ${dataset.label}, ${numberText(raw.x)}: ${
+                  numberText(raw.y)} (${numberText(raw.low)} to ${numberText(raw.high)})`
+            }
+          },
+        },
+      },
+    }),
+    table: () => ({
+      columns: [
+        {title: seriesName ? axisTitle(column(seriesName)) : '', text: true},
+        {title: axisTitle(column(xName))}, {title: 'median'}, {title: 'least'}, {title: 'greatest'}
+      ],
+      rows: lines.flatMap(({value, points}) => points.map((p) => [value, p.x, p.y, p.low, p.high])),
+    }),
+  });
+}
+
+function scatterFigure(study) {
+  const {columns, table} = study;
+  const count = table[columns[0].name].length;
+  const isSetup = (column) => column.kind === 'setup';
+  let [xName, yName] = study.axes;
+  let colourName = study.colour || '';
+  const column = (name) => columns.find((c) => c.name === name);
+  const setupText = (i) => columns.filter(isSetup).map(
+      (c) => `${c.title} ${table[c.name][i] ?? '–'}${
+          typeof table[c.name][i] === 'number' && c.unit ? ` ${c.unit}` : ''}`);
+  const points =
+      () => [...Array(count).keys()]
+                .map(
+                    (i) =>
+                        ({i, x: leadingNumber(table[xName][i]), y: leadingNumber(table[yName][i])}))
+                .filter((p) => p.x !== null && p.y !== null);
+  const panel = element(
+      'div', {class: 'card', 'aria-live': 'polite'},
+      element('p', {class: 'hint'}, 'A click on a point, or Enter, shows its set-up here.'));
+
+  function showPoint(i) {
+    panel.replaceChildren(
+        element('h3', {}, 'The point'),
+        element(
+            'dl', {class: 'facts'},
+            ...columns.flatMap(
+                (c) =>
+                    [element('dt', {}, axisTitle(c)),
+                     element('dd', {}, numberText(table[c.name][i], 5))])));
+  }
+  const axisSelect = (label, value, choices, set) => {
+    const select = element(
+        'select', {
+          onchange: () => {
+            set(select.value);
+            figure.redraw();
+          }
+        },
+        ...choices.map(
+            (c) => element('option', {value: c.name, selected: c.name === value}, axisTitle(c))));
+    return element('label', {}, label, select);
+  };
+  const controls = element(
+      'div', {class: 'controls'},
+      axisSelect(
+          'x', xName, columns,
+          (name) => {
+            xName = name;
+          }),
+      axisSelect(
+          'y', yName, columns,
+          (name) => {
+            yName = name;
+          }),
+      axisSelect(
+          'colour by', colourName,
+          [{name: '', title: 'nothing', unit: ''}, ...columns.filter(isSetup)], (name) => {
+            colourName = name;
+          }));
+
+  const figure = chartFigure({
+    title: 'All points',
+    hint: 'The line joins the points that no other beats in both figures.',
+    controls,
+    height: (width) => Math.min(480, Math.max(300, 0.55 * width)),
+    onpick: (item, chart) => {
+      const point = chart.data.datasets[item.datasetIndex].data[item.index];
+      if (point) showPoint(point.i);
+    },
+    config: () => {
+      const all = points();
+      const front = paretoFront(all, column(xName).more, column(yName).more);
+      const groups =
+          colourName ? [...new Set(all.map((p) => table[colourName][p.i]))].slice(0, 12) : [null];
+      return {
+        type: 'scatter',
+        data: {
+          datasets: [
+            ...groups.map(
+                (value, g) => ({
+                  label: value === null ? 'points' :
+                                          `${column(colourName).title} ${numberText(value)}`,
+                  data: all.filter((p) => value === null || table[colourName][p.i] === value),
+                  backgroundColor: `${paletteColour(g + 1)}cc`,
+                  legendColor: paletteColour(g + 1),
+                  pointRadius: all.length > 400 ? 3 : 5,
+                  pointHoverRadius: 7
+                })),
+            {
+              label: 'not beaten',
+              data: front,
+              showLine: true,
+              borderColor: style('--soft'),
+              backgroundColor: 'transparent',
+              legendColor: style('--soft'),
+              borderWidth: 1.5,
+              borderDash: [4, 3],
+              pointRadius: 7,
+              pointHoverRadius: 8,
+              pointBorderColor: style('--soft')
+            },
+          ]
+        },
+        options: {
+          interaction: {mode: 'nearest', intersect: true},
+          scales: {
+            x: {title: {display: true, text: axisTitle(column(xName))}},
+            y: {title: {display: true, text: axisTitle(column(yName))}}
+          },
+          plugins: {
+            tooltip: {
+              filter: (item, index) => index === 0,
+              callbacks: {
+                label: ({raw}) => ` ${column(xName).title} ${numberText(raw.x)}, ${
+                    column(yName).title} ${numberText(raw.y)}`,
+                afterBody: ([item]) => (item ? setupText(item.raw.i) : [])
+              }
+            }
+          },
+        },
+      };
+    },
+    table: () => ({
+      columns: columns.map((c) => ({
+                             title: axisTitle(c),
+                             text: typeof (table[c.name].find((v) => v !== null) ?? 0) === 'string'
+                           })),
+      rows: [...Array(count).keys()].map((i) => columns.map((c) => table[c.name][i])),
+    }),
+  });
+  return [figure, panel];
+}
+
+function studySections(study, top) {
+  const count = study.columns.length > 0 ? study.table[study.columns[0].name].length : 0;
+  top.append(element(
+      'div', {class: 'card'},
+      ...study.summary.trim().split('\n').map((line) => element('p', {}, line))));
+  if (count === 0) return [element('p', {class: 'card'}, 'No point is finished.')];
+  const sections = [];
+  if (study.curves)
+    sections.push(section(
+        'curves', 'Curves',
+        element(
+            'div', {class: 'pair'},
+            ...study.curves.y
+                .filter((name) => study.table[name] && study.table[name].some((v) => v !== null))
+                .map((name) => curveFigure(study, name)))));
+  sections.push(section('points', 'Points', ...scatterFigure(study)));
+  return sections;
+}

@@ -1,0 +1,55 @@
+#include "tools/app/html_report/report_file.h"
+
+#include <fmt/format.h>
+
+#include "tools/app/budget/check_report.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/comparison/comparison_files.h"
+#include "tools/app/html_report/page.h"
+
+namespace leviosim::tools {
+
+void add_report_option(CLI::App& command, std::string& file) {
+  command.add_option("--report", file, "page to write, for a browser: one file, works offline")
+      ->type_name("FILE.html");
+}
+
+std::optional<base::OutputFile> claimed_report(const std::string& file, bool replace,
+                                               std::vector<std::filesystem::path> inputs,
+                                               const std::string& option) {
+  return claimed_file(
+      {.option = option, .path = file, .replace = replace, .inputs = std::move(inputs)});
+}
+
+Json runs_report(const std::vector<ReportedRun>& runs,
+                 const std::vector<RunComparison>& comparisons, const CheckResult* check) {
+  Json list = Json::array();
+  for (const ReportedRun& run : runs) list.push_back(run_json(run.record, run.files));
+  const std::string title =
+      runs.size() == 1
+          ? fmt::format("{} on {}", runs.front().record.facts.profile,
+                        runs.front().record.facts.platform.empty()
+                            ? "the host"
+                            : runs.front().record.facts.platform)
+          : fmt::format("{} runs of {}", runs.size(), runs.front().record.facts.profile);
+  Json data = report_json(title, std::move(list));
+  for (const RunComparison& comparison : comparisons)
+    data["comparisons"].push_back(comparison_json(comparison));
+  if (check != nullptr) data["check"] = check_json(*check);
+  return data;
+}
+
+void report_and_check(const ReportedRun& run, std::optional<base::OutputFile>& page,
+                      const std::optional<Gate>& gate, bool say) {
+  std::optional<CheckResult> check;
+  if (gate) check = gate->check(run.record);
+  if (page) publish_report(page, runs_report({run}, {}, check ? &*check : nullptr), say);
+  if (check) print_check(*check);
+}
+
+void publish_report(std::optional<base::OutputFile>& file, const Json& data, bool say) {
+  if (file) publish({{file, html_page(data), "report"}}, Printout(std::string(), !say));
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,177 @@
+#include "tools/app/html_report/run_json.h"
+
+#include "sim/base/error.h"
+#include "tools/app/html_report/csv_json.h"
+#include "tools/app/html_report/verdict.h"
+#include "tools/app/result/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Stamps since the first, in seconds: those of data sets are too large for numbers of scripts.
+void use_seconds(Json& table) {
+  if (!table.contains("t_ns")) return;
+  Json seconds = Json::array();
+  const Json& stamps = table.at("t_ns");
+  for (const Json& stamp : stamps)
+    seconds.push_back(
+        static_cast<double>(stamp.get<std::int64_t>() - stamps.front().get<std::int64_t>()) * 1e-9);
+  table.erase("t_ns");
+  table["t_s"] = std::move(seconds);
+}
+
+/// The table of a file; null if the run has none.
+Json table_of(const RunRecord& record, const RunFiles& files, const char* name) {
+  const auto file = files.find(name);
+  if (file == files.end()) return nullptr;
+  const std::string where = record.name + '/' + name;
+  Json table = csv_json(where, file->second,
+                        [](const std::string& column) { return !ends_with(column, "_ops"); });
+  try {
+    use_seconds(table);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(where + ": a time stamp is no whole number");
+  }
+  return table;
+}
+
+/// The processed frame with the longest latency, if the table knows latencies.
+/// @param stages  of stages_of()
+std::optional<WorstFrame> worst_frame(const RunRecord& record, const Json& frames,
+                                      const Json& stages) {
+  if (!frames.contains("latency_ns")) return std::nullopt;
+  const Json& latencies = frames.at("latency_ns");
+  std::optional<std::size_t> at;
+  for (std::size_t i = 0; i < latencies.size(); ++i)
+    if (latencies[i].is_number() && (!at || latencies[i] > latencies[*at])) at = i;
+  if (!at) return std::nullopt;
+  WorstFrame worst;
+  worst.frame = frames.at("frame")[*at].get<int>();
+  worst.latency_ns = latencies[*at].get<double>();
+  const double clock = record.value("run.cluster_clock").value_or(0);
+  for (const Json& stage : stages) {
+    const std::string column = kStageColumn + stage.at("key").get<std::string>();
+    if (!frames.contains(column) || !frames.at(column)[*at].is_number()) continue;
+    const double ns = frames.at(column)[*at].get<double>() / clock * 1e9;
+    if (ns <= worst.stage_ns) continue;
+    worst.stage = stage.at("name").get<std::string>();
+    worst.stage_ns = ns;
+  }
+  return worst;
+}
+
+/// Of the statistics of accuracy; empty if there are none.
+std::string protocol_of(const Json& statistics) {
+  for (const Json& entry : statistics.at("statistics"))
+    if (entry.at("name") == "accuracy.ate.rmse") return entry.value("protocol", "");
+  return {};
+}
+
+Json facts_of(const RunRecord& record, const Json& manifest) {
+  Json facts = facts_json(record.facts);
+  facts["data"] = manifest.at("data").at("folder");
+  facts["command_line"] = manifest.at("command_line");
+  for (const auto& [key, name] : {std::pair{"cluster_clock", "run.cluster_clock"},
+                                  {"controller_clock", "run.controller_clock"},
+                                  {"voltage", "run.voltage"},
+                                  {"l1_size", "run.l1_size"},
+                                  {"l2_size", "run.l2_size"}})
+    facts[key] = value_of(record.value(name));
+  facts["deadline_ns"] = deadline_ns(record);
+  return facts;
+}
+
+/// By the names that the table of stages has; without it, as the record has them.
+Json stages_of(const RunRecord& record, const Json& table) {
+  Json list = Json::array();
+  const auto add = [&](const Json& name, const Json& key, bool on_controller) {
+    list.push_back({{"name", name}, {"key", key}, {"on_controller", on_controller}});
+  };
+  if (table.is_null())
+    for (const StageName& s : record.stages) add(s.name, s.key, s.on_controller);
+  else
+    for (std::size_t i = 0; i < table.at("stage").size(); ++i) {
+      const Json& name = table.at("stage")[i];
+      add(name, key_of(name.get<std::string>()), table.at("runs_on")[i] == "controller");
+    }
+  return list;
+}
+
+/// What the parts of the breakdown are called, and what they mean.
+Json account_of(const Json& stages) {
+  Json list = Json::array();
+  const auto add = [&](const BreakdownPart& part) {
+    if (stages.contains(std::string(part.key) + "_core_cycles"))
+      list.push_back({{"key", part.key}, {"group", part.column}, {"meaning", part.description}});
+  };
+  for (const BreakdownPart& part : kBreakdownParts) add(part);
+  for (const BreakdownPart& part : kAcceleratorParts) add(part);
+  return list;
+}
+
+Json key_figures_json(const RunRecord& record, const std::string& protocol) {
+  Json list = Json::array();
+  for (const KeyFigure& figure : key_figures(record, protocol))
+    list.push_back({{"title", figure.title},
+                    {"value", figure.value},
+                    {"unit", figure.unit},
+                    {"note", figure.note},
+                    {"share", value_of(figure.share)}});
+  return list;
+}
+
+/// A table of columns that a script can rely on. @throws InputError for one that is missing
+void expect_columns(const std::string& where, const Json& table,
+                    std::initializer_list<const char*> columns) {
+  for (const char* column : columns)
+    if (!table.is_null() && !table.contains(column))
+      throw InputError(where + ": has no column " + column);
+}
+
+Json tables_of(const RunRecord& record, const RunFiles& files) {
+  Json tables;
+  tables["frames"] = table_of(record, files, kFramesFile);
+  tables["stages"] = table_of(record, files, kStagesFile);
+  tables["memory"] = table_of(record, files, kMemoryFile);
+  tables["energy"] = table_of(record, files, kEnergyFile);
+  tables["errors"] = table_of(record, files, kErrorsFile);
+  const auto where = [&](const char* name) { return record.name + '/' + name; };
+  expect_columns(where(kFramesFile), tables["frames"], {"frame", "source"});
+  expect_columns(where(kStagesFile), tables["stages"],
+                 {"stage", "call", "runs_on", "calls", "single_cycles", "parallel_cycles"});
+  expect_columns(where(kMemoryFile), tables["memory"],
+                 {"memory", "owner", "what", "block", "copies", "bytes"});
+  expect_columns(where(kEnergyFile), tables["energy"],
+                 {"stage", "quantity", "domain", "value", "unit", "low", "high"});
+  expect_columns(
+      where(kErrorsFile), tables["errors"],
+      {"t_s", "position_error_m", "estimate_x_m", "estimate_y_m", "truth_x_m", "truth_y_m"});
+  return tables;
+}
+
+}  // namespace
+
+Json run_json(const RunRecord& record, const RunFiles& files) {
+  const Json manifest = Json::parse(files.at("manifest.json"));
+  const std::string protocol = protocol_of(Json::parse(files.at("stats.json")));
+  Json json;
+  json["name"] = record.name;
+  json["facts"] = facts_of(record, manifest);
+  json["tables"] = tables_of(record, files);
+  json["stages"] = stages_of(record, json["tables"]["stages"]);
+  const Verdict verdict =
+      verdict_of(record, worst_frame(record, json["tables"]["frames"], json["stages"]));
+  json["verdict"] = {{"fits", verdict.fits ? Json(*verdict.fits) : Json(nullptr)},
+                     {"sentence", verdict.sentence},
+                     {"why", verdict.why}};
+  json["figures"] = key_figures_json(record, protocol);
+  json["protocol"] = protocol;
+  if (!json["tables"]["stages"].is_null()) json["breakdown"] = account_of(json["tables"]["stages"]);
+  return json;
+}
+
+}  // namespace leviosim::tools

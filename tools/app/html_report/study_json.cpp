@@ -1,0 +1,55 @@
+#include "tools/app/html_report/study_json.h"
+
+#include <algorithm>
+
+#include "tools/app/html_report/csv_json.h"
+#include "tools/app/html_report/page.h"
+
+namespace leviosim::tools {
+namespace {
+
+Json scaled(Json cells, double scale) {
+  if (scale != 1)
+    for (Json& cell : cells)
+      if (cell.is_number()) cell = cell.get<double>() * scale;
+  return cells;
+}
+
+bool is_empty(const Json& cells) {
+  return std::all_of(cells.begin(), cells.end(), [](const Json& cell) { return cell.is_null(); });
+}
+
+}  // namespace
+
+Json study_report(const StudyPage& page) {
+  Json data = report_json(page.title, Json::array());
+  Json& study = data["study"];
+  study["summary"] = page.summary;
+  const Json table = csv_json("points", page.points);
+  study["columns"] = Json::array();
+  study["table"] = Json::object();
+  for (const StudyColumn& column : page.columns) {
+    if (!table.contains(column.name) || is_empty(table.at(column.name))) continue;
+    study["columns"].push_back({{"name", column.name},
+                                {"title", column.title},
+                                {"unit", column.unit},
+                                {"kind", column.is_setup ? "setup" : "figure"},
+                                {"more", column.more_is_better}});
+    study["table"][column.name] = scaled(table.at(column.name), column.scale);
+  }
+  const auto known = [&](const std::string& name) { return study["table"].contains(name); };
+  const auto axis = [&](const std::string& wanted, std::size_t other) {
+    if (known(wanted) || study["columns"].empty()) return Json(wanted);
+    return study["columns"][std::min(other, study["columns"].size() - 1)]["name"];
+  };
+  study["axes"] = Json::array({axis(page.x, 0), axis(page.y, 1)});
+  study["colour"] = known(page.colour) ? page.colour : "";
+  study["limits"] = page.limits;
+  if (page.curves && known(page.curves->x) &&
+      (page.curves->series.empty() || known(page.curves->series)))
+    study["curves"] = {
+        {"x", page.curves->x}, {"series", page.curves->series}, {"y", page.curves->y}};
+  return data;
+}
+
+}  // namespace leviosim::tools

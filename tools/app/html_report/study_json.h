@@ -1,0 +1,45 @@
+// A study of many points as data of a report: the points as a table of what was set and what came
+// out of it, curves over one of the settings, and the axes that the scatter begins with.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/app/report/statistic_list.h"
+
+namespace leviosim::tools {
+
+struct StudyColumn {
+  std::string name;  ///< in the table of points
+  std::string title;
+  std::string unit;
+  bool is_setup = false;  ///< what was set; else what came out of it
+  bool more_is_better = false;
+  double scale = 1;  ///< from the table to the unit
+};
+
+/// Figures over a setting, a line for each value of another.
+struct StudyCurves {
+  std::string x;
+  std::string series;  ///< empty: one line
+  std::vector<std::string> y;
+};
+
+struct StudyPage {
+  std::string title;
+  std::string summary;               ///< lines
+  std::string points;                ///< CSV, a row per point
+  std::vector<StudyColumn> columns;  ///< those that the table lacks are left out
+  std::optional<StudyCurves> curves = {};
+  std::map<std::string, double> limits = {};  ///< column → what it should not exceed
+  std::string x;                              ///< of the scatter
+  std::string y;
+  std::string colour;  ///< setting that colours the points; may be empty
+};
+
+/// The data of a page: report_json() without runs.
+Json study_report(const StudyPage& page);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,152 @@
+#include "tools/app/html_report/verdict.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/app/result/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
+
+/// A memory, its highest occupation and who occupies it.
+struct MemoryUse {
+  const char* name;
+  double used;
+  double size;
+
+  bool fits() const { return used <= size; }
+  double percent() const {
+    return percent_of_nominal(Bytes(std::llround(used)), Bytes(std::llround(size)));
+  }
+  /// "L1 102.2 kB (79.8 %)".
+  std::string text() const {
+    return fmt::format("{} {:.1f} kB ({:.1f} %)", name, used * 1e-3, percent());
+  }
+};
+
+std::vector<MemoryUse> memories(const RunRecord& run) {
+  std::vector<MemoryUse> list;
+  for (const auto& [name, key] : {std::pair{"L1", "l1"}, {"L2", "l2"}}) {
+    const auto used = run.value(fmt::format("memory.{}.peak", key));
+    const auto size = run.value(fmt::format("run.{}_size", key));
+    if (used && size && *size > 0) list.push_back({name, *used, *size});
+  }
+  return list;
+}
+
+std::string deadline_text(const RunRecord& run, double missed, double worst) {
+  const double deadline = deadline_ns(run);
+  if (missed == 0)
+    return fmt::format("all {} frames have their pose within {} of their arrival (worst {})",
+                       run.facts.frames, ms(deadline), ms(worst));
+  std::string text = fmt::format("{:.0f} of {} frames miss their deadline of {}", missed,
+                                 run.facts.frames, ms(deadline));
+  if (const double dropped = run.value("camera.dropped").value_or(0); dropped > 0)
+    text += fmt::format(", {:.0f} of them dropped", dropped);
+  return text + fmt::format("; the worst takes {}", ms(worst));
+}
+
+/// The stage of the cluster with the highest peak.
+std::string owner_of_l1(const RunRecord& run) {
+  std::string owner;
+  double most = 0;
+  for (const StageName& stage : run.stages) {
+    const auto peak = run.value(fmt::format("stages.{}.memory.parallel", stage.key));
+    if (stage.on_controller || !peak || *peak <= most) continue;
+    most = *peak;
+    owner = stage.name;
+  }
+  return owner;
+}
+
+void add_time(std::vector<KeyFigure>& list, const RunRecord& run) {
+  const auto worst = run.value("frame.latency.worst");
+  const auto median = run.value("frame.latency.p50");
+  const auto p99 = run.value("frame.latency.p99");
+  if (!worst || !median || !p99) return;
+  list.push_back({"Frame time, worst", fmt::format("{:.2f}", *worst * 1e-6), "ms",
+                  fmt::format("deadline {}; median {:.2f}, 99 % within {:.2f} ms",
+                              ms(deadline_ns(run)), *median * 1e-6, *p99 * 1e-6),
+                  *worst / deadline_ns(run)});
+}
+
+void add_speedup(std::vector<KeyFigure>& list, const RunRecord& run) {
+  const auto single = run.value("frame.cycles.single.mean");
+  const auto parallel = run.value("frame.cycles.parallel.mean");
+  if (!single || !parallel || *parallel == 0) return;
+  list.push_back(
+      {"Speed-up", fmt::format("{:.2f}", *single / *parallel), "×",
+       fmt::format("{} over one; a mean frame takes {:.2f} Mcycles instead of {:.1f}",
+                   run.facts.cores == 1 ? "1 core" : fmt::format("{} cores", run.facts.cores),
+                   *parallel * 1e-6, *single * 1e-6)});
+}
+
+void add_memory(std::vector<KeyFigure>& list, const RunRecord& run) {
+  for (const MemoryUse& memory : memories(run)) {
+    const std::string owner = memory.name == std::string("L1") ? owner_of_l1(run) : "";
+    list.push_back({fmt::format("{} peak", memory.name), fmt::format("{:.1f}", memory.used * 1e-3),
+                    "kB",
+                    fmt::format("{:.1f} % of {:.0f} KiB{}", memory.percent(), memory.size / 1024,
+                                owner.empty() ? "" : ", in " + owner),
+                    memory.used / memory.size});
+  }
+}
+
+void add_energy(std::vector<KeyFigure>& list, const RunRecord& run) {
+  const auto energy = run.value("energy.frame");
+  const auto low = run.value("energy.frame.low");
+  const auto high = run.value("energy.frame.high");
+  if (!energy || !low || !high) return;
+  KeyFigure figure{"Energy per frame", fmt::format("{:.3f}", *energy), "mJ",
+                   fmt::format("between {:.2f} and {:.2f} mJ", *low, *high)};
+  if (const auto power = run.value("energy.mean_power"))
+    figure.note += fmt::format("; {:.1f} mW on average, idle time included", *power);
+  list.push_back(std::move(figure));
+}
+
+}  // namespace
+
+double deadline_ns(const RunRecord& run) {
+  const double rate = run.value("camera.rate").value_or(0);
+  return rate > 0 ? 1e9 / rate : run.value("run.frame_period").value_or(0);
+}
+
+Verdict verdict_of(const RunRecord& run, const std::optional<WorstFrame>& worst) {
+  const auto longest = run.value("frame.latency.worst");
+  if (!longest)
+    return {{}, "No verdict: without a chip there are no times; this run was native.", ""};
+  const double frames = static_cast<double>(run.facts.frames);
+  const double missed = std::round(run.value("frame.missed_share").value_or(0) * frames);
+  Verdict verdict;
+  verdict.fits = missed == 0;
+  std::string memory;
+  for (const MemoryUse& use : memories(run)) {
+    if (!use.fits()) verdict.fits = false;
+    memory += fmt::format("{} {}", memory.empty() ? "." : " and", use.text());
+  }
+  if (!memory.empty()) memory = ". At most" + memory.substr(1) + " are occupied";
+  verdict.sentence = fmt::format("{}: {}{}.", *verdict.fits ? "Fits" : "Does not fit",
+                                 deadline_text(run, missed, *longest), memory);
+  if (worst && !worst->stage.empty())
+    verdict.why =
+        fmt::format("The slowest frame, number {}, spends {} of its {} in {}.", worst->frame,
+                    ms(worst->stage_ns), ms(worst->latency_ns), worst->stage);
+  return verdict;
+}
+
+std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol) {
+  std::vector<KeyFigure> list;
+  add_time(list, run);
+  add_speedup(list, run);
+  add_memory(list, run);
+  add_energy(list, run);
+  const auto error = run.value("accuracy.ate.rmse");
+  if (error && !protocol.empty())
+    list.push_back({"Position error (ATE)", fmt::format("{:.3f}", *error), "m RMSE", protocol, {}});
+  return list;
+}
+
+}  // namespace leviosim::tools

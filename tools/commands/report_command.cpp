@@ -1,0 +1,52 @@
+#include "tools/commands/report_command.h"
+
+#include <memory>
+
+#include "tools/app/comparison/comparability.h"
+#include "tools/app/html_report/report_file.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct ReportOptions {
+  std::vector<std::string> runs;
+  std::string out;
+  std::string allow;
+  bool force = false;
+};
+
+void run(const CLI::App& command, const ReportOptions& options) {
+  require(command, "RUN", "one or more run folders");
+  require(command, "--out", "the page to write, such as report.html");
+  const Allowed allowed = parse_allowed(options.allow);
+  std::optional<base::OutputFile> page = claimed_report(
+      options.out, options.force, {options.runs.begin(), options.runs.end()}, "--out");
+  std::vector<ReportedRun> runs;
+  for (const std::string& name : options.runs) {
+    RunFiles files = read_run_files(name);
+    runs.push_back({record_of_files(name, files), std::move(files)});
+  }
+  std::vector<RunComparison> comparisons;
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    comparisons.push_back(
+        compare_runs(runs.front().record, runs[i].record,
+                     check_comparable(runs.front().record, runs[i].record, allowed)));
+  publish_report(page, runs_report(runs, comparisons, nullptr));
+}
+
+}  // namespace
+
+Command add_report_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("report", "Runs as one page for a browser, which works offline");
+  const auto options = std::make_shared<ReportOptions>();
+  command->add_option("RUN", options->runs, "run folders; each is compared with the first");
+  command->add_option("-o,--out", options->out, "page to write")->type_name("FILE.html");
+  command->add_option("--allow", options->allow, "differences of the input that are meant")
+      ->type_name("data,frames,profile,seed,size");
+  command->add_flag("--force", options->force, "replace that file");
+  add_examples(*command, {"leviosim report recorded --out report.html"});
+  return {command, [=] { run(*command, *options); }};
+}
+
+}  // namespace leviosim::tools
