@@ -38,6 +38,7 @@ TEST_F(ReplayCommand, LeavesTheFolderOfTheRun) {
   auto before = traces::testing::contents(folder_ / "run");
   auto after = traces::testing::contents(folder_ / "again");
   EXPECT_EQ(before.erase("work.trace"), 1u);
+  EXPECT_EQ(before.erase("errors.csv"), 1u) << "a work trace holds no truth";
   EXPECT_EQ(after.erase("replay.csv"), 1u);
   EXPECT_NE(before["manifest.json"], after["manifest.json"]);
   EXPECT_NE(after["manifest.json"].find("trace_sha256"), std::string::npos);

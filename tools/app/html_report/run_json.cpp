@@ -163,7 +163,7 @@ Json run_json(const RunRecord& record, const RunFiles& files) {
   json["facts"] = facts_of(record, manifest);
   json["tables"] = tables_of(record, files);
   json["stages"] = stages_of(record, json["tables"]["stages"]);
-  const Verdict verdict =
+  const FitVerdict verdict =
       verdict_of(record, worst_frame(record, json["tables"]["frames"], json["stages"]));
   json["verdict"] = {{"fits", verdict.fits ? Json(*verdict.fits) : Json(nullptr)},
                      {"sentence", verdict.sentence},

@@ -114,13 +114,13 @@ double deadline_ns(const RunRecord& run) {
   return rate > 0 ? 1e9 / rate : run.value("run.frame_period").value_or(0);
 }
 
-Verdict verdict_of(const RunRecord& run, const std::optional<WorstFrame>& worst) {
+FitVerdict verdict_of(const RunRecord& run, const std::optional<WorstFrame>& worst) {
   const auto longest = run.value("frame.latency.worst");
   if (!longest)
     return {{}, "No verdict: without a chip there are no times; this run was native.", ""};
   const double frames = static_cast<double>(run.facts.frames);
   const double missed = std::round(run.value("frame.missed_share").value_or(0) * frames);
-  Verdict verdict;
+  FitVerdict verdict;
   verdict.fits = missed == 0;
   std::string memory;
   for (const MemoryUse& use : memories(run)) {

@@ -18,13 +18,13 @@ struct WorstFrame {
   double stage_ns = 0;
 };
 
-struct Verdict {
+struct FitVerdict {
   std::optional<bool> fits;  ///< absent for native runs, which have no times
   std::string sentence;
   std::string why;  ///< where the worst frame spends its time; may be empty
 };
 
-Verdict verdict_of(const RunRecord& run, const std::optional<WorstFrame>& worst);
+FitVerdict verdict_of(const RunRecord& run, const std::optional<WorstFrame>& worst);
 
 /// A figure of the first screen, as text.
 struct KeyFigure {
