@@ -189,7 +189,8 @@ class InBrowser : public Report {
     return {parse_json("what the page told", told), base::read_text_file(path("log.txt"))};
   }
 
-  static void expect_fine(const std::string& page) {
+  /// @param verdicts  on the page, or tables of them
+  static void expect_fine(const std::string& page, int verdicts = 1) {
     for (const int width : {1280, 390})
       for (const bool dark : {false, true}) {
         const Seen seen = open(page, width, dark);
@@ -201,7 +202,7 @@ class InBrowser : public Report {
         EXPECT_GT(seen.page["canvases"], 0);
         EXPECT_EQ(seen.page["drawn"], seen.page["canvases"]);
         EXPECT_EQ(seen.page["tables"], seen.page["canvases"]);
-        EXPECT_EQ(seen.page["verdict"], 1);
+        EXPECT_EQ(seen.page["verdict"], verdicts);
         EXPECT_EQ(seen.page["evil"], false);
         EXPECT_EQ(seen.page["ink"], dark ? "#e4e9ef" : "#1b2430");
       }
@@ -213,6 +214,32 @@ TEST_F(InBrowser, APageOfARunIsDrawnWithoutErrorsRequestsOrOverflow) { expect_fi
 TEST_F(InBrowser, APageOfSeveralRunsIsToo) {
   expect_done({"report", path("a"), path(kEvilRun), "-o", path("both.html")});
   expect_fine("both.html");
+}
+
+TEST_F(InBrowser, APageOfABudgetThatIsNotMetIsToo) {
+  std::ofstream(path("strict.yaml"))
+      << "budgets:\n  - name: strict\n    limits:\n      - L1 peak <= 1 kB\n";
+  const ProgramResult check = program(
+      {"check", path("a"), "--budget", path("strict.yaml"), "--report", path("strict.html")});
+  ASSERT_EQ(check.status, 1) << check.err;
+  expect_fine("strict.html", 2);
+}
+
+TEST_F(InBrowser, APageOfATuningIsToo) {
+  const ProgramResult tuned =
+      program({"tune", "--data", path("flight"), "--clock", "200,370", "--fps", "10,20", "--seed",
+               "1", "--quiet", "--cache", path("cache"), "--report", path("tune.html")});
+  ASSERT_LE(tuned.status, 1) << tuned.err;  // 1: no clock meets the limits
+  expect_fine("tune.html", 0);
+}
+
+TEST_F(InBrowser, APageOfASweepIsToo) {
+  std::ofstream(path("plan.yaml")) << "base: { trace: a/work.trace }\npoints:\n  - grid:\n      "
+                                      "platform.cluster.clock: [200MHz, "
+                                      "370MHz]\n      platform.cluster.fpu.units: [1, 4]\n";
+  expect_done({"sweep", path("plan.yaml"), "--out", path("sweep"), "--quiet", "--cache",
+               path("cache"), "--report", path("sweep.html")});
+  expect_fine("sweep.html", 0);
 }
 
 }  // namespace
