@@ -77,13 +77,13 @@ class Pipeline {
                                          .memory = "L1",
                                          .alignment = profile_.l1_alignment,
                                          .record = record,
-                                         .kernels = false,
+                                         .offload = false,
                                          .code = code});
     controller_.emplace(work::MachineConfig{.cores = 1,
                                             .memory = "L2",
                                             .capacity = Bytes(1'600'000),
                                             .record = record,
-                                            .kernels = false,
+                                            .offload = false,
                                             .code = code});
     odometry_ = vio::make_odometry(record, profile_, rig, *cluster_, *controller_);
   }
