@@ -87,7 +87,7 @@ work::CodeMap code_map_from(const std::string& file, std::string_view text) {
 
 work::CodeMap code_map_named(std::string_view name) {
   std::vector<std::string> names;
-  for (const BuiltinFile& file : builtin_code()) {
+  for (const base::BuiltinFile& file : builtin_code()) {
     if (file.name == name) return code_map_from(fmt::format("{}.csv", name), file.text);
     names.emplace_back(file.name);
   }

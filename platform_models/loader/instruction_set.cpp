@@ -21,7 +21,7 @@ bool ends_with(std::string_view text, std::string_view end) {
 struct Shelf {
   std::string_view what;
   std::string_view folder;  ///< of the built-in ones, for messages
-  std::span<const BuiltinFile> builtin;
+  std::span<const base::BuiltinFile> builtin;
 };
 
 TextFile find_file(const Shelf& shelf, const std::string& name, const std::string& from,
@@ -33,7 +33,7 @@ TextFile find_file(const Shelf& shelf, const std::string& name, const std::strin
     return {path, base::read_file(path, base::InputKind::platform)};
   }
   std::vector<std::string> names;
-  for (const BuiltinFile& file : shelf.builtin) {
+  for (const base::BuiltinFile& file : shelf.builtin) {
     if (file.name == name)
       return {fmt::format("{}{}.yaml", shelf.folder, file.name), std::string(file.text)};
     names.emplace_back(file.name);

@@ -9,7 +9,7 @@ namespace leviosim::platform {
 
 std::vector<std::string> platform_names() {
   std::vector<std::string> names;
-  for (const BuiltinFile& platform : builtin_platforms()) names.emplace_back(platform.name);
+  for (const base::BuiltinFile& platform : builtin_platforms()) names.emplace_back(platform.name);
   std::sort(names.begin(), names.end());  // files are sorted with their extension
   return names;
 }

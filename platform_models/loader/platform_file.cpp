@@ -45,7 +45,7 @@ std::vector<std::pair<std::string, std::string>> cited_only(
 PlatformFile PlatformFile::named(const std::string& name_or_path) {
   if (is_path(name_or_path))
     return {name_or_path, base::read_file(name_or_path, base::InputKind::platform)};
-  for (const BuiltinFile& platform : builtin_platforms())
+  for (const base::BuiltinFile& platform : builtin_platforms())
     if (platform.name == name_or_path)
       return {fmt::format("{}.yaml", platform.name), std::string(platform.text)};
   unknown_platform(name_or_path);

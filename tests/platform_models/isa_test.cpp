@@ -18,7 +18,7 @@ double cycles(const sim::CoreConfig& core, Op op) { return core[op].issue + core
 
 TEST(Isa, EveryBuiltInSetCompletesAPlatform) {
   std::vector<std::string> names;
-  for (const BuiltinFile& file : builtin_instruction_sets()) names.emplace_back(file.name);
+  for (const base::BuiltinFile& file : builtin_instruction_sets()) names.emplace_back(file.name);
   EXPECT_EQ(names, (std::vector<std::string>{"armv6_vfp", "rv32imc_xpulp", "rv32imfc",
                                              "rv32imfc_xpulp", "thumb2_fp", "thumb2_m7"}));
   for (const std::string& name : names) {
@@ -36,7 +36,7 @@ TEST(Isa, EveryBuiltInSetCompletesAPlatform) {
 
 TEST(Isa, EverySourceOfAFileIsUsedInIt) {
   for (const auto& files : {builtin_platforms(), builtin_instruction_sets()})
-    for (const BuiltinFile& file : files) {
+    for (const base::BuiltinFile& file : files) {
       const std::string text(file.text);
       if (text.find("\nsources:\n") == std::string::npos) continue;  // those of what it extends
       const std::size_t begin = text.find("\nsources:\n") + 10;
@@ -90,7 +90,7 @@ class IsaFiles : public ::testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_);
-    for (const BuiltinFile& file : builtin_instruction_sets())
+    for (const base::BuiltinFile& file : builtin_instruction_sets())
       if (file.name == "rv32imfc_xpulp") xpulp_ = std::string(file.text);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }

@@ -15,7 +15,7 @@
 namespace leviosim::platform {
 
 inline std::string gap9_text() {
-  for (const BuiltinFile& platform : builtin_platforms())
+  for (const base::BuiltinFile& platform : builtin_platforms())
     if (platform.name == "gap9") return std::string(platform.text);
   ADD_FAILURE() << "gap9 is not built in";
   return {};

@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/paths.h"
-#include "tests/support/run_program.h"
-#include "tests/support/suite_folder.h"
+#include "tests/support/program_suite.h"
 #include "tests/tools/junit_schema.h"
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/budget.h"
@@ -17,14 +16,12 @@ namespace fs = std::filesystem;
 using testing::expect_refused;
 using testing::junit_fault;
 using testing::ProgramResult;
-using testing::run_program;
-using tests::SuiteFolder;
 
 /// One second of flight, recorded once, with its baseline and a first budget.
-class Check : public ::testing::Test {
+class Check : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new SuiteFolder("check");
+    make_folder("check");
     traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
     ProgramResult result = program({"run", "--platform", "gap9", "--data", path("flight"), "--out",
                                     path("run"), "--record", "--quiet"});
@@ -36,14 +33,6 @@ class Check : public ::testing::Test {
     ASSERT_EQ(result.status, 0) << result.err;
     write("budgets.yaml", result.out);
   }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
-  static ProgramResult program(const std::vector<std::string>& words) {
-    return run_program(folder_->path(), words);
-  }
   static std::string write(const std::string& name, const std::string& text) {
     std::ofstream(*folder_ / name) << text;
     return path(name);
@@ -52,8 +41,6 @@ class Check : public ::testing::Test {
     for (const std::string& part : parts)
       EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in:\n" << text;
   }
-
-  inline static SuiteFolder* folder_ = nullptr;
 };
 
 TEST_F(Check, AFirstBudgetIsMetByItsRunAndItsTrace) {

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/support/run_program.h"
-#include "tests/support/suite_folder.h"
+#include "tests/support/program_suite.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/comparison/comparison_report.h"
@@ -19,28 +18,16 @@ namespace {
 namespace fs = std::filesystem;
 using testing::expect_refused;
 using testing::ProgramResult;
-using testing::run_program;
-using tests::SuiteFolder;
 using traces::testing::expect_input_error;
 
 /// One second of flight, recorded once for all tests.
-class Compare : public ::testing::Test {
+class Compare : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new SuiteFolder("compare");
+    make_folder("compare");
     traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
-    const ProgramResult result =
-        run_program(folder_->path(), {"run", "--platform", "gap9", "--data", path("flight"),
-                                      "--out", path("run"), "--record", "--quiet"});
-    ASSERT_EQ(result.status, 0) << result.err;
-  }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
-  static ProgramResult program(const std::vector<std::string>& words) {
-    return run_program(folder_->path(), words);
+    expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("run"),
+                 "--record", "--quiet"});
   }
   static RunRecord replayed(const std::vector<std::string>& overrides) {
     RecordOptions options;
@@ -61,8 +48,6 @@ class Compare : public ::testing::Test {
     std::ofstream(copy + '/' + file) << text;
     return copy;
   }
-
-  inline static SuiteFolder* folder_ = nullptr;
 };
 
 double difference(const ComparedQuantity& q) { return q.b.value_or(0) - q.a.value_or(0); }

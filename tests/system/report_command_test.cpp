@@ -7,8 +7,7 @@
 #include <cstdlib>
 
 #include "sim/base/csv.h"
-#include "tests/support/run_program.h"
-#include "tests/support/suite_folder.h"
+#include "tests/support/program_suite.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/csv_json.h"
 #include "traces/synthesis/synthetic.h"
@@ -20,38 +19,22 @@ namespace fs = std::filesystem;
 using base::read_text_file;
 using testing::expect_refused;
 using testing::ProgramResult;
-using testing::run_program;
-using tests::SuiteFolder;
 
 constexpr const char* kBrowser = "/usr/bin/chromium";
 /// A folder that may be called so.
 constexpr const char* kEvilRun = "b<script>document.title='evil'<";
 
 /// Two runs of a second of flight, on one chip and on another, for all tests.
-class Report : public ::testing::Test {
+class Report : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new SuiteFolder("report");
+    make_folder("report");
     traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
     expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("a"),
                  "--record", "--quiet", "--report", path("a.html")});
     expect_done({"run", "--platform", "gap9", "-p", "cluster.fpu.units=1", "--data", path("flight"),
                  "--out", path(kEvilRun), "--quiet"});
   }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
-  static ProgramResult program(const std::vector<std::string>& words) {
-    return run_program(folder_->path(), words);
-  }
-  static void expect_done(const std::vector<std::string>& words) {
-    const ProgramResult result = program(words);
-    ASSERT_EQ(result.status, 0) << result.err;
-  }
-
-  inline static SuiteFolder* folder_ = nullptr;
 };
 
 TEST_F(Report, OfAFolderIsThatOfTheRunItself) {

@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "platform_models/loader/variants.h"
-#include "tests/support/run_program.h"
-#include "tests/support/suite_folder.h"
+#include "tests/support/program_suite.h"
 #include "tests/tools/timeline_checks.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/run/simulate.h"
@@ -18,30 +17,20 @@ namespace fs = std::filesystem;
 using testing::expect_refused;
 using testing::expect_sums_of;
 using testing::ProgramResult;
-using testing::run_program;
 using tests::PerfettoEvent;
 using tests::PerfettoTrace;
-using tests::SuiteFolder;
 
 /// Two seconds of flight, recorded once with a timeline.
-class TimelineOfFlight : public ::testing::Test {
+class TimelineOfFlight : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new SuiteFolder("timeline");
+    make_folder("timeline");
     traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 2, .texel_m = 0.02});
     const ProgramResult result =
         program({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("run"),
                  "--record", "--quiet", "--timeline", path("run.pftrace")});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.out.find("timeline: "), std::string::npos) << result.out;
-  }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
-  static ProgramResult program(const std::vector<std::string>& words) {
-    return run_program(folder_->path(), words);
   }
   static std::string text(const std::string& name) { return base::read_text_file(*folder_ / name); }
   static RunRequest request(const std::string& platform,
@@ -63,8 +52,6 @@ class TimelineOfFlight : public ::testing::Test {
     expect_sums_of(trace, run);
     return trace;
   }
-
-  inline static SuiteFolder* folder_ = nullptr;
 };
 
 TEST_F(TimelineOfFlight, AddsUpToTheStageTable) {

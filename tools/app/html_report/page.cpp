@@ -10,8 +10,8 @@ namespace {
 
 std::string_view part(std::string_view name) {
   const auto parts = page_parts();
-  const auto it =
-      std::find_if(parts.begin(), parts.end(), [&](const PagePart& p) { return p.name == name; });
+  const auto it = std::find_if(parts.begin(), parts.end(),
+                               [&](const base::BuiltinFile& p) { return p.name == name; });
   check(it != parts.end(), "the page has all its parts");
   return it->text;
 }

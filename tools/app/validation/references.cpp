@@ -176,7 +176,7 @@ std::vector<Reference> parse_references(const std::string& file, std::string_vie
 }
 
 std::string_view reference_text(std::string_view name) {
-  for (const BuiltinReferences& file : builtin_references())
+  for (const base::BuiltinFile& file : builtin_references())
     if (file.name == name) return file.text;
   check_failed(fmt::format("no reference file {}", name), SourceLine::current());
 }

@@ -113,6 +113,26 @@ function drawAll() {
   for (const entry of charts) entry.draw();
 }
 
+/** Labels of axes get at most a good third of a narrow chart. */
+function shorten(text, width) {
+  const most = Math.max(12, Math.floor((width * 0.36) / 6));
+  return text.length > most ? `${text.slice(0, most - 1)}…` : text;
+}
+
+/** The vertical axis of stacked bars, each of which has a name. */
+function stackedRows() {
+  return {
+    stacked: true,
+    grid: {display: false},
+    ticks: {
+      autoSkip: false,
+      callback(value) {
+        return shorten(this.getLabelForValue(value), this.chart.width);
+      }
+    }
+  };
+}
+
 /** One button per name; several datasets may share one. */
 function legendFor(chart, datasets, hidden, redraw) {
   const names =

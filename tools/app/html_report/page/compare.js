@@ -70,16 +70,7 @@ function mechanismFigure(comparison) {
         interaction: {mode: 'index', axis: 'y', intersect: false},
         scales: {
           x: {stacked: true, title: {display: true, text: 'kilocycles, B − A'}},
-          y: {
-            stacked: true,
-            grid: {display: false},
-            ticks: {
-              autoSkip: false,
-              callback(value) {
-                return shorten(this.getLabelForValue(value), this.chart.width);
-              }
-            }
-          },
+          y: stackedRows(),
         },
         plugins: {
           tooltip: {

@@ -52,16 +52,7 @@ function domainFigure(title, hint, unit, entries) {
             title: {display: true, text: unit},
             suggestedMax: 1.03 * Math.max(...entries.map(([, parts]) => parts.total.high))
           },
-          y: {
-            stacked: true,
-            grid: {display: false},
-            ticks: {
-              autoSkip: false,
-              callback(value) {
-                return shorten(this.getLabelForValue(value), this.chart.width);
-              }
-            }
-          },
+          y: stackedRows(),
         },
         plugins: {
           whiskers: {

@@ -56,16 +56,7 @@ function memoryFigure(title, hint, peaks, size) {
             ticks: {includeBounds: false},
             title: {display: true, text: 'kB'}
           },
-          y: {
-            stacked: true,
-            grid: {display: false},
-            ticks: {
-              autoSkip: false,
-              callback(value) {
-                return shorten(this.getLabelForValue(value), this.chart.width);
-              }
-            }
-          },
+          y: stackedRows(),
         },
         plugins: {
           barNames: {show: true},

@@ -100,16 +100,7 @@ function breakdownFigure(run, rows) {
             max: shares ? 100 : undefined,
             title: {display: true, text: shares ? '%' : 'kilocycles'}
           },
-          y: {
-            stacked: true,
-            grid: {display: false},
-            ticks: {
-              autoSkip: false,
-              callback(value) {
-                return shorten(this.getLabelForValue(value), this.chart.width);
-              }
-            }
-          },
+          y: stackedRows(),
         },
         plugins: {
           tooltip: {
@@ -135,12 +126,6 @@ function breakdownFigure(run, rows) {
     }),
   });
   return figure;
-}
-
-/** Labels of axes get at most a good third of a narrow chart. */
-function shorten(text, width) {
-  const most = Math.max(12, Math.floor((width * 0.36) / 6));
-  return text.length > most ? `${text.slice(0, most - 1)}…` : text;
 }
 
 function processedFrames(run) {
