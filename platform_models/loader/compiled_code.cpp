@@ -12,22 +12,13 @@
 
 #include "platform_models/loader/builtin.h"
 #include "sim/base/error.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 namespace {
 
 constexpr double kLineBytes = 16;
 constexpr std::string_view kHeader = "function,after,lines,visits,refetches";
-
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = line.find(',', begin);
-    cells.push_back(line.substr(begin, end - begin));
-    if (end == std::string_view::npos) return cells;
-    begin = end + 1;
-  }
-}
 
 /// Lines of code as bytes.
 std::uint32_t bytes_in(std::string_view cell, const std::string& where) {
@@ -40,16 +31,16 @@ std::uint32_t bytes_in(std::string_view cell, const std::string& where) {
   return static_cast<std::uint32_t>(std::lround(lines * kLineBytes));
 }
 
-class Reader {
+class CodeSizeReader {
  public:
-  explicit Reader(std::string file) : file_(std::move(file)) {}
+  explicit CodeSizeReader(std::string file) : file_(std::move(file)) {}
 
   void read(std::string_view line) {
     ++line_;
     if (line.empty() || line.front() == '#') return;
     const std::string where = fmt::format("{}:{}", file_, line_);
     if (header_)
-      add(split(line), where);
+      add(base::split(line, ','), where);
     else if (line != kHeader)
       throw InputError(fmt::format("{}: expected the header {}", where, kHeader));
     header_ = true;
@@ -57,7 +48,7 @@ class Reader {
   work::CodeMap take() { return std::move(map_); }
 
  private:
-  void add(const std::vector<std::string_view>& cells, const std::string& where) {
+  void add(const std::vector<std::string>& cells, const std::string& where) {
     if (cells.size() != 5 || cells[0].empty())
       throw InputError(fmt::format("{}: expected a row of {}", where, kHeader));
     if (!seen_.insert({cells[0], cells[1]}).second)
@@ -68,7 +59,7 @@ class Reader {
 
   std::string file_;
   work::CodeMap map_;
-  std::set<std::pair<std::string_view, std::string_view>> seen_;
+  std::set<std::pair<std::string, std::string>> seen_;
   bool header_ = false;
   int line_ = 0;
 };
@@ -76,7 +67,7 @@ class Reader {
 }  // namespace
 
 work::CodeMap code_map_from(const std::string& file, std::string_view text) {
-  Reader reader(file);
+  CodeSizeReader reader(file);
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     reader.read(text.substr(begin, end - begin));

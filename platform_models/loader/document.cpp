@@ -22,9 +22,9 @@ struct Provenance {
   std::string note;
 };
 
-class Reader {
+class DocumentReader {
  public:
-  Reader(const Schema& schema, const std::string& file) : schema_(schema), file_(file) {
+  DocumentReader(const Schema& schema, const std::string& file) : schema_(schema), file_(file) {
     document_.settings.resize(schema.fields().size());
   }
 
@@ -80,8 +80,9 @@ const YamlEntry* find(const std::vector<YamlEntry>& entries, const std::string& 
   return nullptr;
 }
 
-Document Reader::read_platform(const std::string& text, const std::optional<BaseOverride>& base,
-                               std::vector<std::string> users) {
+Document DocumentReader::read_platform(const std::string& text,
+                                       const std::optional<BaseOverride>& base,
+                                       std::vector<std::string> users) {
   users_ = std::move(users);
   const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "");
   read_header(root);
@@ -94,7 +95,8 @@ Document Reader::read_platform(const std::string& text, const std::optional<Base
   return finish();
 }
 
-Document Reader::read_instruction_set(const std::string& text, std::vector<std::string> users) {
+Document DocumentReader::read_instruction_set(const std::string& text,
+                                              std::vector<std::string> users) {
   users_ = std::move(users);
   const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "");
   read_header(root);
@@ -110,8 +112,8 @@ Document Reader::read_instruction_set(const std::string& text, std::vector<std::
 }
 
 /// Begins with the parameters of the instruction set that this file builds on, if it names one.
-void Reader::read_base(const std::vector<YamlEntry>& root,
-                       const std::optional<BaseOverride>& other) {
+void DocumentReader::read_base(const std::vector<YamlEntry>& root,
+                               const std::optional<BaseOverride>& other) {
   const YamlEntry* isa = find(root, kIsa);
   const std::vector<YamlEntry> entries =
       isa == nullptr ? std::vector<YamlEntry>{} : entries_of(isa->value, file_, isa->key);
@@ -124,16 +126,16 @@ void Reader::read_base(const std::vector<YamlEntry>& root,
   const std::string name = other ? other->base : scalar(key->value, named);
   const TextFile file = find_instruction_set(name, file_, named);
 
-  Document base =
-      Reader(schema_, file.name).read_instruction_set(file.text, users_of_base(file, name, named));
+  Document base = DocumentReader(schema_, file.name)
+                      .read_instruction_set(file.text, users_of_base(file, name, named));
   expect_same_sources(base, file, named);
   document_.settings = std::move(base.settings);
   sources_of_base_ = std::move(base.sources);
 }
 
 /// Begins with all of another platform. Its sources can be cited.
-void Reader::read_parent(const YamlEntry& extends, const std::vector<YamlEntry>& root,
-                         const std::optional<BaseOverride>& base) {
+void DocumentReader::read_parent(const YamlEntry& extends, const std::vector<YamlEntry>& root,
+                                 const std::optional<BaseOverride>& base) {
   const Place named = place(extends, kParentPath);
   if (const YamlEntry* isa = find(root, kIsa))
     for (const YamlEntry& entry : entries_of(isa->value, file_, isa->key))
@@ -142,15 +144,16 @@ void Reader::read_parent(const YamlEntry& extends, const std::vector<YamlEntry>&
             .fail("the platform that this one extends has named its instruction set");
   const std::string name = scalar(extends.value, named);
   const TextFile file = find_platform(name, file_, named);
-  Document parent =
-      Reader(schema_, file.name).read_platform(file.text, base, users_of_base(file, name, named));
+  Document parent = DocumentReader(schema_, file.name)
+                        .read_platform(file.text, base, users_of_base(file, name, named));
   expect_same_sources(parent, file, named);
   document_.settings = std::move(parent.settings);
   document_.sources.merge(parent.sources);
 }
 
-std::vector<std::string> Reader::users_of_base(const TextFile& file, const std::string& name,
-                                               const Place& named) const {
+std::vector<std::string> DocumentReader::users_of_base(const TextFile& file,
+                                                       const std::string& name,
+                                                       const Place& named) const {
   std::vector<std::string> users = users_;
   users.push_back(file_);
   if (std::find(users.begin(), users.end(), file.name) != users.end())
@@ -158,8 +161,8 @@ std::vector<std::string> Reader::users_of_base(const TextFile& file, const std::
   return users;
 }
 
-void Reader::expect_same_sources(const Document& base, const TextFile& file,
-                                 const Place& named) const {
+void DocumentReader::expect_same_sources(const Document& base, const TextFile& file,
+                                         const Place& named) const {
   for (const auto& [source, meaning] : base.sources) {
     const auto own = document_.sources.find(source);
     if (own != document_.sources.end() && own->second != meaning)
@@ -168,12 +171,12 @@ void Reader::expect_same_sources(const Document& base, const TextFile& file,
 }
 
 /// What was read, with the sources of the base. (Rows of a file cite its own.)
-Document Reader::finish() {
+Document DocumentReader::finish() {
   document_.sources.merge(sources_of_base_);
   return std::move(document_);
 }
 
-void Reader::read_header(const std::vector<YamlEntry>& root) {
+void DocumentReader::read_header(const std::vector<YamlEntry>& root) {
   const auto text = [&](const std::string& key, std::string_view example) {
     const YamlEntry* entry = find(root, key);
     if (entry == nullptr)
@@ -191,13 +194,13 @@ void Reader::read_header(const std::vector<YamlEntry>& root) {
     place_of(file_, 1, "sources").fail("missing key; expected a map of sources");
 }
 
-void Reader::read_sources(const YamlEntry& entry) {
+void DocumentReader::read_sources(const YamlEntry& entry) {
   for (const YamlEntry& source : entries_of(entry.value, file_, entry.key))
     document_.sources[source.key] =
         scalar(source.value, place(source, joined(entry.key, source.key)));
 }
 
-void Reader::read_section(const std::vector<YamlEntry>& entries, const std::string& path) {
+void DocumentReader::read_section(const std::vector<YamlEntry>& entries, const std::string& path) {
   for (const YamlEntry& entry : entries) {
     const std::string inner = joined(path, entry.key);
     if (is_header(inner) || inner == kBasePath) continue;
@@ -212,7 +215,7 @@ void Reader::read_section(const std::vector<YamlEntry>& entries, const std::stri
   }
 }
 
-void Reader::read_record(const YamlEntry& entry, const std::string& path) {
+void DocumentReader::read_record(const YamlEntry& entry, const std::string& path) {
   const Place record = place(entry, path);
   const std::vector<std::size_t> indices = schema_.record(path);
   if (!entry.value.is_mapping())
@@ -238,7 +241,8 @@ void Reader::read_record(const YamlEntry& entry, const std::string& path) {
 }
 
 /// Every key of a record must be a column, the range of one, or one of the general keys.
-void Reader::check_keys(const std::vector<YamlEntry>& entries, const std::string& path) const {
+void DocumentReader::check_keys(const std::vector<YamlEntry>& entries,
+                                const std::string& path) const {
   std::vector<std::string> known;
   bool has_unit = false;
   for (const std::size_t index : schema_.record(path)) {
@@ -259,8 +263,8 @@ void Reader::check_keys(const std::vector<YamlEntry>& entries, const std::string
   }
 }
 
-Provenance Reader::read_provenance(const std::vector<YamlEntry>& entries, const std::string& path,
-                                   const Place& record) const {
+Provenance DocumentReader::read_provenance(const std::vector<YamlEntry>& entries,
+                                           const std::string& path, const Place& record) const {
   static constexpr std::array<std::string_view, 5> kWords = {"high", "medium", "low", "assumed",
                                                              "calibrated"};
   const auto text = [&](const std::string& key, bool required) -> std::string {
@@ -293,7 +297,7 @@ Provenance Reader::read_provenance(const std::vector<YamlEntry>& entries, const 
 
 /// "SDK-1, RTL-2 (FACTS.md#floating-point-units)": what stands before the parenthesis must be
 /// listed.
-void Reader::check_source(const std::string& source, const Place& place) const {
+void DocumentReader::check_source(const std::string& source, const Place& place) const {
   std::string_view keys = std::string_view(source).substr(0, source.find('('));
   for (;;) {
     const std::size_t comma = keys.find(',');
@@ -309,8 +313,8 @@ void Reader::check_source(const std::string& source, const Place& place) const {
   }
 }
 
-void Reader::read_field(std::size_t index, const std::vector<YamlEntry>& entries,
-                        const Provenance& provenance, int line) {
+void DocumentReader::read_field(std::size_t index, const std::vector<YamlEntry>& entries,
+                                const Provenance& provenance, int line) {
   const Field& field = schema_.fields()[index];
   const YamlEntry& entry = *find(entries, field.name);
   const std::string path = joined(field.record, field.name);
@@ -327,8 +331,8 @@ void Reader::read_field(std::size_t index, const std::vector<YamlEntry>& entries
   document_.settings[index] = std::move(setting);
 }
 
-Range Reader::read_range_of(const Field& field, const YamlEntry& entry,
-                            const Setting& value) const {
+Range DocumentReader::read_range_of(const Field& field, const YamlEntry& entry,
+                                    const Setting& value) const {
   const Place at = place(entry, joined(field.record, entry.key));
   const YamlNode& list = entry.value;
   if (!list.is_sequence() || list.size() != 2)
@@ -337,7 +341,7 @@ Range Reader::read_range_of(const Field& field, const YamlEntry& entry,
 }
 
 /// Every required parameter must have been given.
-void Reader::check_complete() const {
+void DocumentReader::check_complete() const {
   for (std::size_t i = 0; i < schema_.fields().size(); ++i) {
     const Field& field = schema_.fields()[i];
     if (!field.required || document_.settings[i]) continue;
@@ -356,7 +360,7 @@ void Reader::check_complete() const {
 
 Document read_document(const Schema& schema, const std::string& file, const std::string& text,
                        const std::optional<BaseOverride>& base) {
-  return Reader(schema, file).read_platform(text, base);
+  return DocumentReader(schema, file).read_platform(text, base);
 }
 
 }  // namespace leviosim::platform

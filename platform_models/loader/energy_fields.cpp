@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "platform_models/loader/member_values.h"
+
 namespace leviosim::platform {
 namespace {
 
@@ -13,21 +15,6 @@ constexpr double kMaxEvent = 1e-6;   // joules
 constexpr double kMaxPower = 10;     // watts
 constexpr double kMinVoltage = 0.1;  // volts
 constexpr double kMaxVoltage = 10;
-constexpr double kMinClock = 1e3;  // hertz
-constexpr double kMaxClock = 1e11;
-
-void put(double& target, double value) { target = value; }
-template <class Tag>
-void put(Quantity<Tag, double>& target, double value) {
-  target = Quantity<Tag, double>(value);
-}
-void put(Hertz& target, double value) { target = Hertz(static_cast<std::int64_t>(value)); }
-
-double as_number(double value) { return value; }
-template <class Tag, class Rep>
-double as_number(Quantity<Tag, Rep> value) {
-  return static_cast<double>(value.count());
-}
 
 Field row(const char* path, const Dimension& dimension, double min, double max,
           const char* description) {

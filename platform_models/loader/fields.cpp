@@ -6,6 +6,7 @@
 
 #include "platform_models/loader/accelerator_fields.h"
 #include "platform_models/loader/energy_fields.h"
+#include "platform_models/loader/member_values.h"
 
 namespace leviosim::platform {
 namespace {
@@ -17,26 +18,6 @@ constexpr double kMaxCost = 1e5;     // cycles of an operation or a latency
 constexpr double kMaxParts = 1024;   // cores, banks, units
 constexpr double kLeastTime = 1e-3;  // of what something is divided by
 constexpr double kMaxSize = 1e12;    // bytes
-constexpr double kMinClock = 1e3;    // hertz
-constexpr double kMaxClock = 1e11;
-
-// Between the representation that all fields have in common (Field::set) and a member of the chip.
-void put(double& target, double value) { target = value; }
-void put(int& target, double value) { target = static_cast<int>(value); }
-void put(Bytes& target, double value) { target = Bytes(static_cast<std::int64_t>(value)); }
-void put(Hertz& target, double value) { target = Hertz(static_cast<std::int64_t>(value)); }
-void put(bool& target, double value) { target = value != 0; }
-void put(sim::Unit& target, double value) { target = static_cast<sim::Unit>(value); }
-void put(sim::FpuMapping& target, double value) { target = static_cast<sim::FpuMapping>(value); }
-
-template <class T>
-double as_number(const T& value) {
-  return static_cast<double>(value);
-}
-template <class Tag>
-double as_number(Quantity<Tag, std::int64_t> value) {
-  return static_cast<double>(value.count());
-}
 
 Field quantity(std::string path, const Dimension& dimension, double min, double max,
                std::string description) {

@@ -10,6 +10,7 @@
 #include "platform_models/loader/schema.h"
 #include "platform_models/loader/variants.h"
 #include "sim/base/check.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 namespace {
@@ -109,22 +110,11 @@ std::string line_of(const Record& record) {
                      note.empty() ? "" : ", note: " + in_quotes(note));
 }
 
-std::vector<std::string> split(const std::string& path) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
-    parts.push_back(path.substr(begin, dot - begin));
-    begin = dot + 1;
-  }
-  parts.push_back(path.substr(begin));
-  return parts;
-}
-
 /// Writes nested sections: each line opens those that the record before was not in.
 class SectionWriter {
  public:
   void add(const Record& record) {
-    const std::vector<std::string> parts = split(record.path);
+    const std::vector<std::string> parts = base::split(record.path, '.');
     const std::size_t depth = parts.size() - 1;
     std::size_t same = 0;
     while (same < depth && same < open_.size() && open_[same] == parts[same]) ++same;

@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 
 #include "tests/tools/constant_source.h"
 #include "tests/tools/timeline_checks.h"
+#include "tests/tools/well_formed.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/timeline/core_waits.h"
 #include "tools/app/timeline/protobuf_writer.h"
 #include "tools/app/timeline/short_steps.h"
 #include "tools/app/timeline/timeline_collector.h"
+#include "tools/app/timeline/timeline_picture.h"
 
 namespace leviosim::tools {
 namespace {
@@ -270,6 +274,47 @@ TEST(Timeline, OccupationOfL1IsThePeakOfTheStage) {
   ASSERT_EQ(l1.size(), 12u);
   EXPECT_EQ(l1[0].value, 777);
   EXPECT_EQ(l1[1].value, 0);
+}
+
+/// What the strips show of a colour: the sum of the areas of their rectangles [px²].
+double area_of(const std::string& svg, const std::string& colour) {
+  double sum = 0;
+  const std::string path = "<path fill=\"" + colour + "\" d=\"";
+  const std::regex sides(R"re(h([0-9.]+)v([0-9.]+)h-)re");
+  for (std::size_t at = svg.find(path); at != std::string::npos; at = svg.find(path, at + 1)) {
+    const std::string d = svg.substr(at, svg.find("/>", at) - at);
+    for (std::sregex_iterator i(d.begin(), d.end(), sides), end; i != end; ++i)
+      sum += std::stod((*i)[1]) * std::stod((*i)[2]);
+  }
+  return sum;
+}
+
+TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
+  MixedSource source({.frames = 1, .iteration = 5'000}, 8, 3);
+  RunRequest request = testing::request_at(Hertz(370'000'000), std::nullopt);
+  request.cores = 8;
+  TimelineCollector collector(request.platform.config, 8);
+  request.observer = &collector;
+  const RunResult run = simulate_source(request, source, [](const Progress&) {});
+  const std::string svg = timeline_picture(collector.events(), run);
+  EXPECT_EQ(testing::xml_fault(svg), "");
+  EXPECT_EQ(svg, timeline_picture(collector.events(), run));
+
+  double work = 0, divider = 0;
+  for (const StageEvents& stage : collector.events().frames.at(0).stages)
+    for (const StepEvents& step : stage.steps)
+      for (const CoreEvents& core : step.cores) {
+        work += own_work(core.split);
+        divider += core.split.divider;
+      }
+  ASSERT_GT(divider, 0);
+  // A period of the camera, and 1 % more, is 880 px wide; a row is 19 px high.
+  const double cycles_of_period = static_cast<double>(run.frame_period_ns) * 0.370;
+  const double area_of_cycle = 880 * 19 / (1.01 * cycles_of_period);
+  const double tolerance = 0.02 * work * area_of_cycle;
+  EXPECT_NEAR(area_of(svg, "#2a7f62"), work * area_of_cycle, tolerance);
+  EXPECT_NEAR(area_of(svg, "#be202e"), divider * area_of_cycle, tolerance);
+  EXPECT_GT(area_of(svg, "#be202e"), 0);
 }
 
 TEST(Timeline, ARangeTakesItsFramesOnly) {

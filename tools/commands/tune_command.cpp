@@ -106,7 +106,7 @@ void run(const CLI::App& command, const GatedTuneWords& words, const Words& comm
   if (again) text += "run again by itself, it gave the same figures: confirmed\n";
   const Printout shown = printout(
       words.run.json, [&] { return text; },
-      [&] { return table_document("tuning", tune_csv(plan, points)); });
+      [&] { return table_document("tuning", tune_csv(plan, points), choice_json(plan, all)); });
   if (plan.out)
     publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });
   else

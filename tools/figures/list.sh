@@ -198,3 +198,42 @@ budgets:
 YAML'
 shows 'leviosim check recorded -p isa.ops.f32_fma.issue=1.8 --budget budgets.yaml \
       --baseline baseline.json || echo "exit status $?"'
+
+# tools/STORIES.md
+figure story-divider
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim compare recorded -p cluster.fpu.dividers=2 --report divider.html'
+cut 'sed -n "/^why/,/^\$/p; /^energy of a frame by stage/,/^\$/p"'
+
+figure story-clock
+needs data slow
+shows 'leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130:370:60 --fps 20 --ate 0.15 --out clock'
+cut 'sed -n "/^frames\/s/,/^\$/p; /^the lowest of these/,/^the lowest of all/p" | narrow 120'
+
+figure story-gate
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded
+leviosim budget record recorded >baseline.json
+cat >epnp.yaml <<YAML
+budgets:
+  - name: EPnP
+    owner: firmware
+    limits:
+      - stage: "EPnP RANSAC"
+        limit: cycles <= +3 %
+YAML'
+shows 'leviosim check recorded -p isa.ops.f64_add.issue=140 --budget epnp.yaml --baseline baseline.json \
+      --junit junit.xml --annotations github || echo "exit status $?"'
+
+figure story-trajectory
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded
+leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
+shows 'leviosim eval recorded euroc/MH_01_easy_t05_t20 --also next --align posyaw'
+
+# README.md
+figure timeline
+needs data
+shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --frames 0:60 --out start --timeline frame.svg --timeline-frames 40:41'
+keeps frame.svg

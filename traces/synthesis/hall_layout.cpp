@@ -9,18 +9,18 @@
 namespace leviosim::traces {
 namespace {
 
-using Box = Eigen::AlignedBox3d;
+using Extent = Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using Group = std::vector<HallObject>;  // things that are placed together or not at all
 
-Box box_at(const Vector3d& min, const Vector3d& size) { return {min, Vector3d(min + size)}; }
+Extent box_at(const Vector3d& min, const Vector3d& size) { return {min, Vector3d(min + size)}; }
 
 /// The hall so far. Things are tried one after the other; what does not fit is left out.
 class Builder {
  public:
   Builder(std::span<const Vector3d> path, double clearance_m, std::uint64_t seed)
       : path_(path), clearance_m_(clearance_m), rng_(seed) {
-    Box around;
+    Extent around;
     for (const Vector3d& position : path) around.extend(position);
     const auto margin = [this](double low, double high) {
       return std::max(clearance_m_, rng_.uniform(low, high));
@@ -28,7 +28,7 @@ class Builder {
     // In braces the draws are made from left to right, whatever the compiler.
     const Vector3d below{margin(3, 4.5), margin(3, 4.5), margin(1, 1.3)};
     const Vector3d above{margin(3, 4.5), margin(3, 4.5), margin(2.5, 3.5)};
-    layout_.hall = Box(around.min() - below, around.max() + above);
+    layout_.hall = Extent(around.min() - below, around.max() + above);
   }
 
   HallLayout build() {
@@ -48,14 +48,14 @@ class Builder {
   const Vector3d& low() const { return layout_.hall.min(); }
   const Vector3d& high() const { return layout_.hall.max(); }
 
-  bool clear_of_path(const Box& box) const {
+  bool clear_of_path(const Extent& box) const {
     return std::all_of(path_.begin(), path_.end(), [&](const Vector3d& position) {
       return box.exteriorDistance(position) >= clearance_m_;
     });
   }
-  bool fits(const Box& box) const {
+  bool fits(const Extent& box) const {
     constexpr double kTouching = 1e-6;  // neighbours may touch
-    const Box core(box.min().array() + kTouching, box.max().array() - kTouching);
+    const Extent core(box.min().array() + kTouching, box.max().array() - kTouching);
     return layout_.hall.contains(core) && clear_of_path(box) &&
            std::none_of(layout_.objects.begin(), layout_.objects.end(),
                         [&](const HallObject& other) { return other.box.intersects(core); });
@@ -86,8 +86,8 @@ class Builder {
   void add_beams();
   void add_wall_pillars();
   void furnish_wall(int wall);
-  Box against_wall(int wall, double along, double width, double depth, double z, double height,
-                   double gap) const;
+  Extent against_wall(int wall, double along, double width, double depth, double z, double height,
+                      double gap) const;
 
   std::span<const Vector3d> path_;
   double clearance_m_;
@@ -167,8 +167,8 @@ Group Builder::duct() {
 }
 
 /// A box at wall 0 (-x), 1 (+x), 2 (-y) or 3 (+y), `along` from the wall's beginning.
-Box Builder::against_wall(int wall, double along, double width, double depth, double z,
-                          double height, double gap) const {
+Extent Builder::against_wall(int wall, double along, double width, double depth, double z,
+                             double height, double gap) const {
   const bool at_x = wall < 2;
   const bool at_max = wall % 2 == 1;
   const int normal = at_x ? 0 : 1;

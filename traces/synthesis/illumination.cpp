@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/angles.h"
 #include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586476925;
 constexpr double kSlowPeriodS = 37;
 constexpr double kFastPeriodS = 11;
 
@@ -16,7 +16,7 @@ constexpr double kFastPeriodS = 11;
 
 Illumination::Illumination(std::uint64_t seed) : seed_(seed) {
   Rng rng(seed);
-  for (double& phase : phases_) phase = rng.uniform(0, kTwoPi);
+  for (double& phase : phases_) phase = rng.uniform(0, base::kTwoPi);
 }
 
 double Illumination::darkness(double t_s) const {
@@ -29,8 +29,8 @@ double Illumination::darkness(double t_s) const {
 }
 
 double Illumination::gain(double t_s) const {
-  const double drift = 0.6 * std::sin(kTwoPi * t_s / kSlowPeriodS + phases_[0]) +
-                       0.4 * std::sin(kTwoPi * t_s / kFastPeriodS + phases_[1]);
+  const double drift = 0.6 * std::sin(base::kTwoPi * t_s / kSlowPeriodS + phases_[0]) +
+                       0.4 * std::sin(base::kTwoPi * t_s / kFastPeriodS + phases_[1]);
   return (1 + kDrift * drift) * (1 - (1 - kDarkGain) * darkness(t_s));
 }
 

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "sim/base/angles.h"
 #include "traces/synthesis/rng.h"
 
 namespace leviosim::traces {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586476925;
 
 struct SineRow {
   double amplitude, frequency_hz;
@@ -67,7 +66,8 @@ HandHeldFlight::HandHeldFlight(std::uint64_t seed) {
     channels_[i].offset = kChannels[i].offset;
     for (std::size_t j = 0; j < channels_[i].sines.size(); ++j) {
       const SineRow& row = kChannels[i].sines[j];
-      channels_[i].sines[j] = {row.amplitude, kTwoPi * row.frequency_hz, rng.uniform(0, kTwoPi)};
+      channels_[i].sines[j] = {row.amplitude, base::kTwoPi * row.frequency_hz,
+                               rng.uniform(0, base::kTwoPi)};
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "sim/base/angles.h"
 #include "sim/base/check.h"
 
 namespace leviosim::traces {
@@ -52,9 +53,8 @@ SmoothingSpline::SmoothingSpline(std::vector<double> times, Eigen::MatrixXd samp
   check(half_gain_hz > 0, "SmoothingSpline: half_gain_hz above 0");
   check_equal(times_.size(), static_cast<std::size_t>(values_.rows()), "SmoothingSpline: samples");
   const double period_s = (times_.back() - times_.front()) / static_cast<double>(times_.size() - 1);
-  constexpr double kTwoPi = 6.283185307179586476925;
   // The penalty weighs an integral against a sum, hence the sampling period.
-  fit(std::isinf(half_gain_hz) ? 0 : 1 / (period_s * std::pow(kTwoPi * half_gain_hz, 4)));
+  fit(std::isinf(half_gain_hz) ? 0 : 1 / (period_s * std::pow(base::kTwoPi * half_gain_hz, 4)));
 }
 
 void SmoothingSpline::fit(double alpha) {

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "sim/base/angles.h"
+
 namespace leviosim::traces {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.295779513082320876798;
 
 /// The rotation A with the least sum of |A estimate - truth|².
 Eigen::Matrix3d best_rotation(const std::vector<MatchedPose>& poses) {
@@ -23,12 +23,13 @@ Eigen::Matrix3d best_rotation(const std::vector<MatchedPose>& poses) {
 
 /// By how much a rotation moves the vertical.
 double tilt_deg(const Eigen::Matrix3d& rotation) {
-  return kDegreesPerRadian * std::atan2(std::hypot(rotation(0, 2), rotation(1, 2)), rotation(2, 2));
+  return base::kDegreesPerRadian *
+         std::atan2(std::hypot(rotation(0, 2), rotation(1, 2)), rotation(2, 2));
 }
 
 /// The angle about the vertical that explains most of a rotation.
 double heading_deg(const Eigen::Matrix3d& rotation) {
-  return kDegreesPerRadian *
+  return base::kDegreesPerRadian *
          std::atan2(rotation(1, 0) - rotation(0, 1), rotation(0, 0) + rotation(1, 1));
 }
 

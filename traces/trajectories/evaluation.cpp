@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/angles.h"
 #include "sim/base/error.h"
 
 namespace leviosim::traces {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.295779513082320876798;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
@@ -118,7 +117,7 @@ double rotation_error_deg(const MatchedPose& pose) {
 }
 
 double angle_deg(const Eigen::Matrix3d& rotation) {
-  return Eigen::AngleAxisd(rotation).angle() * kDegreesPerRadian;
+  return Eigen::AngleAxisd(rotation).angle() * base::kDegreesPerRadian;
 }
 
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,

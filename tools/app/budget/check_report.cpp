@@ -47,8 +47,10 @@ std::string place(const Finding& f) { return fmt::format("{}:{}", f.limit->file,
 }  // namespace
 
 std::string check_text(const CheckResult& result) {
-  std::string text = fmt::format("{} against {}: {} limits, {} not met\n", printable(result.run),
-                                 printable(result.budget), result.findings.size(), result.missed());
+  const std::size_t limits = result.findings.size();
+  const std::string count = fmt::format("{} limit{}", limits, limits == 1 ? "" : "s");
+  std::string text = fmt::format("{} against {}: {}, {} not met\n", printable(result.run),
+                                 printable(result.budget), count, result.missed());
   if (!result.baseline.empty()) text += fmt::format("baseline: {}\n", printable(result.baseline));
   TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)

@@ -34,21 +34,16 @@ constexpr std::array kFormats{
     NamedFormat{"text", ReportFormat::text}, NamedFormat{"markdown", ReportFormat::markdown},
     NamedFormat{"json", ReportFormat::json}, NamedFormat{"csv", ReportFormat::csv}};
 
-std::string number(std::optional<double> value, int decimals) {
-  if (!value) return "–";
-  return fmt::format("{:.{}f}", *value, decimals);
-}
-
 int decimals_of(const std::string& unit) { return unit == "m" || unit == "mJ" ? 3 : 1; }
 
 std::string percent(std::optional<double> value) {
-  if (!value) return "–";
+  if (!value) return kNothing;
   if (std::abs(*value) < 0.005) return *value == 0 ? "0" : "±0.00 %";
   return fmt::format("{:+.2f} %", *value);
 }
 
 std::string kilocycles(std::optional<double> cycles) {
-  return number(cycles ? std::optional(*cycles / kKilo) : std::nullopt, 1);
+  return figure_text(cycles ? std::optional(*cycles / kKilo) : std::nullopt, 1);
 }
 
 /// Without a sign where nothing would be left of it.
@@ -126,14 +121,14 @@ class Writer {
     title("the run as a whole");
     TextTable t({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
     for (const ComparedQuantity& q : c_.figures)
-      t.add({q.name, number(q.a, decimals_of(q.unit)), number(q.b, decimals_of(q.unit)), q.unit,
-             percent(q.percent())});
+      t.add({q.name, figure_text(q.a, decimals_of(q.unit)), figure_text(q.b, decimals_of(q.unit)),
+             q.unit, percent(q.percent())});
     table(t);
   }
 
   static std::string pair(const ComparedQuantity& q, int decimals) {
-    const std::string a = number(q.a, decimals);
-    const std::string b = number(q.b, decimals);
+    const std::string a = figure_text(q.a, decimals);
+    const std::string b = figure_text(q.b, decimals);
     return a == b ? a : a + " → " + b;
   }
 
@@ -146,7 +141,8 @@ class Writer {
     for (const StageComparison& s : c_.stages) {
       const std::string name = shortened(s.stage.name, 20);
       all.add({name, pair(s.calls, 0), kilocycles(s.parallel.a), kilocycles(s.parallel.b),
-               percent(s.parallel.percent()), number(s.share.a, 1), number(s.share.b, 1)});
+               percent(s.parallel.percent()), figure_text(s.share.a, 1),
+               figure_text(s.share.b, 1)});
       if (s.single.a == s.single.b) continue;
       any_single = true;
       one.add({name, kilocycles(s.single.a), kilocycles(s.single.b), percent(s.single.percent())});
@@ -262,7 +258,7 @@ class Writer {
     title(name);
     TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}, {"change"}});
     const auto row = [&](const ComparedQuantity& q) {
-      t.add({shortened(q.name, 24), number(q.a, 4), number(q.b, 4),
+      t.add({shortened(q.name, 24), figure_text(q.a, 4), figure_text(q.b, 4),
              q.difference() ? fmt::format("{:+.4f}", *q.difference()) : "–", percent(q.percent())});
     };
     for (const ComparedQuantity& part : whole.parts)
@@ -313,7 +309,8 @@ std::string work_line(const RunComparison& comparison) {
     if (s.same_work) continue;
     std::string change = printable(s.stage.name);
     if (s.calls.a != s.calls.b)
-      change += fmt::format(" {} → {} calls,", number(s.calls.a, 0), number(s.calls.b, 0));
+      change +=
+          fmt::format(" {} → {} calls,", figure_text(s.calls.a, 0), figure_text(s.calls.b, 0));
     changes.push_back(change + fmt::format(" operations {}", percent(s.operations.percent())));
   }
   return fmt::format("work: CHANGED in {} of {} stages: {}", changes.size(),

@@ -16,8 +16,6 @@ namespace {
 
 constexpr double kPixel = 1 << 8;
 
-double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }
-
 std::vector<PublishedFlow> published_of(const FlowRun& flow) {
   std::vector<PublishedFlow> rows = published_flow();
   std::erase_if(rows, [&](const PublishedFlow& row) { return row.platform != flow.platform; });

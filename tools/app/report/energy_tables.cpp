@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 
@@ -12,8 +13,6 @@ namespace leviosim::tools {
 namespace {
 
 using sim::Estimate;
-
-double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }
 
 /// "12.34" and "9.87–15.43".
 template <class T>

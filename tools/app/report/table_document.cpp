@@ -53,10 +53,11 @@ Json rows_of_csv(const std::string& csv) {
   return rows;
 }
 
-std::string table_document(const std::string& what, const std::string& csv) {
+std::string table_document(const std::string& what, const std::string& csv, const Json& more) {
   Json document;
   document["format"] = "leviosim " + what;
   document["version"] = 1;
+  for (const auto& [name, value] : more.items()) document[name] = value;
   document["rows"] = rows_of_csv(csv);
   return json_text(document, 1) + '\n';
 }

@@ -11,7 +11,9 @@ namespace leviosim::tools {
 /// @param csv  as base::CsvTable writes it: a header, quotes where they are needed
 Json rows_of_csv(const std::string& csv);
 
-/// {"format": "leviosim `what`", "version": 1, "rows": rows_of_csv(csv)}, and a line break.
-std::string table_document(const std::string& what, const std::string& csv);
+/// {"format": "leviosim `what`", "version": 1, the members of `more`, "rows": rows_of_csv(csv)}, and
+/// a line break.
+std::string table_document(const std::string& what, const std::string& csv,
+                           const Json& more = Json::object());
 
 }  // namespace leviosim::tools

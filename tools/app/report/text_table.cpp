@@ -23,8 +23,8 @@ int display_width(std::string_view text) {
          static_cast<int>(std::count_if(text.begin(), text.end(), continues));
 }
 
-std::string figure_text(std::optional<double> value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : "–";
+std::string figure_text(std::optional<double> value, int decimals, std::string_view otherwise) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string(otherwise);
 }
 
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/base/units.h"
+
 namespace leviosim::tools {
 
 /// Of text that may be as wide as it likes.
@@ -15,8 +17,15 @@ inline constexpr int kAnyWidth = std::numeric_limits<int>::max();
 /// Columns that text takes on a terminal: code points of UTF-8.
 int display_width(std::string_view text);
 
-/// With so many decimals; "–" for what does not exist.
-std::string figure_text(std::optional<double> value, int decimals);
+/// What stands in a cell of which nothing is known.
+inline constexpr const char* kNothing = "–";
+
+/// With so many decimals; `otherwise` for what does not exist.
+std::string figure_text(std::optional<double> value, int decimals,
+                        std::string_view otherwise = kNothing);
+
+/// A clock in MHz.
+inline double megahertz(Hertz clock) { return static_cast<double>(clock.count()) / 1e6; }
 
 class TextTable {
  public:
@@ -54,7 +63,5 @@ std::string wrap(const std::vector<std::string>& items, std::string_view separat
 
 inline constexpr auto kLeft = TextTable::Align::Left;
 inline constexpr auto kRight = TextTable::Align::Right;
-/// What stands in a cell of which nothing is known.
-inline constexpr const char* kNothing = "–";
 
 }  // namespace leviosim::tools

@@ -3,34 +3,16 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
+
+#include "tools/app/timeline/core_waits.h"
 
 namespace leviosim::tools {
 namespace {
 
 using sim::SegmentTime;
 
-/// What a core waits for while it works. Drawn in this order, after its own work.
-struct Wait {
-  std::string_view name;
-  std::string_view slice;
-  double (*of)(const SegmentTime&);
-};
-constexpr std::array kWaits{
-    Wait{"FPU", "wait: FPU", [](const SegmentTime& t) { return t.fpu; }},
-    Wait{"divider", "wait: divider", [](const SegmentTime& t) { return t.divider; }},
-    Wait{"L1 banks", "wait: L1 banks", [](const SegmentTime& t) { return t.banks; }},
-    Wait{"code", "wait: code", [](const SegmentTime& t) { return t.alone.fetch + t.fetch; }},
-    Wait{"accelerator", "wait: accelerator",
-         [](const SegmentTime& t) { return t.alone.accelerator + t.accelerator; }},
-};
-
 /// Waits below this share of a slice are told by its annotations only.
 constexpr double kLeastDrawn = 0.01;
-
-double own_work(const SegmentTime& t) {
-  return t.alone.total() - t.alone.fetch - t.alone.accelerator;
-}
 
 void annotate(std::vector<Annotation>& notes, const SegmentTime& t) {
   notes.push_back({"work", own_work(t)});

@@ -6,6 +6,7 @@
 #include "sim/base/file_system.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/timeline/perfetto_timeline.h"
+#include "tools/app/timeline/timeline_picture.h"
 
 namespace leviosim::tools {
 namespace {
@@ -41,7 +42,8 @@ base::OutputRequest file_request(const std::string& file, const base::OutputRequ
 void add_timeline_options(CLI::App& command, TimelineOptions& options) {
   command
       .add_option("--timeline", options.file,
-                  "when everything happened, for ui.perfetto.dev, which opens the file locally")
+                  "when everything happened, for ui.perfetto.dev, which opens the file locally; as "
+                  "a picture if the name ends in .svg")
       ->type_name("FILE");
   command
       .add_option("--timeline-frames", options.frames,
@@ -51,11 +53,16 @@ void add_timeline_options(CLI::App& command, TimelineOptions& options) {
 
 RequestedTimeline::RequestedTimeline(const TimelineOptions& options,
                                      const base::OutputRequest& results, const RunRequest& request)
-    : collector_(request.platform.config, request.cores, range_of(options.frames)),
+    : name_(options.file),
+      collector_(request.platform.config, request.cores, range_of(options.frames)),
       file_(claimed_file(file_request(options.file, results))) {}
 
 void RequestedTimeline::publish(const RunResult& run, bool prints_name) {
-  tools::publish({{file_, perfetto_timeline(collector_.events(), run), "timeline"}},
+  const bool is_picture = std::filesystem::path(name_).extension() == ".svg";
+  tools::publish({{file_,
+                   is_picture ? timeline_picture(collector_.events(), run)
+                              : perfetto_timeline(collector_.events(), run),
+                   "timeline"}},
                  Printout("", !prints_name));
 }
 

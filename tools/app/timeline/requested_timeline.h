@@ -29,11 +29,12 @@ class RequestedTimeline {
 
   /// To look on while the run happens.
   RunObserver& observer() { return collector_; }
-  /// Writes the file. @throws InputError if that fails
+  /// Writes the file: a picture if its name ends in .svg. @throws InputError if that fails
   /// @param prints_name  with a line that tells its name; not where the printout is whole (JSON)
   void publish(const RunResult& run, bool prints_name);
 
  private:
+  std::string name_;
   TimelineCollector collector_;
   std::optional<base::OutputFile> file_;
 };

@@ -11,16 +11,12 @@
 namespace leviosim::tools {
 namespace {
 
-std::string number(std::optional<double> value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : kNothing;
-}
-
 /// As many decimals as make sense for the size of the number.
 std::string readable(std::optional<double> value) {
   if (!value) return kNothing;
   const double size = std::abs(*value);
   if (size == std::round(size) && size < 1e7) return fmt::format("{:.0f}", *value);
-  return number(value, size >= 1000 ? 0 : size >= 10 ? 1 : 2);
+  return figure_text(value, size >= 1000 ? 0 : size >= 10 ? 1 : 2);
 }
 
 std::string error_text(const Comparison& c) {
@@ -53,8 +49,8 @@ bool is_of_compute_table(const std::string& name) {
 }
 
 void add_cells(std::vector<std::string>& cells, const Comparison* c, int decimals) {
-  cells.push_back(c == nullptr ? kNothing : number(c->reference.value, decimals));
-  cells.push_back(c == nullptr ? kNothing : number(c->value, decimals));
+  cells.push_back(c == nullptr ? kNothing : figure_text(c->reference.value, decimals));
+  cells.push_back(c == nullptr ? kNothing : figure_text(c->value, decimals));
   cells.push_back(c == nullptr ? kNothing : error_text(*c));
 }
 
@@ -104,7 +100,7 @@ std::string reference_table(const Validation& validation) {
     const Reference& r = c.reference;
     if (is_of_compute_table(r.name)) continue;
     table.add({r.name, r.unit, fmt::format("{}{:g}", r.limit ? "< " : "", r.value),
-               number(c.value, 2), error_text(c), tolerance_text(r), within_text(c)});
+               figure_text(c.value, 2), error_text(c), tolerance_text(r), within_text(c)});
   }
   return "shares, latencies, memory and limits (kB of 1000 bytes)\n" + table.str();
 }

@@ -117,6 +117,15 @@ void Svg::rectangle(const Box& box, std::string_view fill) {
   fmt::format_to(std::back_inserter(body_), "<rect {} fill=\"{}\"/>\n", box_attributes(box), fill);
 }
 
+void Svg::rectangles(const std::vector<Box>& boxes, std::string_view fill) {
+  if (boxes.empty()) return;
+  fmt::format_to(std::back_inserter(body_), "<path fill=\"{}\" d=\"", fill);
+  for (const Box& box : boxes)
+    fmt::format_to(std::back_inserter(body_), "M{:g} {:g}h{:g}v{:g}h{:g}z", box.x, box.y, box.width,
+                   box.height, -box.width);
+  body_ += "\"/>\n";
+}
+
 void Svg::frame(const Box& box, const Stroke& stroke) {
   fmt::format_to(std::back_inserter(body_), "<rect {} fill=\"none\" {}/>\n", box_attributes(box),
                  stroke_attributes(stroke));

@@ -9,24 +9,19 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr const char* kNone = "–";
 constexpr const char* kMean = "mean of them";
 constexpr const char* kDiverged = "diverged";
 
-std::string decimals(std::optional<double> value, int count, const char* otherwise = "") {
-  return value ? fmt::format("{:.{}f}", *value, count) : otherwise;
-}
-
 std::string median_text(const Spread& spread, int count) {
-  if (spread.runs == 0) return kNone;
-  return decimals(spread.median, count, kDiverged);
+  if (spread.runs == 0) return kNothing;
+  return figure_text(spread.median, count, kDiverged);
 }
 
 /// With the image size if it is another.
 std::string paper_text(const std::optional<AblationRow::Paper>& paper, const AblationRow& row,
                        int count) {
-  if (!paper) return kNone;
-  const std::string text = decimals(paper->value, count);
+  if (!paper) return kNothing;
+  const std::string text = figure_text(paper->value, count);
   return size_text(paper->size) == size_text(row.size)
              ? text
              : fmt::format("{} ({})", text, size_text(paper->size));
@@ -34,9 +29,9 @@ std::string paper_text(const std::optional<AblationRow::Paper>& paper, const Abl
 
 /// Nothing for a mean, whose rows have spreads of their own.
 std::string range_text(const AblationRow& row, const Spread& spread, int count) {
-  if (row.sequence.empty() || spread.runs == 0 || !spread.low) return kNone;
-  return fmt::format("{} … {}", decimals(spread.low, count),
-                     decimals(spread.high, count, kDiverged));
+  if (row.sequence.empty() || spread.runs == 0 || !spread.low) return kNothing;
+  return fmt::format("{} … {}", figure_text(spread.low, count),
+                     figure_text(spread.high, count, kDiverged));
 }
 
 TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
@@ -57,7 +52,7 @@ TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) 
          fmt::format("{}", row.ate.runs), median_text(row.ate, 3), range_text(row, row.ate, 3),
          paper_text(row.paper_ate, row, 3), median_text(row.relative, 2),
          range_text(row, row.relative, 2), paper_text(row.paper_relative, row, 2),
-         row.least_completion ? fmt::format("{:.1f} %", 100 * *row.least_completion) : kNone});
+         row.least_completion ? fmt::format("{:.1f} %", 100 * *row.least_completion) : kNothing});
   return table;
 }
 

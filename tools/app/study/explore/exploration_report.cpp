@@ -17,8 +17,8 @@ std::string set_text(const ExploredPoint& point) {
   return texts.empty() ? "as it is" : fmt::format("{}", fmt::join(texts, " "));
 }
 
-std::string text_of(std::optional<double> error, int decimals) {
-  return error ? fmt::format("{:.{}f}", *error, decimals) : kDiverged;
+std::string error_text(std::optional<double> error, int decimals) {
+  return figure_text(error, decimals, kDiverged);
 }
 
 /// The value of a dimension with this profile.
@@ -39,8 +39,8 @@ TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& ex
     if (point == nullptr)
       table.add({profile, what, "–", kDiverged, kDiverged, "–"});
     else
-      table.add({profile, what, fmt::format("{}", point->point), text_of(point->mean_ate, 3),
-                 text_of(point->mean_relative, 2), set_text(*point)});
+      table.add({profile, what, fmt::format("{}", point->point), error_text(point->mean_ate, 3),
+                 error_text(point->mean_relative, 2), set_text(*point)});
   };
   for (const std::string& profile : plan.profiles) {
     for (const ExploredPoint& point : explored)

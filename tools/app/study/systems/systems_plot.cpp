@@ -23,7 +23,6 @@ constexpr const char* kInk = "#1c2733";
 constexpr const char* kPublished = "#203e8c";
 constexpr const char* kPredicted = "#be202e";
 constexpr const char* kEnergy = "#8a939c";
-constexpr double kMilli = 1e3;
 
 /// A point of the picture, a frame rate and a power in mW.
 struct Spot {

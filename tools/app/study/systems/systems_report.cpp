@@ -8,22 +8,19 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr const char* kNone = "–";
-constexpr double kMilli = 1e3;  // of a unit
-
 /// Three digits, or all before the point.
 std::string digits(double value) {
   return value < 1000 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
 }
 
 std::string number(const std::optional<double>& value, bool is_bound = false) {
-  return value ? (is_bound ? "< " : "") + digits(*value) : kNone;
+  return value ? (is_bound ? "< " : "") + digits(*value) : kNothing;
 }
 
 /// "30.2 (19.1–39.4)", in thousandths of the unit.
 template <class Unit>
 std::string banded(const std::optional<sim::Estimate<Unit>>& e) {
-  if (!e) return kNone;
+  if (!e) return kNothing;
   const auto text = [](Unit value) { return digits(value.count() * kMilli); };
   return fmt::format("{} ({}–{})", text(e->value), text(e->low()), text(e->high()));
 }

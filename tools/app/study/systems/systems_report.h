@@ -9,10 +9,13 @@
 
 namespace leviosim::tools {
 
+/// Milli-units in a unit: power is shown in mW, energy in mJ.
+inline constexpr double kMilli = 1e3;
+
 /// A row per system, how to read it, and the sources.
 std::string systems_table(const std::vector<SystemRow>& rows);
 
-/// The same with all digits.
+/// The rows of systems_table() with all digits, as CSV.
 std::string systems_csv(const std::vector<SystemRow>& rows);
 
 /// A file of SVG with logarithmic axes: dots are published, rings predicted with the band of their

@@ -8,8 +8,10 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
+#include "sim/base/text.h"
 #include "sim/energy/model.h"
 #include "sim/energy/operating_point.h"
+#include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
 #include "traces/datasets/asl_reader.h"
@@ -19,19 +21,6 @@ namespace {
 
 constexpr std::size_t kMostValues = 10'000;
 constexpr double kMega = 1e6;
-
-double megahertz(Hertz clock) { return static_cast<double>(clock.count()) / kMega; }
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected) {
@@ -98,8 +87,8 @@ double checked_recorded_rate(const RunRequest& request, const std::vector<double
 
 std::vector<Hertz> parse_clocks(const std::string& text) {
   std::vector<Hertz> clocks;
-  for (const std::string& item : split(text, ',')) {
-    const std::vector<std::string> parts = split(item, ':');
+  for (const std::string& item : base::split(text, ',')) {
+    const std::vector<std::string> parts = base::split(item, ':');
     if (parts.size() == 1) {
       clocks.push_back(parse_megahertz(item));
     } else if (parts.size() == 3) {
@@ -114,7 +103,7 @@ std::vector<Hertz> parse_clocks(const std::string& text) {
 
 std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
   std::vector<std::uint32_t> seeds;
-  for (const std::string& item : split(text, ','))
+  for (const std::string& item : base::split(text, ','))
     seeds.push_back(static_cast<std::uint32_t>(
         parse_whole("--seed", item, 0, std::numeric_limits<std::uint32_t>::max())));
   std::vector<std::uint32_t> sorted = seeds;
@@ -124,7 +113,7 @@ std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
 
 std::vector<double> parse_rates(const std::string& text) {
   std::vector<double> rates;
-  for (const std::string& item : split(text, ',')) rates.push_back(parse_positive("--fps", item));
+  for (const std::string& item : base::split(text, ',')) rates.push_back(parse_positive("--fps", item));
   sort_and_refuse_repetitions("--fps", text, rates);
   return rates;
 }

@@ -8,6 +8,7 @@
 
 #include "tools/app/report/plot/axes.h"
 #include "tools/app/report/plot/svg.h"
+#include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 using plot::Anchor;
 using plot::Axes;
 using plot::Box;
-using plot::Point;
 using plot::Range;
 using plot::Scale;
 using plot::Stroke;
@@ -79,10 +79,6 @@ std::vector<Panel> panels_of(const TunePlan& plan) {
           {"mean power [mW]", Scale::linear, power, std::nullopt, {}, band}};
 }
 
-double megahertz(const TunePoint& point) {
-  return static_cast<double>(point.setting.clock.count()) * 1e-6;
-}
-
 std::string colour_of(std::size_t rate) { return kColours[rate % kColours.size()]; }
 
 Range range_of(const Panel& panel, const std::vector<TunePoint>& points) {
@@ -110,7 +106,7 @@ Range range_of(const Panel& panel, const std::vector<TunePoint>& points) {
 }
 
 /// Where an estimate diverged: a cross at the top.
-void draw_cross(Svg& svg, Point at, const Stroke& stroke) {
+void draw_cross(Svg& svg, plot::Point at, const Stroke& stroke) {
   constexpr double kHalf = 3.5;
   svg.line({at.x - kHalf, at.y - kHalf}, {at.x + kHalf, at.y + kHalf}, stroke);
   svg.line({at.x - kHalf, at.y + kHalf}, {at.x + kHalf, at.y - kHalf}, stroke);
@@ -124,8 +120,8 @@ void draw_points(Svg& svg, const Axes& axes, const Panel& panel,
                  double shift, double cross_y) {
   for (const TunePoint* point : points) {
     const auto at = [&](double value) {
-      const Point exact = axes.at(megahertz(*point), value);
-      return Point{exact.x + shift, exact.y};
+      const plot::Point exact = axes.at(megahertz(point->setting.clock), value);
+      return plot::Point{exact.x + shift, exact.y};
     };
     std::optional<Range> all;
     for (const RunOutcome& outcome : point->outcomes) {
@@ -147,14 +143,14 @@ void draw_points(Svg& svg, const Axes& axes, const Panel& panel,
 void draw_line(Svg& svg, const Axes& axes, const Panel& panel,
                const std::vector<const TunePoint*>& points, const std::string& colour) {
   constexpr double kBandOpacity = 0.15;
-  std::vector<Point> line;
-  std::vector<Point> outline;  // of the band: its upper side, and before that its lower one
+  std::vector<plot::Point> line;
+  std::vector<plot::Point> outline;  // of the band: its upper side, and before that its lower one
   const auto finish = [&] {
     if (line.size() > 1) {
       svg.polygon(outline, colour, {colour, 0}, kBandOpacity);
       svg.polyline(line, {colour, 1.6});
     }
-    for (const Point& at : line) svg.circle(at, 2.2, colour, {colour, 0});
+    for (const plot::Point& at : line) svg.circle(at, 2.2, colour, {colour, 0});
     line.clear();
     outline.clear();
   };
@@ -164,9 +160,9 @@ void draw_line(Svg& svg, const Axes& axes, const Panel& panel,
       finish();
       continue;
     }
-    line.push_back(axes.at(megahertz(*point), band->value));
-    outline.push_back(axes.at(megahertz(*point), band->high));
-    outline.insert(outline.begin(), axes.at(megahertz(*point), band->low));
+    line.push_back(axes.at(megahertz(point->setting.clock), band->value));
+    outline.push_back(axes.at(megahertz(point->setting.clock), band->high));
+    outline.insert(outline.begin(), axes.at(megahertz(point->setting.clock), band->low));
   }
   finish();
 }
@@ -191,7 +187,7 @@ void draw_panel(Svg& svg, const TunePlan& plan, const Panel& panel, const Axes& 
     const TunePoint* lowest = choices[rate].lowest;
     const std::optional<double> value = lowest != nullptr ? panel.of(*lowest) : std::nullopt;
     if (!value) continue;
-    const Point at = axes.at(megahertz(*lowest), *value);
+    const plot::Point at = axes.at(megahertz(lowest->setting.clock), *value);
     svg.circle({at.x + shift, at.y}, 6.5, "none", {colour_of(rate), 2});
   }
 }
@@ -252,8 +248,8 @@ std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points
   const std::string medians =
       plan.seeds.size() > 1 ? fmt::format("; medians over {} seeds", plan.seeds.size()) : "";
   svg.text({kLeftEdge, 74}, std::string(info_of(plan.deadline).description) + medians, {12});
-  Range x{megahertz(points.front()), megahertz(points.front())};
-  for (const TunePoint& point : points) x.include(megahertz(point));
+  Range x{megahertz(points.front().setting.clock), megahertz(points.front().setting.clock)};
+  for (const TunePoint& point : points) x.include(megahertz(point.setting.clock));
   double top = kFirstPanel;
   for (const Panel& panel : panels_of(plan)) {
     const Axes axes({kLeftEdge, top, kPanelWidth, kPanelHeight}, plot::widened(x, 0.02),

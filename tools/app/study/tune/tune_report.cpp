@@ -14,8 +14,6 @@
 namespace leviosim::tools {
 namespace {
 
-double megahertz(Hertz clock) { return static_cast<double>(clock.count()) * 1e-6; }
-
 std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
 
 /// Of nanoseconds.
@@ -202,6 +200,21 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
                             printable(run_command_text(plan, *best)));
 }
 
+Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {
+  Json document;
+  document["lowest"] = Json::array();
+  for (const Choice& choice : choices) {
+    Json& entry = document["lowest"].emplace_back(Json::object());
+    entry["fps"] = choice.fps;
+    entry["clock_mhz"] = choice.lowest ? Json(megahertz(choice.lowest->setting.clock)) : Json();
+    if (choice.lowest != nullptr)
+      entry["power_w"] = banded_json(choice.lowest->median(&LoopOutcome::power_w));
+  }
+  const TunePoint* best = chosen(choices);
+  document["chosen"] = best != nullptr ? Json(run_command_text(plan, *best)) : Json();
+  return document;
+}
+
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line) {
   Json document = study_manifest("leviosim tune manifest", command_line);
@@ -216,16 +229,7 @@ Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                           {"frames", plan.sequence.frames},
                           {"recorded_fps", plan.recorded_hz},
                           {"inputs_sha256", plan.sequence.inputs}};
-  document["lowest"] = Json::array();
-  for (const Choice& choice : choices) {
-    Json& entry = document["lowest"].emplace_back(Json::object());
-    entry["fps"] = choice.fps;
-    entry["clock_mhz"] = choice.lowest ? Json(megahertz(choice.lowest->setting.clock)) : Json();
-    if (choice.lowest != nullptr)
-      entry["power_w"] = banded_json(choice.lowest->median(&LoopOutcome::power_w));
-  }
-  const TunePoint* best = chosen(choices);
-  document["chosen"] = best != nullptr ? Json(run_command_text(plan, *best)) : Json();
+  document.update(choice_json(plan, choices));
   return document;
 }
 

@@ -19,6 +19,9 @@ std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points)
 /// The lowest clock at each frame rate, and that of all.
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices);
 
+/// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.
+Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices);
+
 /// The content of manifest.json. Nothing in it depends on the host or on cache hits.
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line);

@@ -8,19 +8,10 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::tools {
 namespace {
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0;;) {
-    const std::size_t comma = text.find(',', begin);
-    parts.push_back(text.substr(begin, comma - begin));
-    if (comma == std::string::npos) return parts;
-    begin = comma + 1;
-  }
-}
 
 void check_fittable(const std::string& option, const std::string& path) {
   std::vector<std::string> known;
@@ -34,7 +25,7 @@ void check_fittable(const std::string& option, const std::string& path) {
 }  // namespace
 
 std::vector<std::string> parse_constants(const std::string& option, const std::string& text) {
-  std::vector<std::string> paths = split(text);
+  std::vector<std::string> paths = base::split(text, ',');
   for (const std::string& path : paths) check_fittable(option, path);
   if (paths.size() > kMostConstants)
     throw InputError(fmt::format("{} '{}': {} constants; expected at most {}", option, text,

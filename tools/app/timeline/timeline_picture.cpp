@@ -1,0 +1,293 @@
+#include "tools/app/timeline/timeline_picture.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "sim/chip/accelerator.h"
+#include "tools/app/report/plot/axes.h"
+#include "tools/app/report/plot/svg.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/timeline/core_slices.h"
+#include "tools/app/timeline/core_waits.h"
+
+namespace leviosim::tools {
+namespace {
+
+using plot::Anchor;
+using plot::Box;
+using plot::Stroke;
+using plot::Svg;
+
+constexpr double kWidth = 1000;
+constexpr double kLeftEdge = 96;
+constexpr double kPlotWidth = 880;
+constexpr double kTop = 66;
+constexpr double kRowHeight = 19;
+constexpr double kRowStep = 25;
+constexpr double kColumn = 2;  ///< of a strip, whose shares are shown [px]
+constexpr std::size_t kColumns = 440;
+constexpr double kStep = 0.25;      ///< of heights in a strip [px]
+constexpr double kLetterWidth = 6;  ///< of labels, roughly [px]
+constexpr const char* kInk = "#1c2733";
+constexpr const char* kMiss = "#be202e";
+
+/// What the time of a core goes to: work, the waits in their order, idle.
+constexpr std::size_t kParts = 1 + kWaits.size() + 1;
+constexpr std::size_t kIdle = kParts - 1;
+constexpr std::array<const char*, kParts> kPartColours{"#2a7f62", "#d98e04", "#be202e", "#7a3b9a",
+                                                       "#203e8c", "#5c6670", "#d5dbe1"};
+constexpr std::array kStageColours{"#c9d8f0", "#e3ecd4", "#f3e2c7", "#e9d3e6"};
+
+std::string_view name_of_part(std::size_t part) {
+  if (part == 0) return "work";
+  return part == kIdle ? "waiting for the slowest core" : kWaits[part - 1].name;
+}
+
+using Shares = std::array<double, kParts>;  ///< of a column's time
+
+/// The time of one core, column by column.
+using Strip = std::array<Shares, kColumns>;
+
+class Picture {
+ public:
+  Picture(const TimelineEvents& events, const RunResult& run);
+
+  std::string draw();
+
+ private:
+  double ms(sim::Time time) const {
+    return static_cast<double>(nanoseconds(events_.timebase, time)) * 1e-6;
+  }
+  double x_of(double at_ms) const {
+    return kLeftEdge + (at_ms - begin_ms_) / (end_ms_ - begin_ms_) * kPlotWidth;
+  }
+  double row_top(std::size_t row) const { return kTop + kRowStep * static_cast<double>(row); }
+  std::size_t rows() const { return static_cast<std::size_t>(events_.cores) + 5; }
+  double bottom() const { return row_top(rows()); }
+
+  void find_span();
+  void add_time(Strip& strip, double from_ms, double to_ms, const Shares& shares) const;
+  void add_core(std::vector<Strip>& strips, const StepEvents& step, const CoreEvents& core) const;
+  std::vector<Strip> strips() const;
+
+  void draw_legend(Svg& svg) const;
+  void draw_axis(Svg& svg) const;
+  void draw_label(Svg& svg, std::size_t row, std::string_view name) const;
+  void draw_block(Svg& svg, std::size_t row, double from_ms, double to_ms, std::string_view name,
+                  std::string_view colour) const;
+  void draw_front_end(Svg& svg) const;
+  void draw_deadlines(Svg& svg) const;
+  void draw_strip(Svg& svg, std::size_t row, const Strip& strip) const;
+  void draw_cores(Svg& svg) const;
+  void draw_transfers(Svg& svg) const;
+  void draw_controller(Svg& svg) const;
+
+  const TimelineEvents& events_;
+  const RunResult& run_;
+  double begin_ms_ = 0;
+  double end_ms_ = 1;
+};
+
+Picture::Picture(const TimelineEvents& events, const RunResult& run) : events_(events), run_(run) {
+  find_span();
+}
+
+/// From the arrival of the first frame to the last pose, or to the deadline after it.
+void Picture::find_span() {
+  if (events_.frames.empty()) return;
+  begin_ms_ = std::numeric_limits<double>::infinity();
+  end_ms_ = -begin_ms_;
+  for (const FrameEvents& frame : events_.frames) {
+    begin_ms_ = std::min(begin_ms_, static_cast<double>(frame.result.arrival_ns) * 1e-6);
+    end_ms_ =
+        std::max({end_ms_, static_cast<double>(frame.result.end_ns) * 1e-6,
+                  static_cast<double>(frame.result.arrival_ns + run_.frame_period_ns) * 1e-6});
+  }
+  end_ms_ += 0.01 * (end_ms_ - begin_ms_);
+}
+
+void Picture::add_time(Strip& strip, double from_ms, double to_ms, const Shares& shares) const {
+  const double column_ms = (end_ms_ - begin_ms_) / static_cast<double>(kColumns);
+  const double from = std::max(0.0, (from_ms - begin_ms_) / column_ms);
+  const double to = std::min(static_cast<double>(kColumns), (to_ms - begin_ms_) / column_ms);
+  for (double at = from; at < to;) {
+    const double column = std::floor(at);
+    const double end = std::min(to, column + 1);
+    for (std::size_t part = 0; part < kParts; ++part)
+      strip[static_cast<std::size_t>(column)][part] += (end - at) * shares[part];
+    at = end;
+  }
+}
+
+void Picture::add_core(std::vector<Strip>& strips, const StepEvents& step,
+                       const CoreEvents& core) const {
+  Strip& strip = strips[static_cast<std::size_t>(core.core)];
+  const auto worked = static_cast<double>(core.worked.count());
+  Shares shares{};
+  if (worked > 0) {
+    double waits = 0;
+    for (std::size_t i = 0; i < kWaits.size(); ++i)
+      waits += shares[i + 1] = std::clamp(kWaits[i].of(core.split) / worked, 0.0, 1.0 - waits);
+    shares[0] = 1 - waits;
+  }
+  add_time(strip, ms(core.begin), ms(core.end), shares);
+  if (step.kind != StepKind::Fork || core.core == events_.cores) return;
+  Shares idle{};
+  idle[kIdle] = 1;
+  add_time(strip, ms(core.end), ms(step.end), idle);
+}
+
+/// Of the workers, and of the master at the end.
+std::vector<Strip> Picture::strips() const {
+  std::vector<Strip> result(static_cast<std::size_t>(events_.cores) + 1);
+  for (const FrameEvents& frame : events_.frames)
+    for (const StageEvents& stage : frame.stages)
+      for (const StepEvents& step : stage.steps)
+        for (const CoreEvents& core : step.cores) add_core(result, step, core);
+  return result;
+}
+
+void Picture::draw_legend(Svg& svg) const {
+  double x = kLeftEdge;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    if (name_of_part(part) == "accelerator" &&
+        !sim::has_accelerators(run_.chip.cluster.accelerators))
+      continue;
+    svg.rectangle({x, 38, 11, 11}, kPartColours[part]);
+    const std::string name =
+        fmt::format("{}{}", part == 0 || part == kIdle ? "" : "wait: ", name_of_part(part));
+    svg.text({x + 16, 48}, name, {.size = 11});
+    x += 34 + kLetterWidth * static_cast<double>(name.size());
+  }
+}
+
+void Picture::draw_axis(Svg& svg) const {
+  const plot::Ticks ticks = plot::round_ticks({0, end_ms_ - begin_ms_}, 12);
+  for (const double value : ticks.values) {
+    const double x = x_of(begin_ms_ + value);
+    svg.line({x, kTop - 4}, {x, bottom()}, {"#e4e8ec", 1});
+    svg.text({x, bottom() + 15}, plot::tick_label(value, ticks.step),
+             {.size = 11, .anchor = Anchor::middle});
+  }
+  svg.text({kLeftEdge + kPlotWidth / 2, bottom() + 33},
+           "ms since the arrival of the first frame shown", {.size = 12, .anchor = Anchor::middle});
+}
+
+void Picture::draw_label(Svg& svg, std::size_t row, std::string_view name) const {
+  svg.text({kLeftEdge - 8, row_top(row) + 14}, name, {.size = 11, .anchor = Anchor::end});
+}
+
+/// Its name stands in it where there is room.
+void Picture::draw_block(Svg& svg, std::size_t row, double from_ms, double to_ms,
+                         std::string_view name, std::string_view colour) const {
+  const Box box{x_of(from_ms), row_top(row), x_of(to_ms) - x_of(from_ms), kRowHeight};
+  svg.rectangle(box, colour);
+  if (box.width > kLetterWidth * static_cast<double>(name.size()))
+    svg.text({box.x + 3, box.y + 13}, name, {.size = 10.5, .colour = kInk});
+}
+
+void Picture::draw_front_end(Svg& svg) const {
+  draw_label(svg, 0, "front end");
+  for (const FrameEvents& frame : events_.frames) {
+    std::size_t index = 0;
+    for (const StageEvents& stage : frame.stages)
+      draw_block(svg, 0, ms(stage.begin), ms(stage.end), stage.name,
+                 kStageColours[index++ % kStageColours.size()]);
+  }
+}
+
+void Picture::draw_deadlines(Svg& svg) const {
+  for (const FrameEvents& frame : events_.frames) {
+    const bool late = is_late(frame.result, run_);
+    const double x =
+        x_of(static_cast<double>(frame.result.arrival_ns + run_.frame_period_ns) * 1e-6);
+    svg.line({x, kTop - 8}, {x, bottom()}, {late ? kMiss : kInk, 1.2, "4 3"});
+    svg.text({x - 4, kTop - 5}, late ? "deadline missed" : "deadline",
+             {.size = 10.5, .anchor = Anchor::end, .colour = late ? kMiss : kInk});
+  }
+}
+
+/// One area for each part, on top of those before it.
+void Picture::draw_strip(Svg& svg, std::size_t row, const Strip& strip) const {
+  const auto height = [](double share) { return std::round(share * kRowHeight / kStep) * kStep; };
+  std::array<double, kColumns> below{};
+  const double base = row_top(row) + kRowHeight;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    std::vector<Box> boxes;
+    std::array<double, kColumns> above = below;
+    for (std::size_t i = 0; i < kColumns; ++i) above[i] += strip[i][part];
+    for (std::size_t begin = 0; begin < kColumns;) {
+      const double low = height(below[begin]);
+      const double high = height(above[begin]);
+      std::size_t end = begin + 1;
+      while (end < kColumns && height(below[end]) == low && height(above[end]) == high) ++end;
+      if (high > low)
+        boxes.push_back({kLeftEdge + kColumn * static_cast<double>(begin), base - high,
+                         kColumn * static_cast<double>(end - begin), high - low});
+      begin = end;
+    }
+    svg.rectangles(boxes, kPartColours[part]);
+    below = above;
+  }
+}
+
+void Picture::draw_cores(Svg& svg) const {
+  const std::vector<Strip> list = strips();
+  draw_label(svg, 1, "master");
+  draw_strip(svg, 1, list.back());
+  for (std::size_t core = 0; core + 1 < list.size(); ++core) {
+    draw_label(svg, core + 2, fmt::format("core {}", core));
+    draw_strip(svg, core + 2, list[core]);
+  }
+}
+
+void Picture::draw_transfers(Svg& svg) const {
+  const std::size_t row = rows() - 3;
+  draw_label(svg, row, "DMA, to L1");
+  draw_label(svg, row + 1, "DMA, to L2");
+  for (const FrameEvents& frame : events_.frames)
+    for (const StageEvents& stage : frame.stages)
+      for (const StepEvents& step : stage.steps)
+        for (const TransferEvents& transfer : step.transfers)
+          draw_block(svg, row + (transfer.direction == work::Direction::L2ToL1 ? 0 : 1),
+                     ms(transfer.begin), ms(transfer.end), "", "#5c6670");
+}
+
+void Picture::draw_controller(Svg& svg) const {
+  draw_label(svg, rows() - 1, "controller");
+  for (const IterationEvents& iteration : events_.iterations) {
+    const double from = ms(iteration.begin);
+    const double to = std::min(ms(iteration.end), end_ms_);
+    if (from < to)
+      draw_block(svg, rows() - 1, from, to, fmt::format("iteration {}", iteration.iteration),
+                 kStageColours[static_cast<std::size_t>(iteration.iteration) % 2]);
+  }
+}
+
+std::string Picture::draw() {
+  const std::string title =
+      fmt::format("{} on {}, {} cores", run_.profile, run_.chip.name, run_.cores);
+  Svg svg(kWidth, bottom() + 44, title);
+  svg.text({kLeftEdge, 24}, title, {.size = 15, .bold = true});
+  draw_legend(svg);
+  draw_axis(svg);
+  draw_front_end(svg);
+  draw_cores(svg);
+  draw_transfers(svg);
+  draw_controller(svg);
+  draw_deadlines(svg);
+  return svg.str();
+}
+
+}  // namespace
+
+std::string timeline_picture(const TimelineEvents& events, const RunResult& run) {
+  return Picture(events, run).draw();
+}
+
+}  // namespace leviosim::tools
