@@ -6,7 +6,8 @@
 #   tools/figures.sh [--check] [--slow] [--program FILE] [--data DIR] [NAME...]
 #   tools/figures.sh --list
 # --check changes nothing, and names the figures that are stale: exit status 1 if there are any.
-# Figures that take minutes are left out unless they are named or --slow is given. DIR is the folder
+# Figures that take minutes are left out unless they are named or --slow is given; --check leaves out photos of
+# pages (Chromium), which differ from version to version. DIR is the folder
 # that contains euroc/ [LEVIOSIM_DATA, else ../shared/data]; figures that need it are left out where
 # it is absent. FILE is the leviosim to run [build/release/leviosim].
 set -euo pipefail
@@ -14,17 +15,19 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source tools/figures/cut.sh
 
 names=()
-declare -A needs after command cut result
+declare -A needs after command cut result photo
 figure() { # figure NAME: the following lines are about it
   name=$1
   names+=("$name")
   needs[$name]=
 }
-needs() { needs[$name]="$*"; }  # data, slow
+needs() { needs[$name]="$*"; }  # data, slow, aha
 after() { after[$name]=$1; }    # a command that makes what the figure's command reads; not shown
 shows() { command[$name]=$1; }  # the command; it runs in an empty folder beside euroc/
 cut() { cut[$name]=$1; }        # the part of its output that is shown: functions of cut.sh
 keeps() { result[$name]=$1; }   # a picture that the command makes, kept as tools/figures/NAME.svg
+# photo WIDTHxHEIGHT PAGE: how a browser shows a page that the command makes, kept as NAME.png
+photo() { photo[$name]=$1 result[$name]=$2; }
 source tools/figures/list.sh
 
 fail() {
@@ -104,6 +107,12 @@ output_of() { # output_of NAME COMMAND
   echo "$output"
 }
 
+take_photo() { # take_photo SIZE PAGE PICTURE
+  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=5000 \
+    --window-size="${1/x/,}" --screenshot="$3" "file://$2" >/dev/null 2>&1 ||
+    fail "chromium shows no $2; tools/setup.sh installs it"
+}
+
 # What stands between the markers.
 block_of() { # block_of NAME
   local output
@@ -160,7 +169,17 @@ for name in "${names[@]}"; do
     echo "figures: $name left out: there is no $data/euroc"
     continue
   fi
-  if [[ -n ${result[$name]:-} ]]; then
+  if [[ " ${needs[$name]} " == *" aha "* ]] && ! command -v aha >/dev/null; then
+    echo "figures: $name left out: it needs aha (apt-get install aha)"
+    continue
+  fi
+  if [[ -n ${photo[$name]:-} ]]; then
+    [[ $check == no ]] || continue
+    [[ -z ${after[$name]:-} ]] || output_of "$name" "${after[$name]}" >/dev/null
+    output_of "$name" "${command[$name]}" >/dev/null
+    take_photo "${photo[$name]}" "$work/folder/${result[$name]}" "$work/photo.png"
+    update "tools/figures/$name.png" "$work/photo.png" "$name"
+  elif [[ -n ${result[$name]:-} ]]; then
     output_of "$name" "${command[$name]}" >/dev/null
     update "tools/figures/$name.svg" "$work/folder/${result[$name]}" "$name"
   else

@@ -15,12 +15,12 @@ namespace {
 using nlohmann::json;
 using testing::ProgramResult;
 
-/// Two seconds of flight, recorded once.
+/// Four seconds of flight, the first at rest, recorded once.
 class UserStories : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
     make_folder("stories");
-    traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 2, .texel_m = 0.02});
+    traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 4, .texel_m = 0.02});
     expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("recorded"),
                  "--record", "--quiet"});
   }
@@ -61,12 +61,12 @@ TEST_F(UserStories, WhatASecondDividerBringsByWhichMechanismAtWhatEnergy) {
 TEST_F(UserStories, TheLowestClockAtTwentyFramesPerSecondWithinAnError) {
   const ProgramResult result =
       program({"tune", "--data", path("flight"), "--clock", "60:370:155", "--fps", "20", "--ate",
-               "0.15", "--cache", path("cache"), "--out", path("clock"), "--quiet", "--json"});
+               "0.4", "--cache", path("cache"), "--out", path("clock"), "--quiet", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const json found = json::parse(result.out);
-  // At 60 MHz a frame takes longer than 50 ms.
+
   const double clock = found.at("lowest").at(0).at("clock_mhz").get<double>();
-  EXPECT_TRUE(clock == 215 || clock == 370) << clock;
+  EXPECT_EQ(clock, 370);
   EXPECT_EQ(found.at("chosen").get<std::string>().rfind("for seed in 1 2 3; do leviosim run", 0),
             0u);
 }
@@ -103,7 +103,7 @@ TEST_F(UserStories, MyTrajectoryBesideTheTruthAndAnotherEstimator) {
   const ProgramResult result = program({"eval", path("recorded"), path("flight"), "--also",
                                         path("next"), "--align", "posyaw", "--relative", "0.5"});
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"recorded", "next", "ATE", "posyaw"}) expect_holds(result.out, part);
+  for (const char* part : {"recorded", "next", "ATE", "PosYaw-aligned"}) expect_holds(result.out, part);
 }
 
 }  // namespace
