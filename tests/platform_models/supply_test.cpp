@@ -5,7 +5,7 @@
 namespace leviosim::platform {
 namespace {
 
-std::string fault(const std::vector<std::string>& overrides) {
+std::string supply_fault(const std::vector<std::string>& overrides) {
   return fault_of([&] { load_platform("gap9", overrides); });
 }
 
@@ -18,32 +18,32 @@ TEST(Supply, BothMeasuredPointsCanBeRun) {
 }
 
 TEST(Supply, AClockThatTheVoltageDoesNotAllowIsRefusedWithTheVoltageThatDoes) {
-  expect_parts(fault({"supply.voltage=650mV"}),
+  expect_parts(supply_fault({"supply.voltage=650mV"}),
                {"cluster.clock is 370 MHz (gap9.yaml:", "supply.voltage is 650 mV (-p ",
                 "at most 240 MHz, as with cluster.clock=240MHz and controller.clock=240MHz; ",
                 "370 MHz needs supply.voltage=0.8 V"});
-  expect_parts(fault({"supply.voltage=0.65V", "cluster.clock=240MHz"}),
+  expect_parts(supply_fault({"supply.voltage=0.65V", "cluster.clock=240MHz"}),
                {"controller.clock is 370 MHz", "as with controller.clock=240MHz; "});
-  expect_parts(fault({"supply.voltage=0.7", "cluster.clock=300MHz"}),
+  expect_parts(supply_fault({"supply.voltage=0.7", "cluster.clock=300MHz"}),
                {"cluster.clock is 300 MHz (-p", "supply.voltage=0.75 V"});
 }
 
 TEST(Supply, AClockBeyondAllVoltagesIsRefused) {
-  expect_parts(fault({"cluster.clock=400MHz"}),
+  expect_parts(supply_fault({"cluster.clock=400MHz"}),
                {"cluster.clock is 400 MHz", "no voltage allows more than 370 MHz"});
   EXPECT_NO_THROW(load_platform("gap9", {"cluster.clock=400MHz", "supply.highest.clock=450MHz"}));
 }
 
 TEST(Supply, VoltagesOffTheStepsAndBeyondTheEndsAreRefused) {
   for (const char* volts : {"0.72V", "0.6V", "0.85V", "660mV"})
-    expect_parts(fault({std::string("supply.voltage=") + volts}),
+    expect_parts(supply_fault({std::string("supply.voltage=") + volts}),
                  {"supply.voltage is", "0.65 V to 0.8 V in steps of 0.05 V"});
 }
 
 TEST(Supply, ThePointsMustBeInOrder) {
-  expect_parts(fault({"supply.lowest.voltage=0.9V"}),
+  expect_parts(supply_fault({"supply.lowest.voltage=0.9V"}),
                {"supply.lowest.voltage is 0.9 V", "supply.highest.voltage is 0.8 V"});
-  expect_parts(fault({"supply.lowest.clock=380MHz"}),
+  expect_parts(supply_fault({"supply.lowest.clock=380MHz"}),
                {"supply.lowest.clock is 380 MHz", "supply.highest.clock is 370 MHz"});
 }
 

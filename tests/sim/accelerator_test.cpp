@@ -18,12 +18,6 @@ using work::OffloadWork;
 using work::Op;
 using work::Segment;
 
-Counts alu(std::uint64_t n) {
-  Counts counts;
-  counts[Op::IntAlu] = n;
-  return counts;
-}
-
 /// `rest` instructions, and calls that a core would need `inside` instructions for in all.
 Segment segment(std::uint64_t rest, std::uint64_t inside, std::uint64_t calls, std::uint64_t items,
                 OffloadKind kernel = OffloadKind::Hamming) {
@@ -47,7 +41,9 @@ Process run_job(Cluster& cluster, const work::Job& job, JobTiming& timing) {
   timing = co_await cluster.run(job);
 }
 
-double cycles_of(const StageTiming& timing) { return static_cast<double>(timing.cycles.count()); }
+double stage_cycles(const StageTiming& timing) {
+  return static_cast<double>(timing.cycles.count());
+}
 
 StageTiming time_of(const ClusterConfig& config, std::vector<work::Step> steps, int workers = 8) {
   const Timebase timebase({{"cluster", config.clock}});
@@ -98,7 +94,7 @@ TEST(Accelerator, WithoutOneTheDemandIsThatOfTheCounts) {
 TEST(Accelerator, CoresQueueForOneUnit) {
   for (const int cores : {1, 2, 4, 8})
     EXPECT_NEAR(
-        cycles_of(together(cluster_with(unit(1, 0, 0, 0.1)), segment(0, 5000, 50, 50), cores)),
+        stage_cycles(together(cluster_with(unit(1, 0, 0, 0.1)), segment(0, 5000, 50, 50), cores)),
         cores * 50 * 10, 1)
         << cores;
 }
@@ -110,7 +106,7 @@ TEST(Accelerator, QueueingBeginsWhenTheUnitIsSaturated) {
   const ClusterConfig config = cluster_with(unit(1, s, l, 1 / b));
   for (const int cores : {1, 2, 3, 4, 8}) {
     const StageTiming timing = together(config, segment(0, 5000, 100, 100), cores);
-    EXPECT_NEAR(cycles_of(timing), 100 * std::max(s + l + b, cores * b), 2) << cores;
+    EXPECT_NEAR(stage_cycles(timing), 100 * std::max(s + l + b, cores * b), 2) << cores;
     EXPECT_NEAR(timing.breakdown.useful.accelerator, cores * 100 * (l + b), 1);
     EXPECT_NEAR(timing.breakdown.accelerator, cores * 100 * std::max(0.0, cores * b - s - l - b),
                 20);
@@ -170,7 +166,8 @@ TEST(Accelerator, SharesOfSeveralWorkersAreOneWorkSegment) {
   // Eight shares on two workers: each has the calls of four.
   const ClusterConfig config = cluster_with(unit(8, 10, 0, 1));
   const std::vector<Segment> shares(8, segment(5, 100, 2, 20));
-  EXPECT_NEAR(cycles_of(time_of(config, {work::Fork{"f", shares}}, 2)), 4 * (5 + 2 * 10 + 20), 1);
+  EXPECT_NEAR(stage_cycles(time_of(config, {work::Fork{"f", shares}}, 2)), 4 * (5 + 2 * 10 + 20),
+              1);
 }
 
 TEST(Accelerator, TakesItsWorkFromTheCoresEnergyAndAddsItsOwn) {

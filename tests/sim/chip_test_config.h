@@ -40,4 +40,11 @@ inline ChipConfig test_chip() {
   return {"test", test_cluster(), {Hertz(370'000'000), unit_cost_core(), {}}, {Bytes(1'600'000)}};
 }
 
+/// So many integer operations.
+inline work::Counts alu(std::uint64_t n) {
+  work::Counts counts;
+  counts[work::Op::IntAlu] = n;
+  return counts;
+}
+
 }  // namespace leviosim::sim

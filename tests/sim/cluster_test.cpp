@@ -13,12 +13,6 @@ namespace {
 using work::Counts;
 using work::Op;
 
-Counts alu(std::uint64_t n) {
-  Counts c;
-  c[Op::IntAlu] = n;
-  return c;
-}
-
 JobTiming run(const work::Job& job, int workers = 8, ChipConfig config = test_chip()) {
   Chip chip(config, workers);
   JobTiming timing;

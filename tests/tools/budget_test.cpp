@@ -23,7 +23,7 @@ using testing::example_run;
 using testing::junit_fault;
 using traces::testing::expect_input_error;
 
-RunRecord record(const RunResult& run = example_run()) {
+RunRecord record_of(const RunResult& run = example_run()) {
   Manifest manifest;
   manifest.platform = "gap9";
   std::vector<StageParts> parts{
@@ -44,7 +44,7 @@ Budget of_stage(const std::string& stage, const std::string& limit) {
 }
 
 bool met(const Budget& b, const RunRecord* baseline = nullptr) {
-  return check_budget(record(), b, baseline).missed() == 0;
+  return check_budget(record_of(), b, baseline).missed() == 0;
 }
 
 TEST(Budget, LimitsHoldAtTheirValueAndNotBeyond) {
@@ -76,7 +76,7 @@ TEST(Budget, LimitsOfStagesTakePatterns) {
 TEST(Budget, RelativeLimitsAreHeldAgainstTheBaseline) {
   RunResult before = example_run();
   before.stages[0].parallel = Cycles(1'900'000);  // the run takes 5.26 % more
-  const RunRecord baseline = record(before);
+  const RunRecord baseline = record_of(before);
   EXPECT_TRUE(met(of_stage("feature extraction", "cycles <= +5.3 %"), &baseline));
   EXPECT_FALSE(met(of_stage("feature extraction", "cycles <= +5.2 %"), &baseline));
   EXPECT_TRUE(met(of_stage("feature extraction", "cycles <= +50 kcycles"), &baseline));
@@ -146,13 +146,13 @@ TEST(Budget, WhatARunDoesNotHaveIsNotMet) {
   RunResult run = example_run();
   run.stages[0].calls = 0;
   const CheckResult result =
-      check_budget(record(run), of_stage("feature extraction", "cycles <= 1 Mcycles"), nullptr);
+      check_budget(record_of(run), of_stage("feature extraction", "cycles <= 1 Mcycles"), nullptr);
   ASSERT_EQ(result.missed(), 1u);
   EXPECT_EQ(result.findings[0].excess(), "the run has no value of it");
 }
 
 TEST(Budget, SaysByHowMuchWhereAndWhy) {
-  RunRecord before = record();
+  RunRecord before = record_of();
   before.cycles[0].cycles -= 3e5;
   before.cycles[0].parts[0].cycles -= 3e5;
   for (Statistic& s : before.statistics)
@@ -161,7 +161,7 @@ TEST(Budget, SaysByHowMuchWhereAndWhy) {
                                 "budgets:\n  - owner: vision\n    limits:\n"
                                 "      - stage: feature*\n        limit: cycles <= +3 %\n"
                                 "        reason: a <frame> & more\n");
-  const CheckResult result = check_budget(record(), b, &before);
+  const CheckResult result = check_budget(record_of(), b, &before);
   ASSERT_EQ(result.missed(), 1u);
   const Finding& f = result.findings[0];
   EXPECT_EQ(f.title(), "feature extraction: cycles <= +3 %");
@@ -179,7 +179,7 @@ TEST(Budget, SaysByHowMuchWhereAndWhy) {
 }
 
 TEST(Budget, MemoryThatIsTooFullNamesStageAndBlock) {
-  const CheckResult result = check_budget(record(), one("L1 peak <= 60 kB"), nullptr);
+  const CheckResult result = check_budget(record_of(), one("L1 peak <= 60 kB"), nullptr);
   ASSERT_EQ(result.missed(), 1u);
   EXPECT_EQ(result.findings[0].where, "feature extraction, block scratch");
   EXPECT_EQ(result.findings[0].why[0], "scratch is 20.0 kB");
@@ -190,7 +190,7 @@ TEST(Budget, JUnitIsWhatServersRead) {
                                 "budgets:\n  - name: \"a <b> & \\\"c\\\"\"\n    limits:\n"
                                 "      - L1 peak <= 1 kB\n      - ATE <= 1 m\n"
                                 "  - limits:\n      - missed <= 50 %\n");
-  const std::string xml = junit_xml(check_budget(record(), b, nullptr));
+  const std::string xml = junit_xml(check_budget(record_of(), b, nullptr));
   EXPECT_EQ(junit_fault(xml), "") << xml;
   EXPECT_NE(xml.find("tests=\"3\" failures=\"1\""), std::string::npos) << xml;
   EXPECT_NE(junit_fault("<testsuites><testsuite/></testsuites>"), "");
@@ -200,29 +200,30 @@ TEST(Budget, JUnitIsWhatServersRead) {
 TEST(Budget, AnnotationsAreOneLineEachAndEscaped) {
   Budget b = one("missed <= 1 %");
   b.sections[0].limits[0].reason = "first\nsecond";
-  const std::string text = github_annotations(check_budget(record(), b, nullptr));
+  const std::string text = github_annotations(check_budget(record_of(), b, nullptr));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
   EXPECT_EQ(text.rfind("::error file=b.yaml,line=4,title=missed <= 1 %25::", 0), 0u) << text;
   EXPECT_EQ(text.find("%\n"), std::string::npos);
 }
 
 TEST(Budget, GitLabReadsAListOfFindings) {
-  const Json list = Json::parse(gitlab_report(check_budget(record(), one("ATE <= 1 cm"), nullptr)));
+  const Json list =
+      Json::parse(gitlab_report(check_budget(record_of(), one("ATE <= 1 cm"), nullptr)));
   ASSERT_EQ(list.size(), 1u);
   for (const char* key : {"description", "check_name", "fingerprint", "severity", "location"})
     EXPECT_TRUE(list[0].contains(key)) << key;
   EXPECT_EQ(list[0]["location"]["lines"]["begin"], 4);
-  EXPECT_EQ(Json::parse(gitlab_report(check_budget(record(), one("ATE <= 1 m"), nullptr))).size(),
-            0u);
+  EXPECT_EQ(
+      Json::parse(gitlab_report(check_budget(record_of(), one("ATE <= 1 m"), nullptr))).size(), 0u);
 }
 
 TEST(Budget, AFirstBudgetIsMetAndTight) {
-  const RunRecord run = record();
+  const RunRecord run = record_of();
   EXPECT_EQ(check_budget(run, parse_budget("first.yaml", first_budget(run, 0)), nullptr).missed(),
             0u);
   RunResult more = example_run();
   more.stages[0].parallel = Cycles(2'200'000);
-  EXPECT_EQ(check_budget(record(more), parse_budget("first.yaml", first_budget(run, 5)), nullptr)
+  EXPECT_EQ(check_budget(record_of(more), parse_budget("first.yaml", first_budget(run, 5)), nullptr)
                 .missed(),
             1u);
   EXPECT_EQ(parse_margin("5%"), 5);
@@ -231,7 +232,7 @@ TEST(Budget, AFirstBudgetIsMetAndTight) {
 }
 
 TEST(Baseline, IsReadBackAndStandsForItsRun) {
-  const RunRecord run = record();
+  const RunRecord run = record_of();
   const std::string text = baseline_text(run, nullptr);
   EXPECT_LT(text.size(), 10'000u);
   const RunRecord read = parse_baseline("base.json", text);
@@ -245,7 +246,7 @@ TEST(Baseline, IsReadBackAndStandsForItsRun) {
 }
 
 TEST(Baseline, RefusesWhatIsNone) {
-  const std::string text = baseline_text(record(), nullptr);
+  const std::string text = baseline_text(record_of(), nullptr);
   for (const std::string& bad :
        {std::string(), std::string("{}"), std::string("[]"), text.substr(0, text.size() / 2),
         std::string("{\"format\": \"leviosim baseline\", \"version\": 2}")})
@@ -255,7 +256,7 @@ TEST(Baseline, RefusesWhatIsNone) {
 /// Bytes changed, removed and doubled at random: every text is read or refused with its name.
 TEST(Baseline, NoTextIsTooBroken) {
   std::mt19937 random(5);
-  const RunRecord run = record();
+  const RunRecord run = record_of();
   struct Reader {
     std::string text;
     std::function<void(const std::string&)> read;

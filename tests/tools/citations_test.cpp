@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "tests/support/paths.h"
+#include "tests/support/text_lines.h"
 
 namespace leviosim::tests {
 namespace {
@@ -45,13 +46,6 @@ std::string read(const fs::path& file) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
 }
 
 /// Sources, tables, scripts and pages of the project's folders, and the pages beside them, sorted.

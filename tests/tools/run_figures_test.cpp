@@ -4,6 +4,7 @@
 #include "platform_models/loader/loader.h"
 #include "sim/soc/stage_book.h"
 #include "tests/tools/example_run.h"
+#include "tests/tools/statistic_values.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/summary.h"
@@ -11,12 +12,7 @@
 namespace leviosim::tools {
 namespace {
 
-Json value(const Json& document, const std::string& name) {
-  for (const Json& entry : document.at("statistics"))
-    if (entry.at("name") == name) return entry.at("value");
-  ADD_FAILURE() << "no statistic " << name;
-  return {};
-}
+using testing::value;
 
 /// 200 frames in a closed loop, with latencies of 200, 199 … 1 µs.
 RunResult long_loop() {

@@ -3,25 +3,19 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "sim/energy/model.h"
 #include "tests/sim/energy_test_config.h"
+#include "tests/support/text_lines.h"
 #include "tests/tools/example_run.h"
 
 namespace leviosim::tools {
 namespace {
 
+using tests::lines_of;
+
 constexpr const char* kHeading =
     "leviosim 0.1.0: next on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, controller at "
     "370 MHz, 0.8 V, camera at 20 frames/s (drop)";
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
 
 /// As much as can be said of a run: many stages, energy, late frames, a wrong map.
 RunResult eventful_run() {

@@ -5,23 +5,15 @@
 #include <set>
 
 #include "tests/tools/example_run.h"
+#include "tests/tools/statistic_values.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
 namespace {
 
 using testing::example_run;
-
-Json statistic(const Json& document, const std::string& name) {
-  for (const Json& entry : document.at("statistics"))
-    if (entry.at("name") == name) return entry;
-  ADD_FAILURE() << "no statistic " << name;
-  return {};
-}
-
-Json value(const Json& document, const std::string& name) {
-  return statistic(document, name).at("value");
-}
+using testing::statistic;
+using testing::value;
 
 TEST(Statistics, EachHasNameUnitDescriptionValueAndNamesAreUnique) {
   std::set<std::string> names;

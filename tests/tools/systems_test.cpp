@@ -54,7 +54,7 @@ TEST(PublishedSystems, ThoseOfTheProgramCanBeModelled) {
   EXPECT_EQ(modelled, 3);
 }
 
-std::vector<SystemRow> example() {
+std::vector<SystemRow> example_systems() {
   std::vector<SystemRow> rows;
   for (const PublishedSystem& system : published_systems()) rows.push_back({system, {}});
   Prediction here;
@@ -69,18 +69,18 @@ std::vector<SystemRow> example() {
 }
 
 TEST(SystemsReport, PredictionsStandBesideTheirSystems) {
-  const std::string table = systems_table(example());
+  const std::string table = systems_table(example_systems());
   for (const char* part : {"Navion, 2019", "   0.1\n", "< 0.4", "levio on gap9", "30.2 (20.2–40.2)",
                            "1.51 (1.51–1.51)", "29.9", "LEVIO as though it fitted: 7 kB short",
                            "Jetson Xavier NX", "BotVIO: Wei et al. 2025"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in:\n" << table;
-  const std::string csv = systems_csv(example());
+  const std::string csv = systems_csv(example_systems());
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 10);
   EXPECT_NE(csv.find(",levio on gap9,20,29.9,30.2"), std::string::npos) << csv;
 }
 
 TEST(SystemsReport, ThePictureHasASpotForEachRateWithAPower) {
-  const std::string picture = systems_plot(example());
+  const std::string picture = systems_plot(example_systems());
   EXPECT_EQ(testing::xml_fault(picture), "");
   for (const char* part : {"Navion", "Gu et al.", "LEVIO, here", "0.1 mJ", "100 mJ"})
     EXPECT_NE(picture.find(part), std::string::npos) << part;

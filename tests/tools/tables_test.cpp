@@ -6,6 +6,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "tests/support/text_lines.h"
 #include "tests/tools/example_run.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
@@ -14,13 +15,7 @@ namespace leviosim::tools {
 namespace {
 
 using testing::example_run;
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
+using tests::lines_of;
 
 /// The one line that begins with `start`; empty if there is none.
 std::string line_of(const std::string& text, const std::string& start) {

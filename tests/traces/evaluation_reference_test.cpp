@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "tests/traces/test_folder.h"
@@ -15,7 +16,6 @@ namespace leviosim::traces {
 namespace {
 
 constexpr double kTolerance = 1e-9;
-constexpr double kPi = 3.14159265358979323846;
 
 struct Flight {
   Trajectory estimate;
@@ -73,7 +73,7 @@ Flight random_flight(std::uint64_t seed) {
 }
 
 double angle_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  return Eigen::Quaterniond(a).angularDistance(Eigen::Quaterniond(b)) * 180 / kPi;
+  return Eigen::Quaterniond(a).angularDistance(Eigen::Quaterniond(b)) * 180 / std::numbers::pi;
 }
 
 /// The true pose at a time, by looking at every pair of neighbours.
@@ -132,7 +132,9 @@ double squares(const Eigen::Matrix4d& t, const Eigen::Matrix3Xd& from, const Eig
 /// The sum of squares is a constant minus a sinusoid of the yaw, whose phase four values give.
 Eigen::Matrix4d best_yaw(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   const auto at = [&](double yaw) { return squares(turned_by(yaw, from, to), from, to); };
-  return turned_by(std::atan2(at(-kPi / 2) - at(kPi / 2), at(kPi) - at(0)), from, to);
+  return turned_by(std::atan2(at(-std::numbers::pi / 2) - at(std::numbers::pi / 2),
+                              at(std::numbers::pi) - at(0)),
+                   from, to);
 }
 
 Eigen::Matrix4d best_transform(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
@@ -10,8 +11,6 @@
 
 namespace leviosim::traces {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A helix, sampled every `step_ns` from time 0.
 Trajectory helix(std::int64_t step_ns, std::size_t count) {
@@ -63,7 +62,7 @@ TEST(Evaluation, FiguresAreThoseOfTheirDefinitions) {
   const std::vector<double> off{3, 1, 6, 2};
   for (int i = 0; i < 4; ++i) {
     truth.push_back({i * 1'000'000, Eigen::Isometry3d(Eigen::Translation3d(2.0 * i, 0, 0))});
-    const double turn = (i + 1) * kPi / 18;
+    const double turn = (i + 1) * std::numbers::pi / 18;
     estimate.push_back({i * 1'000'000, Eigen::Translation3d(2.0 * i, 0, off[i]) *
                                            Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY())});
   }

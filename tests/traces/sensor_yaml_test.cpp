@@ -14,7 +14,7 @@ using testing::expect_input_error;
 using testing::TempFolder;
 
 constexpr const char* kCamera = "cam0/sensor.yaml";
-constexpr const char* kImu = "imu0/sensor.yaml";
+constexpr const char* kImuSensor = "imu0/sensor.yaml";
 
 void expect_broken_camera(const std::string& from, const std::string& to,
                           std::initializer_list<std::string> parts) {
@@ -26,8 +26,8 @@ void expect_broken_camera(const std::string& from, const std::string& to,
 void expect_broken_imu(const std::string& from, const std::string& to,
                        std::initializer_list<std::string> parts) {
   const AslFolder folder;
-  folder.replace(kImu, from, to);
-  expect_input_error([&] { read_imu_model(folder.mav0(kImu)); }, parts);
+  folder.replace(kImuSensor, from, to);
+  expect_input_error([&] { read_imu_model(folder.mav0(kImuSensor)); }, parts);
 }
 
 TEST(SensorYaml, WhatIsWrittenReadsBackExactly) {

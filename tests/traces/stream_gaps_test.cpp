@@ -11,8 +11,8 @@ namespace {
 using testing::AslFolder;
 using testing::expect_input_error;
 
-constexpr const char* kImu = "imu0/data.csv";
-constexpr const char* kTruth = "state_groundtruth_estimate0/data.csv";
+constexpr const char* kImuTable = "imu0/data.csv";
+constexpr const char* kTruthTable = "state_groundtruth_estimate0/data.csv";
 
 /// Line of the sample `ms` after the first frame; samples come every 5 ms from 50 ms before it.
 std::size_t line_at(int ms) { return static_cast<std::size_t>(ms / 5 + 12); }
@@ -30,9 +30,9 @@ TEST(ImuGaps, AreRefusedFromTheFirstFrameToTheLast) {
   for (const auto& [from, to] :
        {std::pair(-5, 15), {0, 20}, {20, 40}, {kLast - 10, kLast + 10}, {kLast - 20, kLast}}) {
     const AslFolder folder;
-    cut(folder, kImu, from, to);
+    cut(folder, kImuTable, from, to);
     expect_input_error([&] { open_asl(folder.root()); },
-                       {kImu, "gap of 20.000 ms", stamp(from), stamp(to)});
+                       {kImuTable, "gap of 20.000 ms", stamp(from), stamp(to)});
   }
 }
 
@@ -40,7 +40,7 @@ TEST(ImuGaps, BeforeTheFirstFrameAndAfterTheLastDoNotMatter) {
   constexpr int kLast = 50 * (AslFolder::kFrames - 1);
   for (const auto& [from, to] : {std::pair(-20, 0), {kLast, kLast + 20}}) {
     const AslFolder folder;
-    cut(folder, kImu, from, to);
+    cut(folder, kImuTable, from, to);
     EXPECT_NO_THROW(open_asl(folder.root())) << from;
   }
 }
@@ -51,9 +51,9 @@ TEST(TruthGaps, AreRefusedInEveryInterval) {
   constexpr int kLast = 50 * (AslFolder::kFrames - 1) + 50;
   for (const auto& [from, to] : {std::pair(-50, 60), {50, 160}, {kLast - 110, kLast}}) {
     const AslFolder folder;
-    cut(folder, kTruth, from, to);
+    cut(folder, kTruthTable, from, to);
     expect_input_error([&] { open_motion(folder.root()); },
-                       {kTruth, "no pose for 0.110 s", stamp(from), stamp(to)});
+                       {kTruthTable, "no pose for 0.110 s", stamp(from), stamp(to)});
   }
 }
 

@@ -17,11 +17,11 @@ using tests::Scratch;
 using tests::write_text;
 using Picture = std::map<std::string, std::string>;
 
-OutputRequest request(const fs::path& path, bool replace = false) {
+OutputRequest file_request(const fs::path& path, bool replace = false) {
   return {.option = "--json", .path = path.string(), .replace = replace};
 }
 
-void expect_refused(const OutputRequest& wanted, const std::vector<std::string>& parts) {
+void expect_file_refused(const OutputRequest& wanted, const std::vector<std::string>& parts) {
   expect_claim_refused<OutputFile>(wanted, parts);
 }
 
@@ -32,11 +32,11 @@ std::optional<std::string> write(const OutputRequest& wanted, const std::string&
 TEST(OutputFile, AppearsWholeAndIsRecorded) {
   const Scratch folder;
   {
-    OutputFile out(request(folder / "f.json"));
+    OutputFile out(file_request(folder / "f.json"));
     EXPECT_TRUE(fs::is_empty(folder.path()));
     EXPECT_FALSE(out.publish("1"));
   }
-  EXPECT_FALSE(write(request(folder / "g.json"), "2"));
+  EXPECT_FALSE(write(file_request(folder / "g.json"), "2"));
   EXPECT_EQ(read_text(folder / "f.json"), "1");
   EXPECT_EQ(picture_of(folder.path()).size(), 3u);
   EXPECT_EQ(OutputRecord::read(folder.path())->first_foreign(folder.path()), "");
@@ -44,10 +44,10 @@ TEST(OutputFile, AppearsWholeAndIsRecorded) {
 
 TEST(OutputFile, ReplacesItsOwnIfAskedAndNothingElse) {
   const Scratch folder;
-  ASSERT_FALSE(write(request(folder / "f.json"), "1"));
-  expect_refused(request(folder / "f.json"), {"--json", "exists", "--force"});
-  ASSERT_FALSE(write(request(folder / "f.json", true), "2"));
-  ASSERT_FALSE(write(request(folder / "f.json", true), "1"));
+  ASSERT_FALSE(write(file_request(folder / "f.json"), "1"));
+  expect_file_refused(file_request(folder / "f.json"), {"--json", "exists", "--force"});
+  ASSERT_FALSE(write(file_request(folder / "f.json", true), "2"));
+  ASSERT_FALSE(write(file_request(folder / "f.json", true), "1"));
   EXPECT_EQ(read_text(folder / "f.json"), "1");
   EXPECT_EQ(picture_of(folder.path()).size(), 2u);
   write_text(folder / "f.json", "3");
@@ -57,27 +57,27 @@ TEST(OutputFile, ReplacesItsOwnIfAskedAndNothingElse) {
   fs::create_symlink("mine", folder / "link");
   const Picture before = picture_of(folder.path());
   for (const bool force : {false, true}) {
-    expect_refused(request(folder / "f.json", force), {"changed since"});
-    expect_refused(request(folder / "mine", force), {"not a file that leviosim wrote"});
-    expect_refused(request(folder / "link", force), {"not a file that leviosim wrote"});
-    expect_refused(request(folder / "dir", force), {"is a folder"});
-    expect_refused(request(folder / "new/", force), {"is a folder"});
-    expect_refused(request(folder / "dangling", force), {"leads nowhere"});
-    expect_refused(request(folder / "none/f", force), {"no folder"});
-    expect_refused(request(folder / ".leviosim-files", force), {"is the record"});
-    expect_refused(request("/dev/null", force), {"no regular file"});
-    expect_refused(request("", force), {"is empty"});
+    expect_file_refused(file_request(folder / "f.json", force), {"changed since"});
+    expect_file_refused(file_request(folder / "mine", force), {"not a file that leviosim wrote"});
+    expect_file_refused(file_request(folder / "link", force), {"not a file that leviosim wrote"});
+    expect_file_refused(file_request(folder / "dir", force), {"is a folder"});
+    expect_file_refused(file_request(folder / "new/", force), {"is a folder"});
+    expect_file_refused(file_request(folder / "dangling", force), {"leads nowhere"});
+    expect_file_refused(file_request(folder / "none/f", force), {"no folder"});
+    expect_file_refused(file_request(folder / ".leviosim-files", force), {"is the record"});
+    expect_file_refused(file_request("/dev/null", force), {"no regular file"});
+    expect_file_refused(file_request("", force), {"is empty"});
   }
   EXPECT_EQ(picture_of(folder.path()), before);
 }
 
 TEST(OutputFile, NeverReplacesAnInput) {
   const Scratch folder;
-  ASSERT_FALSE(write(request(folder / "f.json"), "1"));
-  OutputRequest wanted = request(folder / "f.json", true);
+  ASSERT_FALSE(write(file_request(folder / "f.json"), "1"));
+  OutputRequest wanted = file_request(folder / "f.json", true);
   for (const fs::path& input : {folder / "f.json", folder.path(), folder / "../" / folder.path()}) {
     wanted.inputs = {input};
-    expect_refused(wanted, {"is read"});
+    expect_file_refused(wanted, {"is read"});
   }
   wanted.path = (folder / "new.json").string();  // beside what is read
   EXPECT_FALSE(write(wanted, "2"));
@@ -86,7 +86,7 @@ TEST(OutputFile, NeverReplacesAnInput) {
 TEST(OutputFile, WhatAppearsMeanwhileStays) {
   for (const bool force : {false, true}) {
     const Scratch folder;
-    OutputFile out(request(folder / "f.json", force));
+    OutputFile out(file_request(folder / "f.json", force));
     write_text(folder / "f.json", "precious");
     write_text(folder / "f-2.json", "taken");
     const std::optional<std::string> why = out.publish("1");
@@ -103,10 +103,10 @@ TEST(OutputFile, TheHiddenNameIsNotTouchedUnlessLeviosimWroteIt) {
   const Scratch folder;
   write_text(folder / ".f.json.leviosim", "x");
   const Picture before = picture_of(folder.path());
-  expect_refused(request(folder / "f.json"), {".f.json.leviosim", "in the way"});
+  expect_file_refused(file_request(folder / "f.json"), {".f.json.leviosim", "in the way"});
   EXPECT_EQ(picture_of(folder.path()), before);
   add_to_record(folder.path(), ".f.json.leviosim", state_of_bytes("x"));  // left by a kill
-  EXPECT_FALSE(write(request(folder / "f.json"), "1"));
+  EXPECT_FALSE(write(file_request(folder / "f.json"), "1"));
   EXPECT_FALSE(fs::exists(folder / ".f.json.leviosim"));
 }
 
@@ -115,7 +115,7 @@ TEST(OutputFile, ARecordIsAddedToNotReplaced) {
   write_text(folder / "x", "1");
   add_to_record(folder.path(), "x", state_of_bytes("1"));
   add_to_record(folder.path(), "x", state_of_bytes("1"));
-  ASSERT_FALSE(write(request(folder / "y"), "2"));
+  ASSERT_FALSE(write(file_request(folder / "y"), "2"));
   const OutputRecord record = OutputRecord::read(folder.path()).value();
   EXPECT_EQ(record.paths(), (std::vector<std::string>{"x", "y"}));
   EXPECT_EQ(OutputRecord::parse(read_text(folder / kRecordName), "f").text(),

@@ -21,16 +21,16 @@ using tests::Scratch;
 using tests::write_text;
 using Picture = std::map<std::string, std::string>;
 
-OutputRequest request(const fs::path& path, bool replace = false) {
+OutputRequest folder_request(const fs::path& path, bool replace = false) {
   return {.option = "--out", .path = path.string(), .replace = replace};
 }
 
-void expect_refused(const OutputRequest& wanted, const std::vector<std::string>& parts) {
+void expect_folder_refused(const OutputRequest& wanted, const std::vector<std::string>& parts) {
   expect_claim_refused<OutputFolder>(wanted, parts);
 }
 
 void write_results(const fs::path& path, const std::string& text, bool replace = false) {
-  OutputFolder out(request(path, replace));
+  OutputFolder out(folder_request(path, replace));
   out.write("a", text);
   out.write("deep/b", "b");
   EXPECT_FALSE(out.commit());
@@ -48,7 +48,7 @@ int in_child(const std::function<int()>& run) {
 TEST(OutputFolder, AppearsWholeOrNotAtAll) {
   const Scratch folder;
   {
-    OutputFolder out(request(folder / "new/out/"));
+    OutputFolder out(folder_request(folder / "new/out/"));
     out.write("a", "1");
     EXPECT_FALSE(fs::exists(folder / "new/out"));
     EXPECT_FALSE(out.commit());
@@ -57,7 +57,7 @@ TEST(OutputFolder, AppearsWholeOrNotAtAll) {
   EXPECT_EQ(OutputRecord::read(folder / "new/out")->first_foreign(folder / "new/out"), "");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "new"), {}), 1);
   {
-    OutputFolder out(request(folder / "other/deep/out"));
+    OutputFolder out(folder_request(folder / "other/deep/out"));
     out.write("x/y", "1");
   }
   EXPECT_FALSE(fs::exists(folder / "other"));
@@ -75,9 +75,10 @@ TEST(OutputFolder, TakesAnEmptyFolderAndOneThroughALink) {
 TEST(OutputFolder, ReplacesItsOwnIfAsked) {
   const Scratch folder;
   write_results(folder / "out", "1");
-  expect_refused(request(folder / "out"), {"--out", "exists and holds results", "--force"});
+  expect_folder_refused(folder_request(folder / "out"),
+                        {"--out", "exists and holds results", "--force"});
   {
-    OutputFolder out(request(folder / "out", true));
+    OutputFolder out(folder_request(folder / "out", true));
     out.write("c", "3");
     EXPECT_EQ(read_text(folder / "out/a"), "1");
     EXPECT_FALSE(out.commit());
@@ -92,7 +93,8 @@ TEST(OutputFolder, RefusesWhatItDidNotWrite) {
   const Scratch folder;
   const auto expect_kept = [&](const std::string& name, const std::string& part) {
     const Picture before = picture_of(folder.path());
-    for (const bool force : {false, true}) expect_refused(request(folder / name, force), {part});
+    for (const bool force : {false, true})
+      expect_folder_refused(folder_request(folder / name, force), {part});
     EXPECT_EQ(picture_of(folder.path()), before);
   };
   write_text(folder / "foreign/manifest.json", "{}");
@@ -117,17 +119,17 @@ TEST(OutputFolder, RefusesWhatItDidNotWrite) {
   write_text(folder / "broken/x", "");
   expect_kept("broken", ".leviosim-files:1");
   expect_kept(std::string(300, 'x'), "too long");
-  expect_refused(request(""), {"--out", "is empty"});
+  expect_folder_refused(folder_request(""), {"--out", "is empty"});
 }
 
 TEST(OutputFolder, NeverReplacesAnInput) {
   const Scratch folder;
   write_results(folder / "out", "1");
-  OutputRequest wanted = request(folder / "out", true);
+  OutputRequest wanted = folder_request(folder / "out", true);
   for (const char* input : {"out", "out/a", "out/deep/../deep", "link"}) {
     if (std::string(input) == "link") fs::create_symlink("out/deep", folder / "link");
     wanted.inputs = {folder / "none", folder / input};
-    expect_refused(wanted, {"holds", input, "is read"});
+    expect_folder_refused(wanted, {"holds", input, "is read"});
   }
   wanted.inputs = {folder / "none", {}, folder.path()};
   EXPECT_NO_THROW(OutputFolder{wanted});
@@ -135,17 +137,17 @@ TEST(OutputFolder, NeverReplacesAnInput) {
 
 TEST(OutputFolder, OneProcessAtATime) {
   const Scratch folder;
-  const OutputFolder out(request(folder / "out"));
-  expect_refused(request(folder / "out"),
-                 {fmt::format("another leviosim (process {}) is writing it", ::getpid())});
-  EXPECT_NO_THROW(OutputFolder(request(folder / "other")));
+  const OutputFolder out(folder_request(folder / "out"));
+  expect_folder_refused(folder_request(folder / "out"),
+                        {fmt::format("another leviosim (process {}) is writing it", ::getpid())});
+  EXPECT_NO_THROW(OutputFolder(folder_request(folder / "other")));
 }
 
 TEST(OutputFolder, RemovesWhatADeadProcessLeft) {
   const Scratch folder;
   const auto die_while_writing = [&] {
     return in_child([&]() -> int {
-      OutputFolder out(request(folder / "out"));
+      OutputFolder out(folder_request(folder / "out"));
       out.write("deep/b", "1");
       return ::kill(::getpid(), SIGKILL);
     });
@@ -160,7 +162,7 @@ TEST(OutputFolder, RemovesWhatADeadProcessLeft) {
   ASSERT_EQ(die_while_writing(), 128 + SIGKILL);
   write_text(folder / ".out.leviosim/deep/mine", "x");
   const Picture before = picture_of(folder.path());
-  expect_refused(request(folder / "out"), {".out.leviosim", "deep/mine", "by hand"});
+  expect_folder_refused(folder_request(folder / "out"), {".out.leviosim", "deep/mine", "by hand"});
   EXPECT_EQ(picture_of(folder.path()), before);
 }
 
@@ -170,16 +172,16 @@ TEST(OutputFolder, AFolderOfTheHiddenNameIsNotTouched) {
   write_text(folder / ".file.leviosim", "x");
   fs::create_symlink(folder.path(), folder / ".link.leviosim");
   const Picture before = picture_of(folder.path());
-  expect_refused(request(folder / "out"), {".out.leviosim", "mine"});
-  expect_refused(request(folder / "file"), {".file.leviosim", "in the way"});
-  expect_refused(request(folder / "link"), {".link.leviosim", "in the way"});
+  expect_folder_refused(folder_request(folder / "out"), {".out.leviosim", "mine"});
+  expect_folder_refused(folder_request(folder / "file"), {".file.leviosim", "in the way"});
+  expect_folder_refused(folder_request(folder / "link"), {".link.leviosim", "in the way"});
   EXPECT_EQ(picture_of(folder.path()), before);
 }
 
 TEST(OutputFolder, WhatAppearsMeanwhileStaysAndTheResultsGoBeside) {
   for (const bool force : {false, true}) {
     const Scratch folder;
-    OutputFolder out(request(folder / "out", force));
+    OutputFolder out(folder_request(folder / "out", force));
     out.write("a", "1");
     write_text(folder / "out/precious", "x");
     write_text(folder / "out-2", "taken");
@@ -197,7 +199,7 @@ TEST(OutputFolder, NotesPutIntoOldResultsMeanwhileStay) {
   const Scratch folder;
   write_results(folder / "out", "1");
   {
-    OutputFolder out(request(folder / "out", true));
+    OutputFolder out(folder_request(folder / "out", true));
     out.write("a", "2");
     write_text(folder / "out/notes", "x");
     EXPECT_TRUE(out.commit());
@@ -227,9 +229,9 @@ TEST(OutputFolder, AFullDiskIsToldAtOnce) {
   fs::create_directory(folder / "small");
   if (::mount("none", (folder / "small").c_str(), "tmpfs", 0, "size=128k") != 0)
     GTEST_SKIP() << "no file system of its own can be mounted here";
-  expect_refused(request(folder / "small/out"),
-                 {(folder / "small/out").string() + ":", "No space left on device"});
-  expect_refused(request(folder / "small"), {"choose a folder in it"});
+  expect_folder_refused(folder_request(folder / "small/out"),
+                        {(folder / "small/out").string() + ":", "No space left on device"});
+  expect_folder_refused(folder_request(folder / "small"), {"choose a folder in it"});
   EXPECT_TRUE(fs::is_empty(folder / "small"));
   ::umount((folder / "small").c_str());
 }
