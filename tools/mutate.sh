@@ -149,7 +149,7 @@ run_tests() { # run_tests FOLDER FILTER; logs are $copy/logs/N.txt
   rm -rf "$copy/logs" && mkdir -p "$copy/logs"
   for ((part = 0; part < jobs; ++part)); do
     (
-      ulimit -v 40000000 -c 0
+      ulimit -S -v 40000000 -c 0  # browsers raise it
       GTEST_SHARD_INDEX=$part exec timeout -s KILL "$limit" "$binary/tests/leviosim_$1_tests" \
         --gtest_fail_fast --gtest_filter="$2"
     ) >"$copy/logs/$part.txt" 2>&1 &

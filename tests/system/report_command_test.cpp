@@ -156,8 +156,10 @@ class InBrowser : public Report {
           document.body.setAttribute("title", JSON.stringify(told.data)));</script>
           <iframe src="told.html" style="border:0;width:{}px;height:900px"></iframe>)",
         width);
+    // Browsers reserve more addresses than tools/mutate.sh grants the tests.
     const std::string command = fmt::format(
-        "timeout 240 {} --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage "
+        "ulimit -v unlimited; timeout 240 {} --headless=new --no-sandbox --disable-gpu "
+        "--disable-dev-shm-usage "
         "--no-first-run --disable-background-networking --user-data-dir='{}' "
         "--blink-settings=preferredColorScheme={} --window-size=1400,1000 "
         "--enable-logging=stderr --virtual-time-budget=5000 --dump-dom 'file://{}' >'{}' 2>'{}'",
