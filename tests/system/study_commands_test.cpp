@@ -1,6 +1,8 @@
 // validate, calibrate and sensitivity as users meet them.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "platform_models/loader/loader.h"
 #include "tests/support/run_program.h"
 #include "traces/synthesis/synthetic.h"
@@ -111,9 +113,14 @@ TEST_F(StudyCommands, RunOnASyntheticFlight) {
   EXPECT_NE(swept.out.find("isa.instruction_overhead"), std::string::npos);
   EXPECT_TRUE(fs::exists(work / "sweep.csv"));
 
+  ::setenv("COLUMNS", "60", 1);
   const ProgramResult fitted =
       run_program(work.path(), words({"calibrate", "--yaml", path("fitted.yaml")}));
+  ::unsetenv("COLUMNS");
   EXPECT_EQ(fitted.status, 0) << fitted.err;
+  std::string rule;
+  for (int i = 0; i < 61; ++i) rule += "─";
+  EXPECT_EQ(fitted.out.find(rule), std::string::npos) << "a table of more than 60 columns";
   EXPECT_NE(fitted.out.find("left out"), std::string::npos);
   bool calibrated = false;
   for (const platform::Parameter& p : platform::resolve_platform(path("fitted.yaml")).parameters)
