@@ -3,19 +3,21 @@
 # their seeds, runs each for a while and shows a table. Exit status 0 if nothing was found, else 1
 # with the path of the input that found something.
 #   tools/fuzz.sh [--seconds N] [--light] [TARGET...]   N seconds for each target, 60 by default
-# --light leaves out sweep_plan, which needs the whole program and takes as long to build as all others.
+# --light leaves out those that need most of the program: baseline, budget and sweep_plan take as long to
+# build as all others.
 # What a target learns stays in build/fuzz/corpus and serves the next time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-all=(asl_tables evaluation image overrides platform_yaml sensor_yaml sweep_plan work_trace
-  work_trace_content)
+all=(asl_tables baseline budget evaluation image overrides platform_yaml sensor_yaml sweep_plan
+  work_trace work_trace_content)
+light=(asl_tables evaluation image overrides platform_yaml sensor_yaml work_trace work_trace_content)
 seconds=60
 targets=()
 while (($# > 0)); do
   case $1 in
     --light)
-      all=("${all[@]/sweep_plan/}")
+      all=("${light[@]}")
       shift
       ;;
     --seconds)

@@ -10,6 +10,7 @@
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/report/text_table.h"
 #include "tools/commands/ablate_command.h"
 #include "tools/commands/budget_command.h"
 #include "tools/commands/calibrate_command.h"
@@ -90,5 +91,7 @@ int run_program(const Words& words) {
 
 int main(int argc, char** argv) {
   const leviosim::tools::DeferredInterrupts deferred;
+  if (const auto width = leviosim::tools::terminal_width())
+    leviosim::tools::set_table_width(*width);
   return leviosim::tools::run_program(leviosim::tools::Words(argv + 1, argv + argc));
 }

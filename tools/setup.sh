@@ -13,7 +13,7 @@ packages=(
   libsqlite3-dev                                              # results of sweeps
   parallel                                                    # an example of sweeps, tested
   libjs-chart.js                                              # charts of reports, embedded
-  libgtest-dev libexpat1-dev                                  # tests
+  libgtest-dev libexpat1-dev libxml2-utils                    # tests
   chromium                                                    # tests of pages (120 MB, half a minute)
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
 )

@@ -2,7 +2,7 @@
 # Builds everything, runs every test, and checks the pages and their figures; what CI calls. Exit
 # status 0 only if all is well.
 #   tools/test.sh           release build (GCC), reproducibility over compilers, all tests
-#                           and 20 s of each fuzz target but sweep_plan
+#                           and 20 s of each light fuzz target
 #   tools/test.sh --fast    only the program and its quick tests (ctest -L unit), and the pages
 #   tools/test.sh --asan    all tests under address and undefined-behaviour sanitizers
 #   tools/test.sh --tsan    tests of what runs in threads (sweeps, batches, drawing) under the

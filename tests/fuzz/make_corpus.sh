@@ -8,12 +8,30 @@ mkdir -p "$2"
 folder=$(realpath "$2")
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables; do
+for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables budget baseline; do
   mkdir -p "$folder/$target"
 done
 "$seeds" "$folder"
 
 cp platform_models/chips/*.yaml "$folder/platform_yaml"
+cp tools/ci/*.json "$folder/baseline"
+cp tools/ci/budgets.yaml "$folder/budget/project"
+cat >"$folder/budget/forms" <<'END'
+budgets:
+  - name: levio on gap9
+    platform: gap9*
+    profile: levio
+    owner: front end
+    limits:
+      - frame latency p99 <= 45 ms
+      - limit: L1 peak <= 110 kB
+        reason: the rest of L1 is the radio's
+      - stage: "*RANSAC"
+        limit: cycles <= +3 %
+      - stages.*.memory.parallel <= -1 KiB
+      - ATE >= 0.1 m
+      - missed <= 1 %
+END
 cat >"$folder/overrides/some" <<'END'
 cluster.clock=240MHz
 cluster.workers=4

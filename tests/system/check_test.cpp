@@ -1,6 +1,8 @@
 // check, budget, and --budget as users and CI servers meet them; the project's own budgets.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "tests/support/paths.h"
 #include "tests/support/program_suite.h"
 #include "tests/tools/junit_schema.h"
@@ -68,6 +70,57 @@ TEST_F(Check, AStageThatBecameSlowerEndsWithStatusOneAndSaysWhy) {
   const std::string junit = base::read_text_file(path("junit.xml"));
   EXPECT_EQ(junit_fault(junit), "");
   expect_holds(junit, {"failures=\"1\"", "popcount"});
+}
+
+/// What xmllint says against a JUnit file (junit.xsd); empty if it is as CI servers read it.
+std::string schema_fault(const std::string& file) {
+  const fs::path schema = tests::source_folder() / "tests/system/junit.xsd";
+  const std::string said = file + ".said";
+  const int status = std::system(  // NOLINT: the command is the test's own
+      fmt::format("xmllint --noout --nonet --schema '{}' '{}' 2>'{}'", schema.string(), file, said)
+          .c_str());
+  const std::string text = base::read_text_file(said);
+  if (WEXITSTATUS(status) == 127)
+    return "xmllint is missing; tools/setup.sh installs it (package libxml2-utils): " + text;
+  return status == 0 ? std::string() : text;
+}
+
+TEST_F(Check, JUnitIsAsItsSchemaSays) {
+  const std::string odd =
+      write("odd & <b>.yaml",
+            "budgets:\n"
+            "  - name: \"a&b <c> \\\"d\\\" 'e' \\x07\\e[1m \\u2028 \\uFFFF ]]> --> \\u00e9\"\n"
+            "    owner: \"<&>\\x01\"\n"
+            "    reason: \"]]> \\t \\n <!-- \\u202e\"\n"
+            "    limits:\n"
+            "      - L1 peak <= 1 kB\n"
+            "      - stage: \"*\"\n"
+            "        limit: cycles <= 1 cycles\n"
+            "  - name: \"\"\n"
+            "    limits: [L1 peak <= 1 MB]\n");
+  const std::string tight = write("tight.yaml", "budgets:\n  - limits: [L1 peak <= 1 kB]\n");
+  const std::string junit = path("schema.xml");
+  for (const std::string& budget : {path("budgets.yaml"), tight, odd}) {
+    const ProgramResult result =
+        program({"check", path("run"), "--budget", budget, "--quiet", "--force", "--junit", junit});
+    EXPECT_EQ(result.status, budget == path("budgets.yaml") ? 0 : 1) << result.err;
+    EXPECT_EQ(schema_fault(junit), "") << base::read_text_file(junit);
+    EXPECT_EQ(junit_fault(base::read_text_file(junit)), "");
+  }
+  expect_holds(base::read_text_file(junit), {"a&amp;b &lt;c&gt; &quot;d&quot; 'e' \\x07\\x1b[1m"});
+  const std::string good = base::read_text_file(junit);
+  for (const auto& [before, after] :
+       std::vector<std::pair<std::string, std::string>>{{" skipped=\"0\"", ""},
+                                                        {" time=\"0\"", " time=\"soon\""},
+                                                        {" classname=", " class="},
+                                                        {"<failure type=\"limit\"", "<failure"},
+                                                        {"<testsuite ", "<suite "},
+                                                        {"&amp;", "&"}}) {
+    std::string bad = good;
+    const auto at = bad.find(before);
+    ASSERT_NE(at, std::string::npos) << before;
+    EXPECT_NE(schema_fault(write("bad.xml", bad.replace(at, before.size(), after))), "") << after;
+  }
 }
 
 TEST_F(Check, RunAndReplayHoldABudgetToo) {

@@ -92,6 +92,55 @@ TEST_F(PrintoutTest, TablesAreChosenByName) {
   EXPECT_FALSE(fs::exists(path("none")));
 }
 
+/// Every command that prints tables prints them within the terminal, and all of them elsewhere.
+TEST_F(PrintoutTest, TablesFitTheTerminal) {
+  const std::string run_folder = path("run"), flight = path("flight");
+  base::write_file_atomically(folder_ / "tables.yaml",
+                              "base: { trace: run }\n"
+                              "points: { grid: { platform.cluster.clock: [200MHz, 240MHz],\n"
+                              "  platform.controller.clock: [200MHz],\n"
+                              "  platform.cluster.dma.bytes_per_cycle: [4] } }\n");
+  base::write_file_atomically(folder_ / "tables-budgets.yaml",
+                              "budgets:\n  - limits: [frame latency p99 <= 1 ms]\n");
+  const std::string few =
+      fmt::format(" --data {} --frames 0:30 --seed 1 --quiet --cache {}", flight, path("cache"));
+  const std::string chip = fmt::format(" --data {} --frames 0:8 --quiet", flight);
+  for (const std::string& words :
+       {fmt::format("replay {} --quiet --force --out {} --tables all", run_folder, path("shown")),
+        fmt::format("eval {0}/trajectory.tum {1} --relative 0.0001", run_folder, flight),
+        fmt::format("eval {0}/trajectory.tum {1} --relative 0.0001 --also {0}", run_folder, flight),
+        fmt::format("compare {0} {0}", run_folder),
+        fmt::format("check {} --budget {}", run_folder, path("tables-budgets.yaml")),
+        fmt::format("trace info {}/work.trace", run_folder), std::string("workload"),
+        std::string("microbench"), std::string("platforms diff gap8 gap9"),
+        "platforms feasibility gap8 gap9" + chip, "platforms stages gap9 gap9-eigen" + chip,
+        "platforms systems" + chip, "validate" + chip, "sensitivity" + chip,
+        fmt::format("flow --platform gap8 --data {} --quiet --force --out {}", flight,
+                    path("shown-flow")),
+        fmt::format("sweep {} --quiet --cache {} --out {} --budget {}", path("tables.yaml"),
+                    path("cache"), path("shown-sweep"), path("tables-budgets.yaml")),
+        fmt::format("tune{} --clock 200,300 --fps 10 --ate 1000 --miss-rate 1", few),
+        fmt::format("ablate{} --size 32x24 --relative 0.0001 --force --out {}", few,
+                    path("shown-ablate")),
+        fmt::format("explore{} --size 32x24 --points 1 --relative 0.0001 --force --out {}", few,
+                    path("shown-explore"))}) {
+    const std::vector<std::string> lines =
+        lines_of(on_terminal(fmt::format("$L {} || [ $? = 1 ]", words)));  // 1: a limit is not met
+    int tables = 0;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      if (!lines[i].starts_with("─")) continue;
+      ++tables;
+      for (std::size_t row = i - 1; row <= i; ++row)  // with the terminal's carriage return
+        EXPECT_LE(display_width(lines[row]), 71) << words << ":\n" << lines[row];
+    }
+    EXPECT_GT(tables, 0) << words;
+  }
+  std::string wide;
+  for (const std::string& line : lines_of(run({"microbench"}).out))
+    if (line.starts_with("─") && line.size() > wide.size()) wide = line;
+  EXPECT_GT(display_width(wide), 80) << "not a terminal";
+}
+
 /// Every command that prints results prints a document that says what it is, and nothing else.
 TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
   const ProgramResult replayed = replay("json", {"--json"});

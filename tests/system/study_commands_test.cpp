@@ -1,6 +1,8 @@
 // validate, calibrate and sensitivity as users meet them.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "platform_models/loader/loader.h"
 #include "tests/support/run_program.h"
 #include "traces/synthesis/synthetic.h"
@@ -50,6 +52,27 @@ TEST_F(StudyCommands, RefuseConstantsThatMustNotBeFitted) {
                  {"isa.instruction_overhead", "no range"});
 }
 
+/// Chips that are worse than the program's own, in a unit and in a row that is known to be missed.
+TEST_F(StudyCommands, MicrobenchFailsWhereARowIsBeyondItsToleranceOrItsGuard) {
+  EXPECT_EQ(run_program(folder_.path(), {"microbench"}).status, 0);
+  const ProgramResult divider =
+      run_program(folder_.path(), {"microbench", "-p", "cluster.fpu.dividers=2"});
+  EXPECT_EQ(divider.status, 1) << divider.err;
+  EXPECT_NE(divider.out.find("warning: shared units, fp32 div, cores 8: error -"),
+            std::string::npos)
+      << divider.out;
+  EXPECT_NE(divider.out.find("beyond its tolerance of 5 %"), std::string::npos) << divider.out;
+  const ProgramResult loads =
+      run_program(folder_.path(), {"microbench", "--platform", "gap8", "-p",
+                                   "isa.load_use_fraction=0.4", "--csv", path("rows.csv")});
+  EXPECT_EQ(loads.status, 1) << loads.err;
+  EXPECT_NE(loads.out.find("warning: 2x2 average pool 112x112, scalar, cores 1: error +"),
+            std::string::npos)
+      << loads.out;
+  EXPECT_NE(loads.out.find("beyond its guard of 23 %"), std::string::npos) << loads.out;
+  EXPECT_NE(base::read_text_file(folder_ / "rows.csv").find(",worse,"), std::string::npos);
+}
+
 TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
   base::write_file_atomically(folder_ / "mine.yaml", "mine");
   fs::create_directory(folder_ / "folder");
@@ -90,9 +113,14 @@ TEST_F(StudyCommands, RunOnASyntheticFlight) {
   EXPECT_NE(swept.out.find("isa.instruction_overhead"), std::string::npos);
   EXPECT_TRUE(fs::exists(work / "sweep.csv"));
 
+  ::setenv("COLUMNS", "60", 1);
   const ProgramResult fitted =
       run_program(work.path(), words({"calibrate", "--yaml", path("fitted.yaml")}));
+  ::unsetenv("COLUMNS");
   EXPECT_EQ(fitted.status, 0) << fitted.err;
+  std::string rule;
+  for (int i = 0; i < 61; ++i) rule += "─";
+  EXPECT_EQ(fitted.out.find(rule), std::string::npos) << "a table of more than 60 columns";
   EXPECT_NE(fitted.out.find("left out"), std::string::npos);
   bool calibrated = false;
   for (const platform::Parameter& p : platform::resolve_platform(path("fitted.yaml")).parameters)

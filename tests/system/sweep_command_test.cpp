@@ -246,9 +246,78 @@ TEST_F(SweepCommand, LivePointsHaveTheAccuracyOfTheirRun) {
   request.frames = traces::FrameRange{0, 6};
   request.workload = {{vio::find_parameter("workload.window"), 4}};
   const RunResult run = simulate(request, [](const Progress&) {});
-  SweepStore store(folder_ / "live");
-  ASSERT_TRUE(run.ate);
-  EXPECT_EQ(store.outcomes().at(0).objectives[3], run.ate->translation.rmse);
+  {
+    SweepStore store(folder_ / "live");
+    ASSERT_TRUE(run.ate);
+    EXPECT_EQ(store.outcomes().at(0).objectives[3], run.ate->translation.rmse);
+  }
+  const ProgramResult compared =
+      run_program(folder_, {"compare", path("live:1"), path("live:2"), "--quiet"});
+  ASSERT_EQ(compared.status, 0) << compared.err;
+  for (const char* part : {"live:2: levio, workload.window=6 on gap9", "frames 0:6",
+                           "note: workload parameters: workload.window=4 in A"})
+    EXPECT_NE(compared.out.find(part), std::string::npos) << compared.out;
+}
+
+/// Points are compared as the replays that they stand for are.
+TEST_F(SweepCommand, PointsAreComparedLikeReplaysOfTheirChips) {
+  const auto compare = [](std::vector<std::string> words) {
+    words.insert(words.begin(), "compare");
+    words.emplace_back("--quiet");
+    return run_program(folder_, words);
+  };
+  for (const char* units : {"1", "4"}) {
+    const ProgramResult replayed = run_program(
+        folder_, {"replay", path("recorded"), "-p", "cluster.clock=200MHz", "-p",
+                  fmt::format("cluster.fpu.units={}", units), "-p", "cluster.dma.bytes_per_cycle=4",
+                  "--quiet", "--out", path(fmt::format("units-{}", units))});
+    ASSERT_EQ(replayed.status, 0) << replayed.err;
+  }
+  const std::string a = path("whole:1"), b = path("whole:3");
+  const ProgramResult points = compare({a, b, "--format", "csv"});
+  ASSERT_EQ(points.status, 0) << points.err;
+  EXPECT_EQ(points.out, compare({path("units-1"), path("units-4"), "--format", "csv"}).out);
+  for (const char* format : {"text", "markdown", "json"}) {
+    const ProgramResult result =
+        compare({a, b, "--format", format, "--force", "--report", path("points.html")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("cluster.fpu.units=4"), std::string::npos) << result.out;
+    EXPECT_NE(base::read_text_file(folder_ / "points.html").find("whole:3"), std::string::npos);
+  }
+  EXPECT_EQ(compare({path("units-1"), b}).status, 0);
+
+  testing::expect_refused(compare({a, path("whole:10")}), {"whole:10", "from 1 to 9"});
+  testing::expect_refused(compare({a, path("whole:x")}), {"whole:x", "from 1 to 9"});
+  testing::expect_refused(compare({a, path("whole")}), {"is a sweep", "whole:1 to ", "whole:9"});
+  testing::expect_refused(compare({a, path("nowhere:1")}), {"nowhere:1", "does not exist"});
+  testing::expect_refused(compare({a}), {"only", "whole:1"});
+  testing::expect_refused(compare({a, b, "-p", "cluster.l1.banks=8"}), {"whole:1", "has its chip"});
+  testing::expect_refused(compare({a, path("whole:9")}), {"L1"});  // too small
+}
+
+TEST_F(SweepCommand, PointsMoveWithTheirPlanAndAreRefusedAfterItsTraceHasChanged) {
+  fs::create_directory(folder_ / "before");
+  fs::copy(folder_ / "recorded", folder_ / "before/recorded");
+  base::write_file_atomically(folder_ / "before/plan.yaml",
+                              "base: { trace: recorded }\n"
+                              "points: { grid: { platform.cluster.clock: [200, 240] } }\n");
+  ASSERT_EQ(run_program(folder_, {"sweep", path("before/plan.yaml"), "--out", path("before/swept"),
+                                  "--quiet", "--cache", path("cache-moved")})
+                .status,
+            0);
+  fs::rename(folder_ / "before", folder_ / "after");
+  const std::vector<std::string> words{"compare", path("after/swept:1"), path("after/swept:2"),
+                                       "--quiet"};
+  const ProgramResult moved = run_program(folder_, words);
+  EXPECT_EQ(moved.status, 0) << moved.err;
+  ASSERT_EQ(
+      run_program(folder_, {"run", "--platform", "gap9", "--data", path("flight"), "--record",
+                            "--seed", "2", "--out", path("after/recorded"), "--quiet", "--force"})
+          .status,
+      0);
+  testing::expect_refused(run_program(folder_, words), {"swept:1", "has changed", "--force"});
+  fs::remove_all(folder_ / "after/recorded");
+  testing::expect_refused(run_program(folder_, words), {"recorded"});
 }
 
 TEST_F(SweepCommand, SlurmArraysMakeOneRun) {

@@ -57,14 +57,57 @@ TEST(TextTable, LeavesOutColumnsThatDoNotFit) {
   };
   EXPECT_EQ(table.str(19), table.str());
   EXPECT_EQ(titles(19), "name    a    b    c");
-  EXPECT_EQ(titles(18), "name    a    b");
-  EXPECT_EQ(titles(13), "name    b");
-  EXPECT_EQ(titles(8), "name");
-  EXPECT_EQ(titles(1), "name") << "the first column stays";
+  EXPECT_EQ(titles(18), "name    a    b …");
+  EXPECT_EQ(titles(15), "name    b …");
+  EXPECT_EQ(titles(8), "name …");
+  EXPECT_EQ(titles(5), "na… …") << "the first column stays";
+  EXPECT_EQ(titles(1), "… …");
   EXPECT_EQ(table.str(13),
-            "name    b\n"
+            "name    b …\n"
             "─────────\n"
             "x     200\n");
+}
+
+TEST(TextTable, CutsLongTextBeforeItLeavesOutColumns) {
+  const std::string text = "a text of thirty-two characters.";
+  TextTable table({{"name", kLeft}, {"a"}, {"text", kLeft}});
+  table.add({"x", "100", text});
+  EXPECT_EQ(table.str(43), table.str());
+  EXPECT_EQ(table.str(42),
+            "name    a  text\n"
+            "──────────────────────────────────────────\n"
+            "x     100  a text of thirty-two character…\n");
+  const std::string least = table.str(31);
+  EXPECT_NE(least.find("x     100  a text of thirty-tw…\n"), std::string::npos) << least;
+  EXPECT_EQ(table.str(30),
+            "name    a …\n"
+            "─────────\n"
+            "x     100\n");
+}
+
+TEST(TextTable, CutsNamesOfRowsToHalfOfTheWidthOnly) {
+  TextTable table({{"text", kLeft}, {"a"}});
+  table.add({"a text of thirty-two characters.", "100"});
+  EXPECT_EQ(table.str(29),
+            "text                        a\n"
+            "─────────────────────────────\n"
+            "a text of thirty-two ch…  100\n");
+  EXPECT_EQ(table.str(24),
+            "text …\n"
+            "────────────────────\n"
+            "a text of thirty-tw…\n");
+}
+
+TEST(TextTable, HasTheWidthOfTheProgramWhereNoneIsAskedFor) {
+  TextTable table({{"name", kLeft}, {"a"}});
+  table.add({"x", "100"});
+  const std::string whole = table.str(kAnyWidth);
+  EXPECT_EQ(table.str(), whole);
+  set_table_width(8);
+  const std::string narrow = table.str();
+  set_table_width(kAnyWidth);
+  EXPECT_EQ(narrow, table.str(8));
+  EXPECT_NE(narrow, whole);
 }
 
 TEST(Tables, FitTheWidth) {

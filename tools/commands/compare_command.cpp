@@ -13,6 +13,7 @@
 #include "tools/app/comparison/record_source.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
+#include "tools/app/study/sweep/compared_point.h"
 
 namespace leviosim::tools {
 namespace {
@@ -24,6 +25,17 @@ struct CompareOptions : RecordOptions {
   bool json = false;
   std::string report;
 };
+
+ReportedRun reported(const std::string& run, const CompareOptions& options) {
+  ReportedRun result;
+  const std::optional<PointName> point = point_name(run);
+  if (point && options.names_chip())
+    throw InputError(fmt::format(
+        "{}: a point of a sweep has its chip; leave out --platform, -p and --cores", run));
+  result.record =
+      point ? read_point(*point, options, &result.files) : read_record(run, options, &result.files);
+  return result;
+}
 
 /// All runs that are compared with the first. One run with a chip is compared with itself there.
 std::vector<ReportedRun> records(const CompareOptions& options) {
@@ -39,21 +51,20 @@ std::vector<ReportedRun> records(const CompareOptions& options) {
     as_recorded.overrides.clear();
     as_recorded.cores.clear();
     const std::string trace = trace_of(options.runs.front());
-    RunFiles files;
-    RunRecord record = trace.empty() ? read_record(options.runs.front(), options, &files)
-                                     : replay_record(trace, as_recorded, &files);
-    list.push_back({std::move(record), std::move(files)});
+    if (trace.empty()) {
+      list.push_back(reported(options.runs.front(), options));
+    } else {
+      ReportedRun recorded;
+      recorded.record = replay_record(trace, as_recorded, &recorded.files);
+      list.push_back(std::move(recorded));
+    }
   }
-  for (const std::string& run : options.runs) {
-    RunFiles files;
-    RunRecord record = read_record(run, options, &files);
-    list.push_back({std::move(record), std::move(files)});
-  }
+  for (const std::string& run : options.runs) list.push_back(reported(run, options));
   return list;
 }
 
 void run(const CLI::App& command, const CompareOptions& options) {
-  require(command, "RUN", "two or more run folders or work traces");
+  require(command, "RUN", "two or more run folders, work traces or points of sweeps (SWEEP:3)");
   if (options.json && command.count("--format") > 0)
     throw InputError("compare: --json is --format json; leave out one");
   const ReportFormat format =
@@ -80,7 +91,9 @@ Command add_compare_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("compare", "Show what differs between runs, and why, by mechanism");
   const auto options = std::make_shared<CompareOptions>();
-  command->add_option("RUN", options->runs, "run folders or work traces; each against the first");
+  command->add_option("RUN", options->runs,
+                      "run folders, work traces, or points of sweeps (SWEEP:3); each against the "
+                      "first");
   command->add_option("--allow", options->allow, "differences of the input that are meant")
       ->type_name("data,frames,profile,seed,size");
   command->add_option("--format", options->format, "text, markdown, json or csv [text]")
@@ -90,7 +103,8 @@ Command add_compare_command(CLI::App& app) {
   command->add_flag("--force", options->force, "replace that file");
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim compare recorded one-fpu",
-                          "leviosim compare recorded -p cluster.fpu.dividers=2 --format markdown"});
+                          "leviosim compare recorded -p cluster.fpu.dividers=2 --format markdown",
+                          "leviosim compare swept:1 swept:3"});
   return {command, [=] { run(*command, *options); }};
 }
 

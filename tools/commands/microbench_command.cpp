@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 #include <string_view>
 
 #include "platform_models/loader/loader.h"
+#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/report/table_document.h"
@@ -49,6 +51,9 @@ void run(const MicrobenchOptions& options) {
           printout(
               options.json, [&] { return tables; },
               [&] { return table_document("microbenchmarks", microbench_csv(rows)); }));
+  if (std::any_of(rows.begin(), rows.end(),
+                  [](const MicrobenchRow& row) { return row.verdict() == Verdict::Worse; }))
+    throw LimitNotMet();
 }
 
 }  // namespace

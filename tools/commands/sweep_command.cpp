@@ -181,6 +181,7 @@ void run_plan(const SweepWords& words) {
   if (words.force) out.empty();
   const auto begin = std::chrono::steady_clock::now();
   SweepStore store(out.path(), plan.text, expansion.points);
+  store.keep_place(words.plan);
   const Tally tally =
       run_points({plan, expansion, inputs}, chosen, store, options, budget.has_value());
   const std::optional<std::string> elsewhere = store.publish(out.csv());

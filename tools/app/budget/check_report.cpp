@@ -52,7 +52,7 @@ std::string check_text(const CheckResult& result) {
   std::string text = fmt::format("{} against {}: {}, {} not met\n", printable(result.run),
                                  printable(result.budget), count, result.missed());
   if (!result.baseline.empty()) text += fmt::format("baseline: {}\n", printable(result.baseline));
-  TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"margin"}});
+  TextTable table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
     table.add({f.met ? "met" : "NOT MET", shortened(f.title(), kWidest),
                f.value ? figure_text(*f.value, f.unit) : "–", margin(f)});

@@ -54,15 +54,18 @@ void print_result_text(std::string_view text) {
   if (std::fwrite(safe.data(), 1, safe.size(), stdout) < safe.size()) fail(errno);
 }
 
-int output_width() {
+std::optional<int> terminal_width() {
   const std::string_view asked = variable("COLUMNS");
   int columns = 0;
   std::from_chars(asked.data(), asked.data() + asked.size(), columns);
   if (columns > 0) return columns;
   winsize size{};
   if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
-  return kWidthByDefault;
+  if (::isatty(STDOUT_FILENO) == 1) return kWidthByDefault;
+  return std::nullopt;
 }
+
+int output_width() { return terminal_width().value_or(kWidthByDefault); }
 
 std::string coloured_lines(std::string_view text) {
   std::string coloured;

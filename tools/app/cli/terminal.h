@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,8 +24,10 @@ void print_result(fmt::format_string<Args...> format, Args&&... args) {
   print_result_text(fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// Columns that text on stdout may take: those of the terminal, 80 where it is none. COLUMNS in the
-/// environment takes precedence.
+/// Columns of the terminal that stdout is, 80 where it does not say; nothing for files and pipes.
+/// COLUMNS in the environment takes precedence.
+std::optional<int> terminal_width();
+/// The same for what is made for a screen wherever it goes: 80 for files and pipes, too.
 int output_width();
 
 /// Lines that say whether all is well, in colour: "verdict: …" and "warning: …".

@@ -274,17 +274,6 @@ class Writer {
 
 }  // namespace
 
-std::string shortened(const std::string& text, int width) {
-  if (display_width(text) <= width) return text;
-  std::string shorter;
-  for (const char c : text) {
-    const bool begins = (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
-    if (begins && display_width(shorter) >= width - 1) break;
-    shorter += c;
-  }
-  return shorter + "…";
-}
-
 std::string part_label(const std::string& name) {
   const std::string_view meaning = describe_mechanism(name);
   return meaning.empty() ? name : std::string(meaning);

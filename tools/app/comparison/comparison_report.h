@@ -26,9 +26,6 @@ std::vector<std::string> reasons(const StageComparison& stage, std::size_t most)
 /// The name of a part for people: what a mechanism is, else as it is.
 std::string part_label(const std::string& name);
 
-/// Cut to so many columns, with "…" at the end.
-std::string shortened(const std::string& text, int width);
-
 /// One line about the work: the same, or where it is not.
 std::string work_line(const RunComparison& comparison);
 

@@ -6,7 +6,8 @@
 // cycles. What is priced (instructions, stalls, fetched code, accelerators) is that of cost.h; what
 // the cores do to each other is the breakdown's, and known for a whole stage only.
 //
-// Left out: named functions within a fork. Work is counted between two synchronisation points.
+// Left out: named functions within a fork. Work is counted between two synchronisation points, over
+// all functions that run there (README.md).
 #pragma once
 
 #include <array>

@@ -11,7 +11,6 @@
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/workload_overrides.h"
-#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
 namespace {
@@ -30,18 +29,6 @@ RunRequest request_for(const traces::WorkTrace& trace, const RecordOptions& opti
   return request;
 }
 
-/// Digests of the trace itself are not needed here: it names those of the data.
-Manifest manifest_of(const traces::WorkTrace& trace, const RecordOptions& options) {
-  Manifest manifest;
-  manifest.seed = trace.info().seed;
-  manifest.platform = options.platform.empty() ? trace.info().platform : options.platform;
-  manifest.overrides = options.overrides;
-  manifest.data = trace.info().data;
-  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
-  manifest.recording = recording_json(trace, "");
-  return manifest;
-}
-
 }  // namespace
 
 void add_record_options(CLI::App& command, RecordOptions& options) {
@@ -58,23 +45,43 @@ std::string trace_of(const std::string& name) {
              : std::string();
 }
 
-RunRecord replay_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
-  const traces::WorkTrace trace(name, trace_memory(options.memory));
-  RunRequest request = request_for(trace, options);
+RunRecord computed_record(const std::string& name, RunRequest request, const Manifest& manifest,
+                          const Compute& compute, bool quiet, RunFiles* files) {
   CycleParts parts(request.platform.config, request.cores);
   request.observer = &parts;
-  ProgressLine line(ProgressLine::style_of_stderr(options.quiet));
-  const Replay done = replay(trace, request, [&](const Progress& p) {
+  ProgressLine line(ProgressLine::style_of_stderr(quiet));
+  const RunResult run = compute(request, [&](const Progress& p) {
     throw_if_interrupted();
     line.show(p.done, p.total,
               [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
   });
-  const Manifest manifest = manifest_of(trace, options);
   if (files != nullptr) {
-    *files = run_files(done.run, manifest, platform::to_yaml(request.platform));
+    *files = run_files(run, manifest, platform::to_yaml(request.platform));
     (*files)[kCyclesFile] = cycles_csv(parts.stages());
   }
-  return make_record(name, manifest, done.run, parts.stages());
+  return make_record(name, manifest, run, parts.stages());
+}
+
+Manifest manifest_of_recording(const traces::WorkTrace& trace) {
+  Manifest manifest;
+  manifest.seed = trace.info().seed;
+  manifest.data = trace.info().data;
+  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
+  manifest.recording = recording_json(trace, "");  // which names the digests of the data
+  return manifest;
+}
+
+RunRecord replay_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
+  const traces::WorkTrace trace(name, trace_memory(options.memory));
+  Manifest manifest = manifest_of_recording(trace);
+  manifest.platform = options.platform.empty() ? trace.info().platform : options.platform;
+  manifest.overrides = options.overrides;
+  return computed_record(
+      name, request_for(trace, options), manifest,
+      [&](const RunRequest& request, const ProgressCallback& progress) {
+        return replay(trace, request, progress).run;
+      },
+      options.quiet, files);
 }
 
 RunRecord read_record(const std::string& name, const RecordOptions& options, RunFiles* files) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/run/run_options.h"
+#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
 
@@ -29,6 +31,17 @@ std::string trace_of(const std::string& name);
 /// @throws InputError for what is neither, and as replay()
 RunRecord read_record(const std::string& name, const RecordOptions& options,
                       RunFiles* files = nullptr);
+
+/// Runs or replays a request, and tells how far it is.
+using Compute = std::function<RunResult(const RunRequest&, const ProgressCallback&)>;
+
+/// The record of what `compute` yields, whose cycles are watched meanwhile.
+/// @throws InputError as it does, Interrupted
+RunRecord computed_record(const std::string& name, RunRequest request, const Manifest& manifest,
+                          const Compute& compute, bool quiet, RunFiles* files = nullptr);
+
+/// What a manifest of a replay says of the recorded run; the chip is left to the caller.
+Manifest manifest_of_recording(const traces::WorkTrace& trace);
 
 /// The replay of a trace, with `overrides` of the chip of the recording or of options.platform.
 RunRecord replay_record(const std::string& trace, const RecordOptions& options,

@@ -10,7 +10,7 @@
 namespace leviosim::tools {
 
 /// Mean and worst latency of the kinds of frame, against the frame period.
-std::string latency_table(const RunResult& run, int width = kAnyWidth);
+std::string latency_table(const RunResult& run, int width = table_width());
 
 /// Of a closed loop: lost and late frames, percentiles of the latency. Else empty.
 std::string camera_summary(const RunResult& run);

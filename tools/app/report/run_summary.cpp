@@ -23,7 +23,7 @@ constexpr std::string_view kComma = ", ";
 double ms(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
 /// The text without its middle, if it is wider than that.
-std::string shortened(const std::string& text, int width) {
+std::string without_middle(const std::string& text, int width) {
   if (display_width(text) <= width) return text;
   const auto at = [&](int column) {  // the byte at which that character begins
     std::size_t byte = 0;
@@ -43,7 +43,7 @@ std::string wrapped(const std::string& text, int width) {
     const std::size_t end = std::min(text.find(kComma, begin), text.size());
     const bool last = end == text.size();
     items.push_back(
-        shortened(text.substr(begin, end - begin) + (last ? "" : ","), width - kIndent));
+        without_middle(text.substr(begin, end - begin) + (last ? "" : ","), width - kIndent));
     begin = last ? end : end + kComma.size();
   }
   return wrap(items, " ", kIndent, width) + '\n';

@@ -13,7 +13,7 @@
 namespace leviosim::tools {
 
 /// Stages: calls, kilocycles of a mean call on one core and on N, speed-up, milliseconds.
-std::string stage_table(const RunResult& run, int width = kAnyWidth);
+std::string stage_table(const RunResult& run, int width = table_width());
 
 /// The same for these stages, without a title. @param mark_of_controller  behind names of stages
 /// there
@@ -22,17 +22,17 @@ TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>&
 
 /// Where the core-cycles of the team went in the stages of the cluster, in per cent. Each row adds
 /// up to 100.0 as printed.
-std::string breakdown_table(const RunResult& run, int width = kAnyWidth);
+std::string breakdown_table(const RunResult& run, int width = table_width());
 
 /// Peaks in L1 and L2, and the blocks that were alive at them.
-std::string memory_table(const RunResult& run, int width = kAnyWidth);
+std::string memory_table(const RunResult& run, int width = table_width());
 
 /// What --tables names, in the order in which they are printed.
 std::vector<std::string> table_names();
 
 /// These tables, or all, as far as they apply: a native run has no timing and no occupation.
 std::string report(const RunResult& run, const std::vector<std::string>& names = {},
-                   int width = kAnyWidth);
+                   int width = table_width());
 
 /// Per cent with one decimal that add up to 100.0: each part is rounded down, and the largest
 /// remainders are rounded up. All zero if the parts add up to nothing.

@@ -12,15 +12,36 @@ namespace leviosim::tools {
 namespace {
 
 constexpr std::string_view kGap = "  ";
+/// Behind the titles, where columns are left out.
+constexpr std::string_view kMore = " …";
+/// What is left of a column of text that is cut.
+constexpr int kLeastText = 20;
+
+int default_width = kAnyWidth;
 
 std::string blanks(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
 
 }  // namespace
 
+int table_width() { return default_width; }
+
+void set_table_width(int columns) { default_width = columns; }
+
 int display_width(std::string_view text) {
   const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; };
   return static_cast<int>(text.size()) -
          static_cast<int>(std::count_if(text.begin(), text.end(), continues));
+}
+
+std::string shortened(const std::string& text, int width) {
+  if (display_width(text) <= width) return text;
+  std::string shorter;
+  for (const char c : text) {
+    const bool begins = (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
+    if (begins && display_width(shorter) >= width - 1) break;
+    shorter += c;
+  }
+  return shorter + "…";
 }
 
 std::string figure_text(std::optional<double> value, int decimals, std::string_view otherwise) {
@@ -42,9 +63,10 @@ std::string TextTable::line(const std::vector<std::string>& cells,
   std::string text;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (widths[c] == 0) continue;
-    const std::string padding = blanks(widths[c] - display_width(cells[c]));
+    const std::string cell = shortened(cells[c], widths[c]);
+    const std::string padding = blanks(widths[c] - display_width(cell));
     if (c > 0) text += kGap;
-    text += columns_[c].align == Align::Left ? cells[c] + padding : padding + cells[c];
+    text += columns_[c].align == Align::Left ? cell + padding : padding + cell;
   }
   text.erase(text.find_last_not_of(' ') + 1);
   return text + '\n';
@@ -67,23 +89,41 @@ std::string TextTable::markdown() const {
   return text;
 }
 
-std::vector<int> TextTable::widths_within(int width) const {
+std::vector<int> TextTable::natural_widths() const {
   std::vector<int> widths;
-  int total = 0;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     int widest = std::max(1, display_width(columns_[c].title));
     for (const auto& row : rows_) widest = std::max(widest, display_width(row[c]));
     widths.push_back(widest);
-    total += widest + (c > 0 ? display_width(kGap) : 0);
   }
-  while (total > width) {
+  return widths;
+}
+
+std::vector<int> TextTable::widths_within(int width) const {
+  std::vector<int> widths = natural_widths();
+  int excess = -display_width(kGap);
+  for (const int one : widths) excess += one + display_width(kGap);
+  excess -= width;
+  const auto cut = [&](std::size_t c, int least) {
+    if (columns_[c].align != Align::Left || excess <= 0 || widths[c] <= least) return;
+    const int by = std::min(excess, widths[c] - least);
+    widths[c] -= by;
+    excess -= by;
+  };
+  cut(0, std::max(kLeastText, width / 2));  // names of rows tell them apart
+  bool all = true;
+  while (excess > 0) {
     std::size_t last = 0;
     for (std::size_t c = 1; c < columns_.size(); ++c)
       if (widths[c] > 0 && (last == 0 || columns_[c].rank >= columns_[last].rank)) last = c;
     if (last == 0) break;
-    total -= widths[last] + display_width(kGap);
+    if (widths[last] - excess >= kLeastText) cut(last, kLeastText);
+    if (excess <= 0) break;
+    excess -= widths[last] + display_width(kGap);
     widths[last] = 0;
+    if (std::exchange(all, false)) excess += display_width(kMore);
   }
+  cut(0, 1);
   return widths;
 }
 
@@ -92,6 +132,8 @@ std::string TextTable::str(int width) const {
   for (const Column& column : columns_) titles.push_back(column.title);
   const std::vector<int> widths = widths_within(width);
   std::string text = line(titles, widths);
+  if (std::find(widths.begin(), widths.end(), 0) != widths.end())
+    text.insert(text.size() - 1, kMore);
   int total = -display_width(kGap);
   for (const int one : widths)
     if (one > 0) total += one + display_width(kGap);

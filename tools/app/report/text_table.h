@@ -14,8 +14,16 @@ namespace leviosim::tools {
 /// Of text that may be as wide as it likes.
 inline constexpr int kAnyWidth = std::numeric_limits<int>::max();
 
+/// Columns that tables may take where no width is asked for: any, until the program says what its
+/// terminal has. Files and pipes so get all columns.
+int table_width();
+void set_table_width(int columns);
+
 /// Columns that text takes on a terminal: code points of UTF-8.
 int display_width(std::string_view text);
+
+/// Cut to so many columns, with "…" at the end.
+std::string shortened(const std::string& text, int width);
 
 /// What stands in a cell of which nothing is known.
 inline constexpr const char* kNothing = "–";
@@ -41,14 +49,18 @@ class TextTable {
   /// One cell per column.
   void add(std::vector<std::string> cells);
   /// Titles, a rule, and the rows; every line ends in a line break. Columns that do not fit are
-  /// left out: those of the highest rank first, of equal ones the last, never the first column.
-  std::string str(int width = kAnyWidth) const;
+  /// left out: those of the highest rank first, of equal ones the last, never the first column; the
+  /// titles then end in "…". Before that, columns of long text, which are aligned to the left, are
+  /// cut.
+  std::string str(int width = table_width()) const;
   /// A table for Markdown files. Cells must hold no bars.
   std::string markdown() const;
 
  private:
   /// A line of the columns that have a width.
   std::string line(const std::vector<std::string>& cells, const std::vector<int>& widths) const;
+  /// That each column needs.
+  std::vector<int> natural_widths() const;
   /// Of each column; 0 for those that are left out.
   std::vector<int> widths_within(int width) const;
 

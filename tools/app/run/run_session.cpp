@@ -72,16 +72,21 @@ RunResult simulate_with_progress(const RunRequest& request, RunSource& source,
   return result;
 }
 
-Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words) {
+Manifest manifest_of_data(const RunRequest& request) {
   Manifest manifest;
-  manifest.command_line = words;
   manifest.seed = request.seed;
-  manifest.platform = options.platform;
-  manifest.overrides = split_overrides(options.overrides).chip;
   for (const vio::Assignment& a : request.workload) manifest.workload.push_back(a.text());
   manifest.data = request.data;
   if (request.frames) manifest.first_frame = request.frames->begin;
   manifest.inputs = digest_inputs(traces::open_asl(request.data, {.frames = request.frames}));
+  return manifest;
+}
+
+Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words) {
+  Manifest manifest = manifest_of_data(request);
+  manifest.command_line = words;
+  manifest.platform = options.platform;
+  manifest.overrides = split_overrides(options.overrides).chip;
   return manifest;
 }
 

@@ -34,6 +34,10 @@ RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style 
 RunResult simulate_with_progress(const RunRequest& request, RunSource& source,
                                  ProgressLine::Style style);
 
+/// What was computed over which data, with digests of it. The chip and the command line are left to
+/// the caller.
+Manifest manifest_of_data(const RunRequest& request);
+
 Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words);
 
 /// "leviosim 0.1.0: levio on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, …"

@@ -201,11 +201,13 @@ std::string_view name_of(Verdict verdict) {
 
 Verdict judge(const Reference& reference, std::optional<double> value) {
   if (!value) return Verdict::NotCovered;
-  const double error = std::abs(error_of(reference, *value));
-  const bool within = error <= reference.tolerance.value;
-  if (reference.met) return within ? Verdict::Met : Verdict::Worse;
-  if (within) return Verdict::Improved;
-  return error <= reference.guard.value() ? Verdict::Missed : Verdict::Worse;
+  return judge(error_of(reference, *value), reference.tolerance.value, reference.guard);
+}
+
+Verdict judge(double error, double tolerance, std::optional<double> guard) {
+  const bool within = std::abs(error) <= tolerance;
+  if (within) return guard ? Verdict::Improved : Verdict::Met;
+  return guard && std::abs(error) <= *guard ? Verdict::Missed : Verdict::Worse;
 }
 
 std::string updated_references(const std::string& file, std::string_view text,

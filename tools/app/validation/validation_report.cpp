@@ -70,12 +70,12 @@ std::string compute_table(const Validation& validation, int cores) {
                    {"kcycles, 1 core"},
                    {"simulated"},
                    {"error"},
-                   {fmt::format("8 cores")},
+                   {"8 cores", kRight, 1},
                    {fmt::format("simulated on {}", cores)},
                    {"error"},
-                   {"speed-up"},
-                   {"simulated"},
-                   {"error"}});
+                   {"speed-up", kRight, 2},
+                   {"simulated", kRight, 2},
+                   {"error", kRight, 2}});
   for (const PaperStage& stage : kPaperStages) {
     std::vector<std::string> cells{std::string(stage.title)};
     const std::string path = fmt::format("compute.{}.", stage.key);

@@ -36,16 +36,16 @@ std::string range_text(const AblationRow& row, const Spread& spread, int count) 
 
 TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
   TextTable table({{"sequence", kLeft},
-                   {"images"},
+                   {"images", kRight, 1},
                    {"profile", kLeft},
-                   {"runs"},
+                   {"runs", kRight, 3},
                    {"absolute [m]"},
-                   {"least … greatest"},
-                   {"paper"},
+                   {"least … greatest", kRight, 2},
+                   {"paper", kRight, 2},
                    {fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
-                   {"least … greatest"},
-                   {"paper"},
-                   {"completion"}});
+                   {"least … greatest", kRight, 2},
+                   {"paper", kRight, 2},
+                   {"completion", kRight, 1}});
   for (const AblationRow& row : rows)
     table.add(
         {row.sequence.empty() ? kMean : row.sequence, size_text(row.size), row.profile,

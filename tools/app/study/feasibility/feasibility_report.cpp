@@ -58,15 +58,15 @@ std::string memory_verdict(const Feasibility& row) {
 
 std::string feasibility_table(const std::vector<Feasibility>& rows) {
   TextTable table({{"chip", kLeft},
-                   {"cores"},
+                   {"cores", kRight, 1},
                    {"MHz"},
                    {"frame ms"},
-                   {"worst"},
-                   {"published"},
-                   {"optimiser ms"},
+                   {"worst", kRight, 1},
+                   {"published", kRight, 2},
+                   {"optimiser ms", kRight, 2},
                    {"frames/s"},
                    {"mJ/frame"},
-                   {"mW"},
+                   {"mW", kRight, 1},
                    {"memory", kLeft}});
   bool any_without = false;
   for (const Feasibility& row : rows) {

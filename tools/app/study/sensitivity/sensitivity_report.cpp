@@ -47,7 +47,7 @@ std::string list_line(const std::string& title, const std::vector<std::string>& 
 
 std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
   std::vector<TextTable::Column> columns{
-      {"number", kLeft}, {"confidence", kLeft}, {"value"}, {"range", kLeft}};
+      {"number", kLeft}, {"confidence", kLeft, 2}, {"value"}, {"range", kLeft, 1}};
   for (const TimeColumn& column : kColumns) columns.push_back({column.title});
   TextTable table(std::move(columns));
   std::vector<std::string> without_effect;

@@ -3,7 +3,9 @@
 
 namespace leviosim::tools {
 
-inline constexpr const char* kSweepFormat = "leviosim sweep 1";
+/// 2 says where the plan lies. Files of 1 are read, too, and become such when their plan is run.
+inline constexpr const char* kSweepFormat = "leviosim sweep 2";
+inline constexpr const char* kSweepFormatBefore = "leviosim sweep 1";
 
 /// "lvio": marks a data base as a sweep's (PRAGMA application_id).
 inline constexpr int kSweepApplication = 0x6c76696f;

@@ -46,6 +46,19 @@ std::string literal(const std::string& text) {
   return sql + '\'';
 }
 
+constexpr const char* kPlanFile = "plan file";
+
+void say(Database& database, std::string_view name, std::string_view value) {
+  Statement about(database, "INSERT OR REPLACE INTO sweep VALUES(?, ?)");
+  about.bind(1, name).bind(2, value).run();
+}
+
+/// Relative, so that a sweep and its plan can be moved together.
+void say_place(Database& database, const fs::path& plan, const fs::path& folder) {
+  say(database, kPlanFile, fs::proximate(plan, folder).string());
+  say(database, "format", kSweepFormat);
+}
+
 bool is_objective(const std::string& name) {
   return std::any_of(kObjectives.begin(), kObjectives.end(),
                      [&](const Objective& o) { return o.figure == name; });
@@ -68,14 +81,10 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const Sw
     transaction.commit();
     return;
   }
-  Statement about(database_, "INSERT INTO sweep VALUES(?, ?)");
-  const auto say = [&](const char* name, std::string_view value) {
-    about.bind(1, std::string_view(name)).bind(2, value).run();
-  };
-  say("format", kSweepFormat);
-  say("program", fmt::format("leviosim {} {}", version(), revision()));
-  say("simulator", results_version());
-  say("plan", plan);
+  say(database_, "format", kSweepFormat);
+  say(database_, "program", fmt::format("leviosim {} {}", version(), revision()));
+  say(database_, "simulator", results_version());
+  say(database_, "plan", plan);
   this->plan(points);
   transaction.commit();
 }
@@ -115,9 +124,32 @@ SweepStore::SweepStore(const fs::path& folder)
                    "SELECT COUNT(*) FROM sqlite_master WHERE name IN ('sweep', 'planned')");
   tables.step();
   if (tables.whole(0) != 2) database_.fail("is no file of leviosim sweep");
-  Statement format(database_, "SELECT value FROM sweep WHERE name = 'format'");
-  if (!format.step() || format.text(0) != kSweepFormat)
+  if (const auto format = fact("format"); format != kSweepFormat && format != kSweepFormatBefore)
     database_.fail(fmt::format("is of a version that is not known; expected '{}'", kSweepFormat));
+}
+
+std::optional<std::string> SweepStore::fact(std::string_view name) {
+  Statement select(database_, "SELECT value FROM sweep WHERE name = ?");
+  if (!select.bind(1, name).step()) return std::nullopt;
+  return select.text(0);
+}
+
+void SweepStore::keep_place(const fs::path& plan) {
+  if (place() == fs::weakly_canonical(plan)) return;
+  Transaction transaction(database_);
+  say_place(database_, plan, folder_);
+  transaction.commit();
+}
+
+std::optional<fs::path> SweepStore::place() {
+  const std::optional<std::string> plan = fact(kPlanFile);
+  if (!plan) return std::nullopt;
+  return fs::weakly_canonical(folder_ / *plan);
+}
+
+std::string SweepStore::key_of(int point) {
+  Statement select(database_, "SELECT key FROM planned WHERE point = ?");
+  return select.bind(1, std::int64_t{point}).step() ? select.text(0) : std::string();
 }
 
 SweepStore::Keys SweepStore::keys() {
@@ -212,6 +244,7 @@ void SweepStore::copy_plan_to(const fs::path& folder) {
   copy_rows("SELECT * FROM sweep", "INSERT INTO sweep VALUES(?, ?)", 2);
   copy_rows("SELECT * FROM planned", "INSERT INTO planned VALUES(?, ?)", 2);
   copy_rows("SELECT * FROM parameters", "INSERT INTO parameters VALUES(?, ?, ?, ?, ?, ?)", 6);
+  if (const auto plan = place()) say_place(copy, *plan, folder);
   transaction.commit();
 }
 

@@ -30,6 +30,7 @@ struct SweepOutcome {
 class SweepStore {
  public:
   /// Opens the file, or makes it with the points of a sweep.
+  /// @param plan  its text
   /// @throws InputError if it holds another sweep
   SweepStore(const std::filesystem::path& folder, const std::string& plan,
              const SweepPoints& points);
@@ -54,6 +55,16 @@ class SweepStore {
   /// "platform.cluster.clock=240MHz" of a point.
   std::string settings_of(int point);
   std::int64_t planned();
+  /// point_key() of a point; empty if there is no such point.
+  std::string key_of(int point);
+
+  /// Remembers where the plan lies, since what it names lies beside it.
+  void keep_place(const std::filesystem::path& plan);
+  /// That file, which may be gone; nothing in folders from before it was remembered.
+  std::optional<std::filesystem::path> place();
+  std::string plan_text() { return fact("plan").value_or(""); }
+  /// Digest of the sources of the program that made the file.
+  std::string simulator() { return fact("simulator").value_or(""); }
 
   /// Numbers of the points on the Pareto front at the last publish().
   std::set<int> front();
@@ -68,6 +79,8 @@ class SweepStore {
  private:
   using Keys = std::vector<std::pair<int, std::string>>;
 
+  /// A row of the table `sweep`.
+  std::optional<std::string> fact(std::string_view name);
   Keys keys();
   bool holds(const SweepPoints& points);
   void plan(const SweepPoints& points);

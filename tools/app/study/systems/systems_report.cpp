@@ -33,16 +33,16 @@ std::string model_of(const SystemRow& row) {
 
 std::string systems_table(const std::vector<SystemRow>& rows) {
   TextTable table({{"system", kLeft},
-                   {"class", kLeft},
-                   {"chip", kLeft},
+                   {"class", kLeft, 3},
+                   {"chip", kLeft, 2},
                    {"frames/s"},
                    {"mW"},
                    {"mJ/frame"},
-                   {"here", kLeft},
-                   {"frames/s"},
+                   {"here", kLeft, 2},
+                   {"frames/s", kRight, 1},
                    {"mW"},
                    {"mJ/frame"},
-                   {"most frames/s"}});
+                   {"most frames/s", kRight, 2}});
   std::string sources;
   std::string small;
   for (const SystemRow& row : rows) {

@@ -156,11 +156,21 @@ std::string tune_notes(const TunePlan& plan) {
 
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
   const bool several = plan.seeds.size() > 1;
-  std::vector<TextTable::Column> columns{
-      {"frames/s"}, {"MHz"},      {"V"},  {"missed %"}, {"dropped %"}, {"p50 ms"}, {"p95 ms"},
-      {"p99 ms"},   {"worst ms"}, {"mW"}, {"band"},     {"mJ/frame"},  {"ATE m"}};
-  if (several) columns.push_back({"least … greatest"});
-  columns.push_back({"poses %"});
+  std::vector<TextTable::Column> columns{{"frames/s"},
+                                         {"MHz"},
+                                         {"V", kRight, 1},
+                                         {"missed %"},
+                                         {"dropped %", kRight, 3},
+                                         {"p50 ms", kRight, 3},
+                                         {"p95 ms", kRight, 3},
+                                         {"p99 ms"},
+                                         {"worst ms", kRight, 3},
+                                         {"mW"},
+                                         {"band", kRight, 2},
+                                         {"mJ/frame", kRight, 1},
+                                         {"ATE m"}};
+  if (several) columns.push_back({"least … greatest", kRight, 2});
+  columns.push_back({"poses %", kRight, 2});
   columns.push_back({"meets limits", kLeft});
   TextTable table(std::move(columns));
   for (const TunePoint& point : points) {

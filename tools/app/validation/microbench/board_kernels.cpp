@@ -22,6 +22,7 @@ using work::Core;
 using work::Machine;
 
 constexpr std::string_view kBoardReferences = "gap8_board";
+constexpr std::string_view kBoardGuards = "gap8_board_guards";
 constexpr double kCalls = 100;
 constexpr double kSpeedUpTolerance = 0.5;  // of a factor
 
@@ -115,8 +116,8 @@ constexpr Kernel kKernels[] = {
 const Kernel& kernel_of(const MicrobenchRow& row) {
   for (const Kernel& kernel : kKernels)
     if (kernel.group == row.group && kernel.name == row.name) return kernel;
-  throw InputError(fmt::format("tests/validation/{}.csv: there is no kernel \"{}, {}\"",
-                               kBoardReferences, row.group, row.name));
+  throw InputError(
+      fmt::format("{}.csv: there is no kernel \"{}, {}\"", kBoardReferences, row.group, row.name));
 }
 
 /// What eight cores gain over one. Where the board gains more than there are cores, because the two
@@ -152,9 +153,11 @@ std::vector<MicrobenchRow> board_kernels(const sim::ChipConfig& chip,
 }
 
 std::vector<MicrobenchRow> board_rows(const sim::ChipConfig& chip) {
-  return board_kernels(chip,
-                       reference_rows(fmt::format("tests/validation/{}.csv", kBoardReferences),
-                                      std::string(reference_text(kBoardReferences)), 2));
+  std::vector<MicrobenchRow> rows =
+      board_kernels(chip, reference_rows(fmt::format("{}.csv", kBoardReferences),
+                                         std::string(reference_text(kBoardReferences)), 2));
+  take_guards(fmt::format("{}.csv", kBoardGuards), std::string(reference_text(kBoardGuards)), rows);
+  return rows;
 }
 
 }  // namespace leviosim::tools

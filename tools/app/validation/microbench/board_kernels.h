@@ -16,7 +16,7 @@ namespace leviosim::tools {
 std::vector<MicrobenchRow> board_kernels(const sim::ChipConfig& chip,
                                          std::vector<MicrobenchRow> references);
 
-/// The same with the references that are part of the program.
+/// The same with the references and guards that are part of the program.
 std::vector<MicrobenchRow> board_rows(const sim::ChipConfig& chip);
 
 }  // namespace leviosim::tools

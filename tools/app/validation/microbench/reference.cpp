@@ -1,5 +1,7 @@
 #include "tools/app/validation/microbench/reference.h"
 
+#include <algorithm>
+
 #include "sim/base/csv.h"
 
 namespace leviosim::tools {
@@ -7,6 +9,8 @@ namespace {
 
 const std::vector<std::string> kColumns = {"group",     "name",           "cores",     "unit",
                                            "reference", "reference_high", "tolerance", "source"};
+const std::vector<std::string> kGuardColumns = {"group", "name",  "cores",
+                                                "unit",  "guard", "reason"};
 
 }  // namespace
 
@@ -28,6 +32,20 @@ std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string t
     rows.push_back(std::move(r));
   }
   return rows;
+}
+
+void take_guards(const std::string& file, std::string text, std::vector<MicrobenchRow>& rows) {
+  base::CsvReader reader(file, base::Separator::comma, kGuardColumns, std::move(text));
+  while (const base::CsvRow* guard = reader.next()) {
+    if (guard->text(0) == kGuardColumns[0]) continue;  // the header
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const MicrobenchRow& r) {
+      return r.group == guard->text(0) && r.name.substr(0, r.name.find(',')) == guard->text(1) &&
+             r.cores == guard->number(2) && r.unit == guard->text(3);
+    });
+    if (row == rows.end()) guard->fail(1, "no row of the comparison");
+    row->guard = guard->number(4);
+    if (!(*row->guard > row->tolerance)) guard->fail(4, "no more than the tolerance of the row");
+  }
 }
 
 }  // namespace leviosim::tools

@@ -15,4 +15,9 @@ namespace leviosim::tools {
 /// @throws InputError with file, line and column
 std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string text, int tier);
 
+/// Sets the guards of rows that a file names: columns group, name, cores, unit, guard (relative),
+/// reason. A row's name is what stands before its first comma.
+/// @throws InputError with file, line and column, also for a row that does not exist
+void take_guards(const std::string& file, std::string text, std::vector<MicrobenchRow>& rows);
+
 }  // namespace leviosim::tools

@@ -19,15 +19,23 @@ std::string error_of(const MicrobenchRow& row) {
   return fmt::format("{:+.1f}{}", 100 * row.error(), row.met() ? "" : " !");
 }
 
+/// Empty unless the row is worse than it may be.
+std::string warning_of(const MicrobenchRow& row) {
+  if (row.verdict() != Verdict::Worse) return {};
+  return fmt::format("warning: {}, {}, cores {}: error {:+.1f} %, beyond its {} of {:g} %\n",
+                     row.group, row.name, row.cores, 100 * row.error(),
+                     row.guard ? "guard" : "tolerance", 100 * row.guard.value_or(row.tolerance));
+}
+
 TextTable empty_table() {
   using Align = TextTable::Align;
   return TextTable({{"", Align::Left},
                     {"cores"},
-                    {"unit", Align::Left},
+                    {"unit", Align::Left, 1},
                     {"reference"},
                     {"simulated"},
                     {"error %"},
-                    {"source", Align::Left}});
+                    {"source", Align::Left, 2}});
 }
 
 }  // namespace
@@ -54,9 +62,10 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
     text += fmt::format("{}\n{}\n", group, table.str());
     begin = end;
   }
-  return text +
-         fmt::format("{}: {} of {} rows within their tolerance, mean absolute error {:.1f} %\n",
-                     chip, met, rows.size(), 100 * mean_error(rows));
+  text += fmt::format("{}: {} of {} rows within their tolerance, mean absolute error {:.1f} %\n",
+                      chip, met, rows.size(), 100 * mean_error(rows));
+  for (const MicrobenchRow& row : rows) text += warning_of(row);
+  return text;
 }
 
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
@@ -72,6 +81,8 @@ std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
       {"simulated", [=](const R& r) { return all_digits(r.simulated); }},
       {"error", [=](const R& r) { return all_digits(r.error()); }},
       {"tolerance", [=](const R& r) { return all_digits(r.tolerance); }},
+      {"guard", [=](const R& r) { return r.guard ? all_digits(*r.guard) : std::string(); }},
+      {"verdict", [](const R& r) { return std::string(name_of(r.verdict())); }},
       {"tier", [](const R& r) { return r.tier; }},
       {"source", [](const R& r) { return r.source; }}};
   return table.text(rows);

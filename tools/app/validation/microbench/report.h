@@ -9,7 +9,8 @@
 
 namespace leviosim::tools {
 
-/// Grouped, with the error of each row, and a line that sums up.
+/// Grouped, with the error of each row, a line that sums up, and a warning for each row that is
+/// worse than its tolerance or guard.
 std::string microbench_table(std::string_view chip, const std::vector<MicrobenchRow>& rows);
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows);
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+
+#include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
 
@@ -17,7 +20,9 @@ struct MicrobenchRow {
   double reference_high = 0;  ///< the same as reference where they agree
   double simulated = 0;
   double tolerance = 0.05;  ///< largest error that is accepted, relative
-  int tier = 1;             ///< 1: behaviour of a unit; 2: includes what a compiler does
+  /// Of a row that is known to miss it: the error that it may not exceed.
+  std::optional<double> guard = std::nullopt;
+  int tier = 1;  ///< 1: behaviour of a unit; 2: includes what a compiler does
   std::string source;
 
   /// Relative distance from the reference, or from the nearest end of its range; 0 inside.
@@ -26,6 +31,7 @@ struct MicrobenchRow {
     return (simulated - nearest) / nearest;
   }
   bool met() const { return std::abs(error()) <= tolerance; }
+  Verdict verdict() const { return judge(error(), tolerance, guard); }
 };
 
 }  // namespace leviosim::tools

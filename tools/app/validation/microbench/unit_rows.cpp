@@ -14,16 +14,14 @@ const UnitBench& bench_named(const std::string& name) {
   for (const auto benches : {stream_benches(), memory_benches()})
     for (const UnitBench& bench : benches)
       if (bench.name == name) return bench;
-  throw InputError(
-      fmt::format("tests/validation/{}.csv: there is no program \"{}\"", kUnitReferences, name));
+  throw InputError(fmt::format("{}.csv: there is no program \"{}\"", kUnitReferences, name));
 }
 
 }  // namespace
 
 std::vector<MicrobenchRow> unit_rows(const sim::ChipConfig& chip) {
-  std::vector<MicrobenchRow> rows =
-      reference_rows(fmt::format("tests/validation/{}.csv", kUnitReferences),
-                     std::string(reference_text(kUnitReferences)), 1);
+  std::vector<MicrobenchRow> rows = reference_rows(fmt::format("{}.csv", kUnitReferences),
+                                                   std::string(reference_text(kUnitReferences)), 1);
   for (MicrobenchRow& row : rows) row.simulated = bench_named(row.name).measure(chip, row.cores);
   return rows;
 }
