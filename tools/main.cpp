@@ -51,6 +51,8 @@ int end_after_report() {
     return kLimitNotMet;
   } catch (const InputError& error) {
     return fail(error);
+  } catch (const Interrupted& stop) {  // nobody reads it any more
+    return kSignalled + stop.signal();
   }
 }
 

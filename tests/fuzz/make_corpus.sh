@@ -15,6 +15,12 @@ done
 
 cp platform_models/chips/*.yaml "$folder/platform_yaml"
 cp tools/ci/*.json "$folder/baseline"
+cat >"$folder/baseline/small" <<'END'
+{"format": "leviosim baseline", "version": 1,
+"facts": {"program":"0.1.0 x","profile":"levio","seed":1,"platform":"gap9","overrides":[],"cores":8,"image":[160,120],"first_frame":0,"frames":10,"inputs":{"cam0/data.csv":"62"}},
+"statistics": {"frames.count":[10,"1"],"stages.feature_extraction.cycles.parallel.mean":[190000.5,"cycles"]},
+"stages": [{"name":"feature extraction","key":"feature_extraction","controller":false,"cycles":1900000,"parts":{"detect":{"issue int_alu":[1400000,1000000]},"":{"fpu":500000}}}]}
+END
 cp tools/ci/budgets.yaml "$folder/budget/project"
 cat >"$folder/budget/forms" <<'END'
 budgets:

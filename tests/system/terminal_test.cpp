@@ -174,6 +174,20 @@ TEST_F(Terminal, AReaderThatHasSeenEnoughIsNone) {
   EXPECT_EQ(message, "leviosim: stdout: cannot be written: Broken pipe\n");
 }
 
+/// A check prints so little that it is written at the end only, when its limit was found not met.
+TEST_F(Terminal, AReaderThatHasSeenEnoughIsNoneWhereALimitIsNotMet) {
+  ASSERT_EQ(run({"run", "--platform", "gap9", "--data", flight(), "--frames", "0:8", "--quiet",
+                 "--out", path("checked")})
+                .status,
+            0);
+  base::write_file_atomically(folder_ / "tight.yaml", "budgets: [{ limits: [L1 peak <= 1 kB] }]\n");
+  const auto [status, err] =
+      shell(fmt::format("(sleep 0.3; $L check '{}' --budget '{}') | true; exit ${{PIPESTATUS[0]}}",
+                        path("checked"), path("tight.yaml")));
+  EXPECT_EQ(status, 128 + SIGPIPE);
+  EXPECT_EQ(err, "");
+}
+
 TEST_F(Terminal, AClosedStderrStopsNothing) {
   EXPECT_EQ(shell("$L run --native --frames 0:8 --data '" + flight() + "' --out '" + path("quiet") +
                   "' 2>&-")

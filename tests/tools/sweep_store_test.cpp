@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "tests/traces/test_folder.h"
+#include "tools/app/study/sweep/sweep_schema.h"
 
 namespace leviosim::tools {
 namespace {
@@ -76,6 +77,40 @@ TEST(SweepStore, APlanOfTheSameSizeWithOtherValuesIsAnother) {
   SweepStore kept(folder.path());
   EXPECT_EQ(kept.planned(), 2);
   EXPECT_EQ(kept.settings_of(2), "platform.cluster.clock=200MHz");
+}
+
+TEST(SweepStore, RemembersWhereThePlanLiesAlsoAfterAMerge) {
+  const TempFolder folder;
+  const auto in = [&](const char* name) { return folder.path() / name; };
+  SweepStore store(in("swept"), "plan", plan_of({100, 200}));
+  EXPECT_EQ(store.place(), std::nullopt);
+  store.keep_place(in("plan.yaml"));
+  EXPECT_EQ(store.place(), std::filesystem::weakly_canonical(in("plan.yaml")));
+  std::filesystem::create_directories(in("deep/er"));
+  store.copy_plan_to(in("deep/er"));
+  EXPECT_EQ(SweepStore(in("deep/er")).place(), store.place());
+  EXPECT_EQ(store.plan_text(), "plan");
+  EXPECT_EQ(store.key_of(2), plan_of({100, 200}).key(1));
+  EXPECT_EQ(store.key_of(3), "");
+}
+
+TEST(SweepStore, ReadsTheVersionBeforeAndRefusesLaterOnes) {
+  const TempFolder folder;
+  SweepStore(folder.path(), "plan", plan_of({100})).put(1, result_of(5));
+  const auto set_format = [&](const std::string& format) {
+    Database(folder / kSweepFile, Database::Mode::existing)
+        .run("UPDATE sweep SET value = '" + format + "' WHERE name = 'format'");
+  };
+  set_format(kSweepFormatBefore);
+  {
+    SweepStore before(folder.path());
+    EXPECT_EQ(latency(before, 1), 5);
+    EXPECT_EQ(before.place(), std::nullopt);
+    before.keep_place(folder / "plan.yaml");
+  }
+  EXPECT_NE(SweepStore(folder.path()).place(), std::nullopt);
+  set_format("leviosim sweep 3");
+  expect_input_error([&] { SweepStore(folder.path()); }, {"not known", kSweepFormat});
 }
 
 TEST(SweepStore, OfTwoResultsOfAPointTheFirstStays) {
