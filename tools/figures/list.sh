@@ -1,6 +1,6 @@
 # The figures of the pages: tools/figures.sh reads this file and says what its words mean. `data` are
 # 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `slow` takes minutes.
-# Tables have all their columns: 200 fit.
+# Tables have all their columns: 1000 fit.
 # No figure shows the host's times, the commit, or anything else that differs from run to run.
 
 # README.md
@@ -229,8 +229,8 @@ shows 'leviosim check recorded -p isa.ops.f64_add.issue=140 --budget epnp.yaml -
 figure story-trajectory
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded
-leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out next'
-shows 'leviosim eval recorded euroc/MH_01_easy_t05_t20 --also next --align posyaw'
+leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out other'
+shows 'leviosim eval recorded euroc/MH_01_easy_t05_t20 --also other --align posyaw'
 
 # README.md
 figure timeline
