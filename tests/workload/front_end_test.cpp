@@ -40,7 +40,6 @@ TEST_F(FrontEndTest, EnoughWorldMatchesMeanEpnp) {
 }
 
 TEST_F(FrontEndTest, AnUnsupportedEpnpPoseGivesWayToThePrediction) {
-  profile.min_epnp_inliers = 15;
   frame(picture);
   ASSERT_GE(add_landmarks(picture, true), 100);
   graph.set_keyframe(graph.newest_keyframe(), {Pose<Native>::identity(), {0.4f, 0.0f, -0.2f}});

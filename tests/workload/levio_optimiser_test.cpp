@@ -33,10 +33,10 @@ TEST(LevioOptimiser, ApproachesTheTruth) {
     OptimiserSceneOptions options;
     options.seed = seed;
     OptimiserScene<Native> scene(options);
-    const double before = scene.position_rms();
+    ASSERT_GT(scene.position_rms(), 0.06);
     optimise(scene, 10);
-    // The kinematic prior contradicts a motion that accelerates.
-    EXPECT_LT(scene.position_rms(), 0.2 * before) << seed;
+    // Not nearer: the kinematic prior contradicts a motion that accelerates.
+    EXPECT_LT(scene.position_rms(), 0.05) << seed;
     EXPECT_LT(scene.rotation_rms(), 5e-3) << seed;
   }
 }
@@ -54,8 +54,10 @@ TEST(LevioOptimiser, EverySystemIsPositiveDefinite) {
 }
 
 TEST(LevioOptimiser, DoesTheWorkOfTheRelease) {
-  // Landmarks and observations as in the release's windows.
+  // Landmarks and observations as in the release's windows, without outliers.
   OptimiserSceneOptions options;
+  options.rotation_noise = options.position_noise = options.velocity_noise = 0;
+  options.depth_noise = 0;
   options.landmarks = 318;
   options.shortest_track = 2;
   options.longest_track = 2;

@@ -128,7 +128,7 @@ constexpr std::array kParameters = {
     Parameter{"workload.epnp_inlier", Kind::number, "px", 0.01, 100,
               "reprojection error below which a match agrees with a pose of EPnP", false,
               LEVIOSIM_FIELD(pnp.inlier_px)},
-    Parameter{"workload.min_epnp_inliers", Kind::whole, "matches", 0, 1000,
+    Parameter{"workload.min_epnp_inliers", Kind::whole, "matches", 4, 1000,
               "without as many, the pose is predicted instead", false,
               LEVIOSIM_FIELD(min_epnp_inliers)},
     Parameter{"workload.min_frame_matches", Kind::whole, "matches", 8, 1000,

@@ -60,7 +60,7 @@ struct Profile {
   EssentialOptions essential;
   int min_world_matches = 25;         ///< for EPnP, before and after the age filter
   int min_frame_matches = 10;         ///< for the 8-point algorithm
-  int min_epnp_inliers = 0;           ///< with fewer the pose is predicted instead
+  int min_epnp_inliers = 15;          ///< as many; with fewer the pose is predicted instead
   float min_translation = 0.01f;      ///< per keyframe interval, of the 8-point pose [m]
   float max_translation_time = 1.0f;  ///< that the last velocity is trusted for [s]
 

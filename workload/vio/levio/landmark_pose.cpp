@@ -68,6 +68,7 @@ std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
   {
     const auto stage = state.machine.stage(stages::kWorldMatching);
     const MatchList<P> list = match_landmarks(state, frame);
+    report.world_matches = list.count;
     if (list.count < profile.min_world_matches) return std::nullopt;
     matches = gather(state, frame, list);
   }

@@ -11,8 +11,9 @@
 
 namespace leviosim::vio::levio {
 
-/// Marks the features that show a landmark. Where no hypothesis of EPnP is a number the pose is the
-/// predicted one, and report.source says so; without enough matches there is none.
+/// Marks the features that show a landmark, where there are enough matches for their ages to be
+/// looked at. Without enough inliers the pose is the predicted one, and report.source says so;
+/// without enough matches there is none.
 /// @return T_world_camera
 template <class P>
 std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,

@@ -2,7 +2,7 @@
 // master draws and copies the samples, the team solves one hypothesis per sample, and the master
 // scores all of them serially over all matches.
 //
-// The best hypothesis is used however few its inliers are. Left out, as in the release: early
+// The best hypothesis is the result however few its inliers are. Left out, as in the release: early
 // termination, and a final refit to the inliers.
 #pragma once
 
