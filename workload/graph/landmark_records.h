@@ -36,6 +36,9 @@ class LandmarkRecords {
         keyframes_(keyframes),
         memory_(arena.alloc<Span>("landmark Jacobian records", landmarks * floats_)) {}
 
+  /// Floats of a record.
+  int floats() const { return floats_; }
+  Span record(int i) const { return memory_.subspan(i * floats_, floats_); }
   /// Slot of the j-th observation of landmark i.
   Span slot(int i, int j) const {
     return memory_.subspan(i * floats_ + j * kSlotFloats, kSlotFloats);

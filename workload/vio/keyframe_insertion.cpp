@@ -8,22 +8,6 @@
 namespace leviosim::vio {
 namespace {
 
-/// Velocity of the camera in the world: the last keyframe's, carried on by the IMU; without an IMU,
-/// the mean since the last keyframe.
-template <class P>
-Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera,
-                    const PoseGraph<P>& graph,
-                    typename P::template Span<typename P::F32> interval) {
-  using F = typename P::F32;
-  const KeyframeState<P> last = graph.keyframe(graph.newest_keyframe());
-  if (!state.profile.use_imu) {
-    const F dt = std::max(state.time_since_keyframe, 1e-3f);  // for a quotient that is finite
-    return (T_world_camera.t - last.T_world_camera.t) * F(F(1.0f) / dt);
-  }
-  const ImuDelta<P> delta = Preintegration<P>(interval).corrected(graph.bias());
-  return last.velocity + graph.gravity() * delta.dt + last.T_world_camera.R * delta.v;
-}
-
 /// Not so old that it is skipped, as those are that have retired.
 template <class P>
 bool is_in_use(const FrontEndState<P>& state, const PoseGraph<P>& graph, typename P::I32 landmark) {
@@ -108,6 +92,20 @@ void triangulate_landmarks(const FrontEndState<P>& state, const Frame<P>& frame,
 }  // namespace
 
 template <class P>
+Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera,
+                    const PoseGraph<P>& graph,
+                    typename P::template Span<typename P::F32> interval) {
+  using F = typename P::F32;
+  const KeyframeState<P> last = graph.keyframe(graph.newest_keyframe());
+  if (!state.profile.use_imu) {
+    const F dt = std::max(state.time_since_keyframe, 1e-3f);  // for a quotient that is finite
+    return (T_world_camera.t - last.T_world_camera.t) * F(F(1.0f) / dt);
+  }
+  const ImuDelta<P> delta = Preintegration<P>(interval).corrected(graph.bias());
+  return last.velocity + graph.gravity() * delta.dt + last.T_world_camera.R * delta.v;
+}
+
+template <class P>
 void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame) {
   using I32 = typename P::I32;
   using Floats = typename P::template Span<typename P::F32>;
@@ -150,6 +148,13 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
 
 template void insert_keyframe(FrontEndState<work::Native>&, Frame<work::Native>&);
 template void insert_keyframe(FrontEndState<work::Counting>&, Frame<work::Counting>&);
+template Vec3<work::Native> velocity_at(const FrontEndState<work::Native>&,
+                                        const Pose<work::Native>&, const PoseGraph<work::Native>&,
+                                        work::Native::Span<work::Native::F32>);
+template Vec3<work::Counting> velocity_at(const FrontEndState<work::Counting>&,
+                                          const Pose<work::Counting>&,
+                                          const PoseGraph<work::Counting>&,
+                                          work::Counting::Span<work::Counting::F32>);
 template void store_keyframe(FrontEndState<work::Native>&, const Frame<work::Native>&);
 template void store_keyframe(FrontEndState<work::Counting>&, const Frame<work::Counting>&);
 

@@ -11,6 +11,13 @@ namespace leviosim::vio {
 template <class P>
 void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame);
 
+/// Velocity of the camera in the world: the last keyframe's, carried on by the IMU; without an IMU,
+/// the mean since the last keyframe.
+/// @param interval  the motion since the last keyframe
+template <class P>
+Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera,
+                    const PoseGraph<P>& graph, typename P::template Span<typename P::F32> interval);
+
 /// The frame's features take the place of the last keyframe's. Works inside a stage.
 template <class P>
 void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame);

@@ -1,19 +1,23 @@
 #include "workload/vio/levio/levio_front_end.h"
 
-#include "workload/vio/keyframe_insertion.h"
 #include "workload/vio/keyframe_matching.h"
-#include "workload/vio/landmark_pose.h"
+#include "workload/vio/levio/keyframe_insertion.h"
+#include "workload/vio/levio/keyframe_matching.h"
+#include "workload/vio/levio/landmark_pose.h"
+#include "workload/vio/levio/two_view_pose.h"
+#include "workload/vio/levio/vision/extractor.h"
 #include "workload/vio/map_start.h"
 #include "workload/vio/parallax.h"
 #include "workload/vio/stages.h"
-#include "workload/vio/two_view_pose.h"
 
 namespace leviosim::vio {
 
 template <class P>
 LevioFrontEnd<P>::LevioFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
                                 work::Arena& keyframe_memory, const PoseGraph<P>& graph)
-    : state_(profile, rig, cluster, keyframe_memory, graph), inertial_(state_) {}
+    : state_(profile, rig, cluster, keyframe_memory, graph),
+      inertial_(state_),
+      random_(profile.pnp.seed) {}
 
 template <class P>
 FrameReport LevioFrontEnd<P>::process(const FrameInput& input) {
@@ -22,27 +26,41 @@ FrameReport LevioFrontEnd<P>::process(const FrameInput& input) {
   Frame<P> frame;
   take_image(input, state_);
   inertial_.integrate(input);
-  extract_frame(state_, frame);
+  extract(frame);
   if (!state_.started) {
     start_map(state_, frame);
     report.keyframe = true;
   } else {
     locate(frame, report);
     report.keyframe = is_keyframe(frame);
-    if (report.keyframe) insert_keyframe(state_, frame);
+    if (report.keyframe) levio::insert_keyframe(state_, frame);
   }
   complete(state_, frame, report);
   return report;
 }
 
+/// Features of the image in L2; images that L1 cannot hold are left to the shared extraction.
+template <class P>
+void LevioFrontEnd<P>::extract(Frame<P>& frame) {
+  if (state_.strips) return extract_frame(state_, frame);
+  const auto stage = state_.machine.stage(stages::kExtraction);
+  const KeyframeRecord<P>& keyframe = state_.keyframe;
+  frame.features =
+      alloc_observed_features<P>(state_.machine.local(), keyframe.features.list.capacity);
+  levio::extract_features<P>(state_.machine, keyframe.image, state_.profile.extractor,
+                             frame.features.list);
+  forget_landmarks(frame);
+}
+
 /// From landmarks, or from the last keyframe, whose matches are needed in any case.
 template <class P>
 void LevioFrontEnd<P>::locate(Frame<P>& frame, FrameReport& report) {
-  const std::optional<Pose<P>> pose = pose_from_landmarks(state_, inertial_, frame, report);
+  const std::optional<Pose<P>> pose =
+      levio::pose_from_landmarks(state_, inertial_, random_, frame, report);
   alloc_keyframe_matches(state_, frame);
   const work::Arena::Frame descriptors(state_.machine.local());
-  match_keyframe(state_, frame);
-  frame.T_world_camera = pose ? *pose : pose_from_keyframe<P>(state_, frame, {}, report);
+  levio::match_keyframe(state_, frame);
+  frame.T_world_camera = pose ? *pose : levio::pose_from_keyframe(state_, random_, frame, report);
 }
 
 /// It has moved far enough, or can hardly be matched with the last one any more.

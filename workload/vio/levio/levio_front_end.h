@@ -5,6 +5,7 @@
 #include "workload/vio/frame.h"
 #include "workload/vio/front_end.h"
 #include "workload/vio/inertial_part.h"
+#include "workload/vio/levio/geometry/sampling.h"
 
 namespace leviosim::vio {
 
@@ -19,11 +20,13 @@ class LevioFrontEnd : public FrontEnd<P> {
   FrameReport process(const FrameInput& input) override;
 
  private:
+  void extract(Frame<P>& frame);
   void locate(Frame<P>& frame, FrameReport& report);
   bool is_keyframe(const Frame<P>& frame);
 
   FrontEndState<P> state_;
   InertialPart<P> inertial_;
+  levio::ShiftRegister<P> random_;  ///< of both estimators
 };
 
 }  // namespace leviosim::vio

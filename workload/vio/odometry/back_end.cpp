@@ -1,5 +1,6 @@
 #include "workload/vio/odometry/back_end.h"
 
+#include "workload/vio/levio/optimiser/optimiser.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
@@ -65,7 +66,9 @@ OptimiserReport BackEnd<P>::optimise() {
   const auto stage = machine_.stage(stages::kOptimiser);
   const IterationReport report =
       options_.joint ? optimise_jointly_once<P>(machine_, window_, prior_, damping_, options_)
-                     : optimise_once<P>(machine_, window_, damping_, options_);
+                     : levio::optimise_once<P>(machine_, window_, damping_, options_);
+  if (profile_.use_imu && !options_.joint)
+    estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
   solved_ = solved_ || report.positive_definite;
   return {true, report.accepted, report.cost_before, report.cost_after};
 }
@@ -73,8 +76,6 @@ OptimiserReport BackEnd<P>::optimise() {
 template <class P>
 void BackEnd<P>::publish() {
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
-  if (profile_.use_imu && !options_.joint)
-    estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
   if (!profile_.use_imu) follow_positions();
   if (!solved_) prior_.keyframes = 0;  // rounding has spoilt it: the next window starts a new one
   const int last = window_.keyframes - 1;

@@ -1,0 +1,116 @@
+// Extraction with the released program's work: the corners of the shared extraction, which is
+// tested against OpenCV, and descriptors that hardly differ; its work beside that of the release.
+// Facts: workload/PARAMETERS.md#feature-extraction.
+#include "workload/vio/levio/vision/extractor.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/workload/vision_runs.h"
+#include "workload/vio/levio/vision/blur.h"
+#include "workload/vio/levio/vision/corner_tests.h"
+#include "workload/vio/levio/vision/descriptor.h"
+#include "workload/vision/extraction_steps.h"
+
+namespace leviosim::vio::levio {
+namespace {
+
+using vision_test::Feature;
+using vision_test::Features;
+using vision_test::PolicyImage;
+using work::Op;
+using C = work::Counting;
+
+const cv::Mat& picture() {
+  static const cv::Mat image = vision_test::rectangle_image(160, 120, 3);
+  return image;
+}
+
+template <class P>
+Features extract_as_released(int cores) {
+  work::Machine machine = vision_test::make_machine<P>(cores);
+  const ExtractorOptions options;
+  PolicyImage<P> copy(picture());
+  const auto stage = machine.stage("feature extraction");
+  const work::Arena::Frame frame(machine.local());
+  FeatureList<P> list = alloc_features<P>(machine.local(), options.max_features(160, 120));
+  levio::extract_features<P>(machine, copy.view(), options, list);
+  return vision_test::plain<P>(list);
+}
+
+TEST(LevioExtractor, FindsTheFeaturesOfTheSharedExtraction) {
+  const Features shared = vision_test::extract<work::Native>(picture());
+  const Features released = extract_as_released<work::Native>(8);
+  ASSERT_GT(released.size(), 100u);
+  ASSERT_EQ(released.size(), shared.size());
+  double bits = 0;
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    EXPECT_EQ(released[i].x, shared[i].x);
+    EXPECT_EQ(released[i].y, shared[i].y);
+    bits += vision_test::distance_between(released[i], shared[i]);
+  }
+  EXPECT_LT(bits / static_cast<double>(shared.size()), 8);
+}
+
+TEST(LevioExtractor, DoesNotDependOnTheNumberOfCoresOrThePolicy) {
+  const Features eight = extract_as_released<work::Native>(8);
+  EXPECT_EQ(extract_as_released<work::Native>(1), eight);
+  EXPECT_EQ(extract_as_released<C>(3), eight);
+}
+
+TEST(LevioExtractor, ACornerTestTakes48ProductsAndAReadOfL2Everywhere) {
+  work::Arena arena("L1", Bytes(4096));
+  const OffsetTables<C> tables(arena, 160);
+  PolicyImage<C> copy(picture());
+  work::take_tally();
+  int tests = 0;
+  for (int y = 20; y < 100; ++y)
+    for (int x = 20; x < 140; ++x, ++tests)
+      is_corner<C>(copy.view().pixels, y * 160 + x, tables, 20);
+  const work::Counts counts = work::take_tally();
+  const auto n = static_cast<unsigned>(tests);
+  EXPECT_EQ(counts[Op::IntMul], 48 * n);
+  EXPECT_EQ(counts[Op::LoadL2], n);
+  EXPECT_EQ(counts[Op::StoreStream], 32 * n);
+}
+
+TEST(LevioExtractor, ACornersResponseReads8PixelsAt49Positions) {
+  work::Arena arena("L1", Bytes(4096));
+  const OffsetTables<C> tables(arena, 160);
+  PolicyImage<C> copy(picture());
+  work::take_tally();
+  corner_response<C>(copy.view().pixels, 160, 60 * 160 + 80, tables);
+  const work::Counts counts = work::take_tally();
+  EXPECT_EQ(counts[Op::LoadStream], 49u * 9);
+  EXPECT_EQ(counts[Op::LoadL2], 1u);
+  EXPECT_NEAR(static_cast<double>(counts[Op::IntMac] + counts[Op::IntMul]), 3 * 49, 5);
+}
+
+TEST(LevioExtractor, TheBlurIsThatOfTheSharedExtraction) {
+  using P = work::Native;
+  PolicyImage<P> copy(picture());
+  std::vector<std::uint8_t> a(160 * 120), b(160 * 120);
+  const auto image = copy.view();
+  std::vector<int> kernel(kBlurKernel<P>.begin(), kBlurKernel<P>.end());
+  vio::blur_rows<P>(image, {{a.data(), 160 * 120}, 160, 120}, 0, 120, {kernel.data(), kBlurTaps});
+  levio::blur_rows<P>(image, {{b.data(), 160 * 120}, 160, 120}, 0, 120);
+  EXPECT_EQ(a, b);
+}
+
+TEST(LevioExtractor, ADescriptorHasTheProductsOfTheRelease) {
+  PolicyImage<C> copy(picture());
+  const C::Span<const work::U32> pattern(kPairPattern<C>.data(), kPairs);
+  std::vector<work::U32> words(kDescriptorWords);
+  work::take_tally();
+  const Moments<C> moments = levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
+  EXPECT_EQ(work::take_tally()[Op::LoadStream], 697u);
+  levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
+  levio::describe<C>(copy.view().pixels, 160, 60 * 160 + 80, direction_of<C>(moments), pattern,
+                     {words.data(), kDescriptorWords});
+  const work::Counts counts = work::take_tally();
+  // About 4 800, without those of an address of a pixel.
+  const double products = static_cast<double>(counts[Op::IntMul] + counts[Op::IntMac]) - 512;
+  EXPECT_NEAR(products, 4800, 0.1 * 4800);
+}
+
+}  // namespace
+}  // namespace leviosim::vio::levio

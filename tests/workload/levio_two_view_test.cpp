@@ -1,0 +1,194 @@
+// The 8-point algorithm, pose recovery and triangulation of the released program: what they find,
+// and their work beside that of the release. Facts: workload/PARAMETERS.md#eight-point-algorithm,
+// #pose-recovery, #triangulation.
+#include "tests/workload/two_view_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "workload/vio/levio/geometry/essential_ransac.h"
+#include "workload/vio/levio/geometry/pose_matrix.h"
+#include "workload/vio/levio/geometry/pose_recovery.h"
+#include "workload/vio/levio/geometry/triangulation.h"
+
+namespace leviosim::vio::levio {
+namespace {
+
+using test::make_two_view_scene;
+using test::TwoViewScene;
+using test::TwoViewSceneOptions;
+using work::Op;
+
+constexpr double kHypotheses = 640;
+constexpr float kThreshold = (0.7f / 114.66f) * (0.7f / 114.66f);
+
+/// Pixels of a scene, as the release keeps them.
+template <class P>
+struct Pixels {
+  using F = typename P::F32;
+
+  explicit Pixels(const TwoViewScene& scene) {
+    for (int i = 0; i < scene.n; ++i)
+      for (int c = 0; c < 2; ++c) {
+        const double focal = c == 0 ? test::kCamera.fx : test::kCamera.fy;
+        const double centre = c == 0 ? test::kCamera.cx : test::kCamera.cy;
+        a.push_back(F(static_cast<float>(scene.seen_a[i](c) * focal + centre)));
+        b.push_back(F(static_cast<float>(scene.seen_b[i](c) * focal + centre)));
+      }
+  }
+  PixelMatches<P> view() const {
+    const int n = static_cast<int>(a.size());
+    return {{a.data(), n}, {b.data(), n}, n / 2};
+  }
+
+  std::vector<F> a, b;
+};
+
+template <class P>
+struct Found {
+  EssentialResult<P> essential;
+  Eigen::Matrix3d E;
+  RecoveredPose<P> pose;
+  work::Job job;
+};
+
+template <class P>
+Found<P> estimate(const TwoViewScene& scene, int cores = 8) {
+  work::Machine machine({cores, "L1", Bytes(110000), 1, true});
+  const test::MatchStorage<P> matches(scene);
+  const Pixels<P> pixels(scene);
+  Found<P> found;
+  {
+    const auto stage = machine.stage("8-point RANSAC");
+    work::Arena& local = machine.local();
+    const work::Arena::Frame frame(local);
+    const MatrixView<P> E = alloc_matrix<P>(local, "E", 3, 3);
+    const auto mask = local.alloc<typename P::template Span<typename P::Byte>>("mask", scene.n);
+    ShiftRegister<P> random(7);
+    found.essential =
+        estimate_essential<P>(machine, matches.view(), kThreshold, random, {}, E, mask);
+    if (found.essential.ok)
+      found.pose = recover_pose<P>(machine, E, pixels.view(), CameraConstants<P>(test::kCamera));
+    for (int i = 0; i < 9; ++i)
+      found.E(i / 3, i % 3) = static_cast<double>(work::value(E.data().data()[i]));
+  }
+  found.job = machine.take_job();
+  return found;
+}
+
+/// The work of the forks of a name, or the master's between them.
+work::Counts of_forks(const work::Job& job, std::string_view name) {
+  work::Counts sum;
+  for (const work::Step& step : job.stages.at(0).steps)
+    if (const auto* fork = std::get_if<work::Fork>(&step); fork && fork->name == name)
+      for (const work::Segment& share : fork->shares) sum += share;
+  return sum;
+}
+work::Counts of_master(const work::Job& job) {
+  work::Counts sum;
+  for (const work::Step& step : job.stages.at(0).steps)
+    if (const auto* serial = std::get_if<work::Serial>(&step)) sum += serial->counts;
+  return sum;
+}
+
+/// Like the matches of the release's frames: keypoints of whole pixels, a short baseline.
+TwoViewSceneOptions like_real_frames() {
+  return {.matches = 60, .outliers = 0.1, .rounded = true, .depth_m = {2, 8}};
+}
+
+TEST(LevioEightPoint, FindsTheMotionAmongOutliers) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const TwoViewScene scene = make_two_view_scene(
+        seed, {.matches = 100, .outliers = 0.2, .baseline_m = {0.3, 0.6}, .depth_m = {1, 6}});
+    const auto result = estimate<work::Native>(scene);
+    if (!result.essential.ok || !result.pose.ok) continue;
+    const bool near =
+        test::degrees_between(test::to_eigen(result.pose.T_b_a.R), scene.R_b_a) < 1.5 &&
+        test::degrees_between(test::to_eigen(result.pose.T_b_a.t), scene.t_b_a) < 8;
+    found += near ? 1 : 0;
+  }
+  EXPECT_GE(found, 9);
+}
+
+TEST(LevioEightPoint, SingularValuesAreEqual) {
+  const TwoViewScene scene = make_two_view_scene(3, like_real_frames());
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(estimate<work::Native>(scene).E);
+  EXPECT_NEAR(svd.singularValues()(1) / svd.singularValues()(0), 1, 1e-4);
+  EXPECT_LT(svd.singularValues()(2), 1e-3 * svd.singularValues()(0));
+}
+
+TEST(LevioEightPoint, TheMotionDoesNotDependOnTheNumberOfCoresOrThePolicy) {
+  const TwoViewScene scene = make_two_view_scene(5, like_real_frames());
+  const auto eight = estimate<work::Native>(scene);
+  const auto one = estimate<work::Native>(scene, 1);
+  const auto counted = estimate<work::Counting>(scene);
+  EXPECT_EQ(one.E, eight.E);
+  EXPECT_EQ(counted.E, eight.E);
+  EXPECT_EQ(test::to_eigen(one.pose.T_b_a.R), test::to_eigen(eight.pose.T_b_a.R));
+  EXPECT_EQ(test::to_eigen(counted.pose.T_b_a.t), test::to_eigen(eight.pose.T_b_a.t));
+}
+
+TEST(LevioEightPoint, TriangulationFindsThePoint) {
+  const TwoViewScene scene =
+      make_two_view_scene(8, {.matches = 50, .baseline_m = {0.3, 0.6}, .depth_m = {1, 4}});
+  work::Arena arena("L1", Bytes(4096));
+  const MatrixView<work::Native> T_a = alloc_matrix<work::Native>(arena, "a", 4, 4),
+                                 T_b = alloc_matrix<work::Native>(arena, "b", 4, 4);
+  store_pose<work::Native>(T_a, Pose<work::Native>::identity());
+  store_pose<work::Native>(T_b, test::to_pose<work::Native>(scene.R_b_a, scene.t_b_a));
+  const Pixels<work::Native> pixels(scene);
+  const CameraConstants<work::Native> camera(test::kCamera);
+  for (int i = 0; i < scene.n; ++i) {
+    const Vec2<work::Native> a{pixels.a[2 * i], pixels.a[2 * i + 1]},
+        b{pixels.b[2 * i], pixels.b[2 * i + 1]};
+    const auto point = triangulate<work::Native>(T_a, T_b, a, b, camera, arena);
+    EXPECT_LT((test::to_eigen(point) - scene.points_a[i]).norm(), 0.02 * scene.points_a[i].norm());
+    EXPECT_LT(reprojection_error_sq<work::Native>(T_b, point, b, camera), 0.05f);
+  }
+}
+
+TEST(LevioEightPoint, DoesTheWorkOfTheRelease) {
+  work::Counts hypotheses, scoring, recovery, master;
+  double number = 0, matches = 0;
+  for (std::uint64_t seed = 100; seed < 110; ++seed) {
+    const TwoViewScene scene = make_two_view_scene(seed, like_real_frames());
+    const auto found = estimate<work::Counting>(scene);
+    ASSERT_TRUE(found.essential.ok);
+    hypotheses += of_forks(found.job, "8-point hypotheses");
+    scoring += of_forks(found.job, "8-point scoring");
+    recovery += of_forks(found.job, "recover pose");
+    master += of_master(found.job);
+    number += kHypotheses;
+    matches += scene.n;
+  }
+  const auto of = [](const work::Counts& c, Op op, double per) {
+    return static_cast<double>(c[op]) / per;
+  };
+  const double rotations = of(hypotheses, Op::F64Mul, 2);
+  // 9 divisions of the first unit vector and 54 of a step, 12 of the SVD and one of a rotation.
+  const double steps = (of(hypotheses, Op::F32Div, 1) - rotations - 21 * number) / 54 / number;
+  // 4 of the first unit vector, 4 of normalised coordinates, 3 of the point, 14 of a step.
+  const double steps4 = (of(recovery, Op::F32Div, 4 * matches) - 11) / 14;
+  const struct {
+    const char* quantity;
+    double counted, fact, tolerance;
+  } rows[] = {
+      // How many depends on the frames: real ones have more samples that determine little.
+      {"steps of 9x9 per hypothesis", steps, 6.05, 0.25},
+      {"rotations per hypothesis", rotations / number, 7.4, 0.05},
+      {"divisions per hypothesis at 6.05 steps",
+       of(hypotheses, Op::F32Div, number) - 54 * (steps - 6.05), 355, 0.05},
+      {"products in double per rotation", of(hypotheses, Op::F64Mul, rotations), 2, 0},
+      {"divisions per match scored", of(scoring, Op::F32Div, kHypotheses * matches), 1, 0},
+      {"roots per match scored", of(scoring, Op::F32Sqrt, 1), 0, 0},
+      {"steps of 4x4 in pose recovery", steps4, 3.62, 0.2},
+      {"divisions per triangulation at 4.3 steps",
+       of(recovery, Op::F32Div, 4 * matches) - 14 * (steps4 - 4.3), 71, 0.05},
+      {"remainders per number drawn", of(master, Op::IntDiv, 8 * number), 2, 0},
+  };
+  for (const auto& row : rows)
+    EXPECT_NEAR(row.counted, row.fact, row.tolerance * row.fact + 1e-9) << row.quantity;
+}
+
+}  // namespace
+}  // namespace leviosim::vio::levio

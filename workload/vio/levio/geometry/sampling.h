@@ -1,0 +1,69 @@
+// Samples for RANSAC as the released program draws them (PARAMETERS.md#sampling): one shift
+// register for both estimators, which advances by one bit per number and is never seeded again.
+//
+// Neighbouring states are shifted copies of each other, so the draws of a sample depend on each
+// other. It is no generator for simulating noise.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "sim/work/policy.h"
+
+namespace leviosim::vio::levio {
+
+/// A 32-bit Fibonacci register with taps 31, 6, 4, 2, 1 and 0; the new bit enters at the top.
+template <class P>
+class ShiftRegister {
+ public:
+  using I32 = typename P::I32;
+  using U32 = typename P::U32;
+
+  /// Zero is the one state that the register never leaves, so it is replaced by one.
+  explicit ShiftRegister(std::uint32_t seed) : state_(seed == 0 ? 1u : seed) {}
+
+  U32 next() {
+    const U32 s = state_;
+    const U32 bit = ((s >> 31) ^ (s >> 6) ^ (s >> 4) ^ (s >> 2) ^ (s >> 1) ^ s) & U32(1u);
+    state_ = (s >> 1) | (bit << 31);
+    return state_;
+  }
+
+  /// A number in 0 … n - 1, n positive. States above the largest multiple of n are passed over.
+  I32 below(I32 n) {
+    constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+    const U32 size(n);
+    const U32 limit = U32(kMost) - U32(kMost) % size;
+    U32 drawn = next();
+    while (drawn >= limit) drawn = next();
+    return I32(drawn % size);
+  }
+
+ private:
+  U32 state_;
+};
+
+/// Draws `k` distinct numbers out of the n of `indices`, a permutation of 0 … n - 1, into `out`.
+/// The permutation stays as the draw left it.
+template <class P, class Indices>
+void draw_sample(ShiftRegister<P>& random, Indices indices, int k, Indices out) {
+  using I32 = typename P::I32;
+  using U16 = typename P::U16;
+  const typename P::Function function("levio_draw_sample");
+  for (int i : P::range(0, k)) {
+    const I32 j = random.below(I32(indices.size() - i)) + I32(i);
+    const I32 drawn = indices[j];
+    indices[j] = work::narrow<U16>(I32(indices[i]));
+    indices[i] = work::narrow<U16>(drawn);
+    out[i] = work::narrow<U16>(drawn);
+  }
+}
+
+/// 0, 1, 2 …: the permutation before the first draw.
+template <class P, class Indices>
+void number_consecutively(Indices indices) {
+  for (int i : P::range(0, indices.size()))
+    indices[i] = work::narrow<typename P::U16>(typename P::I32(i));
+}
+
+}  // namespace leviosim::vio::levio

@@ -1,0 +1,14 @@
+// Matches with the last keyframe, whose features go to L1 whole, however many there are
+// (PARAMETERS.md#transfers).
+#pragma once
+
+#include "workload/vio/frame.h"
+
+namespace leviosim::vio::levio {
+
+/// Matches the frame's features with those of the last keyframe, in the memory that
+/// alloc_keyframe_matches() took.
+template <class P>
+void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame);
+
+}  // namespace leviosim::vio::levio

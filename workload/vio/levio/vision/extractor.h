@@ -1,0 +1,19 @@
+// Feature extraction with the released program's work (PARAMETERS.md#feature-extraction): the same
+// three forks as workload/vision/extractor.h, and features that differ from those in what the disc
+// and the rounding of the release change.
+//
+// Left out: images that do not fit in local memory; the shared extraction has strips for them.
+#pragma once
+
+#include "sim/work/machine.h"
+#include "workload/vision/extractor.h"
+
+namespace leviosim::vio::levio {
+
+/// Extracts the features of an 8-bit image that lies in L2 and fits in local memory into `out`,
+/// whose capacity must be at least options.max_features(). The caller opens the stage.
+template <class P>
+void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
+                      const ExtractorOptions& options, FeatureList<P>& out);
+
+}  // namespace leviosim::vio::levio
