@@ -76,6 +76,7 @@ struct InstructionCacheConfig {
   double shared_hit = 0;   ///< cycles waited for a line that the private cache lacks
   double shared_miss = 0;  ///< cycles waited for a line that has to come from L2
   double refills = 1;      ///< lines that the shared cache can await from L2 at once
+  int ways = 4;            ///< lines of a set, in all caches
 };
 
 struct L1Config {
