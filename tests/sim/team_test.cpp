@@ -170,6 +170,17 @@ TEST(Team, StreamsGetOutOfEachOthersWay) {
   EXPECT_GT(run_together(mixed).cycles[1], static_cast<std::int64_t>(kN)) << "but not of others'";
 }
 
+TEST(Team, StreamsTakeNoMoreThanTheBanksServe) {
+  ClusterConfig config = test_cluster();
+  config.l1.banks = 2;
+  const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadStream, kN}})), config);
+  for (const std::int64_t cycles : o.cycles) EXPECT_NEAR(static_cast<double>(cycles), 4.0 * kN, 2);
+  EXPECT_NEAR(o.time[0].banks, 3.0 * kN, 2);
+  // Two cores that load every other cycle leave each other alone.
+  const Counts light = counts({{Op::LoadStream, kN}, {Op::IntAlu, kN}});
+  EXPECT_EQ(run_together({light, light}, config).cycles[0], static_cast<std::int64_t>(2 * kN));
+}
+
 TEST(Team, CoresOnOneWordTakeTurns) {
   const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadShared, kN}})));
   EXPECT_NEAR(static_cast<double>(o.cycles[0]), 8.0 * kN, 2);
