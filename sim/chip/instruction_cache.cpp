@@ -88,12 +88,8 @@ Walk walk_of(const work::CodeReuse& code, double line) {
   return walk;
 }
 
-/// exp(-x), near enough, in instructions that compilers make vectors of.
-double survival(double x) {
-  double power = 1 / (1 + x / 16);
-  for (int i = 0; i < 4; ++i) power *= power;
-  return power;
-}
+/// exp(-x), near enough for x above 0, in instructions that compilers make vectors of.
+double survival(double x) { return 1 / (1 + x * (1 + x * (0.5 + x / 6))); }
 
 /// Misses of one cache per fetch of a walk.
 /// @param missing  in: probability that a fetch of the class asks this cache; out: that it then
@@ -101,7 +97,7 @@ double survival(double x) {
 ///                 the line, too
 double misses_of(const Walk& walk, const CodeFetcher::Level& cache, OfClasses& missing) {
   constexpr int kMostRounds = 30;
-  constexpr double kExact = 1e-5;
+  constexpr double kExact = 1e-4;
   const std::size_t n = walk.classes;
   OfClasses asked;  // share of all fetches
   OfClasses kept;   // in a loop of its own
@@ -116,14 +112,24 @@ double misses_of(const Walk& walk, const CodeFetcher::Level& cache, OfClasses& m
     missed[i] = asked[i] * (1 - kept[i]);
     all += missed[i];
   }
-  // Rises towards its solution: the more is missed, the more is exposed.
+  // The more is missed, the more is exposed: secant steps on what that adds.
+  double all_before = 0;
+  double added_before = 0;
   for (int round = 0; round < kMostRounds; ++round) {
-    double sum = walk.first;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < n; ++i)
       missed[i] = asked[i] * (1 - kept[i] * survival((all - missed[i]) * exposed[i]));
-      sum += missed[i];
+    double sum = walk.first;
+    for (std::size_t i = 0; i < n; ++i) sum += missed[i];
+    const double added = sum - all;
+    if (std::abs(added) <= kExact) {
+      all = sum;
+      break;
     }
-    if (std::exchange(all, sum) >= sum - kExact) break;
+    const double falls = added_before - added;  // seldom: it does not, and the step is plain
+    const double step =
+        round > 0 && falls * (all - all_before) > 0 ? added * (all - all_before) / falls : added;
+    all_before = std::exchange(all, std::clamp(all + step, walk.first, 1.0));
+    added_before = added;
   }
   for (std::size_t i = 0; i < n; ++i) missing[i] = asked[i] > 0 ? missed[i] / walk.share[i] : 0;
   return all;

@@ -163,14 +163,18 @@ void CycleParts::add_steps(Stage& stage, const work::StageRun& run) {
 void CycleParts::add_fork(Stage& stage, const work::Fork& fork) {
   // What the master does beside the workers is not in the account: they wait for it, or do not.
   const std::size_t shares = fork.shares.size() - (fork.master_takes_part ? 1 : 0);
-  const auto workers = static_cast<std::size_t>(cores_);
   Place& here = place(stage, fork.name);
-  for (std::size_t worker = 0; worker < std::min(workers, shares); ++worker) {
-    work::Segment sum;
-    for (std::size_t i = worker; i < shares; i += workers) sum += fork.shares[i];
-    if (!stage.on_controller) here.fetch += worker_code_.fetch(sum.code).stall;
-    here.work += sum;
-  }
+  for (std::size_t i = 0; i < shares; ++i) here.work += fork.shares[i];
+}
+
+/// What all forks of a stage waited for code is known; it is divided as the prices of their sums
+/// are.
+void CycleParts::divide_fetches(std::vector<Place>& places, double cycles) const {
+  double all = 0;
+  for (Place& place : places)
+    if (place.name != kSerialPlace) all += place.fetch = worker_code_.fetch(place.work.code).stall;
+  for (Place& place : places)
+    if (place.name != kSerialPlace && all > 0) place.fetch *= cycles / all;
 }
 
 void CycleParts::add(const work::Job& job, const sim::JobTiming& timing, bool on_controller) {
@@ -196,7 +200,9 @@ std::vector<StageParts> CycleParts::stages() const {
     const int cores = stage.on_controller ? 1 : cores_;
     PartList list(cores);
     double serial = 0;
-    for (const Place& p : stage.places) {
+    std::vector<Place> places = stage.places;
+    if (!stage.on_controller) divide_fetches(places, stage.breakdown.useful.fetch);
+    for (const Place& p : places) {
       const bool alone = p.name == kSerialPlace;
       if (stage.on_controller)
         add_priced(list, p.name, p.work, chip_.controller.core, chip_.controller.accelerators,

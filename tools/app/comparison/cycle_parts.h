@@ -101,7 +101,8 @@ class CycleParts : public RunObserver {
   static Place& place(Stage& stage, std::string_view name);
   void add(const work::Job& job, const sim::JobTiming& timing, bool on_controller);
   void add_steps(Stage& stage, const work::StageRun& run);
-  void add_fork(Stage& stage, const work::Fork& fork);
+  static void add_fork(Stage& stage, const work::Fork& fork);
+  void divide_fetches(std::vector<Place>& places, double cycles) const;
 
   sim::ChipConfig chip_;
   int cores_;
