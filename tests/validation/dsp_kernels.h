@@ -78,7 +78,7 @@ void convolve_int32(In<P, typename P::I32> x, In<P, typename P::I32> taps,
   using I32 = typename P::I32;
   const int n = x.size();
   const int m = taps.size();
-  for (const int block : P::range(0, (n + m - 1) / 4)) {
+  for (const int block : P::range(0, (n + m + 2) / 4)) {
     const int t = 4 * block;
     I32 sums[4] = {0, 0, 0, 0};
     // Taps for which all four results lie over x: t + 3 - n < j <= t.
