@@ -191,6 +191,10 @@ void add_instruction_cache(Table& table, const std::string& path, const std::str
   table.add(
       quantity(path + ".size", kSize, 0, kMaxSize, "private instruction cache of " + whose),
       [caches](auto& chip) -> auto& { return caches(chip).worker; });
+  table.add(
+      optional(quantity(path + ".ways", kUnits, 1, kMaxParts,
+                        "lines of a set of these caches, replaced at random; 4 unless said")),
+      [caches](auto& chip) -> auto& { return caches(chip).ways; });
 }
 
 void add_code_of_cluster(Table& table) {

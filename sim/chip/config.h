@@ -23,10 +23,11 @@ enum class Unit : std::uint8_t {
   Divider,
   Int64,
   Bank,    ///< the one bank of L1 that holds a word which all cores use
+  L1,      ///< all banks of L1 together; no operation's, but accesses'
   Refill,  ///< of the shared instruction cache from L2; no operation's, but code's
   /// Accelerators follow, one for each kind of kernel; no operation's, but calls'.
 };
-inline constexpr std::size_t kFirstAccelerator = 6;
+inline constexpr std::size_t kFirstAccelerator = 7;
 inline constexpr std::size_t kUnitCount = kFirstAccelerator + work::kOffloadKindCount;
 constexpr Unit accelerator_of(work::OffloadKind kind) {
   return static_cast<Unit>(kFirstAccelerator + work::index(kind));
@@ -76,6 +77,7 @@ struct InstructionCacheConfig {
   double shared_hit = 0;   ///< cycles waited for a line that the private cache lacks
   double shared_miss = 0;  ///< cycles waited for a line that has to come from L2
   double refills = 1;      ///< lines that the shared cache can await from L2 at once
+  int ways = 4;            ///< lines of a set, in all caches
 };
 
 struct L1Config {

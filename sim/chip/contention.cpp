@@ -63,6 +63,8 @@ Runner Runner::of(int core, const Demand& demand) {
     unit.requests /= cycles;
     unit.cycles /= cycles;
   }
+  const double accesses = runner.streamed + runner.scattered;
+  runner.units[index(Unit::L1)] = {accesses, accesses};
   return runner;
 }
 
@@ -78,7 +80,7 @@ Contention::Contention(const ClusterConfig& config)
   pools_[index(Unit::Int64)] = mapped(fpu.int64_units);
   pools_[index(Unit::Bank)] = {1, 1.0};
   pools_[index(Unit::Refill)] = {1, config.icache.refills};
-  shared_ = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::Refill};
+  shared_ = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::L1, Unit::Refill};
   for (const work::OffloadKindInfo& info : work::kOffloadKinds) {
     const int units = config.accelerators[work::index(info.kernel)].units;
     if (units == 0) continue;
@@ -149,6 +151,7 @@ void Contention::blame(std::size_t i, Progress& p) const {
       p.divider = lost;
       break;
     case Unit::Bank:
+    case Unit::L1:
       p.banks += lost;
       break;
     case Unit::Refill:
@@ -171,6 +174,8 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   progress.assign(n, Progress{});
   if (n < 2 && dma_words == 0) return;
 
+  // What the DMA moves, up to half of what there is.
+  pools_[index(Unit::L1)] = {1, std::max(banks_ - dma_words, 0.5 * banks_)};
   // Rates are 1 at most: units that serve everybody at 1 never hold anybody back.
   const auto serves_everybody = [&](Unit unit) {
     const Pools& kind = pools_[index(unit)];

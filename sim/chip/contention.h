@@ -9,7 +9,8 @@
 // the mean over the operations of the segment that use this kind of unit. Refills of the shared
 // instruction cache are served so, too.
 //
-// Banks add a small delay to each access instead: with requesters j making p_j accesses per cycle
+// All accesses of L1 together are no more than its banks serve, one per cycle each. Below that,
+// banks add a small delay to each access: with requesters j making p_j accesses per cycle
 // on B interleaved banks, an access waits Σ p_j / (2B) cycles (FACTS.md#l1-memory). That is how
 // code waits for the shared instruction cache, and scattered accesses for L1. Streams walk from
 // bank to bank all at the same pace: one that meets another waits once and is out of its way for

@@ -2,82 +2,172 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 namespace leviosim::sim {
 namespace {
 
-// Substituting u = (1 - g)^(n-1), which is uniform; the midpoint rule is exact enough.
-constexpr int kSteps = 64;
-using Shares = std::array<double, kSteps>;
+/// Lines that lie together: the mean of the functions in platform_models/code/rv32imfc.csv, and
+/// what it is for other instruction sets as long as they are not measured.
+constexpr double kStretch = 34;
+constexpr double kLineOfTable = 16;
+/// Share of what a cache holds that is of use while it gets new code.
+constexpr double kOfUse = 0.5;
 
-/// The shares g of the loop since one of n cores used a line, at the middle of each step of u.
-Shares shares_since_use(int n) {
-  Shares shares{};
-  if (n == 1) return shares;
-  for (int i = 0; i < kSteps; ++i)
-    shares[static_cast<std::size_t>(i)] = 1 - std::pow((i + 0.5) / kSteps, 1.0 / (n - 1));
-  return shares;
-}
-
-/// Share of lines that survive, of n cores in the same loop: the mean of exp(-x n g) over the share
-/// g. For one core g is 1.
-double survival(double x, int n, const Shares& shares) {
-  if (n == 1) return std::exp(-x);
-  double sum = 0;
-  for (const double g : shares) sum += std::exp(-x * n * g);
-  return sum / kSteps;
-}
-
-/// Reuse distance that stands for a class: the middle of it on a logarithmic scale.
-double distance_of(std::size_t k) {
-  const auto end = static_cast<double>(work::kReuseClassEnds[k]);
-  return k == 0 ? end : std::sqrt(end * work::kReuseClassEnds[k - 1]);
-}
-
-double miss_share_of_class(std::size_t k, Bytes cache, int sharers) {
-  if (k == work::kNeverFetched) return 1.0 / sharers;  // one of them fetches it for all
-  if (cache == Bytes(0)) return 1;
-  return miss_share(distance_of(k) / static_cast<double>(cache.count()), sharers);
-}
-
-}  // namespace
-
-double miss_share(double reuse, int sharers) {
-  if (reuse <= 1) return 0;
-  // m = 1 - survival(m·reuse) has one root above 0. Starting from 1, m decreases towards it.
-  const Shares shares = shares_since_use(sharers);
+/// Of lines that fall on one set; the highest root of m = 1 - exp(-m lines / ways).
+double misses_of_set(int lines, int ways) {
+  if (lines <= ways) return 0;
   double misses = 1;
   for (int round = 0; round < 1000; ++round) {
-    const double next = 1 - survival(misses * reuse, sharers, shares);
-    if (misses - next < 1e-6) break;
+    const double next = 1 - std::exp(-misses * lines / ways);
+    if (misses - next < 1e-9) break;
     misses = next;
   }
   return misses;
 }
 
-CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers)
-    : shared_miss_(config.shared_miss) {
-  if (config.line == Bytes(0)) return;
-  const auto line = static_cast<double>(config.line.count());
-  for (std::size_t k = 0; k < work::kReuseClasses; ++k) {
-    const double requests = k == work::kNeverFetched ? 1 : miss_share_of_class(k, own, 1);
-    const double refills = std::min(requests, miss_share_of_class(k, config.shared, sharers));
-    PerByte& cost = per_byte_[k];
-    cost.requests = own == Bytes(0) ? 0 : requests / line;
-    cost.refills = refills / line;
-    cost.stall = (requests - refills) / line * (own == Bytes(0) ? 0 : config.shared_hit) +
-                 refills / line * config.shared_miss;
+/// Mean over the lines of `stretches` stretches, each of which covers a share of the sets.
+double misses_of_stretches(int stretches, double share, int ways) {
+  double mean = 0;
+  double probability = std::pow(1 - share, stretches - 1);  // that no other covers the set
+  if (share == 1) return misses_of_set(stretches, ways);
+  for (int others = 0; others < stretches; ++others) {
+    mean += probability * misses_of_set(1 + others, ways);
+    probability *= (stretches - 1.0 - others) / (others + 1) * share / (1 - share);
   }
+  return mean;
 }
 
-CodeFetch CodeFetcher::fetch(const work::CodeReuse& code) const {
-  CodeFetch sum;
-  for (std::size_t k = 0; k < work::kReuseClasses; ++k) {
-    const auto bytes = static_cast<double>(code[k]);
-    sum.stall += bytes * per_byte_[k].stall;
-    sum.requests += bytes * per_byte_[k].requests;
-    sum.refills += bytes * per_byte_[k].refills;
+LoopMisses new_loop_misses(int lines, int ways) {
+  const double sets = static_cast<double>(lines) / ways;
+  const double stretch = std::min(kStretch, sets);
+  LoopMisses misses{};
+  for (std::size_t k = 0; k < misses.size(); ++k) {
+    const double stretches = std::max(1.0, work::kReuseDistances[k] / kLineOfTable / stretch);
+    const int fewer = static_cast<int>(stretches);
+    const double rest = stretches - fewer;
+    misses[k] = (1 - rest) * misses_of_stretches(fewer, stretch / sets, ways) +
+                rest * misses_of_stretches(fewer + 1, stretch / sets, ways);
   }
+  return misses;
+}
+
+CodeFetcher::Level level_of(Bytes size, Bytes line, int ways) {
+  if (size == Bytes(0) || line == Bytes(0)) return {};
+  const auto bytes = static_cast<double>(size.count());
+  const auto lines = static_cast<int>(std::max<std::int64_t>(size.count() / line.count(), ways));
+  return {bytes, kOfUse / bytes, &loop_misses(lines, ways)};
+}
+
+using OfClasses = LoopMisses;
+
+/// The fetches of a work segment. Classes that nothing is fetched in are left out.
+struct Walk {
+  std::size_t classes = 0;
+  std::array<std::size_t, work::kReuseDistances.size()> number{};
+  OfClasses share{};  ///< of all fetches
+  double first = 0;   ///< share that no cache holds
+  double lines = 0;   ///< fetched
+};
+
+Walk walk_of(const work::CodeReuse& code, double line) {
+  Walk walk;
+  double bytes = 0;
+  for (const std::uint64_t n : code) bytes += static_cast<double>(n);
+  walk.lines = bytes / line;
+  if (bytes == 0) return walk;
+  walk.first = static_cast<double>(code[work::kNeverFetched]) / bytes;
+  for (std::size_t k = 0; k < work::kReuseDistances.size(); ++k) {
+    if (code[k] == 0) continue;
+    walk.number[walk.classes] = k;
+    walk.share[walk.classes++] = static_cast<double>(code[k]) / bytes;
+  }
+  return walk;
+}
+
+/// exp(-x), near enough for x above 0, in instructions that compilers make vectors of.
+double survival(double x) { return 1 / (1 + x * (1 + x * (0.5 + x / 6))); }
+
+/// Misses of one cache per fetch of a walk.
+/// @param missing  in: probability that a fetch of the class asks this cache; out: that it then
+/// lacks
+///                 the line, too
+double misses_of(const Walk& walk, const CodeFetcher::Level& cache, OfClasses& missing) {
+  constexpr int kMostRounds = 30;
+  constexpr double kExact = 1e-4;
+  const std::size_t n = walk.classes;
+  OfClasses asked;  // share of all fetches
+  OfClasses kept;   // in a loop of its own
+  OfClasses exposed;
+  OfClasses missed;  // share of all fetches
+  double all = walk.first;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = walk.number[i];
+    asked[i] = walk.share[i] * missing[i];
+    kept[i] = 1 - (*cache.loops)[k];
+    exposed[i] = cache.exposure * work::kReuseDistances[k];
+    missed[i] = asked[i] * (1 - kept[i]);
+    all += missed[i];
+  }
+  // The more is missed, the more is exposed: secant steps on what that adds.
+  double all_before = 0;
+  double added_before = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    for (std::size_t i = 0; i < n; ++i)
+      missed[i] = asked[i] * (1 - kept[i] * survival((all - missed[i]) * exposed[i]));
+    double sum = walk.first;
+    for (std::size_t i = 0; i < n; ++i) sum += missed[i];
+    const double added = sum - all;
+    if (std::abs(added) <= kExact) {
+      all = sum;
+      break;
+    }
+    const double falls = added_before - added;  // seldom: it does not, and the step is plain
+    const double step =
+        round > 0 && falls * (all - all_before) > 0 ? added * (all - all_before) / falls : added;
+    all_before = std::exchange(all, std::clamp(all + step, walk.first, 1.0));
+    added_before = added;
+  }
+  for (std::size_t i = 0; i < n; ++i) missing[i] = asked[i] > 0 ? missed[i] / walk.share[i] : 0;
+  return all;
+}
+
+}  // namespace
+
+const LoopMisses& loop_misses(int lines, int ways) {
+  static std::mutex mutex;
+  static std::map<std::pair<int, int>, LoopMisses> known;
+  const std::scoped_lock lock(mutex);
+  const auto [found, is_new] = known.try_emplace({lines, ways});
+  if (is_new) found->second = new_loop_misses(lines, ways);
+  return found->second;
+}
+
+CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers)
+    : line_(static_cast<double>(config.line.count())),
+      shared_hit_(config.shared_hit),
+      shared_miss_(config.shared_miss),
+      sharers_(sharers),
+      own_(level_of(own, config.line, config.ways)),
+      shared_(level_of(config.shared, config.line, config.ways)) {}
+
+CodeFetch CodeFetcher::fetch(const work::CodeReuse& code) const {
+  if (line_ == 0) return {};
+  const Walk walk = walk_of(code, line_);
+  if (walk.lines == 0) return {};
+  const bool is_private = own_.bytes > 0;
+  OfClasses missing;
+  missing.fill(1);
+  const double requests = is_private ? misses_of(walk, own_, missing) : 1;
+  const double misses = shared_.bytes > 0 ? misses_of(walk, shared_, missing) : requests;
+  CodeFetch sum;
+  sum.stall =
+      walk.lines * (misses * shared_miss_ + (is_private ? (requests - misses) * shared_hit_ : 0.0));
+  sum.requests = is_private ? walk.lines * requests : 0;
+  sum.refills = walk.lines * misses / sharers_;
   sum.refill_cycles = sum.refills * shared_miss_;
   return sum;
 }

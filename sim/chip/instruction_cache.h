@@ -1,19 +1,28 @@
 // What fetching code costs: private instruction caches in front of one that the cores of a cluster
 // share, in front of L2 (FACTS.md#instruction-caches).
 //
-// Work says how far apart it reuses its code (sim/work/code_reuse.h). Both levels replace lines at
-// random (a shift register in the hardware), so a line survives each miss of its cache with
-// probability 1 - 1/lines; with a share m of misses, a line that is used again after r times the
-// cache's capacity survives with exp(-m r). For code in a loop, r is the same for all lines, and
-// m = 1 - exp(-m r) gives the share that is missed: none up to r = 1.
+// Work says how far apart it reuses its code (sim/work/code_reuse.h). All caches have sets of a few
+// ways and replace a line of a set at random (a shift register in the hardware).
+// * Code comes in loops: what is used again at distance d lies in a loop of about that size, which
+//   competes with itself. If k lines of it fall on a set of w ways and each is missed with
+//   probability m, a line survives the round with exp(-m k / w), so m = 1 - exp(-m k / w): none for
+//   k up to w. Functions lie in memory one behind the other, in an order by chance, so k varies
+//   from set to set.
+// * Other misses of the same work, of code that is new or in larger loops, hit these lines, too.
+// They
+//   come in bursts, when the core goes on to other code, and while a burst is worked off, half of
+//   what the cache holds is of use, on average: of M misses per fetch, a line is hit by
+//   M d / 2 / size while it is not used.
+// * The shared cache is asked for what the private one lacks.
 //
-// Cores of a team run the same code, each at its own place in its loops. Whoever comes first brings
-// a line into the shared cache for all: of n cores at random places of the loop, the last use of a
-// line by any of them lies a share g of the loop back, where P(g > x) = (1 - x)^(n-1), and during
-// it all n of them miss.
+// Cores of a team run the same code at about the same time, and form a convoy: whoever comes first
+// awaits a line, and the others, who catch up meanwhile, await it, too. So each core waits as if it
+// were alone, and what a team shares is the traffic: a line is fetched from L2 once for all.
 //
-// Left out: conflicts between the four ways of a set below the capacity, prefetching (off by
-// default), and cores that wait for a line which another one is fetching already.
+// The tests step through such caches line by line (tests/support/line_caches.h).
+//
+// Left out: prefetching (off by default), and teams of which each core is in another part of the
+// code.
 #pragma once
 
 #include <array>
@@ -23,20 +32,20 @@
 
 namespace leviosim::sim {
 
-/// Share of fetches that miss a cache of random replacement.
-/// @param reuse    reuse distance over the cache's capacity
-/// @param sharers  cores that run the same code on this cache, at random places of it
-double miss_share(double reuse, int sharers);
+/// Share of its lines that a loop misses which is alone in a cache, by the class of its size.
+using LoopMisses = std::array<double, work::kReuseDistances.size()>;
+/// Stays valid. @param lines  of the cache, a multiple of `ways`
+const LoopMisses& loop_misses(int lines, int ways);
 
 /// What a work segment fetches from beyond a core's private cache.
 struct CodeFetch {
-  double stall = 0;          ///< cycles that a lone core waits
+  double stall = 0;          ///< cycles that a core waits
   double requests = 0;       ///< lines that the private cache asks the shared one for
-  double refills = 0;        ///< lines that the shared cache asks L2 for
+  double refills = 0;        ///< lines that the shared cache asks L2 for; of a team, for each core
   double refill_cycles = 0;  ///< for which it awaits them
 };
 
-/// The caches as one core sees them, its misses worked out for every class of reuse distance.
+/// The caches as one core sees them.
 class CodeFetcher {
  public:
   /// Caches of unlimited size.
@@ -45,16 +54,23 @@ class CodeFetcher {
   /// @param sharers  cores that run the same work at the same time
   CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers);
 
+  /// Not additive: code that is fetched between other code survives less.
   CodeFetch fetch(const work::CodeReuse& code) const;
 
- private:
-  double shared_miss_ = 0;
-  struct PerByte {
-    double stall = 0;
-    double requests = 0;
-    double refills = 0;
+  /// A cache as the equations see it.
+  struct Level {
+    double bytes = 0;     ///< 0: there is no such cache
+    double exposure = 0;  ///< of a byte of distance to a miss per fetch
+    const LoopMisses* loops = nullptr;
   };
-  std::array<PerByte, work::kReuseClasses> per_byte_{};
+
+ private:
+  double line_ = 0;  ///< bytes; 0: fetching costs nothing
+  double shared_hit_ = 0;
+  double shared_miss_ = 0;
+  double sharers_ = 1;
+  Level own_;
+  Level shared_;
 };
 
 }  // namespace leviosim::sim

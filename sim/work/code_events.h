@@ -17,11 +17,19 @@ namespace leviosim::work {
 /// Library routines that stand for operations which a core has no hardware for. Their code is found
 /// by these names in the sizes of compiled code. Calls of them do not cut the code of their caller
 /// into pieces.
-enum class Routine : std::uint8_t { F64Add, F64Mul, F64Div, F64Compare, F64Convert };
+enum class Routine : std::uint8_t {
+  F64Add,
+  F64Sub,
+  F64Mul,
+  F64Div,
+  F64Compare,
+  F64Widen,
+  F64Narrow
+};
 
-inline constexpr std::array<CodeName, 5> kRoutineNames = {
-    CodeName("f64_add"), CodeName("f64_mul"), CodeName("f64_div"), CodeName("f64_compare"),
-    CodeName("f64_convert")};
+inline constexpr std::array<CodeName, 7> kRoutineNames = {
+    CodeName("f64_add"),     CodeName("f64_sub"),   CodeName("f64_mul"),   CodeName("f64_div"),
+    CodeName("f64_compare"), CodeName("f64_widen"), CodeName("f64_narrow")};
 constexpr CodeName name_of(Routine routine) {
   return kRoutineNames[static_cast<std::size_t>(routine)];
 }

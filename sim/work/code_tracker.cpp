@@ -33,6 +33,11 @@ void CodeTracker::select(int core) {
 
 void CodeTracker::follow(const CodeWindow& window) {
   if (window.events.empty()) return;
+  if (kept_ != nullptr) [[unlikely]] {
+    EventsOfSegments& segments = kept_->at(core_);
+    if (segments.empty()) segments.emplace_back();
+    segments.back().insert(segments.back().end(), window.events.begin(), window.events.end());
+  }
   std::int32_t number = first_steps_[state_];
   if (number == kNone || steps_[index(number)].window != window.hash) [[unlikely]]
     number = find_step(window);
@@ -42,6 +47,8 @@ void CodeTracker::follow(const CodeWindow& window) {
 }
 
 void CodeTracker::settle() {
+  if (kept_ != nullptr) [[unlikely]]
+    kept_->at(core_).emplace_back();  // of the next segment
   for (const std::int32_t number : unsettled_) {
     Step& step = steps_[index(number)];
     for (std::uint32_t i = step.fetches.begin; i != step.fetches.end; ++i)
@@ -115,8 +122,11 @@ void CodeTracker::visit(Place& place, std::uint64_t piece_key) {
   const auto add = [this](std::size_t reuse, std::uint32_t bytes) {
     fetches_.push_back({static_cast<std::uint32_t>(reuse), bytes});
   };
-  add(known ? reuse_class(distance) : kNeverFetched, code.bytes);
-  if (code.again_bytes > 0) add(reuse_class(code.bytes), code.again_bytes);
+  if (known)
+    for_reuse_classes(distance, code.bytes, add);
+  else
+    add(kNeverFetched, code.bytes);
+  if (code.again_bytes > 0) for_reuse_classes(code.bytes, code.again_bytes, add);
 }
 
 void CodeTracker::merge_fetches(std::size_t first) {

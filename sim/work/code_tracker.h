@@ -36,6 +36,11 @@ class CodeTracker {
   /// Adds to the tally of this thread what the events since the last call fetched.
   void settle();
 
+  /// From now on, appends the events of each core to its list, for who wants to walk through the
+  /// code line by line: those of a work segment together. The lists are as many as the cores.
+  using EventsOfSegments = std::vector<std::vector<CodeEvent>>;
+  void keep_events(std::vector<EventsOfSegments>* events) { kept_ = events; }
+
   /// What was executed and is not in the map, and so counts as code of no size: keys of pieces
   /// (CodeMap::piece_key).
   const std::set<std::uint64_t>& without_size() const { return without_size_; }
@@ -85,6 +90,7 @@ class CodeTracker {
   std::vector<std::int32_t> unsettled_;  ///< steps in use
   std::unordered_multimap<std::uint64_t, std::uint32_t> state_of_hash_;
   std::set<std::uint64_t> without_size_;
+  std::vector<EventsOfSegments>* kept_ = nullptr;
   std::size_t core_ = 0;                        ///< the one selected
   std::uint32_t state_ = 0;                     ///< of that core
   std::vector<std::uint32_t> states_of_cores_;  ///< of the other cores

@@ -245,7 +245,7 @@ struct F64 {
     return F64(a.v + b.v);
   }
   friend F64 operator-(F64 a, F64 b) {
-    count_routine(Op::F64Add, Routine::F64Add);
+    count_routine(Op::F64Add, Routine::F64Sub);
     return F64(a.v - b.v);
   }
   friend F64 operator-(F64 a) {

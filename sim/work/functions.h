@@ -86,11 +86,11 @@ inline F32 to_f32(I32 x) {
   return F32(to_f32(x.v));
 }
 inline F32 to_f32(F64 x) {
-  count_routine(Op::F64Convert, Routine::F64Convert);
+  count_routine(Op::F64Convert, Routine::F64Narrow);
   return F32(to_f32(x.v));
 }
 inline F64 to_f64(F32 x) {
-  count_routine(Op::F64Convert, Routine::F64Convert);
+  count_routine(Op::F64Convert, Routine::F64Widen);
   return F64(to_f64(x.v));
 }
 inline I32 to_i32(F32 x) {

@@ -114,7 +114,7 @@ TEST(Gap9, ForksAndTransfersAreWithinTheirBounds) {
   EXPECT_EQ(cluster.events.offload, 300);
   const double image = 160 * 120 / cluster.dma.bytes_per_cycle + cluster.dma.programming +
                        cluster.dma.first_data + cluster.dma.completion;
-  EXPECT_NEAR(image, 2450, 10);
+  EXPECT_NEAR(image, 2450, 15);
 }
 
 // The bounds of the sum are those that FACTS.md derives; the parts share them.

@@ -73,8 +73,8 @@ constexpr double kOffloads = 2 * 300;  // there and back
 TEST(Sensitivity, TheBaseIsWhatTheJobsTake) {
   const MeanTimes base = time_on(gap9().config({}), 8, example());
   EXPECT_NEAR(base.epnp.value(), (10'000 * overhead() + kOffloads) * kMsPerCycle, 1e-9);
-  // programming 25, first data 16, 8 bytes per cycle, completion 8
-  EXPECT_NEAR(base.eight_point.value(), (25 + 16 + 1'000 + 8 + kOffloads) * kMsPerCycle, 1e-9);
+  // programming 30, first data 20, 8 bytes per cycle, completion 12
+  EXPECT_NEAR(base.eight_point.value(), (30 + 20 + 1'000 + 12 + kOffloads) * kMsPerCycle, 1e-9);
   EXPECT_NEAR(base.frame.value(), (base.epnp.value() + base.eight_point.value()) / 2, 1e-9);
   EXPECT_NEAR(base.iteration.value(), 1'000 * (12 * overhead() + 2) * kMsPerCycle, 1e-9);
 }

@@ -61,8 +61,8 @@ struct TraceParts {
     out.whole(frame_period_ns);
     out.whole(work::kOpCount);
     for (const work::OpInfo& op : work::kOps) out.text(op.name);
-    out.whole(work::kReuseClassEnds.size());
-    for (const std::uint32_t end : work::kReuseClassEnds) out.whole(end);
+    out.whole(work::kReuseDistances.size());
+    for (const std::uint32_t end : work::kReuseDistances) out.whole(end);
     out.append(stages);
     out.byte(0);  // no accuracy
     for (const std::string* part : {&names, &memories}) out.append(*part);

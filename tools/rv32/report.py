@@ -5,6 +5,7 @@ import collections
 import csv
 import pathlib
 
+# Routines by the operation that they stand for, and those of which the code is told apart.
 LIBRARY = {
     "f64_add": ["__adddf3", "__subdf3"],
     "f64_mul": ["__muldf3"],
@@ -19,6 +20,13 @@ LIBRARY = {
     "f32_convert": ["__floatsisf", "__fixsfsi"],
     "popcount": ["__popcountsi2"],
     "memset": ["memset"],
+}
+ROUTINES = {
+    **{op: LIBRARY[op] for op in ("f64_mul", "f64_div", "f64_compare", "popcount", "memset")},
+    "f64_add": ["__adddf3"],
+    "f64_sub": ["__subdf3"],
+    "f64_widen": ["__extendsfdf2"],
+    "f64_narrow": ["__truncdfsf2"],
 }
 OPERATION_OF = {symbol: op for op, symbols in LIBRARY.items() for symbol in symbols}
 
@@ -80,8 +88,8 @@ class Trace:
         return (n, mean(1), min(r[2] for r in rows), max(r[3] for r in rows),
                 mean(4), min(r[5] for r in rows), max(r[6] for r in rows), mean(7))
 
-    def lines_of(self, operation):
-        rows = [r for s in LIBRARY[operation] for r in self.library.get(s, [])]
+    def lines_of(self, routine):
+        rows = [r for s in ROUTINES[routine] for r in self.library.get(s, [])]
         n = sum(r[0] for r in rows)
         return (sum(r[7] for r in rows) / n, n) if n else (0, 0)
 
@@ -150,10 +158,10 @@ def piece_rows(trace, scenes):
 def write_footprints(trace, code, here):
     columns = ["function", "after", "lines", "visits", "refetches"]
     rows = piece_rows(trace, False)
-    for operation in LIBRARY:
-        lines, calls = trace.lines_of(operation)
+    for routine in ROUTINES:
+        lines, calls = trace.lines_of(routine)
         if calls:
-            rows.append((operation, "", lines, calls, 0.0))
+            rows.append((routine, "", lines, calls, 0.0))
     write_csv(code, FOOTPRINT_HEADER, columns, sorted(rows))
     write_csv(here / "stage_code.csv", STAGE_HEADER, ["stage"] + columns[1:],
               sorted(piece_rows(trace, True)))

@@ -15,6 +15,15 @@ namespace {
 
 constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 31;
 
+/// Code that an older file has in the class that ends at its distance.
+void divide(work::CodeReuse& code) {
+  for (std::size_t k = 1; k < work::kReuseDistances.size(); ++k) {
+    const std::uint64_t nearer = code[k] / 2;
+    code[k - 1] += nearer;
+    code[k] -= nearer;
+  }
+}
+
 }  // namespace
 
 WorkFrames::WorkFrames(const WorkTrace& trace, bool offload)
@@ -257,6 +266,7 @@ void WorkFrames::read_counts(std::uint64_t series, work::Segment& segment) {
   if (series >= series_.size()) [[unlikely]]
     text_.fail(fmt::format("a work segment is of series {}; there are {}", series, series_.size()));
   series_[series].next(segment);
+  if (!trace_->has_divided_reuse()) divide(segment.code);
   if (with_offload_) read_offload(segment);
 }
 

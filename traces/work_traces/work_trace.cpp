@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::uint32_t kWithOffload = 2;
 constexpr std::uint32_t kWithNamesOfFacts = 3;
+constexpr std::uint32_t kWithDividedReuse = 4;
 /// Of frames in files of older versions.
 constexpr std::array kOldFacts{"features", "world_matches", "frame_matches", "inliers",
                                "landmarks"};
@@ -38,8 +39,8 @@ void write_texts(ByteWriter& out, const std::vector<std::string>& texts) {
 void write_fields(ByteWriter& out) {
   out.whole(work::kOpCount);
   for (const work::OpInfo& op : work::kOps) out.text(op.name);
-  out.whole(work::kReuseClassEnds.size());
-  for (const std::uint32_t end : work::kReuseClassEnds) out.whole(end);
+  out.whole(work::kReuseDistances.size());
+  for (const std::uint32_t end : work::kReuseDistances) out.whole(end);
 }
 
 void write_ate(ByteWriter& out, const Evaluation& ate) {
@@ -122,10 +123,10 @@ std::vector<std::size_t> read_fields(ByteReader& in) {
     fields.push_back(static_cast<std::size_t>(found - known.begin()));
   }
   const std::uint64_t classes = in.whole("classes of code reuse");
-  if (classes != work::kReuseClassEnds.size())
+  if (classes != work::kReuseDistances.size())
     in.fail(fmt::format("has {} classes of code reuse; expected {}", classes,
-                        work::kReuseClassEnds.size()));
-  for (const std::uint32_t end : work::kReuseClassEnds)
+                        work::kReuseDistances.size()));
+  for (const std::uint32_t end : work::kReuseDistances)
     if (const std::uint64_t found = in.whole("the end of a class of code reuse"); found != end)
       in.fail(fmt::format("a class of code reuse ends at {} bytes; expected {}", found, end));
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) fields.push_back(work::kOpCount + k);
@@ -200,6 +201,7 @@ WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",
                                  name_, bytes_.size()));
   has_offload_ = version_of(bytes_) >= kWithOffload;
+  has_divided_reuse_ = version_of(bytes_) >= kWithDividedReuse;
   const std::string summary = unpacked(sections[0], name_, budget_);
   const std::string place =
       fmt::format("{}, summary (section at byte {})", name_, sections[0].offset);

@@ -27,7 +27,7 @@
 namespace leviosim::traces {
 
 /// Work traces as files.
-inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 3};
+inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 4};
 
 class ByteReader;
 
@@ -102,6 +102,9 @@ class WorkTrace {
   const std::vector<std::string>& names() const { return names_; }
   /// Whether it says what of the work was done in offload regions: those of version 1 do not.
   bool has_offload() const { return has_offload_; }
+  /// Whether code is divided between the two nearest classes of reuse: up to version 3 it is in the
+  /// next farther one.
+  bool has_divided_reuse() const { return has_divided_reuse_; }
   std::size_t file_size() const { return bytes_.size(); }
   /// Memory that is allowed, and used by what is the same for all frames.
   const MemoryBudget& budget() const { return budget_; }
@@ -130,6 +133,7 @@ class WorkTrace {
   std::vector<std::size_t> fields_;
   std::vector<Chunk> chunks_;
   bool has_offload_ = false;
+  bool has_divided_reuse_ = false;
 };
 
 /// Makes a trace of frames that are given in order.

@@ -81,13 +81,14 @@ class PartList {
   std::vector<CyclePart> parts_;
 };
 
-/// What one work segment costs a lone core, operation by operation: the price of a segment is the
-/// sum of the prices of its operations.
-/// @param factor  core-cycles that go by in a cycle of the segment
+/// What work costs lone cores, operation by operation: the price of a segment is the sum of the
+/// prices of its operations and of its code.
+/// @param fetch   cycles that its code took
+/// @param factor  core-cycles that go by in a cycle of the work
 /// @returns its price in core-cycles
 double add_priced(PartList& list, std::string_view where, const work::Segment& segment,
-                  const sim::CoreConfig& core, const sim::Accelerators& accelerators,
-                  const sim::CodeFetcher& code, double factor) {
+                  const sim::CoreConfig& core, const sim::Accelerators& accelerators, double fetch,
+                  double factor) {
   double total = 0;
   const auto add = [&](std::string_view operation, const UsefulCycles& price, double count) {
     total += price.total() * factor;
@@ -102,10 +103,8 @@ double add_priced(PartList& list, std::string_view where, const work::Segment& s
     one[op.op] = left[op.op];
     if (!one.empty()) add(op.name, price(one, core).alone, static_cast<double>(left[op.op]));
   }
-  work::Counts fetched;
-  fetched.code = left.code;
   const auto bytes = std::accumulate(left.code.begin(), left.code.end(), 0.0);
-  if (bytes > 0) add("code", price(fetched, core, code).alone, bytes);
+  if (bytes > 0) add("code", UsefulCycles{.fetch = fetch}, bytes);
   for (const work::OffloadWork& calls : segment.offload) {
     if (accelerators[work::index(calls.kernel)].units == 0) continue;
     const sim::Service service = sim::service_of(calls, accelerators);
@@ -140,24 +139,42 @@ CycleParts::Stage& CycleParts::find(std::string_view name, bool on_controller) {
   return stages_.emplace_back(Stage{std::string(name), on_controller, 0, {}, {}});
 }
 
-work::Segment& CycleParts::place(Stage& stage, std::string_view name) {
+CycleParts::Place& CycleParts::place(Stage& stage, std::string_view name) {
   const auto it = std::find_if(stage.places.begin(), stage.places.end(),
                                [&](const Place& p) { return p.name == name; });
-  if (it != stage.places.end()) return it->work;
-  return stage.places.emplace_back(Place{std::string(name), {}}).work;
+  if (it != stage.places.end()) return *it;
+  return stage.places.emplace_back(Place{std::string(name), {}});
 }
 
 void CycleParts::add_steps(Stage& stage, const work::StageRun& run) {
   for (const work::Step& step : run.steps) {
-    if (const auto* serial = std::get_if<work::Serial>(&step))
-      place(stage, kSerialPlace) += serial->counts;
-    const auto* fork = std::get_if<work::Fork>(&step);
-    if (fork == nullptr) continue;
-    // What the master does beside the workers is not in the account: they wait for it, or do not.
-    const std::size_t shares = fork->shares.size() - (fork->master_takes_part ? 1 : 0);
-    work::Segment& sum = place(stage, fork->name);
-    for (std::size_t i = 0; i < shares; ++i) sum += fork->shares[i];
+    if (const auto* serial = std::get_if<work::Serial>(&step)) {
+      Place& alone = place(stage, kSerialPlace);
+      alone.work += serial->counts;
+      if (!stage.on_controller) alone.fetch += master_code_.fetch(serial->counts.code).stall;
+    }
+    if (const auto* fork = std::get_if<work::Fork>(&step)) add_fork(stage, *fork);
   }
+  // A controller runs all steps of a stage as one.
+  if (stage.on_controller)
+    place(stage, kSerialPlace).fetch += controller_code_.fetch(work::counts_of(run).code).stall;
+}
+
+void CycleParts::add_fork(Stage& stage, const work::Fork& fork) {
+  // What the master does beside the workers is not in the account: they wait for it, or do not.
+  const std::size_t shares = fork.shares.size() - (fork.master_takes_part ? 1 : 0);
+  Place& here = place(stage, fork.name);
+  for (std::size_t i = 0; i < shares; ++i) here.work += fork.shares[i];
+}
+
+/// What all forks of a stage waited for code is known; it is divided as the prices of their sums
+/// are.
+void CycleParts::divide_fetches(std::vector<Place>& places, double cycles) const {
+  double all = 0;
+  for (Place& place : places)
+    if (place.name != kSerialPlace) all += place.fetch = worker_code_.fetch(place.work.code).stall;
+  for (Place& place : places)
+    if (place.name != kSerialPlace && all > 0) place.fetch *= cycles / all;
 }
 
 void CycleParts::add(const work::Job& job, const sim::JobTiming& timing, bool on_controller) {
@@ -183,17 +200,19 @@ std::vector<StageParts> CycleParts::stages() const {
     const int cores = stage.on_controller ? 1 : cores_;
     PartList list(cores);
     double serial = 0;
-    for (const Place& p : stage.places) {
+    std::vector<Place> places = stage.places;
+    if (!stage.on_controller) divide_fetches(places, stage.breakdown.useful.fetch);
+    for (const Place& p : places) {
       const bool alone = p.name == kSerialPlace;
       if (stage.on_controller)
         add_priced(list, p.name, p.work, chip_.controller.core, chip_.controller.accelerators,
-                   controller_code_, 1);
+                   p.fetch, 1);
       else if (alone)
         serial += add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators,
-                             master_code_, cores);
+                             p.fetch, cores);
       else
-        add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators,
-                   worker_code_, 1);
+        add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators, p.fetch,
+                   1);
     }
     if (!stage.on_controller)
       list.add(kSerialPlace, "rounding", "", stage.breakdown.serial - serial);

@@ -88,6 +88,7 @@ class CycleParts : public RunObserver {
   struct Place {
     std::string name;
     work::Segment work;
+    double fetch = 0;  ///< core-cycles that code took; not the price of the sum
   };
   struct Stage {
     std::string name;
@@ -98,9 +99,11 @@ class CycleParts : public RunObserver {
   };
 
   Stage& find(std::string_view name, bool on_controller);
-  static work::Segment& place(Stage& stage, std::string_view name);
+  static Place& place(Stage& stage, std::string_view name);
   void add(const work::Job& job, const sim::JobTiming& timing, bool on_controller);
   void add_steps(Stage& stage, const work::StageRun& run);
+  static void add_fork(Stage& stage, const work::Fork& fork);
+  void divide_fetches(std::vector<Place>& places, double cycles) const;
 
   sim::ChipConfig chip_;
   int cores_;

@@ -74,10 +74,10 @@ void add_blocks(StatisticList& list, const std::string& path,
 
 /// Where code is reused tells which caches hold it.
 void add_code(StatisticList& list, const std::string& path, const StageResult& stage) {
-  for (std::size_t k = 0; k < work::kReuseClassEnds.size(); ++k)
+  for (std::size_t k = 0; k < work::kReuseDistances.size(); ++k)
     if (stage.counts.code[k] > 0)
-      list.add(fmt::format("{}code.reuse_{}", path, work::kReuseClassEnds[k]), "byte",
-               "code fetched again at a reuse distance of up to so many bytes",
+      list.add(fmt::format("{}code.reuse_{}", path, work::kReuseDistances[k]), "byte",
+               "code fetched again at a reuse distance of about so many bytes",
                stage.counts.code[k]);
   list.add(path + "code.first", "byte", "code fetched for the first time, or after 64 KiB of other",
            stage.counts.code[work::kNeverFetched]);

@@ -162,6 +162,7 @@ constexpr std::array kMemoryBenches = {
     UnitBench{"offload and back", offload_and_back},
     UnitBench{"transfer of 4 B", transfer<4>},
     UnitBench{"transfer of 64 B", transfer<64>},
+    UnitBench{"transfer of 256 B", transfer<256>},
     UnitBench{"transfer of 1024 B", transfer<1024>},
     UnitBench{"transfer of 19200 B", transfer<19200>},
     UnitBench{"transfer of 65536 B", transfer<65536>},

@@ -1,0 +1,225 @@
+// The model of instruction caches (sim/chip/instruction_cache.h) against caches that are stepped
+// line by line, on the code that both RANSACs execute.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "platform_models/loader/builtin.h"
+#include "platform_models/loader/compiled_code.h"
+#include "platform_models/loader/loader.h"
+#include "sim/base/csv.h"
+#include "sim/chip/chip.h"
+#include "tests/support/code_lines.h"
+#include "tests/workload/two_view_scene.h"
+#include "workload/geometry/essential_ransac.h"
+#include "workload/geometry/pnp_ransac.h"
+
+namespace leviosim::vio::test {
+namespace {
+
+using P = work::Counting;
+using tests::CodeLayout;
+using tests::CodeWalk;
+using tests::LineCaches;
+using tests::LineList;
+using tests::Walker;
+
+/// What a team did: its job, and the functions that each core went through.
+struct Recording {
+  work::Job job;
+  std::vector<work::CodeTracker::EventsOfSegments> events;  ///< by core, fork by fork
+  int cores = 0;
+};
+
+/// The workload's code, each piece of it larger by a factor.
+const work::CodeMap& scaled_code(double factor) {
+  static std::map<double, work::CodeMap> maps;
+  const auto [found, is_new] = maps.try_emplace(factor);
+  if (!is_new) return found->second;
+  std::string scaled = "function,after,lines,visits,refetches\n";
+  for (const base::BuiltinFile& file : platform::builtin_code()) {
+    if (file.name != platform::kCompiledCode) continue;
+    base::CsvReader csv(file.name, base::Separator::comma,
+                        {"function", "after", "lines", "visits", "refetches"},
+                        std::string(file.text));
+    csv.next();  // titles
+    while (const base::CsvRow* row = csv.next())
+      scaled += fmt::format("{},{},{},{},{}\n", row->text(0), row->text(1), factor * row->number(2),
+                            row->text(3), factor * row->number(4));
+  }
+  return found->second = platform::code_map_from("scaled", scaled);
+}
+
+template <class Body>
+Recording recorded(int cores, const work::CodeMap& code, const Body& body) {
+  Recording recording;
+  recording.cores = cores;
+  recording.events.resize(static_cast<std::size_t>(cores) + 1);
+  work::Machine machine(
+      {.cores = cores, .memory = "L1", .capacity = Bytes(1 << 20), .record = true, .code = &code});
+  {
+    const auto stage = machine.stage("RANSAC");
+    work::current_code->keep_events(&recording.events);
+    body(machine);
+  }
+  recording.job = machine.take_job();
+  return recording;
+}
+
+/// The points of the first view as landmarks, the second view as the camera that is looked for.
+Recording epnp(int cores, const work::CodeMap& code = platform::compiled_code()) {
+  const TwoViewScene scene =
+      make_two_view_scene(3, {.matches = 54, .outliers = 0.3, .rounded = true});
+  std::vector<P::F32> points, pixels;
+  for (std::size_t i = 0; i < scene.points_a.size(); ++i) {
+    for (int c = 0; c < 3; ++c) points.emplace_back(static_cast<float>(scene.points_a[i](c)));
+    pixels.emplace_back(static_cast<float>(scene.seen_b[i].x()) * kCamera.fx + kCamera.cx);
+    pixels.emplace_back(static_cast<float>(scene.seen_b[i].y()) * kCamera.fy + kCamera.cy);
+  }
+  PnpOptions options;
+  options.iterations = 16;
+  return recorded(cores, code, [&](work::Machine& machine) {
+    estimate_pose_epnp<P>(
+        machine, {{points.data(), 3 * scene.n}, {pixels.data(), 2 * scene.n}, scene.n, kCamera},
+        options);
+  });
+}
+
+Recording eight_point(int cores, const work::CodeMap& code = platform::compiled_code()) {
+  const TwoViewScene scene =
+      make_two_view_scene(3, {.matches = 60, .outliers = 0.2, .rounded = true});
+  const MatchStorage<P> matches(scene);
+  std::vector<P::Byte> mask(static_cast<std::size_t>(scene.n));
+  EssentialOptions options;
+  options.iterations = 80;
+  return recorded(cores, code, [&](work::Machine& machine) {
+    estimate_essential<P>(machine, matches.view(), kCamera.fx, options, {mask.data(), scene.n});
+  });
+}
+
+const sim::ChipConfig& gap9() {
+  static const sim::ChipConfig chip = platform::load_platform("gap9");
+  return chip;
+}
+
+/// Cycles that each worker works and waits for code in the forks, by the model.
+struct Modelled {
+  double work = 0;
+  double stall = 0;
+};
+Modelled modelled(const Recording& recording) {
+  sim::Chip chip(gap9(), recording.cores);
+  sim::JobTiming timing;
+  const auto body = [&]() -> sim::Process { timing = co_await chip.cluster().run(recording.job); };
+  chip.kernel().spawn("test", body());
+  chip.kernel().run();
+  const sim::CycleBreakdown& b = timing.stages.at(0).breakdown;
+  const double waiting = b.useful.fetch + b.fetch;
+  return {(b.useful.total() - b.useful.fetch) / recording.cores, waiting / recording.cores};
+}
+
+/// Lines of every core, fork by fork.
+std::vector<std::vector<LineList>> lines_of(const Recording& recording, const CodeLayout& layout) {
+  std::vector<std::vector<LineList>> lists;
+  for (int core = 0; core < recording.cores; ++core) {
+    CodeWalk walk(layout);
+    std::vector<LineList>& forks = lists.emplace_back();
+    for (const auto& events : recording.events[static_cast<std::size_t>(core)]) {
+      walk.follow(events);
+      if (LineList lines = walk.take(); !lines.empty()) forks.push_back(std::move(lines));
+    }
+  }
+  return lists;
+}
+
+constexpr int kLayouts = 6;
+
+/// @param apart  the cores begin each fork at places of its code by chance, as far apart as this
+///               share of it
+struct Case {
+  const char* name;
+  double apart;
+};
+
+/// Mean over layouts and cores of what stepped cores wait.
+double stepped(const Recording& recording, double work, const Case& c) {
+  double sum = 0;
+  for (std::uint64_t layout = 1; layout <= kLayouts; ++layout) {
+    const auto lists = lines_of(recording, CodeLayout(platform::compiled_code(), layout));
+    std::size_t lines = 0;
+    for (const auto& forks : lists)
+      for (const LineList& list : forks) lines += list.size();
+    const double per_line = work * recording.cores / static_cast<double>(lines);
+    tests::RandomNumbers random(layout);
+    LineCaches caches(gap9().cluster.icache, gap9().cluster.icache.worker, layout);
+    for (std::size_t fork = 0; fork < lists[0].size(); ++fork) {
+      std::vector<Walker> walkers;
+      for (const auto& forks : lists) {
+        const auto apart =
+            static_cast<std::uint32_t>(c.apart * static_cast<double>(forks[fork].size()));
+        walkers.push_back({&forks[fork], per_line, apart > 0 ? random.below(apart) : 0});
+      }
+      sum += caches.run(walkers).mean_stall();
+    }
+  }
+  return sum / kLayouts;
+}
+
+/// The same with the work of the first core on all.
+Recording in_step(Recording recording) {
+  for (int core = 1; core < recording.cores; ++core)
+    recording.events[static_cast<std::size_t>(core)] = recording.events[0];
+  for (work::Step& step : recording.job.stages[0].steps)
+    if (auto* fork = std::get_if<work::Fork>(&step))
+      std::fill(fork->shares.begin() + 1, fork->shares.end(), fork->shares[0]);
+  return recording;
+}
+
+void compare(const char* name, const Recording& recording, const Case& c) {
+  const Modelled model = modelled(recording);
+  const double expected = stepped(recording, model.work, c);
+  EXPECT_NEAR(model.stall, expected, 0.1 * expected)
+      << name << ", " << c.name << ": " << 100 * (model.stall / expected - 1) << " %";
+}
+
+TEST(RansacCode, ALoneCoreWaitsAsSteppedCachesSay) {
+  compare("EPnP", epnp(1), {"alone", 0});
+  compare("8-point", eight_point(1), {"alone", 0});
+}
+
+/// Out of step are cores some hundreds of lines apart. (Where they are in different parts of the
+/// program, each with a working set of its own, they wait up to a fifth more.)
+TEST(RansacCode, TeamsWaitAsSteppedCachesSay) {
+  for (const bool is_epnp : {true, false}) {
+    const char* name = is_epnp ? "EPnP" : "8-point";
+    const Recording own = is_epnp ? epnp(8) : eight_point(8);
+    const Recording same = in_step(own);
+    compare(name, own, {"each its own hypotheses", 0});
+    compare(name, same, {"in step", 0});
+    compare(name, same, {"out of step", 0.02});
+  }
+}
+
+/// Cycles of the workers by the model.
+double cycles(const Recording& recording) {
+  const Modelled model = modelled(recording);
+  return model.work + model.stall;
+}
+
+TEST(RansacCode, AFewPerCentOfCodeChangeAFewPerCentOfCycles) {
+  for (const int cores : {1, 8})
+    for (const double factor : {0.95, 1.05}) {
+      const double epnp_ratio = cycles(epnp(cores, scaled_code(factor))) / cycles(epnp(cores));
+      const double eight_point_ratio =
+          cycles(eight_point(cores, scaled_code(factor))) / cycles(eight_point(cores));
+      EXPECT_NEAR(epnp_ratio, 1, 0.06) << cores << " cores, code x " << factor;
+      EXPECT_NEAR(eight_point_ratio, 1, 0.06) << cores << " cores, code x " << factor;
+    }
+}
+
+}  // namespace
+}  // namespace leviosim::vio::test
