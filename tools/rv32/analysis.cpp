@@ -125,6 +125,7 @@ void Analysis::begin_library(const Symbol& symbol, bool tail, std::uint32_t back
     LibraryUse& use = last_copy_.first->library["memcpy"];
     use -= last_copy_.second;
     last_copy_.first->host += last_copy_.second.instructions;
+    executed_ -= last_copy_.second.instructions;
   }
   last_copy_.first = nullptr;
 }
@@ -157,6 +158,7 @@ void Analysis::end_library() {
   leaf_use_.fewest = leaf_use_.most = leaf_use_.instructions;
   leaf_use_.fewest_stalls = leaf_use_.most_stalls = leaf_use_.stalls;
   leaf_use_.lines = static_cast<std::uint64_t>(leaf_lines_.distinct());
+  executed_ += leaf_use_.instructions;
   use += leaf_use_;
   if (symbol.name == "memcpy") last_copy_ = {&account, leaf_use_};
 }
@@ -168,6 +170,7 @@ void Analysis::count_kind(Kind kind) {
 void Analysis::count(const Instruction& in) {
   Named& top = named_.back();
   ++top.account->of_kind[static_cast<std::size_t>(in.kind)];
+  ++executed_;
   if (uses_loaded(last_, in)) ++top.account->load_use;
   last_account_ = top.account;
   last_ = in;
@@ -218,13 +221,14 @@ void Analysis::enter_named(const Mark& mark, const Instruction& in) {
   Account& account = accounts_[{scene_, mark.name}];
   ++account.visits;
   named_.push_back(
-      {mark.name, frames_.size(), own, false, &account, &lines_of_function_[mark.name]});
+      {mark.name, frames_.size(), own, false, &account, &lines_of_function_[mark.name], executed_});
   begin_piece(mark.name, "");
   for (const Instruction& i : first) count(i);
 }
 
 void Analysis::leave_named() {
   end_piece();
+  named_.back().account->inclusive += executed_ - named_.back().began;
   const std::string left = named_.back().name;
   named_.pop_back();
   if (measuring())
@@ -264,6 +268,7 @@ void Analysis::write(std::FILE* out) const {
     for (std::size_t k = 0; k < kKinds; ++k) put(kKindNames[k], a.of_kind[k]);
     put("load_use", a.load_use);
     put("host", a.host);
+    put("inclusive", a.inclusive);
     for (const auto& [name, use] : a.library)
       std::fprintf(out, "library\t%s\t%s\t%s\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\n",
                    key.first.c_str(), key.second.c_str(), name.c_str(),

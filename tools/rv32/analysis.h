@@ -54,7 +54,8 @@ struct Account {
   std::uint64_t visits = 0;
   std::array<std::uint64_t, kKinds> of_kind{};
   std::uint64_t load_use = 0;
-  std::uint64_t host = 0;  ///< instructions of the simulator's book-keeping
+  std::uint64_t host = 0;       ///< instructions of the simulator's book-keeping
+  std::uint64_t inclusive = 0;  ///< instructions from entry to end, with what it called
   std::map<std::string, LibraryUse> library;
 };
 
@@ -82,6 +83,7 @@ class Analysis {
     bool leaving = false;
     Account* account;
     LineSet* all_lines;
+    std::uint64_t began;  ///< instructions executed until its entry
   };
 
   bool measuring() const { return !named_.empty(); }
@@ -105,6 +107,7 @@ class Analysis {
   std::vector<Named> named_;
   std::string scene_;
   LineSet* scene_lines_ = nullptr;
+  std::uint64_t executed_ = 0;  ///< instructions of kernels and library routines in scenes
 
   Instruction last_;  ///< executed
   std::uint32_t last_end_ = 0;

@@ -11,6 +11,7 @@
 #include "sim/work/policy.h"
 
 #define LEVIOSIM_HOST_INLINE
+#define LEVIOSIM_TARGET_CALL [[gnu::noipa]]
 
 namespace leviosim::work {
 

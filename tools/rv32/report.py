@@ -48,7 +48,7 @@ CLASSES = [
     ("double calls", ["f64"], ["f64_add", "f64_mul", "f64_div", "f64_compare", "f64_convert"]),
     ("popcount calls", ["popcount"], ["popcount"]),
 ]
-NO_INSTRUCTION = {"visits", "branch_taken", "load_use", "host"}
+NO_INSTRUCTION = {"visits", "branch_taken", "load_use", "host", "inclusive"}
 SCENE = "scene: "
 GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
 
@@ -270,6 +270,47 @@ where a loop waits for convergence. README.md explains the large differences.
                       f"| {executed / priced:.2f} |\n")
 
 
+# ---- units of the released program's work ----
+
+UNITS_PAGE = """\
+# Units of the released program's work
+
+Executed RV32IMFC instructions per unit of `levio`'s work beside those of the released program, which
+were measured the same way: same compiler, options and counting, emulated arithmetic included, code
+with contraction as the vendor's compiler has it. *Inner*: how often an inner
+function runs per unit, which tells how alike the inputs are. [`units.csv`](units.csv) says what is
+divided by what.
+
+| unit | here | released | ratio | without contraction | inner | here | released |
+| --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |
+"""
+
+
+def per_unit(trace, unit):
+    """(instructions per unit, visits of the inner function per unit)"""
+    scene = SCENE + unit["scene"]
+    divisor = trace.kinds[scene, unit["per"]]["visits"] * int(unit["units"])
+    if divisor == 0:
+        raise SystemExit(f"{unit['unit']}: {unit['per']} is not visited in {scene}")
+    instructions = sum(trace.kinds[scene, f]["inclusive"] for f in unit["functions"].split("+"))
+    return instructions / divisor, trace.kinds[scene, unit["inner"]]["visits"] / divisor
+
+
+def write_units(contracted, uncontracted, here):
+    lines = [line for line in open(here / "units.csv") if not line.startswith("#")]
+    with open(here / "units.md", "w") as out:
+        out.write(f"<!-- {GENERATED} -->\n{UNITS_PAGE}")
+        for unit in csv.DictReader(lines):
+            fused, inner = per_unit(contracted, unit)
+            plain, _ = per_unit(uncontracted, unit)
+            released = float(unit["released"])
+            inner_cells = "– | – | –"
+            if unit["inner"]:
+                inner_cells = f"`{unit['inner']}` | {inner:.1f} | {unit['inner_released']}"
+            out.write(f"| {unit['unit']} | {fused:,.0f} | {released:,.0f} | {fused / released:.2f} "
+                      f"| {plain:,.0f} | {inner_cells} |\n")
+
+
 # ---- library routines ----
 
 def write_library(soft, hard, path):
@@ -299,8 +340,10 @@ def main():
     work, here = arguments.work, arguments.here
     contracted = Trace(work / "scenes.tsv")
     write_footprints(contracted, arguments.code, here)
-    write_cross_check(Trace(work / "scenes_uncontracted.tsv"), contracted,
-                      read_counts(work / "counted.tsv"), read_costs(here / "rv32imfc_costs.csv"), here)
+    uncontracted = Trace(work / "scenes_uncontracted.tsv")
+    write_units(contracted, uncontracted, here)
+    write_cross_check(uncontracted, contracted, read_counts(work / "counted.tsv"),
+                      read_costs(here / "rv32imfc_costs.csv"), here)
     write_library(Trace(work / "library_soft.tsv"), Trace(work / "library_hard.tsv"), here / "library.md")
 
 

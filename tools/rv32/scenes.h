@@ -10,6 +10,8 @@
 
 #include "sim/work/machine.h"
 #include "tools/rv32/inputs.h"
+#include "tools/rv32/levio_scenes.h"
+#include "tools/rv32/scene_data.h"
 #include "workload/geometry/essential_ransac.h"
 #include "workload/geometry/pnp_ransac.h"
 #include "workload/geometry/recover_pose.h"
@@ -24,28 +26,7 @@
 
 namespace leviosim::rv32 {
 
-constexpr int kWidth = 160, kHeight = 120, kFrames = 16;
-
-/// A number that the compiler cannot know, as sizes are for code in another file.
-inline int opaque(int n) {
-  asm volatile("" : "+r"(n));
-  return n;
-}
-
-/// Numbers in [-1, 1), the same on both sides: integers scaled by a power of two.
-class Noise {
- public:
-  std::uint32_t bits() {
-    state_ = state_ * 1664525u + 1013904223u;
-    std::uint32_t z = state_;
-    z = (z ^ (z >> 16)) * 0x85ebca6bu;
-    return z ^ (z >> 13);
-  }
-  float next() { return static_cast<float>(static_cast<std::int32_t>(bits()) >> 8) * 0x1p-23f; }
-
- private:
-  std::uint32_t state_ = 1;
-};
+constexpr int kFrames = 16;
 
 template <class P>
 class Scenes {
@@ -62,8 +43,12 @@ class Scenes {
   void run() {
     read_flight();
     vision();
+    LevioScenes<P> levio(data_, camera());
+    levio.vision(flight_[0].pixels);
+    levio.two_views(inputs_);
     two_views();
     optimiser();
+    levio.optimiser(inputs_);
     inertial();
     linear_algebra();
     functions();
@@ -75,16 +60,9 @@ class Scenes {
     Inputs::Block motion, pixels;
   };
 
-  static work::MachineConfig machine(std::string_view name) {
-    return {
-        .cores = 1, .memory = name, .capacity = Bytes(4 << 20), .alignment = 4, .record = false};
-  }
-
   template <class T>
   Span<T> load(const Inputs::Block& block) {
-    const Span<T> span = data_.alloc<Span<T>>("input", block.size<T>());
-    block.copy_to(span.data(), span.size());
-    return span;
+    return rv32::load<Span<T>>(data_, block);
   }
   Span<F> noise(int n, float scale) {
     const Span<F> span = data_.alloc<Span<F>>("noise", n);
@@ -187,8 +165,7 @@ class Scenes {
   void optimiser() {
     work::Machine controller(machine("L2"));
     vio::PoseGraph<P> graph(controller.local(), vio::GraphCapacity{});
-    std::apply([&](auto&... span) { (inputs_.next().copy_to(span.data(), span.size()), ...); },
-               graph.blocks());
+    fill(graph, inputs_);
     vio::Window<P> window(controller.local(), graph.capacity);
     vio::OptimiserOptions options;
     {

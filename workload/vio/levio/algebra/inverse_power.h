@@ -11,6 +11,7 @@
 
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
+#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 
@@ -65,8 +66,9 @@ typename P::F32 bring_pivot(Matrix& a, Vector& b, int n, int k) {
 /// @param a  n×n, n ≤ kMostUnknowns
 /// @param x  n; zero if a pivot is below kSmallestPivot
 template <class P>
-void solve_gauss(ConstMatrixView<P> a, typename P::template Span<const typename P::F32> b,
-                 typename P::template Span<typename P::F32> x) {
+LEVIOSIM_TARGET_CALL void solve_gauss(ConstMatrixView<P> a,
+                                      typename P::template Span<const typename P::F32> b,
+                                      typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_solve_gauss");
@@ -112,7 +114,8 @@ void normalise(Vector& x, int n) {
 /// @param x  n; becomes the eigenvector with unit norm, of either sign; NaN if a pivot vanished
 /// @return the number of steps taken
 template <class P>
-int smallest_eigenvector(ConstMatrixView<P> a, typename P::template Span<typename P::F32> x) {
+LEVIOSIM_TARGET_CALL int smallest_eigenvector(ConstMatrixView<P> a,
+                                              typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
   using Span = typename P::template Span<F>;
   const typename P::Function function("levio_smallest_eigenvector");

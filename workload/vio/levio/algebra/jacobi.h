@@ -8,6 +8,7 @@
 #pragma once
 
 #include "workload/math/jacobi.h"
+#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 
@@ -90,8 +91,9 @@ LEVIOSIM_HOST_INLINE void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I
 /// @param v  n×n; its columns become the eigenvectors
 /// @return the number of rotations
 template <class P>
-LEVIOSIM_HOST_INLINE int jacobi_eigen(MatrixView<P> a, MatrixView<P> v, int max_rotations,
-                                      typename P::F32 tolerance) {
+LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL int jacobi_eigen(MatrixView<P> a, MatrixView<P> v,
+                                                           int max_rotations,
+                                                           typename P::F32 tolerance) {
   const typename P::Function function("levio_jacobi_eigen");
   const typename P::OffloadRegion kernel(eigen_of_size(a.rows()), 1);
   set_identity<P>(v);

@@ -7,6 +7,7 @@
 
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
+#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 
@@ -33,8 +34,9 @@ typename P::F32 norm_from(Vector v, int first, int size) {
 /// @param b  m, destroyed
 /// @param x  n
 template <class P>
-void least_squares(MatrixView<P> a, typename P::template Span<typename P::F32> b,
-                   typename P::template Span<typename P::F32> x) {
+LEVIOSIM_TARGET_CALL void least_squares(MatrixView<P> a,
+                                        typename P::template Span<typename P::F32> b,
+                                        typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
   const typename P::Function function("levio_least_squares");
   const int m = a.rows(), n = a.cols();

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "workload/math/matrix.h"
+#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 
@@ -42,7 +43,7 @@ Operand<P> transposed(ConstMatrixView<P> matrix) {
 
 /// c = a b, which must fit. c must not overlap a or b.
 template <class P>
-void product(MatrixView<P> c, const Operand<P>& a, const Operand<P>& b) {
+LEVIOSIM_TARGET_CALL void product(MatrixView<P> c, const Operand<P>& a, const Operand<P>& b) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_product");

@@ -6,6 +6,7 @@
 // Left out: a case for singular matrices; see above.
 #pragma once
 
+#include "workload/math/target_call.h"
 #include "workload/vio/levio/algebra/jacobi.h"
 #include "workload/vio/levio/algebra/product.h"
 
@@ -17,7 +18,7 @@ inline constexpr float kSvdTolerance = 1e-12f;  ///< absolute, of the elements o
 /// Makes the columns of a square matrix orthonormal, one after the other (modified Gram-Schmidt): a
 /// root and n divisions each.
 template <class P>
-void orthonormalise_columns(MatrixView<P> u) {
+LEVIOSIM_TARGET_CALL void orthonormalise_columns(MatrixView<P> u) {
   using F = typename P::F32;
   const typename P::Function function("levio_orthonormalise_columns");
   const int n = u.rows();
@@ -44,8 +45,9 @@ void orthonormalise_columns(MatrixView<P> u) {
 /// @param s  n
 /// @param v  n×n
 template <class P>
-void svd(ConstMatrixView<P> a, MatrixView<P> u, typename P::template Span<typename P::F32> s,
-         MatrixView<P> v, work::Arena& scratch) {
+LEVIOSIM_TARGET_CALL void svd(ConstMatrixView<P> a, MatrixView<P> u,
+                              typename P::template Span<typename P::F32> s, MatrixView<P> v,
+                              work::Arena& scratch) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   using Indices = typename P::template Span<typename P::U16>;

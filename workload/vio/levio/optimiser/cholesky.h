@@ -5,6 +5,7 @@
 
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
+#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 
@@ -12,7 +13,7 @@ namespace leviosim::vio::levio {
 /// is neither read nor written.
 /// @return false if A is not positive definite; its lower triangle is then partly overwritten
 template <class P>
-bool cholesky_factor(MatrixView<P> a) {
+LEVIOSIM_TARGET_CALL bool cholesky_factor(MatrixView<P> a) {
   using F = typename P::F32;
   const typename P::Function function("levio_cholesky_factor");
   const typename P::OffloadRegion kernel(solve_of_size(a.rows()), factor_items(a.rows(), a.rows()));
@@ -35,7 +36,8 @@ bool cholesky_factor(MatrixView<P> a) {
 
 /// Solves L Lᵀ x = b for the factor of cholesky_factor; b becomes x.
 template <class P>
-void cholesky_solve(ConstMatrixView<P> l, typename P::template Span<typename P::F32> b) {
+LEVIOSIM_TARGET_CALL void cholesky_solve(ConstMatrixView<P> l,
+                                         typename P::template Span<typename P::F32> b) {
   using F = typename P::F32;
   const typename P::Function function("levio_cholesky_solve");
   const int n = l.rows();
