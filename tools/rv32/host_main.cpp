@@ -1,4 +1,5 @@
-// counts INPUTS: the scenes on counted scalars. Prints a line per scene, function and operation.
+// counts INPUTS: the scenes on counted scalars. Prints a line per scene, function and operation:
+// "counted" of the function itself, "inclusive" with all that it called.
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -16,6 +17,7 @@ namespace {
 struct Account {
   std::uint64_t visits = 0;
   work::Counts counts;
+  work::Counts inclusive;  ///< with what it called; no named function calls itself
 };
 
 /// Who ran how often and did what; the accounts of the functions that are running, innermost last.
@@ -27,13 +29,24 @@ struct Ledger {
   bool measuring() const { return !running.empty() && running.back() != nullptr; }
   void settle() {
     const work::Counts counts = work::take_tally();
-    if (measuring()) running.back()->counts += counts;
+    if (!measuring()) return;
+    running.back()->counts += counts;
+    for (Account* account : running) account->inclusive += counts;
   }
 };
 
 Ledger& ledger() {
   static Ledger instance;
   return instance;
+}
+
+void print(const char* what, const std::pair<std::string, std::string>& key,
+           const work::Counts& counts) {
+  for (const work::OpInfo& info : work::kOps)
+    if (counts[info.op] > 0)
+      std::printf("%s\t%s\t%s\t%.*s\t%llu\n", what, key.first.c_str(), key.second.c_str(),
+                  static_cast<int>(info.name.size()), info.name.data(),
+                  static_cast<unsigned long long>(counts[info.op]));
 }
 
 }  // namespace
@@ -79,11 +92,8 @@ int main(int argc, char** argv) {
   for (const auto& [key, account] : rv32::ledger().accounts) {
     std::printf("counted\t%s\t%s\tvisits\t%llu\n", key.first.c_str(), key.second.c_str(),
                 static_cast<unsigned long long>(account.visits));
-    for (const work::OpInfo& info : work::kOps)
-      if (account.counts[info.op] > 0)
-        std::printf("counted\t%s\t%s\t%.*s\t%llu\n", key.first.c_str(), key.second.c_str(),
-                    static_cast<int>(info.name.size()), info.name.data(),
-                    static_cast<unsigned long long>(account.counts[info.op]));
+    rv32::print("counted", key, account.counts);
+    rv32::print("inclusive", key, account.inclusive);
   }
   for (const vio::FrameReport& r : scenes.reports())
     std::fprintf(stderr, "%d %d %d %d %d %d %d\n", static_cast<int>(r.source), r.keyframe,

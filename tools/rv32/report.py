@@ -94,11 +94,13 @@ class Trace:
         return (sum(r[7] for r in rows) / n, n) if n else (0, 0)
 
 
-def read_counts(path):
+def read_counts(path, kind="counted"):
+    """@param kind  "counted" of the function itself, "inclusive" with what it called"""
     counts = collections.defaultdict(collections.Counter)
     for line in open(path):
-        _, scene, function, what, n = line.rstrip("\n").split("\t")
-        counts[scene, function][what] += int(n)
+        of, scene, function, what, n = line.rstrip("\n").split("\t")
+        if of == kind:
+            counts[scene, function][what] += int(n)
     return counts
 
 
@@ -275,40 +277,60 @@ where a loop waits for convergence. README.md explains the large differences.
 UNITS_PAGE = """\
 # Units of the released program's work
 
-Executed RV32IMFC instructions per unit of `levio`'s work beside those of the released program, which
-were measured the same way: same compiler, options and counting, emulated arithmetic included, code
-with contraction as the vendor's compiler has it. *Inner*: how often an inner
-function runs per unit, which tells how alike the inputs are. [`units.csv`](units.csv) says what is
-divided by what.
+Instructions per unit of `levio`'s work on RV32IMFC beside those of the released program, emulated
+arithmetic included. *Released* and *executed* come from the same compiler and options, with
+contraction as the vendor's compiler has it; *priced* are counted operations times
+`rv32imfc_costs.csv`. *Inner*: how often an inner function runs per unit, which tells how alike the
+inputs are. [`units.csv`](units.csv) says what is divided by what, [`RESULTS.md`](RESULTS.md) why
+some differ.
 
-| unit | here | released | ratio | without contraction | inner | here | released |
-| --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |
+| unit | released | executed | ratio | priced | ratio | without contraction | inner | here | released |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: | --- | ---: | ---: |
 """
 
 
-def per_unit(trace, unit):
-    """(instructions per unit, visits of the inner function per unit)"""
-    scene = SCENE + unit["scene"]
-    divisor = trace.kinds[scene, unit["per"]]["visits"] * int(unit["units"])
-    if divisor == 0:
-        raise SystemExit(f"{unit['unit']}: {unit['per']} is not visited in {scene}")
-    instructions = sum(trace.kinds[scene, f]["inclusive"] for f in unit["functions"].split("+"))
-    return instructions / divisor, trace.kinds[scene, unit["inner"]]["visits"] / divisor
+class Unit:
+    """What a unit takes: a row of units.csv, applied to a trace or to counts."""
+
+    def __init__(self, row):
+        self.row, self.scene = row, SCENE + row["scene"]
+        self.terms = [(f.removeprefix("-"), -1 if f.startswith("-") else 1)
+                      for f in row["functions"].split("|")]
+
+    def number(self, trace):
+        n = trace.kinds[self.scene, self.row["per"]]["visits"] * int(self.row["units"])
+        if n == 0:
+            raise SystemExit(f"units.csv: {self.row['per']} is not visited in {self.scene}")
+        return n
+
+    def executed(self, trace):
+        total = sum(sign * trace.kinds[self.scene, f]["inclusive"] for f, sign in self.terms)
+        return total / self.number(trace)
+
+    def priced(self, trace, counts, costs):
+        total = sum(sign * n * costs[op] for f, sign in self.terms
+                    for op, n in counts[self.scene, f].items())
+        return total / self.number(trace)
+
+    def inner(self, trace):
+        return trace.kinds[self.scene, self.row["inner"]]["visits"] / self.number(trace)
 
 
-def write_units(contracted, uncontracted, here):
+def write_units(contracted, uncontracted, counts, costs, here):
+    """@param counts  inclusive; of as many visits as `uncontracted` has"""
     lines = [line for line in open(here / "units.csv") if not line.startswith("#")]
     with open(here / "units.md", "w") as out:
         out.write(f"<!-- {GENERATED} -->\n{UNITS_PAGE}")
-        for unit in csv.DictReader(lines):
-            fused, inner = per_unit(contracted, unit)
-            plain, _ = per_unit(uncontracted, unit)
-            released = float(unit["released"])
-            inner_cells = "– | – | –"
-            if unit["inner"]:
-                inner_cells = f"`{unit['inner']}` | {inner:.1f} | {unit['inner_released']}"
-            out.write(f"| {unit['unit']} | {fused:,.0f} | {released:,.0f} | {fused / released:.2f} "
-                      f"| {plain:,.0f} | {inner_cells} |\n")
+        for row in csv.DictReader(lines):
+            unit, released = Unit(row), float(row["released"])
+            executed = unit.executed(contracted)
+            priced = unit.priced(uncontracted, counts, costs)
+            inner = "– | – | –"
+            if row["inner"]:
+                inner = f"`{row['inner']}` | {unit.inner(contracted):.1f} | {row['inner_released']}"
+            out.write(f"| {row['unit']} | {released:,.0f} | {executed:,.0f} | {executed / released:.2f} "
+                      f"| {priced:,.0f} | {priced / released:.2f} | {unit.executed(uncontracted):,.0f} "
+                      f"| {inner} |\n")
 
 
 # ---- library routines ----
@@ -341,9 +363,9 @@ def main():
     contracted = Trace(work / "scenes.tsv")
     write_footprints(contracted, arguments.code, here)
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
-    write_units(contracted, uncontracted, here)
-    write_cross_check(uncontracted, contracted, read_counts(work / "counted.tsv"),
-                      read_costs(here / "rv32imfc_costs.csv"), here)
+    costs = read_costs(here / "rv32imfc_costs.csv")
+    write_units(contracted, uncontracted, read_counts(work / "counted.tsv", "inclusive"), costs, here)
+    write_cross_check(uncontracted, contracted, read_counts(work / "counted.tsv"), costs, here)
     write_library(Trace(work / "library_soft.tsv"), Trace(work / "library_hard.tsv"), here / "library.md")
 
 
