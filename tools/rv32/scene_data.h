@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 
 #include "sim/work/machine.h"
 #include "tools/rv32/inputs.h"
