@@ -36,16 +36,18 @@ tools/setup.sh
 echo "test: building preset $preset"
 tools/build.sh "$preset" "${targets[@]}"
 
-status=0
+failed=()
+check() { "$@" || failed+=("$*"); }
 if [[ $reproducible == yes ]]; then
-  tools/check_reproducible.sh --quick || status=1
-  tools/fuzz.sh --seconds 20 --light || status=1
+  check tools/check_reproducible.sh --quick
+  check tools/fuzz.sh --seconds 20 --light
 fi
-tools/check_pages.sh || status=1
+check tools/check_pages.sh
 if [[ $preset == release && ${#targets[@]} == 0 ]]; then
-  tools/ci/guard.sh || status=1
+  check tools/ci/guard.sh
   tools/figures.sh --check || echo "test: figures are stale (above); tools/figures.sh makes them anew"
 fi
 # Last, so that its summary is what stands at the end of the log.
-ctest --preset "$preset" --parallel 2 "${tests[@]}" || status=1
-exit $status
+check ctest --preset "$preset" --parallel 2 "${tests[@]}"
+((${#failed[@]} == 0)) || printf 'test: failed: %s\n' "${failed[@]}" >&2
+exit $((${#failed[@]} > 0))

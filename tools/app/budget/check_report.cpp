@@ -8,6 +8,7 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison_report.h"
+#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

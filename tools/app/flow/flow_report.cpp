@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/app/report/energy_tables.h"
+#include "tools/app/report/number_text.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"

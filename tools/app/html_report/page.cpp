@@ -25,13 +25,13 @@ std::string scripts() {
   return text;
 }
 
-/// What stands for a placeholder of the template, "{{title}}".
-std::string content(std::string_view placeholder, const Json& data) {
-  if (placeholder == "title") return html_escaped(data.at("title").get<std::string>());
-  if (placeholder == "data") return script_json(data);
-  if (placeholder == "scripts") return scripts();
-  if (placeholder == "licence") return html_escaped(std::string(part("copyright")));
-  return std::string(part(placeholder));
+/// What the template has in place of a field such as "{{title}}".
+std::string content(std::string_view field, const Json& data) {
+  if (field == "title") return html_escaped(data.at("title").get<std::string>());
+  if (field == "data") return script_json(data);
+  if (field == "scripts") return scripts();
+  if (field == "licence") return html_escaped(std::string(part("copyright")));
+  return std::string(part(field));
 }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tools/app/report/accuracy.h"
+#include "tools/app/report/number_text.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/map_faults.h"
 #include "tools/app/result/summary.h"

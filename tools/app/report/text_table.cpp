@@ -44,10 +44,6 @@ std::string shortened(const std::string& text, int width) {
   return shorter + "…";
 }
 
-std::string figure_text(std::optional<double> value, int decimals, std::string_view otherwise) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string(otherwise);
-}
-
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {
   for (Column& column : columns_) column.title = printable(column.title);
 }

@@ -2,12 +2,9 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "sim/base/units.h"
 
 namespace leviosim::tools {
 
@@ -24,16 +21,6 @@ int display_width(std::string_view text);
 
 /// Cut to so many columns, with "…" at the end.
 std::string shortened(const std::string& text, int width);
-
-/// What stands in a cell of which nothing is known.
-inline constexpr const char* kNothing = "–";
-
-/// With so many decimals; `otherwise` for what does not exist.
-std::string figure_text(std::optional<double> value, int decimals,
-                        std::string_view otherwise = kNothing);
-
-/// A clock in MHz.
-inline double megahertz(Hertz clock) { return static_cast<double>(clock.count()) / 1e6; }
 
 class TextTable {
  public:

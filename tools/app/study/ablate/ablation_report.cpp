@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

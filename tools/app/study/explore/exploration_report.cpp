@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

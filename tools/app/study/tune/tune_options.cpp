@@ -11,7 +11,7 @@
 #include "sim/base/text.h"
 #include "sim/energy/model.h"
 #include "sim/energy/operating_point.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/report/number_text.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
 #include "traces/datasets/asl_reader.h"
@@ -113,7 +113,8 @@ std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
 
 std::vector<double> parse_rates(const std::string& text) {
   std::vector<double> rates;
-  for (const std::string& item : base::split(text, ',')) rates.push_back(parse_positive("--fps", item));
+  for (const std::string& item : base::split(text, ','))
+    rates.push_back(parse_positive("--fps", item));
   sort_and_refuse_repetitions("--fps", text, rates);
   return rates;
 }

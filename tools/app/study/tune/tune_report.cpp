@@ -7,6 +7,7 @@
 #include <array>
 
 #include "sim/base/printable_text.h"
+#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/study/batch_plan.h"
 #include "tools/app/study/runs_csv.h"
