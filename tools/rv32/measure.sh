@@ -10,7 +10,7 @@ mkdir -p "$out"
 
 for tool in riscv64-unknown-elf-g++ qemu-riscv32 python3; do
   command -v "$tool" >/dev/null || {
-    echo "measure.sh: $tool is missing; apt-get install gcc-riscv64-unknown-elf qemu-user python3" >&2
+    echo "measure.sh: $tool is missing; apt-get install gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf qemu-user python3" >&2
     exit 1
   }
 done

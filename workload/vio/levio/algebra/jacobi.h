@@ -9,6 +9,7 @@
 
 #include "workload/math/jacobi.h"
 #include "workload/math/target_call.h"
+#include "workload/vio/levio/algebra/library_trig.h"
 
 namespace leviosim::vio::levio {
 
@@ -70,9 +71,9 @@ LEVIOSIM_HOST_INLINE void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I
   const auto row_p = a.row(p);
   const auto row_q = a.row(q);
   const F app = row_p[p], apq = row_p[q], aqq = row_q[q];
-  const F angle = 0.5f * atan2_of<P>(2.0f * apq, aqq - app);
-  const F c = cos_of<P>(angle);
-  const F s = sin_of<P>(angle);
+  const F angle = 0.5f * library_atan2<P>(2.0f * apq, aqq - app);
+  const F c = library_cos<P>(angle);
+  const F s = library_sin<P>(angle);
   vio::jacobi::rotate_rows<P>(row_p, row_q, c, s);
   vio::jacobi::rotate_columns<P>(a, p, q, c, s);
   const Diagonal<P> diagonal = rotated_diagonal<P>(c, s, app, apq, aqq);
