@@ -346,7 +346,7 @@ def write_library(soft, hard, path):
     with open(path, "w") as out:
         out.write(f"<!-- {GENERATED} -->\n# Library routines: emulated arithmetic and trigonometry\n\n")
         for title, trace in (("Core without FPU: libraries for rv32imac", soft),
-                             ("Core with single precision: libraries for rv32imf", hard)):
+                             ("Core with single precision: libraries for rv32imafc", hard)):
             out.write(f"## {title}\n\n| routine | instructions, mean (min–max) | stalls, mean (min–max) "
                       "| lines |\n| --- | ---: | ---: | ---: |\n")
             for symbol in sorted(trace.library, key=lambda s: (OPERATION_OF.get(s, "z"), s)):
