@@ -18,17 +18,37 @@ namespace leviosim::platform {
 namespace {
 
 constexpr double kLineBytes = 16;
-constexpr std::string_view kHeader = "function,after,lines,visits,refetches";
+constexpr std::string_view kHeader =
+    "function,after,lines,visits,refetches,executed,priced,loads,used_at_once";
+constexpr std::size_t kFirstCompiled = 5;
+constexpr std::size_t kColumns = kFirstCompiled + work::kCompiledCount;
+
+/// @param limit  exclusive
+double number_in(std::string_view cell, double limit, std::string_view what,
+                 const std::string& where) {
+  const std::string text(cell);
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(number >= 0 && number < limit))
+    throw InputError(
+        fmt::format("{}: \"{}\": expected a number of {}, 0 or more", where, text, what));
+  return number;
+}
 
 /// Lines of code as bytes.
 std::uint32_t bytes_in(std::string_view cell, const std::string& where) {
-  const std::string text(cell);
-  char* end = nullptr;
-  const double lines = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(lines >= 0 && lines < 1e6))
-    throw InputError(
-        fmt::format("{}: \"{}\": expected a number of 16-byte lines, 0 or more", where, text));
-  return static_cast<std::uint32_t>(std::lround(lines * kLineBytes));
+  return static_cast<std::uint32_t>(
+      std::lround(number_in(cell, 1e6, "16-byte lines", where) * kLineBytes));
+}
+
+/// The last columns of a row; none if they are empty.
+work::CompiledWork compiled_in(const std::vector<std::string>& cells, const std::string& where) {
+  work::CompiledWork compiled{};
+  if (cells[kFirstCompiled].empty()) return compiled;
+  for (std::size_t i = 0; i < work::kCompiledCount; ++i)
+    compiled[i] = static_cast<std::uint64_t>(std::llround(
+        number_in(cells[kFirstCompiled + i], 1e9, "instructions", where) * work::kCompiledUnit));
+  return compiled;
 }
 
 class CodeSizeReader {
@@ -49,12 +69,13 @@ class CodeSizeReader {
 
  private:
   void add(const std::vector<std::string>& cells, const std::string& where) {
-    if (cells.size() != 5 || cells[0].empty())
+    if (cells.size() != kColumns || cells[0].empty())
       throw InputError(fmt::format("{}: expected a row of {}", where, kHeader));
     if (!seen_.insert({cells[0], cells[1]}).second)
       throw InputError(
           fmt::format("{}: {} after \"{}\" is there twice", where, cells[0], cells[1]));
-    map_.add(cells[0], cells[1], bytes_in(cells[2], where), bytes_in(cells[4], where));
+    map_.add(cells[0], cells[1], bytes_in(cells[2], where), bytes_in(cells[4], where),
+             compiled_in(cells, where));
   }
 
   std::string file_;

@@ -1,5 +1,5 @@
-// Sizes of a workload's compiled code, which instruction-cache footprints come from. code/*.csv is
-// measured by tools/rv32 and part of the program.
+// What is known of a workload's compiled code: sizes, from which instruction-cache footprints come,
+// and executed instructions. code/*.csv is measured by tools/rv32 and part of the program.
 #pragma once
 
 #include <string>
@@ -20,9 +20,11 @@ const work::CodeMap& compiled_code();
 work::CodeMap code_map_named(std::string_view name);
 
 /// From the text of such a file: comments (#), a header, then rows of
-/// function,after,lines,visits,refetches. `after` is empty for what runs from the function's entry
-/// on; lines are the mean number of distinct 16-byte lines that one visit fetches, refetches that
-/// of lines which a cache of 512 bytes loses and fetches again meanwhile. Visits are not used here.
+/// function,after,lines,visits,refetches,executed,priced,loads,used_at_once. `after` is empty for
+/// what runs from the function's entry on; lines are the mean number of distinct 16-byte lines that
+/// one visit fetches, refetches that of lines which a cache of 512 bytes loses and fetches again
+/// meanwhile. Visits are not used here. The last four are those of work::Compiled in a visit of the
+/// whole function; empty in other rows, and where it was not measured.
 /// @throws InputError with file and line
 work::CodeMap code_map_from(const std::string& file, std::string_view text);
 

@@ -14,10 +14,22 @@ namespace leviosim::sim {
 namespace {
 
 int checked_workers(const ClusterConfig& config, int workers) {
+  if (workers == Cluster::kMasterAlone) return 0;
   if (workers < 1 || workers > config.max_workers)
     throw InputError(fmt::format("a team of {} workers: the event unit serves 1 to {}", workers,
                                  config.max_workers));
   return workers;
+}
+
+/// What a share took.
+void book(CycleBreakdown& breakdown, const SegmentTime& time) {
+  breakdown.useful += time.alone;
+  breakdown.fpu += time.fpu;
+  breakdown.divider += time.divider;
+  breakdown.banks += time.banks;
+  breakdown.fetch += time.fetch;
+  breakdown.accelerator += time.accelerator;
+  breakdown.rounding += time.rounding;
 }
 
 }  // namespace
@@ -27,9 +39,9 @@ Cluster::Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& 
       clock_(clock),
       config_(config),
       workers_(checked_workers(config, workers)),
-      team_(kernel, clock, config, workers),
+      team_(kernel, clock, config, workers_),
       dma_(kernel, clock, config.dma, team_),
-      end_of_fork_(kernel, "end of fork", static_cast<std::size_t>(workers) + 1,
+      end_of_fork_(kernel, "end of fork", static_cast<std::size_t>(workers_) + 1,
                    cycles(config.events.barrier)) {
   for (int id = 0; id < workers_; ++id) {
     dispatch_.push_back(
@@ -86,7 +98,7 @@ Task<> Cluster::step(const work::Serial& serial, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
   const SegmentTime time = co_await team_.execute(workers_, serial.counts);
   note(workers_, begin, time);
-  breakdown.serial += workers_ * cycles_since(begin, kernel_.now());
+  breakdown.serial += accounted() * cycles_since(begin, kernel_.now());
 }
 
 Task<> Cluster::step(const work::Transfer& transfer, CycleBreakdown& breakdown) {
@@ -99,13 +111,13 @@ Task<> Cluster::step(const work::Transfer& transfer, CycleBreakdown& breakdown) 
     background_.push_back(data.end);
   else
     co_await until_arrived(data.end);
-  breakdown.transfer += workers_ * cycles_since(begin, kernel_.now());
+  breakdown.transfer += accounted() * cycles_since(begin, kernel_.now());
 }
 
 Task<> Cluster::step(const work::TransferWait& wait, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
   co_await until_arrived(background_.at(static_cast<std::size_t>(wait.number)));
-  breakdown.transfer += workers_ * cycles_since(begin, kernel_.now());
+  breakdown.transfer += accounted() * cycles_since(begin, kernel_.now());
 }
 
 /// A core sleeps on the wait instruction even if the event is there already
@@ -116,6 +128,10 @@ Task<> Cluster::until_arrived(Time arrival) {
 }
 
 Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
+  if (workers_ == 0) {
+    co_await run_alone(fork, breakdown);
+    co_return;
+  }
   const Time begin = kernel_.now();
   arrivals_ = 0;
   co_await kernel_.delay(cycles(config_.events.fork_master));
@@ -136,6 +152,15 @@ Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
   if (step_ != nullptr) step_->synchronisation = start_up + barrier;
 }
 
+Task<> Cluster::run_alone(const work::Fork& fork, CycleBreakdown& breakdown) {
+  const Time begin = kernel_.now();
+  work::Segment sum;
+  for (const work::Segment& share : fork.shares) sum += share;
+  const SegmentTime time = co_await team_.execute(workers_, sum);
+  note(workers_, begin, time);
+  book(breakdown, time);
+}
+
 Process Cluster::worker(int id) {
   work::Segment sum;
   for (;;) {
@@ -144,14 +169,7 @@ Process Cluster::worker(int id) {
     const Time begin = kernel_.now();
     const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork, sum));
     note(id, begin, time);
-    CycleBreakdown& breakdown = *dispatch.breakdown;
-    breakdown.useful += time.alone;
-    breakdown.fpu += time.fpu;
-    breakdown.divider += time.divider;
-    breakdown.banks += time.banks;
-    breakdown.fetch += time.fetch;
-    breakdown.accelerator += time.accelerator;
-    breakdown.rounding += time.rounding;
+    book(*dispatch.breakdown, time);
     last_arrival_ = kernel_.now();
     arrivals_ += cycles_since(dispatch.begin, last_arrival_);
     co_await end_of_fork_.arrive();

@@ -19,7 +19,11 @@ namespace leviosim::sim {
 
 class Cluster {
  public:
-  /// @param workers  size of the team, ≤ config.max_workers
+  /// In the place of a number of workers: the master executes all shares itself, one after the
+  /// other and without forks, as a program that was built for one core does.
+  static constexpr int kMasterAlone = -1;
+
+  /// @param workers  size of the team, ≤ config.max_workers, or kMasterAlone
   Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
 
   /// co_await: the master runs the job. If the job was recorded for another number of workers,
@@ -41,6 +45,9 @@ class Cluster {
   };
 
   Process worker(int id);
+  Task<> run_alone(const work::Fork& fork, CycleBreakdown& breakdown);
+  /// Cores whose cycles a breakdown adds up.
+  int accounted() const { return workers_ > 0 ? workers_ : 1; }
   Task<> step(const work::Serial& serial, CycleBreakdown& breakdown);
   Task<> step(const work::Fork& fork, CycleBreakdown& breakdown);
   Task<> step(const work::Transfer& transfer, CycleBreakdown& breakdown);

@@ -45,10 +45,12 @@ struct OpCost {
 /// How counted operations become instructions of one instruction set, and their latencies.
 struct CoreConfig {
   std::array<OpCost, work::kOpCount> ops{};
-  double instruction_overhead = 1;  ///< instructions emitted per instruction accounted for by ops
-                                    ///< that are no routines
-  double load_use_fraction = 0;     ///< share of loads whose result the next instruction uses
-  double load_use_stall = 0;        ///< cycles such a load waits
+  /// Instructions emitted per one that ops account for, routines left out. Where functions were
+  /// measured, their ratio (work::CompiledWork) comes on top.
+  double instruction_overhead = 1;
+  /// Share of loads whose result the next instruction uses, in code that was not measured.
+  double load_use_fraction = 0;
+  double load_use_stall = 0;  ///< cycles such a load waits
 
   const OpCost& operator[](work::Op op) const { return ops[work::index(op)]; }
 };

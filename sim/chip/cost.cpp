@@ -49,12 +49,16 @@ UsefulCycles operator*(const UsefulCycles& b, double k) {
 }
 
 Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {
+  using work::Compiled;
   Demand demand;
+  const double emitted =
+      core.instruction_overhead *
+      work::compiled_ratio(counts.compiled, Compiled::Executed, Compiled::Priced, 1);
   for (const work::OpInfo& info : work::kOps) {
     const auto n = static_cast<double>(counts[info.op]);
     const OpCost& cost = core[info.op];
     // A routine was counted with its moves and spills.
-    demand.alone.issue += n * cost.issue * (cost.routine ? 1.0 : core.instruction_overhead);
+    demand.alone.issue += n * cost.issue * (cost.routine ? 1.0 : emitted);
     demand.alone.*stall_breakdown(info.op) += n * cost.stall;
     if (cost.unit == Unit::Core) continue;
     UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];
@@ -63,7 +67,9 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
   }
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   const double loads = sum(Op::LoadStream, Op::LoadIndexed);
-  demand.alone.load_use = loads * core.load_use_fraction * core.load_use_stall;
+  const double used_at_once = work::compiled_ratio(counts.compiled, Compiled::LoadsUsedAtOnce,
+                                                   Compiled::Loads, core.load_use_fraction);
+  demand.alone.load_use = loads * used_at_once * core.load_use_stall;
   const CodeFetch fetch = code.fetch(counts.code);
   demand.alone.fetch = fetch.stall;
   demand.fetches = fetch.requests;

@@ -23,7 +23,7 @@ Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config
       clock_(clock),
       core_config_(config.core),
       accelerators_(config.accelerators),
-      worker_code_(config.icache, config.icache.worker, workers),
+      worker_code_(config.icache, config.icache.worker, std::max(1, workers)),
       master_code_(config.icache, config.icache.master, 1),
       contention_(config),
       changed_(kernel, "change of running cores") {

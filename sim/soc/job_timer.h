@@ -10,6 +10,7 @@ namespace leviosim::soc {
 
 class JobTimer {
  public:
+  /// @param workers  as of sim::Cluster
   /// @throws InputError as sim::Chip
   JobTimer(const sim::ChipConfig& config, int workers) : chip_(config, workers) {}
 

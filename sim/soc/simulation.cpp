@@ -12,7 +12,7 @@ Simulation::Simulation(const Setup& setup, JobSource& source, Observer& observer
       observer_(observer),
       progress_(std::move(progress)),
       chip_(setup.chip, setup.cores),
-      single_core_(setup.chip, 1),
+      single_core_(setup.chip, sim::Cluster::kMasterAlone),
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(source.frames())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
       book_(source.empty_stages(), setup.chip) {

@@ -68,7 +68,7 @@ class Simulation {
   Observer& observer_;
   ProgressCallback progress_;
   sim::Chip chip_;
-  JobTimer single_core_;  ///< the same jobs on one worker
+  JobTimer single_core_;  ///< the same jobs on the master alone
   sim::Channel<int> camera_frames_;
   int in_flight_ = 0;  ///< frames taken whose result is not out yet
   sim::Event snapshot_taken_;

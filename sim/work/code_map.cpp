@@ -9,12 +9,12 @@
 namespace leviosim::work {
 
 void CodeMap::add(std::string_view function, std::string_view after, std::uint32_t bytes,
-                  std::uint32_t again_bytes) {
+                  std::uint32_t again_bytes, const CompiledWork& compiled) {
   const std::uint32_t then = after.empty() ? kEntry : CodeName(after).key;
   const std::uint64_t key = piece_key(CodeName(function).key, then);
   check(find(key) == kUnknown,
         fmt::format("piece of code \"{}\" after \"{}\" is there already", function, after));
-  pieces_.push_back({key, bytes, again_bytes});
+  pieces_.push_back({key, bytes, again_bytes, compiled});
   rebuild_table();
 }
 

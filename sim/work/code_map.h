@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/work/compiled_work.h"
+
 namespace leviosim::work {
 
 /// A function's name as a number, made at compile time: a FNV-1a hash.
@@ -35,12 +37,13 @@ class CodeMap {
     std::uint64_t key;
     std::uint32_t bytes;        ///< distinct ones, fetched in a visit
     std::uint32_t again_bytes;  ///< fetched again in the same visit, by a loop about as large
+    CompiledWork compiled{};    ///< of a visit of the whole function; of pieces after entry only
   };
 
   /// Adds the piece of `function` that runs after `after` has returned; after entry if that is
   /// empty. Each piece once; two names with the same hash are an internal fault.
   void add(std::string_view function, std::string_view after, std::uint32_t bytes,
-           std::uint32_t again_bytes = 0);
+           std::uint32_t again_bytes = 0, const CompiledWork& compiled = {});
 
   static constexpr std::uint64_t piece_key(std::uint32_t function, std::uint32_t after) {
     return (std::uint64_t{function} << 32) | after;

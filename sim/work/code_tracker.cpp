@@ -53,6 +53,8 @@ void CodeTracker::settle() {
     Step& step = steps_[index(number)];
     for (std::uint32_t i = step.fetches.begin; i != step.fetches.end; ++i)
       tally.code[fetches_[i].reuse] += std::uint64_t{step.uses} * fetches_[i].bytes;
+    for (std::size_t i = 0; i < kCompiledCount; ++i)
+      tally.compiled[i] += std::uint64_t{step.uses} * step.compiled[i];
     step.uses = 0;
   }
   unsettled_.clear();
@@ -75,6 +77,7 @@ std::int32_t CodeTracker::add_step(const CodeWindow& window) {
   if (places_.size() >= kMostStates) forget();
   Place place = places_[state_];
   const std::size_t first_fetch = fetches_.size();
+  entered_ = {};
   for (const CodeEvent event : window.events) walk(place, event);
   merge_fetches(first_fetch);
   const auto number = static_cast<std::int32_t>(steps_.size());
@@ -83,7 +86,8 @@ std::int32_t CodeTracker::add_step(const CodeWindow& window) {
       {window.hash,
        {static_cast<std::uint32_t>(first_fetch), static_cast<std::uint32_t>(fetches_.size())},
        next,
-       first_steps_[state_]});
+       first_steps_[state_],
+       entered_});
   first_steps_[state_] = number;
   return number;
 }
@@ -127,6 +131,7 @@ void CodeTracker::visit(Place& place, std::uint64_t piece_key) {
   else
     add(kNeverFetched, code.bytes);
   if (code.again_bytes > 0) for_reuse_classes(code.bytes, code.again_bytes, add);
+  for (std::size_t i = 0; i < kCompiledCount; ++i) entered_[i] += code.compiled[i];
 }
 
 void CodeTracker::merge_fetches(std::size_t first) {

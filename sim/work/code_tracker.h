@@ -1,6 +1,6 @@
 // Follows the cores of a machine through the code they execute (code_events.h), one at a time, and
 // counts what each fetches by reuse distance (code_reuse.h), from the sizes of the compiled pieces
-// of functions (code_map.h).
+// of functions (code_map.h), and what the functions entered execute (compiled_work.h).
 //
 // Programs go round in loops, so the same events come again and again while the core has last
 // fetched the same pieces in the same order. That order, with the functions entered, is therefore a
@@ -21,6 +21,7 @@
 
 #include "sim/work/code_events.h"
 #include "sim/work/code_map.h"
+#include "sim/work/compiled_work.h"
 
 namespace leviosim::work {
 
@@ -63,6 +64,7 @@ class CodeTracker {
     Range fetches;
     std::uint32_t next_state;
     std::int32_t sibling;    ///< another step out of the same state
+    CompiledWork compiled;   ///< of the functions entered
     std::uint32_t uses = 0;  ///< not settled yet
   };
   struct Fetch {
@@ -89,6 +91,7 @@ class CodeTracker {
   std::vector<Fetch> fetches_;           ///< of all steps
   std::vector<std::int32_t> unsettled_;  ///< steps in use
   std::unordered_multimap<std::uint64_t, std::uint32_t> state_of_hash_;
+  CompiledWork entered_{};  ///< of the step that is being added
   std::set<std::uint64_t> without_size_;
   std::vector<EventsOfSegments>* kept_ = nullptr;
   std::size_t core_ = 0;                        ///< the one selected

@@ -5,7 +5,7 @@
 namespace leviosim::work {
 
 Counts settled(const RawCounts& raw) {
-  Counts taken{raw.n, {}};
+  Counts taken{raw.n, {}, {}};
   for (const Op op : {Op::LoadStream, Op::LoadIndexed, Op::StoreStream, Op::StoreIndexed,
                       Op::LoadL2, Op::StoreL2, Op::LoadShared, Op::StoreShared}) {
     taken[Op::Straddle] += taken[op] >> 32;
@@ -19,6 +19,7 @@ Counts settled(const RawCounts& raw) {
 Counts take_tally() {
   Counts taken = settled({tally.n, std::exchange(branches_not_taken_after_all, 0)});
   taken.code = tally.code;
+  taken.compiled = tally.compiled;
   tally = Counts{};
   return taken;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "sim/work/code_reuse.h"
+#include "sim/work/compiled_work.h"
 #include "sim/work/op.h"
 
 namespace leviosim::work {
@@ -12,7 +13,8 @@ namespace leviosim::work {
 /// Number of operations of each kind. A plain value: add two to merge two work segments.
 struct Counts {
   std::array<std::uint64_t, kOpCount> n{};
-  CodeReuse code{};  ///< bytes of code fetched, by reuse distance
+  CodeReuse code{};         ///< bytes of code fetched, by reuse distance
+  CompiledWork compiled{};  ///< of the functions visited
 
   constexpr std::uint64_t operator[](Op op) const { return n[index(op)]; }
   constexpr std::uint64_t& operator[](Op op) { return n[index(op)]; }
@@ -20,6 +22,7 @@ struct Counts {
   constexpr Counts& operator+=(const Counts& other) {
     for (std::size_t i = 0; i < kOpCount; ++i) n[i] += other.n[i];
     for (std::size_t i = 0; i < kReuseClasses; ++i) code[i] += other.code[i];
+    for (std::size_t i = 0; i < kCompiledCount; ++i) compiled[i] += other.compiled[i];
     return *this;
   }
   friend constexpr Counts operator+(Counts a, const Counts& b) { return a += b; }

@@ -113,7 +113,7 @@ class Pipeline {
   std::optional<work::Machine> cluster_, controller_;
   std::unique_ptr<vio::Odometry> odometry_;
   sim::ChipConfig config_ = platform::load_platform("gap9");
-  soc::JobTimer team_{config_, 8}, single_{config_, 1};
+  soc::JobTimer team_{config_, 8}, single_{config_, sim::Cluster::kMasterAlone};
   double seconds_ = 0;
 };
 

@@ -94,11 +94,13 @@ TEST(WorkTrace, ReadersOfOneTraceDoNotMeet) {
   testing::expect_equal(frame, example_frame(35));
 }
 
-/// What older files mean by classes of code reuse: half of the code is of the next nearer class.
-WorkFrame divided(WorkFrame frame) {
+/// What older files say: of code that is reused at a class of distances, half is of the next nearer
+/// class, and nothing is known of compiled work.
+WorkFrame of_older_file(WorkFrame frame) {
   const auto divide = [](work::Segment& segment) {
     segment.code[4] = segment.code[5] / 2;
     segment.code[5] -= segment.code[4];
+    segment.compiled = {};
   };
   std::vector<work::Job*> jobs = {&frame.front_end};
   for (work::Job& iteration : frame.iterations) jobs.push_back(&iteration);
@@ -112,27 +114,43 @@ WorkFrame divided(WorkFrame frame) {
   return frame;
 }
 
+std::filesystem::path golden_file(const std::string& name) {
+  return leviosim::tests::source_folder() / "tests/traces/golden" / name;
+}
+
 /// A file of version 1, as it was first written; later programs read it too. Made by writing
 /// example_trace(5) to that file.
 TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
-  const WorkTrace golden(leviosim::tests::source_folder() / "tests/traces/golden/version_1.trace");
+  const WorkTrace golden(golden_file("version_1.trace"));
   ASSERT_EQ(golden.frames(), 5);
   WorkFrames reader(golden);
   WorkFrame frame;
-  for (int i = 0; reader.next(frame); ++i) testing::expect_equal(frame, divided(example_frame(i)));
+  for (int i = 0; reader.next(frame); ++i)
+    testing::expect_equal(frame, of_older_file(example_frame(i)));
   EXPECT_FALSE(golden.has_offload());
   expect_input_error([&] { WorkFrames(golden, true); },
                      {"version_1.trace", "version 1", "offload regions", "record it again"});
 }
 
 TEST(WorkTrace, ReadsTheSecondVersion) {
-  const std::string whole = testing::example_trace_with_offload(5);
-  const WorkTrace second("second", trace_of(without_names_of_facts(contents_of(whole)), 2));
+  const std::string third = base::read_text_file(golden_file("version_3.trace"));
+  const WorkTrace second("second", trace_of(without_names_of_facts(contents_of(third)), 2));
   EXPECT_EQ(second.info().facts, testing::example_info().facts);
   WorkFrames reader(second, true);
   WorkFrame frame;
   for (int i = 0; reader.next(frame); ++i)
-    testing::expect_equal(frame, divided(testing::example_frame_with_offload(i)));
+    testing::expect_equal(frame, of_older_file(testing::example_frame_with_offload(i)));
+}
+
+/// Made by writing example_trace_with_offload(5) to that file.
+TEST(WorkTrace, ReadsTheThirdVersion) {
+  const WorkTrace third(golden_file("version_3.trace"));
+  WorkFrames reader(third, true);
+  WorkFrame frame;
+  int frames = 0;
+  for (; reader.next(frame); ++frames)
+    testing::expect_equal(frame, of_older_file(testing::example_frame_with_offload(frames)));
+  EXPECT_EQ(frames, 5);
 }
 
 TEST(WorkTrace, KeepsFactsOfAnyNameAndNumber) {
@@ -185,15 +203,22 @@ TEST(WorkTrace, RefusesKernelsThatCannotBe) {
   refuse("eigen12", "hamming", {"comes twice"});
 }
 
-/// The same version with the vocabulary as it is now: a file names its operations, so more of them
-/// make no other version. Made like the first; not the compressed bytes are compared, which another
-/// version of zstd may choose otherwise.
-TEST(WorkTrace, WritesTheContentOfTheFirstVersion) {
-  const std::string golden = base::read_text_file(
-      leviosim::tests::source_folder() / "tests/traces/golden/version_1_46_operations.trace");
-  std::vector<std::string> contents = without_names_of_facts(contents_of(example_trace(5)));
-  contents.pop_back();  // kernels, since version 2
-  EXPECT_EQ(contents_of(golden), contents);
+/// A file names its operations, so more of them make no other version.
+TEST(WorkTrace, ReadsTheFirstVersionWithMoreOperations) {
+  const WorkTrace golden(golden_file("version_1_46_operations.trace"));
+  WorkFrames reader(golden);
+  WorkFrame frame;
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(reader.next(frame));
+    testing::expect_equal(frame, of_older_file(example_frame(i)));
+  }
+}
+
+/// Made like the third. Not the compressed bytes are compared, which another version of zstd may
+/// choose otherwise.
+TEST(WorkTrace, WritesTheContentOfItsVersion) {
+  const std::string golden = base::read_text_file(golden_file("version_4.trace"));
+  EXPECT_EQ(contents_of(golden), contents_of(testing::example_trace_with_offload(5)));
 }
 
 TEST(WorkTrace, EveryTruncationIsRefused) {

@@ -84,7 +84,7 @@ inline Kind kind_of(const std::string& m) {
     add(Kind::Alu,
         {"add",   "addi", "sub",  "neg",  "and",  "andi", "or",    "ori",   "xor",  "xori",
          "not",   "sll",  "slli", "srl",  "srli", "sra",  "srai",  "slt",   "slti", "sltu",
-         "sltiu", "seqz", "snez", "sltz", "sgtz", "lui",  "auipc", "zext.b"});
+         "sltiu", "seqz", "snez", "sltz", "sgtz", "lui",  "auipc", "zext.b", "cpop"});
     add(Kind::Move, {"mv", "li", "nop"});
     add(Kind::Mul, {"mul"});
     add(Kind::MulHigh, {"mulh", "mulhu", "mulhsu"});

@@ -12,6 +12,9 @@
 
 #define LEVIOSIM_HOST_INLINE
 #define LEVIOSIM_TARGET_CALL [[gnu::noipa]]
+#define LEVIOSIM_TARGET_LOOP \
+  [[gnu::noinline, gnu::optimize("no-tree-loop-distribute-patterns", "no-tree-vectorize")]]
+#define LEVIOSIM_TARGET_ROLLED _Pragma("GCC unroll 1")
 
 namespace leviosim::work {
 

@@ -122,7 +122,7 @@ def by_scene(accounts):
 # ---- footprints ----
 
 FOOTPRINT_HEADER = """\
-Code footprints of the workload's named functions on RV32IMFC,
+Compiled code of the workload's named functions on RV32IMFC,
 %s.
 A row is a piece of a function: from its entry (`after` empty), or from the return of the named
 function `after`, to its next call of a named function or its end.
@@ -130,6 +130,10 @@ lines      distinct 16-byte lines fetched per visit, mean
 visits     how often the piece was executed
 refetches  lines per visit that a 512-byte cache (fully associative, LRU, empty at the begin)
            loses and fetches again, mean: large where a loop of the piece does not fit
+executed   instructions per visit of the whole function, routines of the library left out; rows with
+           an empty `after` only, as what follows
+priced     operations counted in a visit, at the prices of tools/rv32/rv32imfc_costs.csv
+loads, used_at_once   loads per visit; those of which the next instruction needs the value
 Rows f64_*, popcount, memset are routines of the library; calls of these do not end a piece.
 Rows library_* are routines of a public C library, called by the names that they have here.
 """ % GENERATED
@@ -161,17 +165,47 @@ def piece_rows(trace, scenes):
             for f, after, visits, lines, refetches in trace.pieces if f.startswith(SCENE) == scenes]
 
 
-def write_footprints(trace, library, code, here):
-    """@param library  trace of the routines alone, for those that the workload does not call"""
+def by_function(accounts):
+    total = collections.defaultdict(collections.Counter)
+    for (_, function), account in accounts.items():
+        total[function].update(account)
+    return total
+
+
+def compiled_work(trace, counts, costs):
+    """(executed, priced, loads, loads used at once) per visit of each function itself. A population
+    count is one instruction, as it was compiled; a routine of the library is nobody's own."""
+    prices = {op: 0.0 if op.startswith("f64") else 1.0 if op == "popcount" else cost
+              for op, cost in costs.items()}
+    counted = by_function(counts)
+    work = {}
+    for function, kinds in by_function(trace.kinds).items():
+        visits, counted_visits = kinds["visits"], counted[function]["visits"]
+        if not visits or not counted_visits:
+            continue
+        executed = sum(n for kind, n in kinds.items() if kind not in NO_INSTRUCTION)
+        priced = sum(n * prices[op] for op, n in counted[function].items() if op != "visits")
+        loads = kinds["load"] + kinds["float_load"]
+        work[function] = (executed / visits, priced / counted_visits, loads / visits,
+                          kinds["load_use"] / visits)
+    return work
+
+
+def write_footprints(trace, library, compiled, code, here):
+    """@param library   trace of the routines alone, for those that the workload does not call
+    @param compiled  compiled_work()"""
     columns = ["function", "after", "lines", "visits", "refetches"]
-    rows = [row for row in piece_rows(trace, False) if row[0] not in ROUTINES]
+    nothing = ("",) * 4
+    rows = [row + (nothing if row[1] else compiled.get(row[0], nothing))
+            for row in piece_rows(trace, False) if row[0] not in ROUTINES]
     for routine in ROUTINES:
         lines, calls = trace.lines_of(routine)
         if not calls:
             lines, calls = library.lines_of(routine)
         if calls:
-            rows.append((routine, "", lines, calls, 0.0))
-    write_csv(code, FOOTPRINT_HEADER, columns, sorted(rows))
+            rows.append((routine, "", lines, calls, 0.0) + nothing)
+    write_csv(code, FOOTPRINT_HEADER, columns + ["executed", "priced", "loads", "used_at_once"],
+              sorted(rows))
     write_csv(here / "stage_code.csv", STAGE_HEADER, ["stage"] + columns[1:],
               sorted(piece_rows(trace, True)))
     static = [("stage", s.removeprefix(SCENE), n) for s, n in trace.scene_lines.items()]
@@ -346,7 +380,7 @@ def write_library(soft, hard, path):
     with open(path, "w") as out:
         out.write(f"<!-- {GENERATED} -->\n# Library routines: emulated arithmetic and trigonometry\n\n")
         for title, trace in (("Core without FPU: libraries for rv32imac", soft),
-                             ("Core with single precision: libraries for rv32imafc", hard)):
+                             ("Core with single precision: libraries that GCC links for rv32imfc", hard)):
             out.write(f"## {title}\n\n| routine | instructions, mean (min–max) | stalls, mean (min–max) "
                       "| lines |\n| --- | ---: | ---: | ---: |\n")
             for symbol in sorted(trace.library, key=lambda s: (OPERATION_OF.get(s, "z"), s)):
@@ -369,9 +403,10 @@ def main():
     work, here = arguments.work, arguments.here
     contracted = Trace(work / "scenes.tsv")
     hard = Trace(work / "library_hard.tsv")
-    write_footprints(contracted, hard, arguments.code, here)
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
     costs = read_costs(here / "rv32imfc_costs.csv")
+    compiled = compiled_work(contracted, read_counts(work / "counted.tsv"), costs)
+    write_footprints(contracted, hard, compiled, arguments.code, here)
     write_units(contracted, uncontracted, read_counts(work / "counted.tsv", "inclusive"), costs, here)
     write_cross_check(uncontracted, contracted, read_counts(work / "counted.tsv"), costs, here)
     write_library(Trace(work / "library_soft.tsv"), hard, here / "library.md")

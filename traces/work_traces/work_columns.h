@@ -14,16 +14,19 @@
 
 namespace leviosim::traces {
 
-/// All counters of work::Counts as one list: operations, then classes of code reuse.
-inline constexpr std::size_t kCounters = work::kOpCount + work::kReuseClasses;
+/// All counters of work::Counts as one list: operations, classes of code reuse, compiled work.
+inline constexpr std::size_t kFirstCompiled = work::kOpCount + work::kReuseClasses;
+inline constexpr std::size_t kCounters = kFirstCompiled + work::kCompiledCount;
 /// No work segment counts as much; keeps what is derived from counts from overflowing.
 inline constexpr int kCounterBits = 40;
 
 inline std::uint64_t& counter(work::Counts& counts, std::size_t k) {
-  return k < work::kOpCount ? counts.n[k] : counts.code[k - work::kOpCount];
+  if (k < work::kOpCount) return counts.n[k];
+  return k < kFirstCompiled ? counts.code[k - work::kOpCount] : counts.compiled[k - kFirstCompiled];
 }
 inline std::uint64_t counter(const work::Counts& counts, std::size_t k) {
-  return k < work::kOpCount ? counts.n[k] : counts.code[k - work::kOpCount];
+  if (k < work::kOpCount) return counts.n[k];
+  return k < kFirstCompiled ? counts.code[k - work::kOpCount] : counts.compiled[k - kFirstCompiled];
 }
 
 /// Appends the description of a series to `head`, its differences to `columns`.

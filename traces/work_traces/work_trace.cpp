@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kWithOffload = 2;
 constexpr std::uint32_t kWithNamesOfFacts = 3;
-constexpr std::uint32_t kWithDividedReuse = 4;
+constexpr std::uint32_t kWithDividedReuse = 4;  ///< and with compiled work
 /// Of frames in files of older versions.
 constexpr std::array kOldFacts{"features", "world_matches", "frame_matches", "inliers",
                                "landmarks"};
@@ -41,6 +41,7 @@ void write_fields(ByteWriter& out) {
   for (const work::OpInfo& op : work::kOps) out.text(op.name);
   out.whole(work::kReuseDistances.size());
   for (const std::uint32_t end : work::kReuseDistances) out.whole(end);
+  out.whole(work::kCompiledCount);
 }
 
 void write_ate(ByteWriter& out, const Evaluation& ate) {
@@ -111,7 +112,7 @@ std::int64_t read_number(ByteReader& in, std::uint64_t limit, const char* what) 
 }
 
 /// Which counter each field of the file is.
-std::vector<std::size_t> read_fields(ByteReader& in) {
+std::vector<std::size_t> read_fields(ByteReader& in, bool with_compiled_work) {
   std::vector<std::string> known;
   for (const work::OpInfo& op : work::kOps) known.emplace_back(op.name);
   std::vector<std::size_t> fields;
@@ -130,6 +131,10 @@ std::vector<std::size_t> read_fields(ByteReader& in) {
     if (const std::uint64_t found = in.whole("the end of a class of code reuse"); found != end)
       in.fail(fmt::format("a class of code reuse ends at {} bytes; expected {}", found, end));
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) fields.push_back(work::kOpCount + k);
+  if (with_compiled_work)
+    for (std::size_t k = in.whole_below(work::kCompiledCount + 1, "kinds of compiled work"); k > 0;
+         --k)
+      fields.push_back(kCounters - k);
   std::vector<std::size_t> sorted = fields;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
@@ -231,7 +236,7 @@ void WorkTrace::read_summary(ByteReader& in) {
   info_.image_width = static_cast<int>(read_number(in, kLargestSide, "the width of an image"));
   info_.image_height = static_cast<int>(read_number(in, kLargestSide, "the height of an image"));
   info_.frame_period_ns = read_number(in, kLongestPeriod, "the frame period");
-  fields_ = read_fields(in);
+  fields_ = read_fields(in, has_divided_reuse_);
   info_.stages.resize(in.whole_below(kMostStages + 1, "stages"));
   for (WorkTraceInfo::Stage& stage : info_.stages) {
     stage.name = in.text("the name of a stage");

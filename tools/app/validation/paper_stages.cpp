@@ -1,7 +1,5 @@
 #include "tools/app/validation/paper_stages.h"
 
-#include <algorithm>
-
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
@@ -20,12 +18,10 @@ std::optional<double> StageSum::mean_single() const { return mean(single, frames
 std::optional<double> StageSum::mean_parallel() const { return mean(parallel, frames); }
 
 StageSum sum_over(const std::vector<LoggedFrame>& frames, const PaperStage& stage) {
-  int fullest = 0;
-  for (const LoggedFrame& frame : frames) fullest = std::max(fullest, frame.landmarks_before);
   StageSum sum;
   for (const LoggedFrame& frame : frames) {
     const LoggedStage* logged = frame.find(stage.stage);
-    if (logged == nullptr || !stage.stands_for(frame, fullest)) continue;
+    if (logged == nullptr || !stage.stands_for(frame)) continue;
     ++sum.frames;
     sum.single += logged->single;
     sum.parallel += logged->parallel;

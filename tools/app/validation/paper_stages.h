@@ -3,9 +3,7 @@
 //
 //  - feature extraction: every frame;
 //  - frame matching: every frame that has a keyframe before it;
-//  - world matching: every frame that comes when the map holds nine tenths or more of the most it
-//    ever holds. Its cycles grow with the map; the paper's run is so long (1578 frames) that the
-//    filling of its map, of a few seconds, hardly counts in the average;
+//  - world matching: every frame that comes when the map holds a landmark;
 //  - EPnP and 8-point RANSAC: "either EPnP or 8-point are calculated". Here a frame whose EPnP pose
 //    is refused for its few inliers goes on with the 8-point algorithm, so it has both; each
 //    RANSAC's average is over the frames that ran it;
@@ -26,25 +24,22 @@ struct PaperStage {
   std::string_view title;  ///< for people
   std::string_view stage;  ///< name in the workload
   /// Whether the average is over this frame too, if it came to the stage.
-  /// @param fullest  most landmarks that the map of the run held
-  bool (*stands_for)(const LoggedFrame&, int fullest);
+  bool (*stands_for)(const LoggedFrame&);
 };
 
 inline constexpr std::array kPaperStages{
     PaperStage{"feature_extraction", "feature extraction", vio::stages::kExtraction,
-               [](const LoggedFrame&, int) { return true; }},
+               [](const LoggedFrame&) { return true; }},
     PaperStage{"frame_matching", "frame matching", vio::stages::kFrameMatching,
-               [](const LoggedFrame& f, int) { return f.keyframe_features > 0; }},
+               [](const LoggedFrame& f) { return f.keyframe_features > 0; }},
     PaperStage{"world_matching", "world matching", vio::stages::kWorldMatching,
-               [](const LoggedFrame& f, int fullest) {
-                 return f.landmarks_before > 0 && 10 * f.landmarks_before >= 9 * fullest;
-               }},
+               [](const LoggedFrame& f) { return f.landmarks_before > 0; }},
     PaperStage{"epnp_ransac", "EPnP RANSAC", vio::stages::kEpnp,
-               [](const LoggedFrame&, int) { return true; }},
+               [](const LoggedFrame&) { return true; }},
     PaperStage{"eight_point_ransac", "8-point RANSAC", vio::stages::kEightPoint,
-               [](const LoggedFrame&, int) { return true; }},
+               [](const LoggedFrame&) { return true; }},
     PaperStage{"triangulation", "triangulation", vio::stages::kTriangulation,
-               [](const LoggedFrame& f, int) {
+               [](const LoggedFrame& f) {
                  return f.result.keyframe && f.result.source != PoseSource::First;
                }},
 };

@@ -58,6 +58,31 @@ typename P::F32 bring_pivot(Matrix& a, Vector& b, int n, int k) {
   return largest;
 }
 
+/// Brings A to triangular form and solves it, without a further copy. The released program has its
+/// copies on the call stack with sizes of the moment, so the compiler knows no bound of them.
+/// @param m    n×n, and rhs n: destroyed
+/// @param x    n, zero: stays so if a pivot is below kSmallestPivot
+template <class P>
+LEVIOSIM_TARGET_CALL void solve_in_place(typename P::template Span<typename P::F32> m,
+                                         typename P::template Span<typename P::F32> rhs,
+                                         typename P::template Span<typename P::F32> x, int n) {
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  for (int k : P::range(0, n)) {
+    if (bring_pivot<P>(m, rhs, n, k) < F(kSmallestPivot)) return;
+    for (int r : P::range(k + 1, n)) {
+      const F factor = F(m[I32(r * n + k)]) / F(m[I32(k * n + k)]);
+      for (int c : P::range(k, n)) m[I32(r * n + c)] -= factor * F(m[I32(k * n + c)]);
+      rhs[r] -= factor * F(rhs[k]);
+    }
+  }
+  for (int r : P::down_range(n - 1, 0)) {
+    F sum = rhs[r];
+    for (int c : P::range(r + 1, n)) sum -= F(m[I32(r * n + c)]) * F(x[c]);
+    x[r] = sum / F(m[I32(r * n + r)]);
+  }
+}
+
 }  // namespace gauss
 
 /// Solves A x = b by Gaussian elimination with partial pivoting on copies: a division per
@@ -70,7 +95,7 @@ LEVIOSIM_TARGET_CALL void solve_gauss(ConstMatrixView<P> a,
                                       typename P::template Span<const typename P::F32> b,
                                       typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
-  using I32 = typename P::I32;
+  using Span = typename P::template Span<F>;
   const typename P::Function function("levio_solve_gauss");
   const int n = a.rows();
   const typename P::OffloadRegion kernel(solve_of_size(n),
@@ -82,19 +107,7 @@ LEVIOSIM_TARGET_CALL void solve_gauss(ConstMatrixView<P> a,
     rhs[i] = F(b[i]);
     x[i] = 0.0f;
   }
-  for (int k : P::range(0, n)) {
-    if (gauss::bring_pivot<P>(m, rhs, n, k) < F(kSmallestPivot)) return;
-    for (int r : P::range(k + 1, n)) {
-      const F factor = F(m[I32(r * n + k)]) / F(m[I32(k * n + k)]);
-      for (int c : P::range(k, n)) m[I32(r * n + c)] -= factor * F(m[I32(k * n + c)]);
-      rhs[r] -= factor * F(rhs[k]);
-    }
-  }
-  for (int r : P::down_range(n - 1, 0)) {
-    F sum = rhs[r];
-    for (int c : P::range(r + 1, n)) sum -= F(m[I32(r * n + c)]) * F(x[c]);
-    x[r] = sum / F(m[I32(r * n + r)]);
-  }
+  gauss::solve_in_place<P>(Span(m), Span(rhs), x, n);
 }
 
 /// Divides every element by the norm: a root and n divisions.

@@ -27,31 +27,26 @@ typename P::F32 norm_from(Vector v, int first, int size) {
   return work::sqrt(sum);
 }
 
-}  // namespace qr
-
-/// x of min |A x − b|.
-/// @param a  m×n, n ≤ m ≤ kMostEquations, destroyed
-/// @param b  m, destroyed
-/// @param x  n
+/// Reflects column after column of the m×n matrix and the right-hand side, then substitutes. The
+/// released program has its reflector on the call stack with a size of the moment, so the compiler
+/// knows no bound of it.
+/// @param reflector  m, work memory
 template <class P>
-LEVIOSIM_TARGET_CALL void least_squares(MatrixView<P> a,
-                                        typename P::template Span<typename P::F32> b,
-                                        typename P::template Span<typename P::F32> x) {
+LEVIOSIM_TARGET_CALL void solve_in_place(MatrixView<P> a,
+                                         typename P::template Span<typename P::F32> b,
+                                         typename P::template Span<typename P::F32> reflector,
+                                         typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
-  const typename P::Function function("levio_least_squares");
   const int m = a.rows(), n = a.cols();
-  const typename P::OffloadRegion kernel(solve_of_size(n),
-                                         factor_items(m, n) + substitution_items(m, n));
-  typename P::template Array<F, kMostEquations> reflector;
   for (int k : P::range(0, n)) {
-    const F length = qr::norm_from<P>([&](int r) { return F(a(r, k)); }, k, m);
+    const F length = norm_from<P>([&](int r) { return F(a(r, k)); }, k, m);
     const F head = a(k, k);
     for (int r : P::range(k, m)) reflector[r] = F(a(r, k));
     if (head > 0.0f)
       reflector[k] = head + length;
     else
       reflector[k] = head - length;
-    const F size = qr::norm_from<P>([&](int r) { return F(reflector[r]); }, k, m);
+    const F size = norm_from<P>([&](int r) { return F(reflector[r]); }, k, m);
     for (int r : P::range(k, m)) reflector[r] = F(reflector[r]) / size;
     for (int c : P::range(k, n)) {
       F along = 0.0f;
@@ -69,6 +64,26 @@ LEVIOSIM_TARGET_CALL void least_squares(MatrixView<P> a,
     for (int c : P::range(r + 1, n)) sum -= a(r, c) * x[c];
     x[r] = sum / a(r, r);
   }
+}
+
+}  // namespace qr
+
+/// x of min |A x − b|.
+/// @param a  m×n, n ≤ m ≤ kMostEquations, destroyed
+/// @param b  m, destroyed
+/// @param x  n
+template <class P>
+LEVIOSIM_TARGET_CALL void least_squares(MatrixView<P> a,
+                                        typename P::template Span<typename P::F32> b,
+                                        typename P::template Span<typename P::F32> x) {
+  using F = typename P::F32;
+  using Span = typename P::template Span<F>;
+  const typename P::Function function("levio_least_squares");
+  const int m = a.rows(), n = a.cols();
+  const typename P::OffloadRegion kernel(solve_of_size(n),
+                                         factor_items(m, n) + substitution_items(m, n));
+  typename P::template Array<F, kMostEquations> reflector;
+  qr::solve_in_place<P>(a, b, Span(reflector), x);
 }
 
 }  // namespace leviosim::vio::levio

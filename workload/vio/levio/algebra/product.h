@@ -5,6 +5,8 @@
 // Left out: everything that would make it faster.
 #pragma once
 
+#include <cstdint>
+
 #include "workload/math/matrix.h"
 #include "workload/math/target_call.h"
 
@@ -18,18 +20,21 @@ class Operand {
 
  public:
   Operand(ConstMatrixView<P> matrix, bool transposed)
-      : matrix_(matrix), transposed_(transposed ? 1 : 0) {}
+      : data_(matrix.data()),
+        rows_(static_cast<std::uint8_t>(matrix.rows())),
+        cols_(static_cast<std::uint8_t>(matrix.cols())),
+        transposed_(transposed ? 1 : 0) {}
 
-  int rows() const { return work::value(transposed_) != 0 ? matrix_.cols() : matrix_.rows(); }
-  int cols() const { return work::value(transposed_) != 0 ? matrix_.rows() : matrix_.cols(); }
+  int rows() const { return transposed_ != 0 ? cols_ : rows_; }
+  int cols() const { return transposed_ != 0 ? rows_ : cols_; }
   F at(int r, int c) const {
-    if (transposed_ != I32(0)) return matrix_.data()[I32(c * matrix_.cols() + r)];
-    return matrix_.data()[I32(r * matrix_.cols() + c)];
+    if (I32(transposed_) != I32(0)) return data_[I32(c * cols_ + r)];
+    return data_[I32(r * cols_ + c)];
   }
 
  private:
-  ConstMatrixView<P> matrix_;
-  I32 transposed_;
+  typename P::template Span<const F> data_;
+  std::uint8_t rows_, cols_, transposed_;
 };
 
 template <class P>
@@ -43,15 +48,17 @@ Operand<P> transposed(ConstMatrixView<P> matrix) {
 
 /// c = a b, which must fit. c must not overlap a or b.
 template <class P>
-LEVIOSIM_TARGET_CALL void product(MatrixView<P> c, const Operand<P>& a, const Operand<P>& b) {
+LEVIOSIM_TARGET_CALL void product(const MatrixView<P>& c, const Operand<P>& a,
+                                  const Operand<P>& b) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_product");
+  const Operand<P> left = a, right = b;
   const auto to = c.data();
-  for (int i : P::range(0, a.rows()))
-    for (int j : P::range(0, b.cols())) {
+  for (int i : P::range(0, left.rows()))
+    for (int j : P::range(0, right.cols())) {
       F sum = 0.0f;
-      for (int k : P::range(0, a.cols())) sum += a.at(i, k) * b.at(k, j);
+      for (int k : P::range(0, left.cols())) sum += left.at(i, k) * right.at(k, j);
       to[I32(i * c.cols() + j)] = sum;
     }
 }

@@ -84,12 +84,13 @@ void score_essential(MatrixView<P> essential, const TwoViewMatches<P>& matches,
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_score_essential");
-  Mat3<P> E;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) E.m[r][c] = F(essential(r, c));
   score.inliers[0] = 0;
   score.error_sum[0] = 0.0f;
   for (int i : P::range(0, matches.n)) {
+    // The byte that is written may lie in E for all that the compiler knows, so E is read anew.
+    Mat3<P> E;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) E.m[r][c] = F(essential(r, c));
     const F error = sampson_error_sq<P>(E, matches.in_a(i), matches.in_b(i));
     I32 inlier = 0;
     if (error < threshold) {

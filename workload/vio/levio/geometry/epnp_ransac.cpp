@@ -52,11 +52,12 @@ typename P::I32 count_inliers(MatrixView<P> T_camera_world, const LandmarkMatche
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_count_inliers");
+  PointMover<P> into_camera(T_camera_world);
   I32 inliers = 0;
   for (int i : P::range(0, matches.n)) {
     const Vec3<P> point{F(matches.points[3 * i]), F(matches.points[3 * i + 1]),
                         F(matches.points[3 * i + 2])};
-    const Vec3<P> x = moved<P>(T_camera_world, point);
+    const Vec3<P> x = into_camera(point);
     const F du = camera.fx() * F(x.x / x.z) + camera.cx() - matches.pixels[2 * i];
     const F dv = camera.fy() * F(x.y / x.z) + camera.cy() - matches.pixels[2 * i + 1];
     const F error = work::sqrt(F(du * du + dv * dv)) + depth_penalty<P>(x.z);

@@ -28,18 +28,31 @@ Pose<P> load_pose(ConstMatrixView<P> from) {
   return pose;
 }
 
-/// The first three elements of T (x, y, z, 1).
+/// Moves points by one pose. The operands of its products stay where they are from point to point.
 template <class P>
-Vec3<P> moved(ConstMatrixView<P> T, const Vec3<P>& point) {
+class PointMover {
   using F = typename P::F32;
-  typename P::template Array<F, 4> x, y;
-  x[0] = point.x;
-  x[1] = point.y;
-  x[2] = point.z;
-  x[3] = 1.0f;
-  const MatrixView<P> result(y, 4, 1);
-  product<P>(result, plain<P>(T), plain<P>(MatrixView<P>(x, 4, 1)));
-  return {F(y[0]), F(y[1]), F(y[2])};
-}
+
+ public:
+  explicit PointMover(ConstMatrixView<P> T)
+      : T_(plain<P>(T)), point_(plain<P>(MatrixView<P>(x_, 4, 1))), result_(y_, 4, 1) {}
+  PointMover(const PointMover&) = delete;
+  PointMover& operator=(const PointMover&) = delete;
+
+  /// The first three elements of T (x, y, z, 1).
+  Vec3<P> operator()(const Vec3<P>& point) {
+    x_[0] = point.x;
+    x_[1] = point.y;
+    x_[2] = point.z;
+    x_[3] = 1.0f;
+    product<P>(result_, T_, point_);
+    return {F(y_[0]), F(y_[1]), F(y_[2])};
+  }
+
+ private:
+  typename P::template Array<F, 4> x_, y_;
+  Operand<P> T_, point_;
+  MatrixView<P> result_;
+};
 
 }  // namespace leviosim::vio::levio

@@ -89,10 +89,11 @@ typename P::I32 count_in_front(MatrixView<P> points, MatrixView<P> T_b) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_count_in_front");
+  PointMover<P> into_b(T_b);
   I32 in_front = 0;
   for (int i : P::range(0, points.rows())) {
     const Vec3<P> in_a{F(points(i, 0)), F(points(i, 1)), F(points(i, 2))};
-    const Vec3<P> in_b = moved<P>(T_b, in_a);
+    const Vec3<P> in_b = into_b(in_a);
     if (in_a.z > 0.0f && in_b.z > 0.0f) in_front += I32(1);
   }
   return in_front;

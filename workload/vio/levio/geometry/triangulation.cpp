@@ -42,7 +42,7 @@ typename P::F32 reprojection_error_sq(ConstMatrixView<P> T_camera_world, const V
                                       const Vec2<P>& seen, const CameraConstants<P>& camera) {
   using F = typename P::F32;
   const typename P::Function function("levio_reprojection_error");
-  const Vec3<P> x = moved<P>(T_camera_world, point);
+  const Vec3<P> x = PointMover<P>(T_camera_world)(point);
   const F du = camera.fx() * F(x.x / x.z) + camera.cx() - seen.x;
   const F dv = camera.fy() * F(x.y / x.z) + camera.cy() - seen.y;
   return du * du + dv * dv;

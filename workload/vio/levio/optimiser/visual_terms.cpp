@@ -1,8 +1,10 @@
 #include "workload/vio/levio/optimiser/visual_terms.h"
 
 #include <cstring>
+#include <type_traits>
 
 #include "workload/graph/linearise_landmark.h"
+#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 namespace {
@@ -41,14 +43,21 @@ typename P::F32 cost_of(const PixelModel<P>& model, const Sight<P>& sight) {
   return model.information * (half * sight.at.error_sq);
 }
 
-/// Zeros, byte by byte; the record is the same memory as floats.
+/// Zeros, byte by byte. Counted bytes are no part of floats for the host's compiler, so they are
+/// cleared elsewhere and copied.
+/// @param counted  as many bytes as the record has
 template <class P>
-void clear_record(typename P::template Span<typename P::Byte> cleared, const Floats<P>& record) {
+LEVIOSIM_TARGET_LOOP void clear_record(typename P::template Span<typename P::Byte> counted,
+                                       const Floats<P>& record) {
+  using Byte = typename P::Byte;
+  constexpr bool kInPlace = std::is_same_v<Byte, unsigned char>;
   const typename P::Code code("levio_clear_record");
-  for (int i : P::range(0, cleared.size()))
-    cleared[i] = work::narrow<typename P::Byte>(typename P::I32(0));
-  std::memcpy(static_cast<void*>(record.data()), cleared.data(),
-              static_cast<std::size_t>(cleared.size()));
+  auto bytes = counted;
+  if constexpr (kInPlace) bytes = {reinterpret_cast<Byte*>(record.data()), counted.size()};
+  for (int i : P::range(0, bytes.size())) bytes[i] = work::narrow<Byte>(typename P::I32(0));
+  if constexpr (!kInPlace)
+    std::memcpy(static_cast<void*>(record.data()), bytes.data(),
+                static_cast<std::size_t>(bytes.size()));
 }
 
 /// Fills the slots of landmark i. Lost observations keep their zeros.

@@ -3,6 +3,7 @@
 // without early exit. What they compute is that of workload/vision/fast.h and harris.h.
 #pragma once
 
+#include "workload/math/target_call.h"
 #include "workload/vio/levio/vision/offset_tables.h"
 
 namespace leviosim::vio::levio {
@@ -35,15 +36,18 @@ typename P::Bool is_corner(typename P::template Span<const typename P::Byte> ima
     dark_run = (dark_run + I(1)) * I(darker[k]);
     longest = work::max(longest, work::max(bright_run, dark_run));
   };
+  LEVIOSIM_TARGET_ROLLED
   for (int k : P::range(0, kRingSize)) extend_runs(k);
+  LEVIOSIM_TARGET_ROLLED
   for (int k : P::range(0, kFastArc - 1)) extend_runs(k);
   return longest >= I(kFastArc);
 }
 
 /// Response at index `centre`; the window and its gradients must lie inside the image.
 template <class P>
-typename P::I32 corner_response(typename P::template Span<const typename P::Byte> image, int width,
-                                int centre, const OffsetTables<P>& tables) {
+LEVIOSIM_TARGET_CALL typename P::I32 corner_response(
+    typename P::template Span<const typename P::Byte> image, int width, int centre,
+    const OffsetTables<P>& tables) {
   using I = typename P::I32;
   const typename P::Function function("levio_corner_response");
   constexpr int kSumShift = 11;

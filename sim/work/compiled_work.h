@@ -1,0 +1,38 @@
+// What the compiled form of functions executes beside what was counted in them. A function's visit
+// has means that were measured once (platform_models/code/); the sums of these means over the
+// visits of a work segment give its *ratios*: executed instructions to counted ones at the prices
+// of a plain instruction set, and loads whose value the next instruction needs to all loads. The
+// counts of the segment themselves stay what they are.
+//
+// Left out: how both change with the data inside one function.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace leviosim::work {
+
+enum class Compiled : std::uint8_t {
+  Executed,         ///< instructions, without those of library routines
+  Priced,           ///< what was counted in the same visits, as instructions
+  Loads,            ///< load instructions
+  LoadsUsedAtOnce,  ///< … of which the next instruction needs the value
+};
+inline constexpr std::size_t kCompiledCount = 4;
+
+/// Sums over visits of functions, in units of 1 / kCompiledUnit so that they are whole.
+using CompiledWork = std::array<std::uint64_t, kCompiledCount>;
+inline constexpr double kCompiledUnit = 16;
+
+/// The ratio of two sums.
+/// @return `otherwise` if no function was measured
+inline double compiled_ratio(const CompiledWork& work, Compiled part, Compiled whole,
+                             double otherwise) {
+  const std::uint64_t all = work[static_cast<std::size_t>(whole)];
+  if (all == 0) return otherwise;
+  return static_cast<double>(work[static_cast<std::size_t>(part)]) / static_cast<double>(all);
+}
+
+}  // namespace leviosim::work

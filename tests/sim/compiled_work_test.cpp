@@ -1,0 +1,92 @@
+// Measured means of functions: their sums over a work segment's visits, and what they do to its
+// price.
+#include "sim/work/compiled_work.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/chip/cost.h"
+#include "sim/work/code_tracker.h"
+
+namespace leviosim::sim {
+namespace {
+
+using work::CodeMap;
+using work::Counts;
+using work::Op;
+
+/// Of a visit, in whole instructions.
+work::CompiledWork of_visit(std::uint64_t executed, std::uint64_t priced, std::uint64_t loads,
+                            std::uint64_t used_at_once) {
+  work::CompiledWork work{executed, priced, loads, used_at_once};
+  for (std::uint64_t& part : work) part *= static_cast<std::uint64_t>(work::kCompiledUnit);
+  return work;
+}
+
+TEST(CompiledWork, IsTheSumOverVisitsOfFunctionsWhateverTheOrder) {
+  CodeMap map;
+  map.add("outer", "", 64, 0, of_visit(10, 8, 4, 1));
+  map.add("outer", "inner", 32);
+  map.add("inner", "", 32, 0, of_visit(7, 9, 2, 2));
+  work::CodeTracker tracker(map);
+  work::take_tally();
+  work::current_code = &tracker;
+  constexpr std::uint64_t kOuter = 3, kInner = 50;
+  for (std::uint64_t o = 0; o < kOuter; ++o) {
+    work::code_events.enter("outer");
+    for (std::uint64_t i = 0; i < kInner; ++i) {
+      work::code_events.enter("inner");
+      work::code_events.leave();
+    }
+    work::code_events.leave();
+  }
+  work::code_events.enter("unknown");
+  work::code_events.leave();
+  work::fetch_code();
+  work::current_code = nullptr;
+  const std::uint64_t n = kOuter * kInner;
+  EXPECT_EQ(work::take_tally().compiled, of_visit(10 * kOuter + 7 * n, 8 * kOuter + 9 * n,
+                                                  4 * kOuter + 2 * n, 1 * kOuter + 2 * n));
+}
+
+CoreConfig core() {
+  CoreConfig core;
+  core.ops[work::index(Op::IntAlu)] = {.issue = 1};
+  core.ops[work::index(Op::LoadStream)] = {.issue = 1};
+  core.ops[work::index(Op::F64Mul)] = {.issue = 200, .routine = true};
+  core.instruction_overhead = 1.5;
+  core.load_use_fraction = 0.25;
+  core.load_use_stall = 2;
+  return core;
+}
+
+Counts counted() {
+  Counts counts;
+  counts[Op::IntAlu] = 600;
+  counts[Op::LoadStream] = 400;
+  counts[Op::F64Mul] = 3;
+  return counts;
+}
+
+TEST(CompiledWork, ScalesInstructionsAndLoadStallsButNoRoutines) {
+  Counts counts = counted();
+  counts.compiled = of_visit(120, 100, 50, 30);
+  const UsefulCycles alone = price(counts, core()).alone;
+  EXPECT_DOUBLE_EQ(alone.issue, 1000 * 1.5 * 1.2 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.6 * 2);
+}
+
+TEST(CompiledWork, OfCodeThatWasNotMeasuredIsWhatThePlatformSays) {
+  const UsefulCycles alone = price(counted(), core()).alone;
+  EXPECT_DOUBLE_EQ(alone.issue, 1000 * 1.5 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.25 * 2);
+}
+
+TEST(CompiledWork, OfTwoSegmentsTogetherIsTheirSum) {
+  Counts a = counted(), b = counted();
+  a.compiled = of_visit(300, 100, 10, 0);
+  b.compiled = of_visit(100, 100, 10, 10);
+  EXPECT_DOUBLE_EQ(price(a + b, core()).alone.load_use, 800 * 0.5 * 2);
+}
+
+}  // namespace
+}  // namespace leviosim::sim
