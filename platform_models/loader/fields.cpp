@@ -179,6 +179,11 @@ void add_fpu(Table& table) {
       quantity("cluster.fpu.int64_units", kUnits, 0, kMaxParts,
                "units for 64-bit integers that the cluster's cores share, mapped as the others"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
+  table.add(
+      optional(quantity("cluster.fpu.collisions", kRatio, 0, 10,
+                        "chance collisions at these units, over those of operations in random "
+                        "order; 0 unless said: cores find their turns")),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.collisions; });
 }
 
 /// Sizes and times that every instruction cache has.
@@ -245,6 +250,11 @@ void add_l1_and_dma(Table& table) {
       quantity("cluster.l1.banks", kBanks, 1, kMaxParts,
                "word-interleaved banks of L1, a power of two"),
       [](auto& chip) -> auto& { return chip.cluster.l1.banks; });
+  table.add(
+      optional(quantity("cluster.l1.stream_conflicts", kRatio, 0, 10,
+                        "bank conflicts among streams of the cores, over those of as many "
+                        "scattered accesses; 0 unless said: streams walk in step")),
+      [](auto& chip) -> auto& { return chip.cluster.l1.stream_conflicts; });
   table.add(
       quantity("cluster.dma.programming", kCycles, 0, kMaxCost,
                "cycles of the programming core per transfer, API included"),
