@@ -295,6 +295,11 @@ void add_events(Table& table) {
       quantity("cluster.events.offload", kCycles, 0, 1e7,
                "controller cycles between controller and cluster task, one way"),
       [](auto& chip) -> auto& { return chip.cluster.events.offload; });
+  table.add(
+      optional(quantity("cluster.events.fork_again", kRatio, 0, 1,
+                        "share of fork_master and fork_worker that a fork right after another one "
+                        "takes; 1 unless said")),
+      [](auto& chip) -> auto& { return chip.cluster.events.fork_again; });
 }
 
 void add_controller(Table& table) {

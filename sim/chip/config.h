@@ -112,6 +112,7 @@ struct EventUnitConfig {
   double fork_worker = 0;  ///< worker: wake-up, fetch of entry and argument, jump
   double barrier = 0;      ///< from the last arrival until everyone goes on
   double offload = 0;      ///< controller → cluster task, one way, in cycles of the controller
+  double fork_again = 1;   ///< share of the fork's cycles that one takes right after another
 };
 
 struct ClusterConfig {
