@@ -66,7 +66,7 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
   demand.alone.load_use = loads * core.load_use_fraction * core.load_use_stall;
   const CodeFetch fetch = code.fetch(counts.code);
   demand.alone.fetch = fetch.stall;
-  demand.fetches = fetch.requests;
+  demand.fetches = fetch.requests + code.lines_executed(demand.alone.issue);
   demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
   // The second half of a straddling access follows the first.
   demand.streamed = sum(Op::LoadStream, Op::StoreStream, Op::Straddle);
