@@ -99,15 +99,21 @@ class Table {
 void add_operation(Table& table, const CoreSection& section, const work::OpInfo& info) {
   const std::string row = fmt::format("{}.ops.{}", section.path, info.name);
   const work::Op op = info.op;
+  // Only cores with hardware loops have a cost for it, and files may be older.
+  const auto needed = [op](Field field) {
+    return op == work::Op::LoopJump ? optional(std::move(field)) : field;
+  };
   table.add_of_cores(
       section,
-      column(quantity(row + ".issue", kCycles, 0, kMaxCost,
-                      fmt::format("instructions issued, one per cycle: {}", info.description))),
+      needed(column(
+          quantity(row + ".issue", kCycles, 0, kMaxCost,
+                   fmt::format("instructions issued, one per cycle: {}", info.description)))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].issue; });
   table.add_of_cores(
       section,
-      column(quantity(row + ".stall", kCycles, 0, kMaxCost,
-                      fmt::format("cycles that the core waits in addition: {}", info.description))),
+      needed(column(
+          quantity(row + ".stall", kCycles, 0, kMaxCost,
+                   fmt::format("cycles that the core waits in addition: {}", info.description)))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].stall; });
   table.add_of_cores(
       section,
@@ -117,8 +123,8 @@ void add_operation(Table& table, const CoreSection& section, const work::OpInfo&
       [op](auto& core) -> auto& { return core.ops[work::index(op)].busy; });
   table.add_of_cores(
       section,
-      column(choice(row + ".on", {"core", "fpu", "divider", "int64", "bank"},
-                    fmt::format("unit that does the work: {}", info.description))),
+      needed(column(choice(row + ".on", {"core", "fpu", "divider", "int64", "bank"},
+                           fmt::format("unit that does the work: {}", info.description)))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].unit; });
   table.add_of_cores(
       section,

@@ -12,6 +12,7 @@ double UsefulCycles::*stall_breakdown(Op op) {
     case Op::BranchNotTaken:
     case Op::LoopEntry:
     case Op::LoopIteration:
+    case Op::LoopJump:
     case Op::Call:
     case Op::JumpRegister:
       return &UsefulCycles::control;
