@@ -99,15 +99,21 @@ class Table {
 void add_operation(Table& table, const CoreSection& section, const work::OpInfo& info) {
   const std::string row = fmt::format("{}.ops.{}", section.path, info.name);
   const work::Op op = info.op;
+  // Only cores with hardware loops have a cost for it, and files may be older.
+  const auto needed = [op](Field field) {
+    return op == work::Op::LoopJump ? optional(std::move(field)) : field;
+  };
   table.add_of_cores(
       section,
-      column(quantity(row + ".issue", kCycles, 0, kMaxCost,
-                      fmt::format("instructions issued, one per cycle: {}", info.description))),
+      needed(column(
+          quantity(row + ".issue", kCycles, 0, kMaxCost,
+                   fmt::format("instructions issued, one per cycle: {}", info.description)))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].issue; });
   table.add_of_cores(
       section,
-      column(quantity(row + ".stall", kCycles, 0, kMaxCost,
-                      fmt::format("cycles that the core waits in addition: {}", info.description))),
+      needed(column(
+          quantity(row + ".stall", kCycles, 0, kMaxCost,
+                   fmt::format("cycles that the core waits in addition: {}", info.description)))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].stall; });
   table.add_of_cores(
       section,
@@ -117,8 +123,8 @@ void add_operation(Table& table, const CoreSection& section, const work::OpInfo&
       [op](auto& core) -> auto& { return core.ops[work::index(op)].busy; });
   table.add_of_cores(
       section,
-      column(choice(row + ".on", {"core", "fpu", "divider", "int64", "bank"},
-                    fmt::format("unit that does the work: {}", info.description))),
+      needed(column(choice(row + ".on", {"core", "fpu", "divider", "int64", "bank"},
+                           fmt::format("unit that does the work: {}", info.description)))),
       [op](auto& core) -> auto& { return core.ops[work::index(op)].unit; });
   table.add_of_cores(
       section,
@@ -179,6 +185,11 @@ void add_fpu(Table& table) {
       quantity("cluster.fpu.int64_units", kUnits, 0, kMaxParts,
                "units for 64-bit integers that the cluster's cores share, mapped as the others"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
+  table.add(
+      optional(quantity("cluster.fpu.collisions", kRatio, 0, 10,
+                        "chance collisions at these units, over those of operations in random "
+                        "order; 0 unless said: cores find their turns")),
+      [](auto& chip) -> auto& { return chip.cluster.fpu.collisions; });
 }
 
 /// Sizes and times that every instruction cache has.
@@ -246,6 +257,11 @@ void add_l1_and_dma(Table& table) {
                "word-interleaved banks of L1, a power of two"),
       [](auto& chip) -> auto& { return chip.cluster.l1.banks; });
   table.add(
+      optional(quantity("cluster.l1.stream_conflicts", kRatio, 0, 10,
+                        "bank conflicts among streams of the cores, over those of as many "
+                        "scattered accesses; 0 unless said: streams walk in step")),
+      [](auto& chip) -> auto& { return chip.cluster.l1.stream_conflicts; });
+  table.add(
       quantity("cluster.dma.programming", kCycles, 0, kMaxCost,
                "cycles of the programming core per transfer, API included"),
       [](auto& chip) -> auto& { return chip.cluster.dma.programming; });
@@ -285,6 +301,11 @@ void add_events(Table& table) {
       quantity("cluster.events.offload", kCycles, 0, 1e7,
                "controller cycles between controller and cluster task, one way"),
       [](auto& chip) -> auto& { return chip.cluster.events.offload; });
+  table.add(
+      optional(quantity("cluster.events.fork_again", kRatio, 0, 1,
+                        "share of fork_master and fork_worker that a fork right after another one "
+                        "takes; 1 unless said")),
+      [](auto& chip) -> auto& { return chip.cluster.events.fork_again; });
 }
 
 void add_controller(Table& table) {

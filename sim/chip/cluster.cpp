@@ -59,6 +59,7 @@ double Cluster::cycles_since(Time begin, Time end) const {
 Task<JobTiming> Cluster::run(const work::Job& job) {
   JobTiming timing{kernel_.now(), kernel_.now(), {}};
   background_.clear();
+  after_fork_ = false;
   for (const work::StageRun& stage : job.stages) {
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
     for (const work::Step& variant : stage.steps) {
@@ -73,6 +74,7 @@ Task<JobTiming> Cluster::run(const work::Job& job) {
       else
         co_await step(std::get<work::TransferWait>(variant), s.breakdown);
       end_step();
+      after_fork_ = std::holds_alternative<work::Fork>(variant);
     }
     s.end = kernel_.now();
     s.cycles = clock_.whole_cycles(s.end - s.begin);
@@ -134,8 +136,11 @@ Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
   }
   const Time begin = kernel_.now();
   arrivals_ = 0;
-  co_await kernel_.delay(cycles(config_.events.fork_master));
-  for (auto& channel : dispatch_) co_await channel->push({&fork, &breakdown, begin});
+  const double share = after_fork_ ? config_.events.fork_again : 1;
+  const Duration of_master = cycles(share * config_.events.fork_master);
+  const Duration of_worker = cycles(share * config_.events.fork_worker);
+  co_await kernel_.delay(of_master);
+  for (auto& channel : dispatch_) co_await channel->push({&fork, &breakdown, begin, of_worker});
   if (fork.master_takes_part) {
     const Time share_begin = kernel_.now();
     const SegmentTime time = co_await team_.execute(workers_, fork.shares.back());
@@ -143,8 +148,7 @@ Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
   }
   co_await end_of_fork_.arrive();
   const double last = cycles_since(begin, last_arrival_);
-  const double start_up = cycles_since(
-      begin, begin + cycles(config_.events.fork_master) + cycles(config_.events.fork_worker));
+  const double start_up = cycles_since(begin, begin + of_master + of_worker);
   const double after = cycles_since(last_arrival_, kernel_.now());
   const double barrier = std::min(after, config_.events.barrier);
   breakdown.imbalance += workers_ * (last + after - barrier) - arrivals_;
@@ -165,7 +169,7 @@ Process Cluster::worker(int id) {
   work::Segment sum;
   for (;;) {
     const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
-    co_await kernel_.delay(cycles(config_.events.fork_worker));
+    co_await kernel_.delay(dispatch.start_up);
     const Time begin = kernel_.now();
     const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork, sum));
     note(id, begin, time);

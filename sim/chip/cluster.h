@@ -2,8 +2,8 @@
 // serial work by the master, forks on the team, DMA transfers that the master waits for.
 //
 // Models: the path of a team fork (dispatch by the master, wake-up of the workers, barrier at the
-// end), DMA programming, latency, payload and completion (dma.h), contention within a team
-// (team.h).
+// end; a fork right after another finds masks and code as that left them), DMA programming,
+// latency, payload and completion (dma.h), contention within a team (team.h).
 #pragma once
 
 #include <memory>
@@ -41,7 +41,8 @@ class Cluster {
   struct Dispatch {
     const work::Fork* fork;
     CycleBreakdown* breakdown;
-    Time begin;  ///< of the fork
+    Time begin;         ///< of the fork
+    Duration start_up;  ///< until the share begins
   };
 
   Process worker(int id);
@@ -72,6 +73,7 @@ class Cluster {
   Barrier end_of_fork_;
   std::vector<std::unique_ptr<Channel<Dispatch>>> dispatch_;
   bool keep_steps_ = false;
+  bool after_fork_ = false;     ///< the step before was a fork
   StepTiming* step_ = nullptr;  ///< that runs, if steps are kept
   Time last_arrival_;
   double arrivals_ =

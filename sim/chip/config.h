@@ -65,8 +65,10 @@ enum class FpuMapping : std::uint8_t {
 struct FpuConfig {
   int units = 0;
   FpuMapping mapping = FpuMapping::Fixed;
-  int dividers = 0;     ///< divide/square-root units of the cluster, any core uses any
-  int int64_units = 0;  ///< units for 64-bit integers, mapped as the floating-point ones
+  int dividers = 0;       ///< divide/square-root units of the cluster, any core uses any
+  int int64_units = 0;    ///< units for 64-bit integers, mapped as the floating-point ones
+  double collisions = 0;  ///< chance collisions at a unit, over those of cores whose operations
+                          ///< come in random order; 0: cores find their turns
 };
 
 /// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
@@ -85,6 +87,8 @@ struct InstructionCacheConfig {
 struct L1Config {
   Bytes size;
   int banks = 1;
+  double stream_conflicts = 0;  ///< of the streams of several cores, over those of as many
+                                ///< scattered accesses; 0: streams walk in step
 };
 
 /// Hardware that serves the calls of one kind of kernel (accelerator.h).
@@ -110,6 +114,7 @@ struct EventUnitConfig {
   double fork_worker = 0;  ///< worker: wake-up, fetch of entry and argument, jump
   double barrier = 0;      ///< from the last arrival until everyone goes on
   double offload = 0;      ///< controller → cluster task, one way, in cycles of the controller
+  double fork_again = 1;   ///< share of the fork's cycles that one takes right after another
 };
 
 struct ClusterConfig {

@@ -69,7 +69,10 @@ Runner Runner::of(int core, const Demand& demand) {
 }
 
 Contention::Contention(const ClusterConfig& config)
-    : banks_(config.l1.banks), code_banks_(config.icache.shared_banks) {
+    : banks_(config.l1.banks),
+      code_banks_(config.icache.shared_banks),
+      stream_conflicts_(config.l1.stream_conflicts),
+      collisions_(config.fpu.collisions) {
   const FpuConfig& fpu = config.fpu;
   const auto mapped = [&](int units) {
     return fpu.mapping == FpuMapping::Fixed ? Pools{units, 1.0}
@@ -130,7 +133,8 @@ double Contention::l1_delay(std::size_t i) const {
   const Runner& me = (*runners_)[i];
   const double scattered = all_scattered_ - me.scattered * rate_[i] + dma_words_;
   const double streamed = all_streamed_ - me.streamed * rate_[i];
-  return (me.scattered * (scattered + streamed) + me.streamed * scattered) / (2.0 * banks_);
+  const double met_by_streams = scattered + stream_conflicts_ * streamed;
+  return (me.scattered * (scattered + streamed) + me.streamed * met_by_streams) / (2.0 * banks_);
 }
 
 double Contention::fetch_delay(std::size_t i) const {
@@ -138,11 +142,32 @@ double Contention::fetch_delay(std::size_t i) const {
   return me.fetches * (all_fetches_ - me.fetches * rate_[i]) / (2.0 * code_banks_);
 }
 
+void Contention::meet() {
+  if (collisions_ == 0) return;
+  const std::vector<Runner>& runners = *runners_;
+  const std::size_t n = runners.size();
+  // What else slows a core down keeps it from asking as often.
+  for (std::size_t i = 0; i < n; ++i) pace_[i] = std::min(1.0, rate_[i] * (1 + met_[i]));
+  met_.assign(n, 0.0);
+  for (const Unit unit : {Unit::Fpu, Unit::Int64}) {
+    const Pools& kind = pools_[index(unit)];
+    if (kind.pools == 0 || kind.capacity != 1) continue;
+    const auto asked = [&](std::size_t i) {
+      return std::min(1.0, runners[i].units[index(unit)].cycles * pace_[i]);
+    };
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        if (i != j && runners[i].core % kind.pools == runners[j].core % kind.pools)
+          met_[i] += collisions_ * met_by_chance(asked(i), asked(j)) / pace_[i];
+  }
+}
+
 /// Books the time that a runner loses on what it waits for.
 void Contention::blame(std::size_t i, Progress& p) const {
   p.banks = p.rate * l1_delay(i);
   p.fetch = p.rate * fetch_delay(i);
-  const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch);
+  p.fpu = p.rate * met_[i];
+  const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch - p.fpu);
   const auto tightest = std::min_element(shared_.begin(), shared_.end(), [&](Unit a, Unit b) {
     return limits_[index(a)][i] < limits_[index(b)][i];
   });
@@ -159,7 +184,7 @@ void Contention::blame(std::size_t i, Progress& p) const {
       break;
     case Unit::Fpu:
     case Unit::Int64:
-      p.fpu = lost;
+      p.fpu += lost;
       break;
     default:
       p.accelerator = lost;
@@ -172,6 +197,8 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   rate_.assign(n, 1.0);
   for (const Unit unit : shared_) limits_[index(unit)].assign(n, kUnlimited);
   progress.assign(n, Progress{});
+  met_.assign(n, 0.0);
+  pace_.assign(n, 1.0);
   if (n < 2 && dma_words == 0) return;
 
   // What the DMA moves, up to half of what there is.
@@ -199,7 +226,9 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0;
     sum_up(runners, dma_words);
-    for (std::size_t i = 0; i < n; ++i) free_rate[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i));
+    meet();
+    for (std::size_t i = 0; i < n; ++i)
+      free_rate[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + met_[i]);
     // Each unit's limit is found with what the *other* limits leave of the demand.
     for (std::size_t k = 0; k < scarce_units; ++k) {
       const std::size_t unit = index(scarce[k]);

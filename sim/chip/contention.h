@@ -14,9 +14,17 @@
 // on B interleaved banks, an access waits Σ p_j / (2B) cycles (FACTS.md#l1-memory). That is how
 // code waits for the shared instruction cache, and scattered accesses for L1. Streams walk from
 // bank to bank all at the same pace: one that meets another waits once and is out of its way for
-// good, so streams wait only for scattered accesses and for the DMA.
+// good. That holds for one stream per core; loops over several streams, rows of an operand that all
+// cores read, and beginnings of loops make streams meet again and again. How often, compared with
+// scattered accesses, is a number of the platform (FACTS.md#l1-memory).
 //
-// Left out: transients of a few cycles until requesters have interleaved.
+// A floating-point or 64-bit integer unit that is not saturated makes nobody wait whose operations
+// alternate with other instructions: cores that share it find their turns. Operations in a row do
+// not, and whether two cores collide depends on their phase. What cores lose on average over phases
+// and orders of instructions has a closed form (met_by_chance).
+//
+// Left out: transients of a few cycles until requesters have interleaved; chance collisions at
+// dividers, at words that all cores use, and where any core may take any unit.
 #pragma once
 
 #include <cstdint>
@@ -48,6 +56,18 @@ struct Runner {
   static Runner of(int core, const Demand& demand);
 };
 
+/// What a core loses per lone cycle to another that shares a unit with it, if each instruction asks
+/// for the unit with a probability of its own. Of two requests that meet, the one waits whose core
+/// was served last: with probability mine / (mine + other). While it waits, the other core executes
+/// its next instruction and may have to wait in turn. This is the solution of that Markov chain.
+/// Two that ask in every cycle lose one cycle each.
+constexpr double met_by_chance(double mine, double other) {
+  const double both = mine * other;
+  return both == 0 ? 0
+                   : mine * both * (1 + other) /
+                         ((1 - both) * (mine + other) + other * both * (1 + mine));
+}
+
 /// Solves the rates of all runners at once. Results are in the order of the runners.
 class Contention {
  public:
@@ -71,18 +91,24 @@ class Contention {
   double l1_delay(std::size_t runner) const;
   double fetch_delay(std::size_t runner) const;
   void sum_up(const std::vector<Runner>& runners, double dma_words);
+  /// Sets what each runner loses per lone cycle by chance collisions at shared units.
+  void meet();
   void blame(std::size_t runner, Progress& progress) const;
 
   std::array<Pools, kUnitCount> pools_;
   std::vector<Unit> shared_;  ///< kinds of units that there are
   int banks_;
   int code_banks_;
+  double stream_conflicts_;
+  double collisions_;
   const std::vector<Runner>* runners_ = nullptr;  ///< while solving
   double all_streamed_ = 0;                       ///< per cycle at the present rates, by everybody
   double all_scattered_ = 0;
   double all_fetches_ = 0;
   double dma_words_ = 0;
   std::vector<double> rate_;                            ///< current estimate
+  std::vector<double> met_;                             ///< lost by chance per lone cycle
+  std::vector<double> pace_;                            ///< rate but for what is lost so
   std::array<std::vector<double>, kUnitCount> limits_;  ///< highest rate that each unit allows
 };
 

@@ -12,6 +12,7 @@ double UsefulCycles::*stall_breakdown(Op op) {
     case Op::BranchNotTaken:
     case Op::LoopEntry:
     case Op::LoopIteration:
+    case Op::LoopJump:
     case Op::Call:
     case Op::JumpRegister:
       return &UsefulCycles::control;
@@ -72,7 +73,7 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
   demand.alone.load_use = loads * used_at_once * core.load_use_stall;
   const CodeFetch fetch = code.fetch(counts.code);
   demand.alone.fetch = fetch.stall;
-  demand.fetches = fetch.requests;
+  demand.fetches = fetch.requests + code.lines_executed(demand.alone.issue);
   demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
   // The second half of a straddling access follows the first.
   demand.streamed = sum(Op::LoadStream, Op::StoreStream, Op::Straddle);

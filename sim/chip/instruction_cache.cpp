@@ -14,6 +14,8 @@ namespace {
 /// what it is for other instruction sets as long as they are not measured.
 constexpr double kStretch = 34;
 constexpr double kLineOfTable = 16;
+/// Of an instruction; compressed ones have half of it, which is left out.
+constexpr double kInstructionBytes = 4;
 /// Share of what a cache holds that is of use while it gets new code.
 constexpr double kOfUse = 0.5;
 
@@ -153,6 +155,11 @@ CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sh
       sharers_(sharers),
       own_(level_of(own, config.line, config.ways)),
       shared_(level_of(config.shared, config.line, config.ways)) {}
+
+double CodeFetcher::lines_executed(double instructions) const {
+  if (line_ == 0 || own_.bytes > 0 || shared_.bytes == 0) return 0;
+  return instructions * kInstructionBytes / line_;
+}
 
 CodeFetch CodeFetcher::fetch(const work::CodeReuse& code) const {
   if (line_ == 0) return {};

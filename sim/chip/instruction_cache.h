@@ -56,6 +56,9 @@ class CodeFetcher {
 
   /// Not additive: code that is fetched between other code survives less.
   CodeFetch fetch(const work::CodeReuse& code) const;
+  /// Lines that the shared cache delivers to a core without a private one while it executes so many
+  /// instructions: such a core holds one line, and takes the next one when it is through with that.
+  double lines_executed(double instructions) const;
 
   /// A cache as the equations see it.
   struct Level {

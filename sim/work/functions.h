@@ -5,10 +5,20 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "sim/work/counted.h"
 
 namespace leviosim::work {
+
+/// A value in one more register: a counter that is set, a window that moves on, an address that is
+/// kept. For code that was scheduled by hand, whose author knows what compilers otherwise decide
+/// (the platform's instruction overhead stands for that).
+template <class T>
+T copied(T x) {
+  if constexpr (!std::is_arithmetic_v<T>) count(Op::IntAlu);
+  return x;
+}
 
 // ---- plain scalars (native policy) ----
 inline float sqrt(float x) { return std::sqrt(x); }

@@ -17,70 +17,11 @@
 #include "sim/work/code_events.h"
 #include "sim/work/counted.h"
 #include "sim/work/functions.h"
+#include "sim/work/loops.h"
 #include "sim/work/memory.h"
 #include "sim/work/offload_regions.h"
 
 namespace leviosim::work {
-
-/// Integers begin, begin+1, … below end; counts one loop entry and its iterations if Counted.
-template <bool Counted>
-class Range {
- public:
-  class Iterator {
-   public:
-    explicit Iterator(int i) : i_(i) {}
-    int operator*() const { return i_; }
-    Iterator& operator++() {
-      if constexpr (Counted) count(Op::LoopIteration);
-      ++i_;
-      return *this;
-    }
-    bool operator!=(Iterator other) const { return i_ < other.i_; }
-
-   private:
-    int i_;
-  };
-
-  Range(int begin, int end) : begin_(begin), end_(end) {
-    if constexpr (Counted) count(Op::LoopEntry);
-  }
-  Iterator begin() const { return Iterator(begin_); }
-  Iterator end() const { return Iterator(end_); }
-
- private:
-  int begin_;
-  int end_;
-};
-
-/// begin, begin-1, … down to and including last.
-template <bool Counted>
-class DownRange {
- public:
-  class Iterator {
-   public:
-    explicit Iterator(int i) : i_(i) {}
-    int operator*() const { return i_; }
-    Iterator& operator++() {
-      if constexpr (Counted) count(Op::LoopIteration);
-      --i_;
-      return *this;
-    }
-    bool operator!=(Iterator other) const { return i_ > other.i_; }
-
-   private:
-    int i_;
-  };
-
-  DownRange(int begin, int last) : begin_(begin), end_(last - 1) {
-    if constexpr (Counted) count(Op::LoopEntry);
-  }
-  Iterator begin() const { return Iterator(begin_); }
-  Iterator end() const { return Iterator(end_); }
-
- private:
-  int begin_;
-  int end_;
-};
 
 /// Marks a stretch of code, so that the size of its compiled form is known by its name
 /// (code_map.h): the body of a loop that calls nothing and is large. Costs nothing by itself.
@@ -130,7 +71,7 @@ struct Native {
   /// A jump through a table: of a state machine, an interpreter.
   static void jump_to_computed() {}
   static Range<false> range(int begin, int end) { return {begin, end}; }
-  static DownRange<false> down_range(int begin, int last) { return {begin, last}; }
+  static DownRange<false> down_range(int begin, int last) { return {begin, last - 1}; }
 };
 
 struct Counting {
@@ -155,7 +96,7 @@ struct Counting {
   using OffloadRegion = OffloadScope<true>;
   static void jump_to_computed() { count(Op::JumpRegister); }
   static Range<true> range(int begin, int end) { return {begin, end}; }
-  static DownRange<true> down_range(int begin, int last) { return {begin, last}; }
+  static DownRange<true> down_range(int begin, int last) { return {begin, last - 1}; }
   static Range<true> range(I32 begin, I32 end) { return {begin.v, end.v}; }
 };
 

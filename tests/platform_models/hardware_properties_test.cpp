@@ -187,5 +187,28 @@ TEST_P(Hardware, ShorterRefillsAndLargerCachesNeverMakeATeamGainMoreThanItsCores
     }
 }
 
+TEST_P(Hardware, MoreChanceCollisionsAreNeverFaster) {
+  const int workers = chip().cluster.workers;
+  const auto with = [&](double collisions, double conflicts) {
+    ChipConfig c = chip();
+    c.cluster.fpu.collisions = collisions;
+    c.cluster.l1.stream_conflicts = conflicts;
+    return cycles(c, workers, mixed(workers));
+  };
+  for (const double less : {0.0, 0.4, 0.8, 1.2}) {
+    EXPECT_LE(with(less, 0.5), with(less + 0.4, 0.5) + 2) << less;
+    EXPECT_LE(with(0.5, less), with(0.5, less + 0.4) + 2) << less;
+  }
+}
+
+TEST_P(Hardware, LoopsThatHardwareRepeatsAreNeverSlower) {
+  ChipConfig without = chip();
+  without.cluster.core.ops[work::index(Op::LoopJump)] = {2, 2};
+  ChipConfig with = chip();
+  with.cluster.core.ops[work::index(Op::LoopJump)] = {};
+  const int workers = with.cluster.workers;
+  EXPECT_LE(cycles(with, workers, mixed(workers)), cycles(without, workers, mixed(workers)));
+}
+
 }  // namespace
 }  // namespace leviosim::platform::testing

@@ -53,6 +53,20 @@ TEST(Chip, ClusterAndControllerTakeTurnsOnAnOnlyCore) {
   EXPECT_EQ(cycles_of_both(true), 2000);
 }
 
+TEST(Cluster, AForkRightAfterAnotherTakesLess) {
+  ChipConfig config = test_chip();
+  config.cluster.events.fork_again = 0.5;
+  const work::Fork empty{"empty", std::vector<work::Segment>(8), false};
+  const auto cycles = [&](std::vector<work::Step> steps) {
+    return run(one_stage(std::move(steps)), 8, config).stages[0].cycles.count();
+  };
+  EXPECT_EQ(cycles({empty}), kForkCost);
+  EXPECT_EQ(cycles({empty, empty, empty}), kForkCost + 2 * (20 + 10 + 10));
+  EXPECT_EQ(cycles({empty, work::Serial{alu(7)}, empty}), 2 * kForkCost + 7);
+  const JobTiming timing = run(one_stage({empty, empty}), 8, config);
+  EXPECT_EQ(timing.stages[0].breakdown.synchronisation, 8 * (kForkCost + 40));
+}
+
 TEST(Cluster, TransferOfNBytes) {
   for (const std::int64_t bytes : {1, 8, 9, 19'200, 65'536}) {
     const JobTiming t = run(one_stage({work::Transfer{work::Direction::L2ToL1, Bytes(bytes)}}));

@@ -4,7 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "tests/sim/chip_test_config.h"
+#include "tests/support/stepped_sharing.h"
 
 namespace leviosim::sim {
 namespace {
@@ -46,6 +51,102 @@ TEST(Contention, AWaitForABankAddsToThatForBanksOnAverage) {
   for (const Progress& p : progress) {
     EXPECT_NEAR(p.rate, 1 / 1.6, 1e-6);
     EXPECT_NEAR(p.rate + p.banks, 1, 1e-6);
+  }
+}
+
+// ---- units that are not saturated ----
+
+ClusterConfig with_collisions(double collisions) {
+  ClusterConfig config = test_cluster();
+  config.fpu.collisions = collisions;
+  return config;
+}
+
+TEST(Contention, TwoCoresInRandomOrderCollideAtTheirUnit) {
+  std::vector<Progress> progress;
+  for (const double density : {0.1, 0.2, 0.5, 0.8, 1.0})
+    for (const Unit unit : {Unit::Fpu, Unit::Int64}) {
+      // Cores 0 and 4 share a unit, core 1 has one of its own.
+      const std::vector<Runner> runners = {asking(0, unit, density, 1), asking(1, unit, density, 1),
+                                           asking(4, unit, density, 1)};
+      const double lost = density * density / (2 * (1 - density) + density * density);
+      Contention(with_collisions(1)).solve(runners, progress);
+      for (const std::size_t i : {0, 2}) {
+        EXPECT_NEAR(progress[i].rate, 1 / (1 + lost), 1e-6) << density;
+        EXPECT_NEAR(progress[i].rate + progress[i].fpu, 1, 1e-6);
+      }
+      EXPECT_NEAR(progress[1].rate, 1, 1e-9);
+      Contention(with_collisions(0.5)).solve(runners, progress);
+      EXPECT_NEAR(progress[0].rate, std::min(1 / (1 + 0.5 * lost), 0.5 / density), 1e-6) << density;
+      Contention(with_collisions(0)).solve(runners, progress);
+      EXPECT_NEAR(progress[0].rate, std::min(1.0, 0.5 / density), 1e-6) << density;
+    }
+}
+
+TEST(Contention, ACoreThatIsHeldBackElsewhereCollidesLess) {
+  const auto rate_beside = [](double rate_of_other) {
+    Runner other = asking(4, Unit::Fpu, 0.4, 1);
+    other.units[static_cast<std::size_t>(Unit::Bank)] = {1 / rate_of_other, 1 / rate_of_other};
+    std::vector<Progress> progress;
+    Contention(with_collisions(1)).solve({asking(0, Unit::Fpu, 0.4, 1), other}, progress);
+    return progress[0].rate;
+  };
+  EXPECT_NEAR(rate_beside(1), 1 / (1 + met_by_chance(0.4, 0.4)), 0.02);
+  EXPECT_NEAR(rate_beside(0.5), 1 / (1 + met_by_chance(0.4, 0.2)), 0.01);
+}
+
+TEST(Contention, AnyUnitForAnyCoreLeavesChanceOut) {
+  ClusterConfig config = with_collisions(1);
+  config.fpu.mapping = FpuMapping::Dynamic;
+  std::vector<Progress> progress;
+  Contention(config).solve({asking(0, Unit::Fpu, 0.5, 1), asking(4, Unit::Fpu, 0.5, 1)}, progress);
+  EXPECT_NEAR(progress[0].rate, 1, 1e-9);
+}
+
+/// Two cores stepped through cycle by cycle, with operations in random order.
+TEST(Contention, ChanceIsThatOfCoresThatAreSteppedThrough) {
+  std::mt19937 random(1);
+  for (const auto& [mine, other] :
+       {std::pair(20, 20), std::pair(40, 40), std::pair(60, 60), std::pair(90, 30)}) {
+    double lost_by_first = 0;
+    double lost_by_second = 0;
+    constexpr int kLoops = 40;
+    for (std::size_t i = 0; i < kLoops; ++i) {
+      // Of lengths without a common divisor, so that all phases come.
+      const auto first = leviosim::testing::draw_loop(random, 200, 2 * mine);
+      const auto second = leviosim::testing::draw_loop(random, 201, 2 * other);
+      const auto lost = leviosim::testing::step_pair(first, second, 5 * i, 20'000);
+      lost_by_first += lost[0] / kLoops;
+      lost_by_second += lost[1] / kLoops;
+    }
+    EXPECT_NEAR(lost_by_first, met_by_chance(mine / 100.0, other / 100.0), 0.03) << mine;
+    EXPECT_NEAR(lost_by_second, met_by_chance(other / 100.0, mine / 100.0), 0.05) << mine;
+    EXPECT_NEAR(
+        lost_by_first + lost_by_second,
+        met_by_chance(mine / 100.0, other / 100.0) + met_by_chance(other / 100.0, mine / 100.0),
+        0.08 * (lost_by_first + lost_by_second))
+        << mine;
+  }
+}
+
+TEST(Contention, StreamsConflictAsAShareOfScatteredAccesses) {
+  ClusterConfig config = test_cluster();
+  std::vector<Progress> progress;
+  for (const double conflicts : {0.0, 0.5, 1.0}) {
+    config.l1.stream_conflicts = conflicts;
+    std::vector<Runner> runners(8);
+    for (std::size_t i = 0; i < 8; ++i) {
+      runners[i].core = static_cast<int>(i);
+      runners[i].streamed = 0.5;
+    }
+    Contention(config).solve(runners, progress);
+    // r = 1 / (1 + k r) with k = conflicts 7 p^2 / 32.
+    const double k = conflicts * 7 * 0.25 / 32;
+    const double rate = k == 0 ? 1 : (-1 + std::sqrt(1 + 4 * k)) / (2 * k);
+    for (const Progress& p : progress) {
+      EXPECT_NEAR(p.rate, rate, 1e-6);
+      EXPECT_NEAR(p.banks, 1 - rate, 1e-6);
+    }
   }
 }
 

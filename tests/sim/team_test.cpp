@@ -207,6 +207,19 @@ TEST(Team, CodeThatTheSharedCacheHoldsCostsEachCoreItsPrivateMisses) {
   EXPECT_NEAR(together.fetch, 7.0 / 12 / 4 * kN, 0.02 * kN);
 }
 
+TEST(Team, WithoutPrivateCachesTheSharedOneDeliversEachLine) {
+  ClusterConfig config = test_cluster();
+  config.icache = {Bytes(16), Bytes(0), Bytes(0), Bytes(16384), 8, 0.0, 13.0, 2.0};
+  const std::vector<Counts> work(8, counts({{Op::IntAlu, kN}}));
+  // A line for four instructions: r = 1 / (1 + 7 r / 4 / 4 / (2 * 8)).
+  const double k = 7.0 / 16 / 16;
+  const double rate = (-1 + std::sqrt(1 + 4 * k)) / (2 * k);
+  EXPECT_NEAR(run_together(work, config).time[0].fetch, kN / rate - kN, 2);
+  EXPECT_EQ(run_together({work[0]}, config).cycles[0], static_cast<std::int64_t>(kN));
+  config.icache.worker = Bytes(512);
+  EXPECT_EQ(run_together(work, config).time[0].fetch, 0);
+}
+
 TEST(Team, RefillsFromL2AreServedInTurn) {
   EXPECT_NEAR(fetching(1, work::kNeverFetched).alone.fetch, 20.0 * kN, 1);
   // All of a team wait for each line as one alone would, and it is fetched for all: the refills of

@@ -86,22 +86,37 @@ void run_dot_in_l2(Machine& m, int n) {
          [&](Core&) { dot_int32<P, Far>(Far(values.data(), n), Far(values.data() + n, n), 0, n); });
 }
 
+/// What one pass through all of a kernel's code is: the smallest problem, and how many passes that
+/// is.
+struct Code {
+  std::string_view function;
+  void (*run)(Machine&, int);
+  int size;
+  int passes;
+};
+constexpr Code kInt32Product{"multiply_int32", run_int32_product, 2, 1};
+constexpr Code kInt16Product{"multiply_int16", run_int16_product, 4, 2};
+/// Four blocks: two of the rising edge, two of the falling one, which have loops of their own.
+constexpr Code kConvolution{"convolve_int32", run_convolution, 8, 2};
+constexpr Code kDot{"dot_int32", run_dot, 2, 1};
+
 struct Kernel {
   std::string_view group;
   std::string_view name;
   void (*run)(Machine&, int);
   int size;
+  const Code& code;
 };
 constexpr Kernel kKernels[] = {
-    {"int32 matrix product", "n = 16", run_int32_product, 16},
-    {"int32 matrix product", "n = 32", run_int32_product, 32},
-    {"int32 matrix product", "n = 48", run_int32_product, 48},
-    {"int16 matrix product", "n = 16", run_int16_product, 16},
-    {"int16 matrix product", "n = 32", run_int16_product, 32},
-    {"int32 convolution", "512 with 512", run_convolution, 512},
-    {"int32 dot product", "6960", run_dot, 6960},
-    {"int32 dot product", "80", run_dot, 80},
-    {"int32 dot product", "80 in L2", run_dot_in_l2, 80},
+    {"int32 matrix product", "n = 16", run_int32_product, 16, kInt32Product},
+    {"int32 matrix product", "n = 32", run_int32_product, 32, kInt32Product},
+    {"int32 matrix product", "n = 48", run_int32_product, 48, kInt32Product},
+    {"int16 matrix product", "n = 16", run_int16_product, 16, kInt16Product},
+    {"int16 matrix product", "n = 32", run_int16_product, 32, kInt16Product},
+    {"int32 convolution", "512 with 512", run_convolution, 512, kConvolution},
+    {"int32 dot product", "6960", run_dot, 6960, kDot},
+    {"int32 dot product", "80", run_dot, 80, kDot},
+    {"int32 dot product", "80 in L2", run_dot_in_l2, 80, kDot},
 };
 
 const Kernel& kernel_of(const MicrobenchRow& row) {
@@ -116,13 +131,26 @@ const std::vector<std::string> kSibling = {"cluster.l1.size=64KiB", "cluster.fpu
 const std::vector<std::string> kByHand = {"cluster.l1.size=64KiB", "cluster.fpu.units=2",
                                           "isa.instruction_overhead=1", "isa.load_use_fraction=0"};
 
+/// Bytes of code of a kernel, whose compiled form is not known: four for each instruction that it
+/// executes in one pass.
+std::uint32_t bytes_of(const sim::ChipConfig& chip, const Code& code) {
+  constexpr double kInstruction = 4;
+  const sim::StageTiming pass = Bench(chip, 1).run([&](Machine& m) {
+    const work::Arena::Frame frame(m.local());
+    code.run(m, code.size);
+  });
+  return static_cast<std::uint32_t>(kInstruction * pass.breakdown.useful.issue / code.passes);
+}
+
 std::vector<MicrobenchRow> rows(const std::vector<std::string>& overrides) {
   const sim::ChipConfig chip = platform::load_platform("gap9", overrides);
   std::vector<MicrobenchRow> all =
       reference_rows("pulp_dsp.csv", std::string(reference_text("pulp_dsp")), 2);
   for (MicrobenchRow& row : all) {
     const Kernel& kernel = kernel_of(row);
-    Bench bench(chip, row.cores);
+    work::CodeMap code;
+    code.add(kernel.code.function, "", bytes_of(chip, kernel.code));
+    Bench bench(chip, row.cores, &code);
     const auto time = [&](const auto& body) {
       return static_cast<double>(bench.run(body).cycles.count());
     };
@@ -169,25 +197,38 @@ void print(const char* title, const std::vector<MicrobenchRow>& all) {
               100 * mean_error(speed_ups(all)));
 }
 
-/// Wanted are 10 % on one core, 12 % on eight, 5 % for speed-ups. What is missed are instructions
-/// that counted work leaves out (moves of the convolution's window, addresses of the next block:
-/// half of a 4x2 block's), and 150 to 400 cycles that a call on eight cores takes beyond fork and
-/// barrier. The bounds are of what the model has now.
-TEST(ValidationDspKernels, HandWrittenCodeIsWithinAFifthOfWhatIsPublished) {
+/// Code that was scheduled by hand says itself what compilers add to other code. What is missed are
+/// addresses that were computed anew around a 4x2 block (published cycles leave room for twice the
+/// instructions that it needs), and a fifth of the convolution's inner step.
+TEST(ValidationDspKernels, MeanErrorsAreWithinWhatIsWanted) {
   const std::vector<MicrobenchRow> all = rows(kByHand);
   print("by hand", all);
-  EXPECT_LE(mean_error(of_cores(all, 1)), 0.17);
-  EXPECT_LE(mean_error(of_cores(all, 8)), 0.23);
-  EXPECT_LE(mean_error(speed_ups(all)), 0.11);
+  EXPECT_LE(mean_error(of_cores(all, 1)), 0.10);
+  EXPECT_LE(mean_error(of_cores(all, 8)), 0.12);
+  EXPECT_LE(mean_error(speed_ups(all)), 0.05);
 }
 
-/// With what the platform says that compilers add.
-TEST(ValidationDspKernels, CompiledCodeIsWithinAFifthOfWhatIsPublished) {
+/// What the platform says that compilers add is of C code whose values do not all fit into
+/// registers: on top of these kernels it is counted twice.
+TEST(ValidationDspKernels, WhatCompilersAddIsNotInThem) {
   const std::vector<MicrobenchRow> all = rows(kSibling);
   print("as compiled", all);
-  EXPECT_LE(mean_error(of_cores(all, 1)), 0.19);
-  EXPECT_LE(mean_error(of_cores(all, 8)), 0.18);
-  EXPECT_LE(mean_error(speed_ups(all)), 0.12);
+  EXPECT_GT(mean_error(of_cores(all, 1)), 0.10);
+  EXPECT_LE(mean_error(speed_ups(all)), 0.05);
+}
+
+/// A loop whose iterations depend on nothing but their number may be held by hardware: three deep,
+/// only the columns of blocks jump.
+TEST(ValidationDspKernels, HardwareRepeatsAllButTheColumns) {
+  Machine machine({.cores = 1, .capacity = Bytes(65536), .record = true});
+  {
+    const auto stage = machine.stage("product");
+    run_int32_product(machine, 16);
+  }
+  const work::Counts counts = work::counts_of(machine.take_job().stages[0]);
+  EXPECT_EQ(counts[work::Op::LoopJump], 16u / 2);
+  EXPECT_EQ(counts[work::Op::IntMac], 16u * 16 * 16);
+  EXPECT_EQ(counts[work::Op::LoadStream], 16u * 16 * 16);
 }
 
 TEST(ValidationDspKernels, NoOrderingIsWrong) {

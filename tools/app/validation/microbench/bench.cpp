@@ -26,6 +26,8 @@ sim::ChipConfig as_assembly(sim::ChipConfig chip, double loads_used_at_once) {
     core->instruction_overhead = 1;
     core->load_use_fraction = loads_used_at_once;
   }
+  chip.cluster.fpu.collisions = 0;
+  chip.cluster.l1.stream_conflicts = 0;
   return chip;
 }
 

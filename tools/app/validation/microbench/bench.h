@@ -2,8 +2,9 @@
 // the program does, the chip times it.
 //
 // Such programs stand for instruction streams that somebody wrote in assembly, so the platform's
-// constants of code generation do not apply: no instruction is added by a compiler, and only loads
-// that are said to be used at once wait.
+// constants of code generation do not apply: no instruction is added by a compiler, only loads that
+// are said to be used at once wait, and cores that run the same stream find their turns at units
+// and banks that they share.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 namespace leviosim::tools {
 
-/// The chip without what compilers add.
+/// The chip without what compilers add, for streams in step.
 /// @param loads_used_at_once  share of loads whose result the next instruction uses
 sim::ChipConfig as_assembly(sim::ChipConfig chip, double loads_used_at_once = 0);
 

@@ -143,6 +143,19 @@ double empty_fork(const sim::ChipConfig& chip, int cores) {
   return static_cast<double>(Bench(chip, cores).fork([](work::Core&) {}).cycles.count());
 }
 
+/// What a fork takes right after another one.
+double fork_again(const sim::ChipConfig& chip, int cores) {
+  const auto forks = [&](int n) {
+    return static_cast<double>(Bench(chip, cores)
+                                   .run([&](work::Machine& machine) {
+                                     for (int i = 0; i < n; ++i)
+                                       machine.fork("empty", [](work::Core&) {});
+                                   })
+                                   .cycles.count());
+  };
+  return forks(2) - forks(1);
+}
+
 double offload_and_back(const sim::ChipConfig& chip, int cores) {
   return Bench(chip, cores).offload_cycles();
 }
@@ -159,6 +172,7 @@ constexpr std::array kMemoryBenches = {
     UnitBench{"loop of 32768 B", code_loop<32768>},
     UnitBench{"barrier after the last arrival", barrier},
     UnitBench{"empty fork and join", empty_fork},
+    UnitBench{"empty fork right after another", fork_again},
     UnitBench{"offload and back", offload_and_back},
     UnitBench{"transfer of 4 B", transfer<4>},
     UnitBench{"transfer of 64 B", transfer<64>},
