@@ -142,6 +142,34 @@ TEST(Cluster, OneWorkerRunsAllSharesOfEight) {
   EXPECT_EQ(run(one_stage({fork}), 3).stages[0].cycles.count(), 300 + kForkCost);
 }
 
+/// No forks and no waiting for the slowest: the program of one core.
+TEST(Cluster, AMasterAloneRunsAllSharesOneAfterTheOther) {
+  const work::Fork fork{"fork", {alu(100), alu(300), alu(50)}, false};
+  const JobTiming t =
+      run(one_stage({work::Serial{alu(7)}, fork, work::Serial{alu(5)}}), Cluster::kMasterAlone);
+  EXPECT_EQ(t.stages[0].cycles.count(), 7 + 450 + 5);
+  EXPECT_EQ(t.stages[0].breakdown.serial, 12);
+  EXPECT_EQ(t.stages[0].breakdown.useful.issue, 450);
+  EXPECT_EQ(t.stages[0].breakdown.total(), 462);
+}
+
+/// Its scratch begins where that of the first of a team does.
+TEST(Cluster, WordsOfAMasterAloneStraddleAsInTheFirstShare) {
+  ChipConfig config = test_chip();
+  config.cluster.core.ops[work::index(Op::Straddle)] = {0, 1, Unit::Core};
+  const auto share = [](std::uint64_t loads, std::uint64_t straddling) {
+    Counts counts;
+    counts[Op::LoadStream] = loads;
+    counts[Op::Straddle] = straddling;
+    return work::Segment{counts};
+  };
+  for (const std::uint64_t first : {0, 25}) {
+    const work::Fork fork{"fork", {share(100, first), share(300, 200)}, false};
+    const JobTiming t = run(one_stage({fork}), Cluster::kMasterAlone, config);
+    EXPECT_EQ(t.stages[0].cycles.count(), 400 + 4 * static_cast<std::int64_t>(first));
+  }
+}
+
 TEST(Cluster, TheBreakdownOfAStageAddsUpToItsCoreCycles) {
   std::uint64_t state = 1;
   const auto random = [&](std::uint64_t n) {

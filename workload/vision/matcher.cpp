@@ -53,6 +53,7 @@ typename P::I32 search(typename P::template Span<const typename P::U32> current,
                        int reference_count, const MatcherOptions& options,
                        const MatchList<P>& list) {
   using I = typename P::I32;
+  const typename P::Function function("search_matches");
   const I limit = options.max_distance;
   const typename P::OffloadRegion kernel(work::OffloadKind::Hamming,
                                          (share.end - share.begin) * reference_count);
@@ -86,6 +87,7 @@ template <class P>
 typename P::I32 keep_uncontested(const MatchList<P>& one_way, work::Share share,
                                  const MatchList<P>& list) {
   using I = typename P::I32;
+  const typename P::Function function("keep_uncontested");
   I next = share.begin;
   for (int i : P::range(share.begin, share.end)) {
     if (is_contested<P>(one_way, i)) continue;

@@ -18,8 +18,8 @@ struct FittableConstant {
 };
 
 inline constexpr std::array kFittableConstants{
-    FittableConstant{"isa.instruction_overhead", "moves, spills, address constants"},
-    FittableConstant{"isa.load_use_fraction", "loads that the compiler could not move forward"},
+    FittableConstant{"isa.instruction_overhead", "the vendor's compiler"},
+    FittableConstant{"isa.load_use_fraction", "loads in code that was not measured"},
     FittableConstant{"isa.ops.loop_iteration.issue",
                      "counter and branch of loops that are no hardware loops"},
     FittableConstant{"isa.ops.loop_entry.issue", "pointers and counter set up before a loop"},
