@@ -6,6 +6,9 @@
 #include <filesystem>
 
 #include "sim/base/error.h"
+
+#include <CLI/CLI.hpp>
+
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/terminal.h"

@@ -7,8 +7,9 @@
 #     --only PATTERN  those whose file, old text or new text matches this regular expression
 #     --jobs N        compilers at once, and parts in which the tests run (default: 2)
 # First come the tests that include the changed file's header or are named like it, then those that
-# include another header of its folder, those of its part of the tree, and all others; only the test programs that are needed are built. A test run
-# longer than 20 minutes counts as a failure: it hangs.
+# include another header of its folder, those of its part of the tree, the golden flights, which use
+# nearly all of the program, and all others; only the test programs that are needed are built. A test
+# run longer than 20 minutes counts as a failure: it hangs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
@@ -124,7 +125,7 @@ replace() { # replace FILE OLD NEW
 parts=(sim workload platform_models traces tools examples system validation)
 
 # The test sources of a step in a folder of tests, nearest first.
-tests_of() { # tests_of near|room|part|all FOLDER FILE
+tests_of() { # tests_of near|room|part|golden|all FOLDER FILE
   local header=${3%.*}.h stem
   stem=$(basename "${3%.*}")
   case $1 in
@@ -133,6 +134,7 @@ tests_of() { # tests_of near|room|part|all FOLDER FILE
         find "tests/$2" -name "${stem}*_test.cpp"; } | LC_ALL=C sort -u ;;
     room) grep -rlF --include=*_test.cpp "#include \"${3%/*}/" "tests/$2" | LC_ALL=C sort || true ;;
     part) [[ $2 != "${3%%/*}" ]] || find "tests/$2" -name '*_test.cpp' | LC_ALL=C sort ;;
+    golden) [[ $2 != system ]] || echo tests/system/golden_flight_test.cpp ;;
     all) find "tests/$2" -name '*_test.cpp' | LC_ALL=C sort ;;
   esac
 }
@@ -181,7 +183,7 @@ culprit() {
 survives() { # survives FILE
   local step part filter
   local -A ran=()
-  for step in near room part all; do
+  for step in near room part golden all; do
     for part in "${parts[@]}"; do
       filter=$(tests_of "$step" "$part" "$1" | filter_of)
       [[ -n $filter ]] || continue

@@ -93,6 +93,19 @@ TEST(Team, ALateStarterSlowsOnlyWhatIsLeft) {
   EXPECT_EQ(o.cycles[4], 2 * 600 + 400);
 }
 
+// 1001 operations of 1.3 cycles each for two cores end between two edges of the clock. What is left
+// to the next edge is rounding, and nobody waited for a unit meanwhile.
+TEST(Team, TheEndOfAShareIsRoundedNotWaitedFor) {
+  ClusterConfig config = test_cluster();
+  config.core.ops[work::index(Op::F32Add)].busy = 1.3;
+  std::vector<Counts> work(5);
+  work[0] = work[4] = counts({{Op::F32Add, 1001}});
+  const Outcome o = run_together(work, config);
+  EXPECT_EQ(o.cycles[0], 2603);
+  EXPECT_NEAR(o.time[0].fpu, 2602.6 - 1001, 1e-6);
+  EXPECT_NEAR(o.time[0].rounding, 0.4, 1e-6);
+}
+
 TEST(Team, DynamicMappingUsesAnyFreeUnit) {
   ClusterConfig config = test_cluster();
   config.fpu.mapping = FpuMapping::Dynamic;

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "tests/support/run_program.h"
-#include "tests/support/suite_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace leviosim::tests {
 
 /// SetUpTestSuite() of a suite calls make_folder() and fills it; it is deleted after the last test.
 class ProgramSuite : public ::testing::Test {
  protected:
-  static void make_folder(const std::string& suite) { folder_ = new SuiteFolder(suite); }
+  static void make_folder(const std::string& suite) { folder_ = new TemporaryFolder(suite); }
   static void TearDownTestSuite() {
     delete folder_;
     folder_ = nullptr;
@@ -29,7 +29,7 @@ class ProgramSuite : public ::testing::Test {
     ASSERT_EQ(result.status, 0) << result.err;
   }
 
-  inline static SuiteFolder* folder_ = nullptr;
+  inline static TemporaryFolder* folder_ = nullptr;
 };
 
 }  // namespace leviosim::tests

@@ -1,9 +1,5 @@
-// A folder to try things in, and pictures of what lies in it.
+// Files in folders to try things in, and pictures of what lies there.
 #pragma once
-
-#include <fmt/core.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -11,32 +7,9 @@
 #include <map>
 #include <string>
 
+#include "tests/support/temporary_folder.h"
+
 namespace leviosim::tests {
-
-/// Deleted at the end. A test may have several.
-class Scratch {
- public:
-  Scratch() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("leviosim-{}-{}-{}-scratch{}", ::getpid(), info->test_suite_name(),
-                        info->name(), ++made_);
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  inline static int made_ = 0;
-  std::filesystem::path path_;
-};
 
 /// With the folders to it.
 inline void write_text(const std::filesystem::path& file, const std::string& text) {

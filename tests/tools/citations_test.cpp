@@ -184,12 +184,6 @@ std::string in_project(const fs::path& file) {
   return file.lexically_relative(source_folder()).generic_string();
 }
 
-std::string joined(const Faults& faults) {
-  std::string text;
-  for (const std::string& fault : faults) text += fault + "\n";
-  return text;
-}
-
 /// First cells of the rows of a section's tables; "a, b" are two.
 std::set<std::string> first_cells(const std::string& page, const std::string& heading) {
   std::set<std::string> cells;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/support/paths.h"
+#include "tests/support/text_lines.h"
 
 namespace leviosim::tests {
 namespace {
@@ -138,12 +139,6 @@ std::vector<std::string> against_the_order_of_parts(const Arrows& arrows) {
           faults.push_back(room + " names " + other + "; " + part + " may not");
     }
   return faults;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
 }
 
 class Includes : public ::testing::Test {

@@ -1,4 +1,4 @@
-// A source of recorded work refuses memories that the work does not fit in.
+// A source of recorded work refuses memories that the work does not fit in, and begins what can begin.
 #include "tools/app/run/trace_source.h"
 
 #include <gtest/gtest.h>
@@ -43,6 +43,24 @@ TEST(TraceSource, TheScratchOfAllCoresHasToFit) {
                 std::string::npos)
           << error.what();
     }
+  }
+}
+
+// An optimisation of the recording that would not have begun here is left out.
+TEST(TraceSource, NoOptimisationBeginsWhileTheOptimiserIsBusy) {
+  traces::WorkFrame frame;
+  frame.source = name_of(PoseSource::First);
+  frame.optimised = true;
+  frame.iterations = {work::Job{}};
+  traces::WorkTraceWriter writer(8);
+  writer.add(frame);
+  const traces::WorkTrace trace("busy", writer.finish({}));
+  for (const bool busy : {false, true}) {
+    SCOPED_TRACE(busy);
+    TraceSource source(trace, Bytes(1000), Bytes(1000));
+    EXPECT_EQ(source.begin_frame({.optimiser_busy = busy}), !busy);
+    EXPECT_EQ(source.iterations(), busy ? 0 : 1);
+    EXPECT_EQ(source.comparisons().at(0).replayed.optimised, !busy);
   }
 }
 

@@ -20,34 +20,12 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "tests/support/paths.h"
+#include "tests/support/temporary_folder.h"
 #include "traces/datasets/asl_writer.h"
 
 namespace leviosim::traces::testing {
 
-/// A folder of its own, deleted at the end. A test may have several.
-class TempFolder {
- public:
-  TempFolder() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() / fmt::format("leviosim-{}-{}-{}-{}", ::getpid(),
-                                                                 info->test_suite_name(),
-                                                                 info->name(), ++made_);
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  inline static int made_ = 0;
-  std::filesystem::path path_;
-};
+using TempFolder = tests::Scratch;
 
 /// Runs something that must throw an InputError whose message contains all the parts.
 inline void expect_input_error(const std::function<void()>& run,

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "tests/workload/math_fixture.h"
+#include "tests/workload/test_camera.h"
 #include "workload/geometry/pnp_ransac.h"
 
 namespace leviosim::vio::test {
-
-/// The camera of the modelled pipeline (PARAMETERS.md#input).
-inline constexpr PinholeCamera kCamera{114.66f, 114.32f, 77.80f, 62.09f};
 
 struct SceneOptions {
   int points = 60;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/workload/preintegration_motion.h"
+#include "tests/workload/test_camera.h"
 #include "tests/workload/vision_runs.h"
 #include "workload/vio/levio/levio_front_end.h"
 
@@ -15,7 +16,6 @@ struct FrontEndAlone {
   using Native = work::Native;
 
   static constexpr int kWidth = 160, kHeight = 120;
-  static constexpr PinholeCamera kCamera{114.66f, 114.32f, 77.80f, 62.09f};
   /// Specific force; the camera's y axis points down.
   inline static const Vector3d kAtRest{0, -9.81, 0};
 

@@ -180,7 +180,7 @@ TEST(FrontEndRules, WithoutAnImuAKeyframeHasTheMeanVelocitySinceTheLast) {
   ASSERT_TRUE(report.keyframe);
   const Vec3<work::Native> v = alone.newest().velocity;
   for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(eigen<work::Native>(v)[c],
+    EXPECT_NEAR(to_eigen<work::Native>(v)[c],
                 double(report.p_world_camera[static_cast<std::size_t>(c)]) / 0.2, 1e-5);
 }
 
@@ -189,9 +189,9 @@ TEST(FrontEndRules, GravityUpdatesCanBeTurnedOff) {
     FrontEndAlone alone;
     alone.profile.gravity_updates = updates;
     alone.frame(alone.flat, {4, -8, 1});
-    const Vector3d first = eigen<work::Native>(alone.graph.gravity());
+    const Vector3d first = to_eigen<work::Native>(alone.graph.gravity());
     for (int i = 0; i < 25; ++i) alone.frame(alone.flat);
-    EXPECT_EQ((eigen<work::Native>(alone.graph.gravity()) - first).norm() > 1, updates);
+    EXPECT_EQ((to_eigen<work::Native>(alone.graph.gravity()) - first).norm() > 1, updates);
   }
 }
 

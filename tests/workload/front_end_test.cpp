@@ -16,18 +16,18 @@ TEST_F(FrontEndTest, RestStaysRest) {
   for (int i = 0; i < 10;
        ++i) {  // no features: every frame is a keyframe, placed by the IMU's word
     frame(flat);
-    EXPECT_LT(eigen<Native>(newest().velocity).norm(), 1e-4) << "frame " << i;
+    EXPECT_LT(to_eigen<Native>(newest().velocity).norm(), 1e-4) << "frame " << i;
   }
 }
 
 TEST_F(FrontEndTest, StandingStillTellsGyroBiasAndGravity) {
   const Vector3d bias(0.02, -0.03, 0.08);
   frame(flat, {4, -8, 1}, bias);  // pushed while the first frame is taken
-  EXPECT_GT((eigen<Native>(graph.gravity()) + kAtRest).norm(), 3);
+  EXPECT_GT((to_eigen<Native>(graph.gravity()) + kAtRest).norm(), 3);
   for (int i = 0; i < 25; ++i) frame(flat, kAtRest, bias);
-  EXPECT_LT((eigen<Native>(graph.bias().gyro) - bias).norm(), 1e-4);
-  EXPECT_LT((eigen<Native>(graph.gravity()) + kAtRest).norm(), 0.02);
-  EXPECT_LT((eigen<Native>(graph.bias_prior().mean.gyro) - bias).norm(), 1e-4);
+  EXPECT_LT((to_eigen<Native>(graph.bias().gyro) - bias).norm(), 1e-4);
+  EXPECT_LT((to_eigen<Native>(graph.gravity()) + kAtRest).norm(), 0.02);
+  EXPECT_LT((to_eigen<Native>(graph.bias_prior().mean.gyro) - bias).norm(), 1e-4);
 }
 
 TEST_F(FrontEndTest, EnoughWorldMatchesMeanEpnp) {

@@ -12,7 +12,7 @@ using work::Native;
 
 TEST(Upright, TheForcePointsUp) {
   for (const Vector3d& force : {Vector3d(0.3, -9.7, 1.0), Vector3d(0, 0.2, -9.8)}) {
-    const Matrix3d R = eigen<Native>(upright_rotation<Native>(vec3<Native>(force)));
+    const Matrix3d R = to_eigen<Native>(upright_rotation<Native>(to_vec3<Native>(force)));
     EXPECT_LT((R * R.transpose() - Matrix3d::Identity()).norm(), 1e-5);
     EXPECT_NEAR(R.determinant(), 1.0, 1e-5);
     EXPECT_LT((R * force.normalized() - Vector3d::UnitZ()).norm(), 1e-5);
@@ -21,9 +21,10 @@ TEST(Upright, TheForcePointsUp) {
 
 TEST(Upright, LevellingTurnsNoMoreThanItMust) {
   const Vector3d force(0.3, -9.7, 1.0);
-  const Matrix3d upright = eigen<Native>(upright_rotation<Native>(vec3<Native>(force)));
+  const Matrix3d upright = to_eigen<Native>(upright_rotation<Native>(to_vec3<Native>(force)));
   const Matrix3d tilted = exp_of({0.1, -0.05, 0.0}) * upright;
-  const Matrix3d R = eigen<Native>(levelled<Native>(mat3<Native>(tilted), vec3<Native>(force)));
+  const Matrix3d R =
+      to_eigen<Native>(levelled<Native>(to_mat3<Native>(tilted), to_vec3<Native>(force)));
   EXPECT_LT((R * force.normalized() - Vector3d::UnitZ()).norm(), 1e-5);
   EXPECT_LT((R - upright).norm(), 1e-3);
 }
@@ -43,16 +44,18 @@ class JointInterval : public testing::Test {
   MatrixView<Native> linearise(const Eigen::VectorXd& x, work::Arena& arena) const {
     const auto moved = [&](double t, int at) {
       KeyframeState<Native> state;
-      state.T_world_camera.R = mat3<Native>(Motion::rotation(t) * exp_of({0.02, -0.03, 0.05}) *
-                                            exp_of(x.segment<3>(at)));
-      state.T_world_camera.t = vec3<Native>(Motion::position(t) + Vector3d(x.segment<3>(at + 3)));
-      state.velocity = vec3<Native>(Motion::velocity(t) + Vector3d(x.segment<3>(at + 6)));
+      state.T_world_camera.R = to_mat3<Native>(Motion::rotation(t) * exp_of({0.02, -0.03, 0.05}) *
+                                               exp_of(x.segment<3>(at)));
+      state.T_world_camera.t =
+          to_vec3<Native>(Motion::position(t) + Vector3d(x.segment<3>(at + 3)));
+      state.velocity = to_vec3<Native>(Motion::velocity(t) + Vector3d(x.segment<3>(at + 6)));
       return state;
     };
     const JointScratch<Native> scratch(arena);
-    linearise_interval<Native>(interval, moved(0.3, 0), moved(0.6, 9),
-                               {vec3<Native>(x.segment<3>(18)), vec3<Native>(x.segment<3>(21))},
-                               vec3<Native>(motion.gravity), {0.1f, -0.05f, 0.07f}, scratch.rows);
+    linearise_interval<Native>(
+        interval, moved(0.3, 0), moved(0.6, 9),
+        {to_vec3<Native>(x.segment<3>(18)), to_vec3<Native>(x.segment<3>(21))},
+        to_vec3<Native>(motion.gravity), {0.1f, -0.05f, 0.07f}, scratch.rows);
     return scratch.rows;
   }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/workload/eigen_conversions.h"
 #include "workload/math/matrix.h"
 #include "workload/math/vec.h"
 
@@ -86,30 +87,6 @@ template <class Span>
 Eigen::VectorXd to_eigen_vector(Span span) {
   const std::vector<float> v = values(span);
   return Eigen::Map<const Eigen::VectorXf>(v.data(), span.size()).template cast<double>();
-}
-
-template <class P>
-Eigen::Matrix3d to_eigen(const Mat3<P>& a) {
-  Eigen::Matrix3d m;
-  for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = work::value(a.m[i / 3][i % 3]);
-  return m;
-}
-
-template <class P>
-Eigen::Vector3d to_eigen(const Vec3<P>& v) {
-  return {work::value(v.x), work::value(v.y), work::value(v.z)};
-}
-
-template <class P>
-Mat3<P> mat3(const Eigen::Matrix3d& m) {
-  Mat3<P> a;
-  for (int i = 0; i < 9; ++i) a.m[i / 3][i % 3] = static_cast<float>(m(i / 3, i % 3));
-  return a;
-}
-
-template <class P>
-Vec3<P> vec3(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
 template <class P>

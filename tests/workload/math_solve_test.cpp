@@ -125,13 +125,13 @@ TEST_F(Solve, InvertsLandmarkBlocks) {
   for (int trial = 0; trial < 200; ++trial) {
     const Eigen::Matrix3d m = random.positive_definite(3, 0.05);
     Mat3<P> inverse;
-    ASSERT_TRUE(invert_spd3<P>(mat3<P>(m), inverse));
+    ASSERT_TRUE(invert_spd3<P>(to_mat3<P>(m), inverse));
     EXPECT_LT((to_eigen(inverse) * m - Eigen::Matrix3d::Identity()).norm(), 1e-3);
     EXPECT_LT((to_eigen(inverse) - m.inverse()).norm(), 1e-3 * m.inverse().norm());
   }
   Mat3<P> inverse = Mat3<P>::identity();
   EXPECT_FALSE(invert_spd3<P>(Mat3<P>::zero(), inverse));
-  EXPECT_FALSE(invert_spd3<P>(mat3<P>(Eigen::Vector3d(1, -1, -1).asDiagonal()), inverse));
+  EXPECT_FALSE(invert_spd3<P>(to_mat3<P>(Eigen::Vector3d(1, -1, -1).asDiagonal()), inverse));
   EXPECT_EQ(to_eigen(inverse), Eigen::Matrix3d::Identity());
 }
 

@@ -9,12 +9,12 @@ namespace {
 
 using P = work::Native;
 
-struct Decomposition {
+struct Singular {
   Eigen::MatrixXd u, v;
   Eigen::VectorXd s;
 };
 
-Decomposition decompose(const Eigen::MatrixXd& m) {
+Singular decompose(const Eigen::MatrixXd& m) {
   work::Arena arena("L1", Bytes(8192));
   const int n = static_cast<int>(m.rows());
   const auto a = place<P>(arena, m);
@@ -25,15 +25,15 @@ Decomposition decompose(const Eigen::MatrixXd& m) {
   return {to_eigen(u), to_eigen(v), to_eigen_vector(s)};
 }
 
-Decomposition decompose3(const Eigen::Matrix3d& m) {
+Singular decompose3(const Eigen::Matrix3d& m) {
   Mat3<P> u, v;
   Vec3<P> s;
-  svd3<P>(mat3<P>(m), u, s, v);
+  svd3<P>(to_mat3<P>(m), u, s, v);
   return {to_eigen(u), to_eigen(v), to_eigen(s)};
 }
 
 /// Holds for any rank: orthonormal factors that reproduce the matrix.
-void expect_decomposes(const Decomposition& d, const Eigen::MatrixXd& m, double tolerance) {
+void expect_decomposes(const Singular& d, const Eigen::MatrixXd& m, double tolerance) {
   const auto n = m.rows();
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
   EXPECT_LT((d.u.transpose() * d.u - one).norm(), tolerance);
@@ -52,7 +52,7 @@ TEST(Svd, AgreesWithEigenForRandomMatrices) {
   for (int n = 2; n <= 9; ++n)
     for (int trial = 0; trial < 20; ++trial) {
       const Eigen::MatrixXd m = random.matrix(n, n);
-      const Decomposition d = decompose(m);
+      const Singular d = decompose(m);
       const Eigen::VectorXd reference = Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues();
       EXPECT_LT((d.s - reference).norm(), 2e-4) << "size " << n;
       expect_decomposes(d, m, 2e-5);
@@ -64,7 +64,7 @@ TEST(Svd, ThreeByThreeIsScaleFree) {
   for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6})
     for (int trial = 0; trial < 100; ++trial) {
       const Eigen::Matrix3d m = random.matrix(3, 3) * scale;
-      const Decomposition d = decompose3(m);
+      const Singular d = decompose3(m);
       const Eigen::Vector3d reference = Eigen::JacobiSVD<Eigen::Matrix3d>(m).singularValues();
       EXPECT_LT((d.s - reference).norm(), 1e-4 * scale);
       expect_decomposes(d, m, 1e-5);
@@ -78,7 +78,7 @@ TEST(Svd, EssentialMatricesHaveTwoEqualSingularValues) {
     Eigen::Matrix3d cross;
     cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
     const Eigen::Matrix3d m = cross * rotation(random);
-    const Decomposition d = decompose3(m);
+    const Singular d = decompose3(m);
     EXPECT_LT((d.s - Eigen::Vector3d(1, 1, 0)).norm(), 1e-5);
     EXPECT_NEAR(std::abs(d.u.col(2).dot(t)), 1.0, 1e-5);
     expect_decomposes(d, m, 1e-5);
@@ -89,11 +89,11 @@ TEST(Svd, CompletesTheBasisOfRankOneAndOfZero) {
   Random random(4);
   for (int trial = 0; trial < 100; ++trial) {
     const Eigen::Matrix3d m = random.matrix(3, 1) * random.matrix(1, 3);
-    const Decomposition d = decompose3(m);
+    const Singular d = decompose3(m);
     EXPECT_LT(d.s(1) + d.s(2), 2e-6 * m.norm() + 1e-12);
     expect_decomposes(d, m, 1e-5);
   }
-  const Decomposition zero = decompose3(Eigen::Matrix3d::Zero());
+  const Singular zero = decompose3(Eigen::Matrix3d::Zero());
   EXPECT_EQ(zero.s.norm(), 0.0);
   expect_decomposes(zero, Eigen::Matrix3d::Zero(), 1e-6);
 }
@@ -102,7 +102,7 @@ TEST(Svd, RotationsKeepUnitSingularValues) {
   Random random(5);
   for (int trial = 0; trial < 100; ++trial) {
     const Eigen::Matrix3d R = rotation(random);
-    const Decomposition d = decompose3(R);
+    const Singular d = decompose3(R);
     EXPECT_LT((d.s - Eigen::Vector3d::Ones()).norm(), 2e-6);
     expect_decomposes(d, R, 2e-6);
   }
@@ -113,7 +113,7 @@ TEST(Svd, BothPoliciesAndEveryCompilerComputeTheSameBits) {
     Random random(6);
     std::vector<float> all;
     for (int trial = 0; trial < 20; ++trial) {
-      Mat3<Q> a = mat3<Q>(random.matrix(3, 3));
+      Mat3<Q> a = to_mat3<Q>(random.matrix(3, 3));
       for (int c = 0; c < 3 && trial % 4 == 3; ++c) a.m[2][c] = a.m[0][c];
       Mat3<Q> u, v;
       Vec3<Q> s;

@@ -81,7 +81,7 @@ TEST(So3, ExpIsTheRotationAboutTheVector) {
   Random random(3);
   for (int i = 0; i < 2000; ++i) {
     const double angle = i % 2 == 0 ? random.uniform(0.0, 6.0) : std::pow(10.0, -(i % 17));
-    const Vec3<P> w = vec3<P>(direction(random) * angle);
+    const Vec3<P> w = to_vec3<P>(direction(random) * angle);
     EXPECT_LT((to_eigen(so3_exp<P>(w)) - exact_exp(to_eigen(w))).cwiseAbs().maxCoeff(), 1e-6);
   }
 }
@@ -90,7 +90,7 @@ TEST(So3, LogInvertsExpBelowHalfATurn) {
   Random random(4);
   for (int i = 0; i < 2000; ++i) {
     const double angle = i % 2 == 0 ? random.uniform(0.0, 3.1) : std::pow(10.0, -(i % 8));
-    const Vec3<P> w = vec3<P>(direction(random) * angle);
+    const Vec3<P> w = to_vec3<P>(direction(random) * angle);
     const double error = (to_eigen(so3_log<P>(so3_exp<P>(w))) - to_eigen(w)).norm();
     EXPECT_LT(error, 2e-6) << "angle " << angle;
   }
@@ -100,7 +100,7 @@ TEST(So3, ExpInvertsLogUpToHalfATurn) {
   Random random(5);
   for (const double angle : {0.0, 1e-4, 3.0, 3.1, 3.14, 3.1415, kPi - 1e-6, kPi}) {
     for (int i = 0; i < 200; ++i) {
-      const Mat3<P> R = mat3<P>(exact_exp(direction(random) * angle));
+      const Mat3<P> R = to_mat3<P>(exact_exp(direction(random) * angle));
       const Vec3<P> w = so3_log<P>(R);
       EXPECT_LT((to_eigen(so3_exp<P>(w)) - to_eigen(R)).cwiseAbs().maxCoeff(), 2e-6) << angle;
       EXPECT_LT(norm(w), static_cast<float>(kPi) + 1e-6f);
@@ -115,7 +115,7 @@ TEST(So3, RightJacobianIsTheDerivativeOfExp) {
   Random random(6);
   for (int i = 0; i < 500; ++i) {
     const double angle = i % 2 == 0 ? random.uniform(0.0, 5.0) : std::pow(10.0, -(i % 7));
-    const Vec3<P> w = vec3<P>(direction(random) * angle);
+    const Vec3<P> w = to_vec3<P>(direction(random) * angle);
     const Eigen::Matrix3d R = exact_exp(to_eigen(w));
     constexpr double kStep = 1e-5;
     Eigen::Matrix3d numerical;
@@ -134,7 +134,7 @@ TEST(So3, RightJacobianTimesItsInverseIsOne) {
   Random random(7);
   for (int i = 0; i < 1000; ++i) {
     const double angle = i % 2 == 0 ? random.uniform(0.0, 5.0) : std::pow(10.0, -(i % 7));
-    const Vec3<P> w = vec3<P>(direction(random) * angle);
+    const Vec3<P> w = to_vec3<P>(direction(random) * angle);
     const Mat3<P> product = so3_right_jacobian<P>(w) * so3_right_jacobian_inverse<P>(w);
     const Eigen::Matrix3d error = to_eigen(product) - Eigen::Matrix3d::Identity();
     EXPECT_LT(error.cwiseAbs().maxCoeff(), 5e-6) << "angle " << angle;

@@ -19,7 +19,7 @@ struct View {
 
   Projection<Double> at(const Matrix3d& R_now, const Vector3d& t_now, const Vector3d& x) const {
     Projection<Double> result;
-    const Vec3<Double> in_camera = vec3<Double>(R_now.transpose() * (x - t_now));
+    const Vec3<Double> in_camera = to_vec3<Double>(R_now.transpose() * (x - t_now));
     EXPECT_TRUE(project<Double>(model, in_camera, observed, result));
     return result;
   }
@@ -41,13 +41,13 @@ Eigen::Matrix<double, 2, 3> differences(double weight, Move move) {
 }
 Eigen::Matrix<double, 2, 3> two_rows(const Vec3<Double> (&rows)[2]) {
   Eigen::Matrix<double, 2, 3> J;
-  J.row(0) = eigen<Double>(rows[0]).transpose();
-  J.row(1) = eigen<Double>(rows[1]).transpose();
+  J.row(0) = to_eigen<Double>(rows[0]).transpose();
+  J.row(1) = to_eigen<Double>(rows[1]).transpose();
   return J;
 }
 
 void expect_derivatives(const View& v) {
-  const VisualTerm<Double> term = linearise<Double>(v.model, mat3<Double>(v.R), v.at());
+  const VisualTerm<Double> term = linearise<Double>(v.model, to_mat3<Double>(v.R), v.at());
   const double weight = root_weight<Double>(v.model, v.at().error_sq);
   const auto by_rotation =
       differences(weight, [&](const Vector3d& w) { return v.at(v.R * exp_of(w), v.t, v.point); });

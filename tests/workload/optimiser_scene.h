@@ -109,14 +109,15 @@ struct OptimiserScene {
     if (k == 0) return state;
     const double t = time(k);
     state.T_world_camera.R =
-        mat3<P>(Motion::rotation(t) * exp_of(scene.rotation_noise * random.normal3()));
-    state.T_world_camera.t = vec3<P>(Motion::position(t) + scene.position_noise * random.normal3());
-    state.velocity = vec3<P>(Motion::velocity(t) + scene.velocity_noise * random.normal3());
+        to_mat3<P>(Motion::rotation(t) * exp_of(scene.rotation_noise * random.normal3()));
+    state.T_world_camera.t =
+        to_vec3<P>(Motion::position(t) + scene.position_noise * random.normal3());
+    state.velocity = to_vec3<P>(Motion::velocity(t) + scene.velocity_noise * random.normal3());
     return state;
   }
 
   void fill_graph() {
-    graph.clear(ImuBias<P>::zero(), vec3<P>(motion.gravity));
+    graph.clear(ImuBias<P>::zero(), to_vec3<P>(motion.gravity));
     const OwnedInterval<P> interval;
     for (int k = 0; k < scene.keyframes; ++k) {
       if (k == 0)
@@ -132,7 +133,7 @@ struct OptimiserScene {
       const Vector3d ray = point - Motion::position(time(tracks[i][0].keyframe));
       const double along = random.normal();
       const Vector3d off = scene.depth_noise * (ray * along + 0.2 * ray.norm() * random.normal3());
-      const I32 slot = graph.add_landmark(vec3<P>(point + off), no_descriptor);
+      const I32 slot = graph.add_landmark(to_vec3<P>(point + off), no_descriptor);
       for (const Observation& o : tracks[i])
         graph.add_observation(o.keyframe, slot,
                               std::max(0, static_cast<int>(std::lround(o.pixel.x()))),
@@ -152,13 +153,14 @@ struct OptimiserScene {
   }
 
   double position_error(int k) const {
-    return (eigen<P>(window.state.pose(k).t) - Motion::position(time(k))).norm();
+    return (to_eigen<P>(window.state.pose(k).t) - Motion::position(time(k))).norm();
   }
   double rotation_error(int k) const {
-    return log_of(Motion::rotation(time(k)).transpose() * eigen<P>(window.state.pose(k).R)).norm();
+    return log_of(Motion::rotation(time(k)).transpose() * to_eigen<P>(window.state.pose(k).R))
+        .norm();
   }
   double velocity_error(int k) const {
-    return (eigen<P>(window.state.keyframe(k).velocity) - Motion::velocity(time(k))).norm();
+    return (to_eigen<P>(window.state.keyframe(k).velocity) - Motion::velocity(time(k))).norm();
   }
   /// Root mean square over keyframes.
   template <class Error>
@@ -181,7 +183,8 @@ struct OptimiserScene {
     std::vector<double> errors;
     for (int i = 0; i < window.landmarks; ++i) {
       const auto slot = static_cast<std::size_t>(work::value(I32(window.landmark_slots[i])));
-      errors.push_back((eigen<P>(load_vec3<P>(window.state.points, 3 * i)) - points[slot]).norm());
+      errors.push_back(
+          (to_eigen<P>(load_vec3<P>(window.state.points, 3 * i)) - points[slot]).norm());
     }
     std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2),
                      errors.end());

@@ -182,9 +182,9 @@ TEST(NormalEquations, InertialTermIsTheSlopeOfItsCost) {
       for (int k = 0; k < 8; ++k) {
         KeyframeState<Native> s = at.keyframe(k);
         s.T_world_camera.R =
-            mat3<Native>(eigen<Native>(s.T_world_camera.R) * exp_of(step.segment<3>(9 * k)));
-        s.T_world_camera.t = s.T_world_camera.t + vec3<Native>(step.segment<3>(9 * k + 3));
-        s.velocity = s.velocity + vec3<Native>(step.segment<3>(9 * k + 6));
+            to_mat3<Native>(to_eigen<Native>(s.T_world_camera.R) * exp_of(step.segment<3>(9 * k)));
+        s.T_world_camera.t = s.T_world_camera.t + to_vec3<Native>(step.segment<3>(9 * k + 3));
+        s.velocity = s.velocity + to_vec3<Native>(step.segment<3>(9 * k + 6));
         moved.set_keyframe(k, s);
       }
       cost[side] = static_cast<double>(inertial_cost<Native>(scene.window, moved, l.interval));

@@ -146,13 +146,13 @@ TEST(Optimiser, WithoutImuFindsThePosesUpToScale) {
   const Vector3d origin = Motion::position(0);
   double dot = 0, square = 0;
   for (int k = 0; k < 8; ++k) {
-    const Vector3d found = eigen<Native>(scene.window.state.pose(k).t) - origin;
+    const Vector3d found = to_eigen<Native>(scene.window.state.pose(k).t) - origin;
     dot += found.dot(Motion::position(scene.time(k)) - origin);
     square += found.squaredNorm();
   }
   const double scale = dot / square;
   for (int k = 0; k < 8; ++k) {
-    const Vector3d found = eigen<Native>(scene.window.state.pose(k).t) - origin;
+    const Vector3d found = to_eigen<Native>(scene.window.state.pose(k).t) - origin;
     EXPECT_LT((scale * found + origin - Motion::position(scene.time(k))).norm(), 2e-3);
   }
   EXPECT_LT(scene.rotation_rms(), 2e-4);
@@ -169,7 +169,7 @@ TEST(Optimiser, ImuRestoresTheScale) {
     scene.options.use_imu = use_imu;
     const Vector3d origin = Motion::position(0);
     const auto scaled_about = [&](const Vec3<Native>& x) {
-      return vec3<Native>(origin + 1.2 * (eigen<Native>(x) - origin));
+      return to_vec3<Native>(origin + 1.2 * (to_eigen<Native>(x) - origin));
     };
     for (int k = 0; k < 8; ++k) {
       KeyframeState<Native> s = scene.window.state.keyframe(k);
@@ -181,7 +181,7 @@ TEST(Optimiser, ImuRestoresTheScale) {
     for (int i = 0; i < scene.window.landmarks; ++i)
       store_vec3<Native>(points, 3 * i, scaled_about(load_vec3<Native>(points, 3 * i)));
     scene.optimise(12);
-    return (eigen<Native>(scene.window.state.pose(7).t) - origin).norm() /
+    return (to_eigen<Native>(scene.window.state.pose(7).t) - origin).norm() /
            (Motion::position(scene.time(7)) - origin).norm();
   };
   EXPECT_NEAR(scale_after(true), 1.0, 0.01);

@@ -22,7 +22,7 @@ struct GraphFixture {
 
   explicit GraphFixture(const GraphCapacity& capacity = {})
       : memory("L2", Bytes(1'600'000)), graph(memory, capacity) {
-    graph.clear(ImuBias<P>::zero(), vec3<P>({0, 9.81, 0}));
+    graph.clear(ImuBias<P>::zero(), to_vec3<P>({0, 9.81, 0}));
     no_motion.reset(ImuBias<P>::zero());
   }
 

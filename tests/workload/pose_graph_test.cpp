@@ -211,7 +211,7 @@ void zero(PoseGraph<P> graph) {
          ...);
       },
       graph.blocks());
-  graph.clear(ImuBias<P>::zero(), vec3<P>({0, 9.81, 0}));
+  graph.clear(ImuBias<P>::zero(), to_vec3<P>({0, 9.81, 0}));
 }
 
 TEST(PoseGraph, CountsWhatItComputesNatively) {

@@ -207,7 +207,7 @@ TEST(SnapshotIntervals, BiasOfTheWindowIsEstimated) {
   }
   take_snapshot<Native>(f.graph, ImuNoise{}, f.memory, window);
   estimate_biases<Native>(window, ImuNoise{}, {});
-  EXPECT_LT((eigen<Native>(window.bias.gyro) - gyro).norm(), 1e-3);
+  EXPECT_LT((to_eigen<Native>(window.bias.gyro) - gyro).norm(), 1e-3);
 }
 
 TEST(Snapshot, CountsWhatItComputesNatively) {

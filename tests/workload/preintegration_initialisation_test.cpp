@@ -36,8 +36,8 @@ std::vector<Stillness<P>> feed(StillnessDetector<P>& detector, const Readings& r
   std::vector<Stillness<P>> verdicts;
   for (int f = 0; f < frames; ++f) {
     for (int i = 0; i < kSamplesPerFrame; ++i)
-      detector.add({0.005f, vec3<P>(r.gyro + random.normal3() * (r.gyro_noise / std::sqrt(3.0))),
-                    vec3<P>(r.accel + random.normal3() * (r.accel_noise / std::sqrt(3.0)))});
+      detector.add({0.005f, to_vec3<P>(r.gyro + random.normal3() * (r.gyro_noise / std::sqrt(3.0))),
+                    to_vec3<P>(r.accel + random.normal3() * (r.accel_noise / std::sqrt(3.0)))});
     verdicts.push_back(detector.evaluate());
     detector.end_frame();
   }
@@ -53,8 +53,8 @@ TEST(Stillness, IsSeenOnceASecondIsFull) {
   const auto verdicts = feed<Native>(d.detector, kStill, 25, random);
   for (int f = 0; f < 25; ++f)
     EXPECT_EQ(verdicts[static_cast<std::size_t>(f)].still, f >= 19) << "frame " << f;
-  EXPECT_LT((eigen<Native>(verdicts.back().gyro_mean) - kStill.gyro).norm(), 0.003);
-  EXPECT_LT((eigen<Native>(verdicts.back().accel_mean) - kStill.accel).norm(), 0.03);
+  EXPECT_LT((to_eigen<Native>(verdicts.back().gyro_mean) - kStill.gyro).norm(), 0.003);
+  EXPECT_LT((to_eigen<Native>(verdicts.back().accel_mean) - kStill.accel).norm(), 0.03);
 }
 
 TEST(Stillness, IsNotSeenInAMovingVehicle) {
@@ -91,16 +91,16 @@ TEST(Stillness, LeavesOutMotionThatHasJustBegun) {
   Stillness<Native> seen{}, earlier{};
   for (int f = 0; f < 2; ++f) {
     for (int i = 0; i < kSamplesPerFrame; ++i)
-      d.detector.add({0.005f, vec3<Native>(begun), vec3<Native>(kStill.accel)});
+      d.detector.add({0.005f, to_vec3<Native>(begun), to_vec3<Native>(kStill.accel)});
     seen = d.detector.evaluate();
     earlier = d.detector.without_recent(seen);
     d.detector.end_frame();
   }
   ASSERT_TRUE(seen.still);
   EXPECT_TRUE(earlier.still);
-  EXPECT_GT((eigen<Native>(seen.gyro_mean) - kStill.gyro).norm(), 0.008);
-  EXPECT_LT((eigen<Native>(earlier.gyro_mean) - kStill.gyro).norm(), 0.003);
-  EXPECT_LT((eigen<Native>(earlier.accel_mean) - kStill.accel).norm(), 0.03);
+  EXPECT_GT((to_eigen<Native>(seen.gyro_mean) - kStill.gyro).norm(), 0.008);
+  EXPECT_LT((to_eigen<Native>(earlier.gyro_mean) - kStill.gyro).norm(), 0.003);
+  EXPECT_LT((to_eigen<Native>(earlier.accel_mean) - kStill.accel).norm(), 0.03);
 }
 
 TEST(Stillness, CountsWhatItComputesNatively) {
@@ -119,8 +119,8 @@ TEST(Gravity, PointsAgainstTheSpecificForceInTheWorld) {
   const double t = 0.7;
   const Vector3d at_rest = Motion::rotation(t).transpose() * -motion.gravity * (9.7 / 9.81);
   const Vec3<Native> g =
-      gravity_from_force<Native>(vec3<Native>(at_rest), mat3<Native>(Motion::rotation(t)));
-  EXPECT_LT((eigen<Native>(g) - motion.gravity).norm(), 1e-5);
+      gravity_from_force<Native>(to_vec3<Native>(at_rest), to_mat3<Native>(Motion::rotation(t)));
+  EXPECT_LT((to_eigen<Native>(g) - motion.gravity).norm(), 1e-5);
 }
 
 TEST(Gravity, MeanForceOfABatch) {

@@ -1,4 +1,4 @@
-// A smooth motion known in closed form, sampled as an IMU would, and conversions to and from Eigen.
+// A smooth motion known in closed form, sampled as an IMU would.
 #pragma once
 
 #include <Eigen/Dense>
@@ -6,40 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/workload/eigen_conversions.h"
 #include "workload/inertial/residual.h"
 
 namespace leviosim::vio::test {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-template <class P>
-Vector3d eigen(const Vec3<P>& v) {
-  return {static_cast<double>(work::value(v.x)), static_cast<double>(work::value(v.y)),
-          static_cast<double>(work::value(v.z))};
-}
-template <class P>
-Matrix3d eigen(const Mat3<P>& m) {
-  Matrix3d result;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) result(r, c) = static_cast<double>(work::value(m.m[r][c]));
-  return result;
-}
-/// Plain scalar of a policy: float, or double for DoublePolicy.
-template <class P>
-using Plain = decltype(work::value(std::declval<typename P::F32>()));
-
-template <class P>
-Vec3<P> vec3(const Vector3d& v) {
-  return {static_cast<Plain<P>>(v.x()), static_cast<Plain<P>>(v.y()), static_cast<Plain<P>>(v.z())};
-}
-template <class P>
-Mat3<P> mat3(const Matrix3d& m) {
-  Mat3<P> result;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) result.m[r][c] = static_cast<Plain<P>>(m(r, c));
-  return result;
-}
 
 inline Matrix3d exp_of(const Vector3d& w) {
   const double angle = w.norm();
@@ -114,12 +87,12 @@ struct Motion {
   template <class P>
   ImuSample<P> sample(double t, double dt, const Vector3d& gyro_bias = Vector3d::Zero(),
                       const Vector3d& accel_bias = Vector3d::Zero()) const {
-    return {static_cast<Plain<P>>(dt), vec3<P>(rate(t) + gyro_bias),
-            vec3<P>(specific_force(t) + accel_bias)};
+    return {static_cast<Plain<P>>(dt), to_vec3<P>(rate(t) + gyro_bias),
+            to_vec3<P>(specific_force(t) + accel_bias)};
   }
   template <class P>
   KeyframeState<P> state(double t) const {
-    return {{mat3<P>(rotation(t)), vec3<P>(position(t))}, vec3<P>(velocity(t))};
+    return {{to_mat3<P>(rotation(t)), to_vec3<P>(position(t))}, to_vec3<P>(velocity(t))};
   }
 };
 

@@ -17,9 +17,9 @@ using State = KeyframeState<Double>;
 struct Fixture {
   Fixture() {
     integrate<Double>(motion, 0.3, 0.6, 60, interval, subtracted);
-    begin.T_world_camera.R = mat3<Double>(Motion::rotation(0.3) * exp_of({0.02, -0.03, 0.05}));
-    end.velocity = end.velocity + vec3<Double>({0.1, -0.2, 0.05});
-    end.T_world_camera.t = end.T_world_camera.t + vec3<Double>({0.03, 0.02, -0.05});
+    begin.T_world_camera.R = to_mat3<Double>(Motion::rotation(0.3) * exp_of({0.02, -0.03, 0.05}));
+    end.velocity = end.velocity + to_vec3<Double>({0.1, -0.2, 0.05});
+    end.T_world_camera.t = end.T_world_camera.t + to_vec3<Double>({0.03, 0.02, -0.05});
   }
   ImuResidual<Double> residual() const { return residual(begin, end, bias, gravity); }
   ImuResidual<Double> residual(const State& b, const State& e, const ImuBias<Double>& at,
@@ -31,13 +31,13 @@ struct Fixture {
   OwnedInterval<Double> interval;
   ImuBias<Double> subtracted{{0.01, 0.02, -0.01}, {0.1, -0.1, 0.2}};
   ImuBias<Double> bias{{0.03, -0.01, 0.02}, {0.15, 0.1, -0.05}};
-  Vec3<Double> gravity = vec3<Double>(motion.gravity);
+  Vec3<Double> gravity = to_vec3<Double>(motion.gravity);
   State begin = motion.state<Double>(0.3), end = motion.state<Double>(0.6);
 };
 
 Eigen::VectorXd stacked(const ImuResidual<Double>& r) {
   Eigen::VectorXd v(9);
-  v << eigen<Double>(r.rotation), eigen<Double>(r.velocity), eigen<Double>(r.position);
+  v << to_eigen<Double>(r.rotation), to_eigen<Double>(r.velocity), to_eigen<Double>(r.position);
   return v;
 }
 
@@ -59,15 +59,15 @@ Eigen::MatrixXd rows(const Matrix3d& rotation, const Matrix3d& velocity, const M
 }
 
 State turned(State s, const Vector3d& w) {
-  s.T_world_camera.R = mat3<Double>(eigen<Double>(s.T_world_camera.R) * exp_of(w));
+  s.T_world_camera.R = to_mat3<Double>(to_eigen<Double>(s.T_world_camera.R) * exp_of(w));
   return s;
 }
 State moved(State s, const Vector3d& d) {
-  s.T_world_camera.t = s.T_world_camera.t + vec3<Double>(d);
+  s.T_world_camera.t = s.T_world_camera.t + to_vec3<Double>(d);
   return s;
 }
 State faster(State s, const Vector3d& d) {
-  s.velocity = s.velocity + vec3<Double>(d);
+  s.velocity = s.velocity + to_vec3<Double>(d);
   return s;
 }
 
@@ -76,12 +76,12 @@ constexpr double kTolerance = 2e-8;
 TEST(ImuResidual, VanishesForStatesThatFitTheInterval) {
   Fixture f;
   const ImuDelta<Double> d = f.interval.corrected(f.bias);
-  const Matrix3d R = eigen<Double>(f.begin.T_world_camera.R);
-  const Vector3d v = eigen<Double>(f.begin.velocity), g = f.motion.gravity;
+  const Matrix3d R = to_eigen<Double>(f.begin.T_world_camera.R);
+  const Vector3d v = to_eigen<Double>(f.begin.velocity), g = f.motion.gravity;
   f.end.T_world_camera.R = f.begin.T_world_camera.R * d.R;
-  f.end.velocity = vec3<Double>(v + g * d.dt + R * eigen<Double>(d.v));
-  f.end.T_world_camera.t = vec3<Double>(eigen<Double>(f.begin.T_world_camera.t) + v * d.dt +
-                                        0.5 * g * d.dt * d.dt + R * eigen<Double>(d.p));
+  f.end.velocity = to_vec3<Double>(v + g * d.dt + R * to_eigen<Double>(d.v));
+  f.end.T_world_camera.t = to_vec3<Double>(to_eigen<Double>(f.begin.T_world_camera.t) + v * d.dt +
+                                           0.5 * g * d.dt * d.dt + R * to_eigen<Double>(d.p));
   EXPECT_LT(stacked(f.residual()).norm(), 1e-12);
 }
 
@@ -90,14 +90,15 @@ TEST(ImuResidual, DerivativesByTheStateAtTheBegin) {
   const ImuResidual<Double> r = f.residual();
   const ImuJacobians<Double> J =
       imu_jacobians<Double>(f.begin, f.end, f.interval.duration(), f.gravity, r);
-  const Matrix3d zero = Matrix3d::Zero(), Rt = eigen<Double>(J.Rt);
+  const Matrix3d zero = Matrix3d::Zero(), Rt = to_eigen<Double>(J.Rt);
   const double dt = f.interval.duration();
   const auto with = [&](const State& s) { return f.residual(s, f.end, f.bias, f.gravity); };
-  EXPECT_LT((differences([&](const Vector3d& w) { return with(turned(f.begin, w)); }) -
-             rows(eigen<Double>(J.rotation_by_rotation0), eigen<Double>(J.velocity_by_rotation0),
-                  eigen<Double>(J.position_by_rotation0)))
-                .norm(),
-            kTolerance);
+  EXPECT_LT(
+      (differences([&](const Vector3d& w) { return with(turned(f.begin, w)); }) -
+       rows(to_eigen<Double>(J.rotation_by_rotation0), to_eigen<Double>(J.velocity_by_rotation0),
+            to_eigen<Double>(J.position_by_rotation0)))
+          .norm(),
+      kTolerance);
   EXPECT_LT((differences([&](const Vector3d& d) { return with(moved(f.begin, d)); }) -
              rows(zero, zero, -Rt))
                 .norm(),
@@ -113,10 +114,10 @@ TEST(ImuResidual, DerivativesByTheStateAtTheEnd) {
   const ImuResidual<Double> r = f.residual();
   const ImuJacobians<Double> J =
       imu_jacobians<Double>(f.begin, f.end, f.interval.duration(), f.gravity, r);
-  const Matrix3d zero = Matrix3d::Zero(), Rt = eigen<Double>(J.Rt);
+  const Matrix3d zero = Matrix3d::Zero(), Rt = to_eigen<Double>(J.Rt);
   const auto with = [&](const State& s) { return f.residual(f.begin, s, f.bias, f.gravity); };
   EXPECT_LT((differences([&](const Vector3d& w) { return with(turned(f.end, w)); }) -
-             rows(eigen<Double>(J.rotation_by_rotation1), zero, zero))
+             rows(to_eigen<Double>(J.rotation_by_rotation1), zero, zero))
                 .norm(),
             kTolerance);
   EXPECT_LT(
@@ -132,26 +133,27 @@ TEST(ImuResidual, DerivativesByTheStateAtTheEnd) {
 TEST(ImuResidual, DerivativesByBiasesAndGravity) {
   const Fixture f;
   const double dt = f.interval.duration();
-  const Matrix3d Rt = eigen<Double>(f.begin.T_world_camera.R).transpose();
+  const Matrix3d Rt = to_eigen<Double>(f.begin.T_world_camera.R).transpose();
   const auto with_bias = [&](const Vector3d& gyro, const Vector3d& accel) {
-    const ImuBias<Double> at{f.bias.gyro + vec3<Double>(gyro), f.bias.accel + vec3<Double>(accel)};
+    const ImuBias<Double> at{f.bias.gyro + to_vec3<Double>(gyro),
+                             f.bias.accel + to_vec3<Double>(accel)};
     return f.residual(f.begin, f.end, at, f.gravity);
   };
   const Vector3d none = Vector3d::Zero();
   const Matrix3d by_gyro =
-      eigen<Double>(rotation_residual_by_gyro_bias<Double>(f.interval, f.bias, f.residual()));
+      to_eigen<Double>(rotation_residual_by_gyro_bias<Double>(f.interval, f.bias, f.residual()));
   EXPECT_LT((differences([&](const Vector3d& d) { return with_bias(d, none); }) -
-             rows(by_gyro, -eigen<Double>(f.interval.velocity_by_gyro()),
-                  -eigen<Double>(f.interval.position_by_gyro())))
+             rows(by_gyro, -to_eigen<Double>(f.interval.velocity_by_gyro()),
+                  -to_eigen<Double>(f.interval.position_by_gyro())))
                 .norm(),
             kTolerance);
   EXPECT_LT((differences([&](const Vector3d& d) { return with_bias(none, d); }) -
-             rows(Matrix3d::Zero(), -eigen<Double>(f.interval.velocity_by_accel()),
-                  -eigen<Double>(f.interval.position_by_accel())))
+             rows(Matrix3d::Zero(), -to_eigen<Double>(f.interval.velocity_by_accel()),
+                  -to_eigen<Double>(f.interval.position_by_accel())))
                 .norm(),
             kTolerance);
   EXPECT_LT((differences([&](const Vector3d& d) {
-               return f.residual(f.begin, f.end, f.bias, f.gravity + vec3<Double>(d));
+               return f.residual(f.begin, f.end, f.bias, f.gravity + to_vec3<Double>(d));
              }) -
              rows(Matrix3d::Zero(), -dt * Rt, -0.5 * dt * dt * Rt))
                 .norm(),
@@ -163,7 +165,7 @@ template <class P>
 ImuBias<P> estimated(const Vector3d& gyro, const Vector3d& accel, const BiasOptions& options,
                      int intervals = 7) {
   const Motion motion;
-  BiasEstimator<P> estimator(ImuBias<P>::zero(), vec3<P>(motion.gravity), ImuNoise{});
+  BiasEstimator<P> estimator(ImuBias<P>::zero(), to_vec3<P>(motion.gravity), ImuNoise{});
   for (int k = 0; k < intervals; ++k) {
     const OwnedInterval<P> interval;
     integrate<P>(motion, 0.2 * k, 0.2 * (k + 1), 40, interval, ImuBias<P>::zero(), gyro, accel);
@@ -177,7 +179,7 @@ TEST(BiasEstimator, FindsTheGyroBiasOfTrueMotion) {
   BiasOptions free;
   free.gyro_stddev = 10;
   const ImuBias<work::Native> bias = estimated<work::Native>(gyro, Vector3d::Zero(), free);
-  EXPECT_LT((eigen<work::Native>(bias.gyro) - gyro).norm(), 1e-3);
+  EXPECT_LT((to_eigen<work::Native>(bias.gyro) - gyro).norm(), 1e-3);
   EXPECT_EQ(bias.accel.x, 0.0f);
 }
 
@@ -186,11 +188,11 @@ TEST(BiasEstimator, PriorHoldsTheEstimateBack) {
   BiasOptions options;
   options.gyro_stddev = 0.02f / std::sqrt(1.4f);  // what 7 intervals of 0.2 s tell: meets half-way
   const Vector3d half =
-      eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
+      to_eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
   EXPECT_NEAR(half.z(), 0.04, 1e-3);
   options.gyro_stddev = 1e-6f;
   const Vector3d held =
-      eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
+      to_eigen<work::Native>(estimated<work::Native>(gyro, Vector3d::Zero(), options).gyro);
   EXPECT_LT(held.norm(), 1e-6);
 }
 
@@ -200,7 +202,7 @@ BiasEstimator<work::Native> after_one_interval(const ImuBias<work::Native>& bias
   const Motion motion;
   const OwnedInterval<work::Native> interval;
   integrate<work::Native>(motion, 0, 0.2, 40, interval, ImuBias<work::Native>::zero(), gyro);
-  BiasEstimator<work::Native> estimator(bias, vec3<work::Native>(motion.gravity), ImuNoise{});
+  BiasEstimator<work::Native> estimator(bias, to_vec3<work::Native>(motion.gravity), ImuNoise{});
   estimator.add(interval, motion.state<work::Native>(0), motion.state<work::Native>(0.2));
   return estimator;
 }
@@ -246,14 +248,14 @@ TEST(BiasEstimator, FindsTheAccelerometerBiasIfAsked) {
   free.accel = true;
   free.accel_stddev = 1e3f;
   const ImuBias<work::Native> bias = estimated<work::Native>(Vector3d::Zero(), accel, free);
-  EXPECT_LT((eigen<work::Native>(bias.accel) - accel).norm(), 5e-3);
+  EXPECT_LT((to_eigen<work::Native>(bias.accel) - accel).norm(), 5e-3);
   EXPECT_EQ(bias.gyro.x, 0.0f);
 }
 
 TEST(BiasEstimator, KeepsTheBiasWithoutIntervals) {
   const Motion motion;
   const ImuBias<work::Native> before{{0.1f, 0.2f, 0.3f}, {0.0f, 0.0f, 0.0f}};
-  BiasEstimator<work::Native> estimator(before, vec3<work::Native>(motion.gravity), ImuNoise{});
+  BiasEstimator<work::Native> estimator(before, to_vec3<work::Native>(motion.gravity), ImuNoise{});
   const OwnedInterval<work::Native> empty;
   empty.reset(before);
   estimator.add(empty, motion.state<work::Native>(0), motion.state<work::Native>(0.2));

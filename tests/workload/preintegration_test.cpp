@@ -28,8 +28,9 @@ TrueDelta true_delta(const Motion& motion, double begin, double end) {
 
 template <class P>
 double worst_error(const ImuDelta<P>& delta, const TrueDelta& truth) {
-  return std::max({log_of(truth.R.transpose() * eigen<P>(delta.R)).norm(),
-                   (eigen<P>(delta.v) - truth.v).norm(), (eigen<P>(delta.p) - truth.p).norm()});
+  return std::max({log_of(truth.R.transpose() * to_eigen<P>(delta.R)).norm(),
+                   (to_eigen<P>(delta.v) - truth.v).norm(),
+                   (to_eigen<P>(delta.p) - truth.p).norm()});
 }
 
 TEST(Preintegration, FollowsASmoothMotionInFloat) {
@@ -56,11 +57,11 @@ TEST(Preintegration, SubtractsItsBiases) {
   const Vector3d gyro(0.02, -0.05, 0.08), accel(0.1, -0.2, 0.3);
   const OwnedInterval<Double> plain, biased;
   integrate<Double>(motion, 0.0, 0.5, 100, plain, ImuBias<Double>::zero());
-  integrate<Double>(motion, 0.0, 0.5, 100, biased, {vec3<Double>(gyro), vec3<Double>(accel)}, gyro,
-                    accel);
+  integrate<Double>(motion, 0.0, 0.5, 100, biased, {to_vec3<Double>(gyro), to_vec3<Double>(accel)},
+                    gyro, accel);
   const ImuDelta<Double> expected = plain.delta();
-  EXPECT_LT(worst_error(biased.delta(), {eigen<Double>(expected.R), eigen<Double>(expected.v),
-                                         eigen<Double>(expected.p)}),
+  EXPECT_LT(worst_error(biased.delta(), {to_eigen<Double>(expected.R), to_eigen<Double>(expected.v),
+                                         to_eigen<Double>(expected.p)}),
             1e-12);
 }
 
@@ -76,21 +77,24 @@ TEST(Preintegration, BiasDerivativesMatchIntegratingAnew) {
     for (int axis = 0; axis < 3; ++axis) {
       ImuDelta<Double> moved[2];
       for (int side = 0; side < 2; ++side) {
-        Vector3d gyro = eigen<Double>(at.gyro), accel = eigen<Double>(at.accel);
+        Vector3d gyro = to_eigen<Double>(at.gyro), accel = to_eigen<Double>(at.accel);
         (sensor == 0 ? gyro : accel)[axis] += side == 0 ? -h : h;
         const OwnedInterval<Double> other;
-        integrate<Double>(motion, 0.3, 0.7, 80, other, {vec3<Double>(gyro), vec3<Double>(accel)});
+        integrate<Double>(motion, 0.3, 0.7, 80, other,
+                          {to_vec3<Double>(gyro), to_vec3<Double>(accel)});
         moved[side] = other.delta();
       }
-      const Matrix3d R = eigen<Double>(middle.R);
-      const Vector3d by_rotation = (log_of(R.transpose() * eigen<Double>(moved[1].R)) -
-                                    log_of(R.transpose() * eigen<Double>(moved[0].R))) /
+      const Matrix3d R = to_eigen<Double>(middle.R);
+      const Vector3d by_rotation = (log_of(R.transpose() * to_eigen<Double>(moved[1].R)) -
+                                    log_of(R.transpose() * to_eigen<Double>(moved[0].R))) /
                                    (2 * h);
-      const Vector3d by_v = (eigen<Double>(moved[1].v) - eigen<Double>(moved[0].v)) / (2 * h);
-      const Vector3d by_p = (eigen<Double>(moved[1].p) - eigen<Double>(moved[0].p)) / (2 * h);
+      const Vector3d by_v = (to_eigen<Double>(moved[1].v) - to_eigen<Double>(moved[0].v)) / (2 * h);
+      const Vector3d by_p = (to_eigen<Double>(moved[1].p) - to_eigen<Double>(moved[0].p)) / (2 * h);
       // The recorded ones leave out terms of the relative order of one step's angle.
       const Vector3d none = Vector3d::Zero();
-      const auto column = [axis](const Mat3<Double>& m) { return eigen<Double>(m.column(axis)); };
+      const auto column = [axis](const Mat3<Double>& m) {
+        return to_eigen<Double>(m.column(axis));
+      };
       EXPECT_LT((by_rotation - (sensor == 0 ? column(interval.rotation_by_gyro()) : none)).norm(),
                 1e-6);
       EXPECT_LT(
@@ -111,7 +115,8 @@ TEST(Preintegration, CorrectionIsOfFirstOrder) {
   const ImuBias<Double> bias{{0.01, -0.02, 0.015}, {0.05, -0.1, 0.08}};
   integrate<Double>(motion, 0.0, 0.4, 80, at_bias, bias);
   const ImuDelta<Double> exact = at_bias.delta();
-  const TrueDelta truth{eigen<Double>(exact.R), eigen<Double>(exact.v), eigen<Double>(exact.p)};
+  const TrueDelta truth{to_eigen<Double>(exact.R), to_eigen<Double>(exact.v),
+                        to_eigen<Double>(exact.p)};
   const double uncorrected = worst_error(at_zero.delta(), truth);
   EXPECT_GT(uncorrected, 1e-2);
   EXPECT_LT(worst_error(at_zero.corrected(bias), truth), 2e-2 * uncorrected);
@@ -145,9 +150,9 @@ Eigen::VectorXd noisy_error(const Motion& motion, const ImuDelta<Double>& clean,
   }
   const ImuDelta<Double> delta = interval.delta();
   Eigen::VectorXd error(9);
-  error << log_of(eigen<Double>(clean.R).transpose() * eigen<Double>(delta.R)),
-      eigen<Double>(delta.v) - eigen<Double>(clean.v),
-      eigen<Double>(delta.p) - eigen<Double>(clean.p);
+  error << log_of(to_eigen<Double>(clean.R).transpose() * to_eigen<Double>(delta.R)),
+      to_eigen<Double>(delta.v) - to_eigen<Double>(clean.v),
+      to_eigen<Double>(delta.p) - to_eigen<Double>(clean.p);
   return error;
 }
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "sim/work/policy.h"
+#include "tests/workload/eigen_conversions.h"
+#include "tests/workload/test_camera.h"
 #include "workload/geometry/eight_point.h"
 
 namespace leviosim::vio::test {
@@ -42,8 +44,6 @@ class HostRandom {
   std::uint64_t state_;
 };
 
-/// The camera of the EuRoC images after decimation (PARAMETERS.md#input).
-inline constexpr PinholeCamera kCamera{114.66f, 114.32f, 77.80f, 62.09f};
 inline constexpr double kWidth = 160;
 inline constexpr double kHeight = 120;
 
@@ -132,29 +132,6 @@ class MatchStorage {
   std::vector<F> a_, b_;
 };
 
-template <class P>
-Eigen::Matrix3d to_eigen(const Mat3<P>& m) {
-  Eigen::Matrix3d result;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) result(r, c) = static_cast<double>(work::value(m.m[r][c]));
-  return result;
-}
-template <class P>
-Eigen::Vector3d to_eigen(const Vec3<P>& v) {
-  return {static_cast<double>(work::value(v.x)), static_cast<double>(work::value(v.y)),
-          static_cast<double>(work::value(v.z))};
-}
-template <class P>
-Mat3<P> to_mat3(const Eigen::Matrix3d& m) {
-  Mat3<P> result;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) result.m[r][c] = static_cast<float>(m(r, c));
-  return result;
-}
-template <class P>
-Vec3<P> to_vec3(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
 template <class P>
 Vec2<P> to_vec2(const Eigen::Vector2d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y())};

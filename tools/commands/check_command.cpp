@@ -1,6 +1,7 @@
 #include "tools/commands/check_command.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 

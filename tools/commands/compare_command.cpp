@@ -1,6 +1,7 @@
 #include "tools/commands/compare_command.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 

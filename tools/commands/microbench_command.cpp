@@ -1,6 +1,7 @@
 #include "tools/commands/microbench_command.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -1,5 +1,6 @@
 #include "tools/commands/report_command.h"
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "tools/app/comparison/comparability.h"

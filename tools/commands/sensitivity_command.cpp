@@ -1,5 +1,6 @@
 #include "tools/commands/sensitivity_command.h"
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "tools/app/cli/outputs.h"

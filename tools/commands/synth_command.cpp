@@ -1,6 +1,7 @@
 #include "tools/commands/synth_command.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <limits>
 #include <memory>

@@ -1,6 +1,7 @@
 #include "tools/app/budget/gate.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"

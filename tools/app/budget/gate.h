@@ -1,13 +1,16 @@
 // A budget as a command holds a run against it: read before work is done, judged at the end.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "tools/app/budget/check.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/record_source.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

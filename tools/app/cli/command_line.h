@@ -1,11 +1,14 @@
 // The command line of leviosim: subcommands with their options, and the errors that people make.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

@@ -1,5 +1,7 @@
 #include "tools/app/cli/printout.h"
 
+#include <CLI/CLI.hpp>
+
 #include "sim/base/error.h"
 #include "tools/app/cli/terminal.h"
 

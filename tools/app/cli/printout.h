@@ -3,9 +3,12 @@
 // everywhere.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <utility>
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

@@ -1,7 +1,6 @@
 // The runs that a command line names: folders of runs, or recorded work that is replayed on a chip.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,6 +8,10 @@
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/run/run_options.h"
 #include "traces/work_traces/work_trace.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

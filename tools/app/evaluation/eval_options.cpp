@@ -1,6 +1,7 @@
 #include "tools/app/evaluation/eval_options.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "tools/app/html_report/report_file.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "tools/app/budget/check_report.h"
 #include "tools/app/cli/outputs.h"

@@ -1,7 +1,6 @@
 // The option --report of commands: claims the file before work is done, writes the page at the end.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +10,10 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/run_json.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

@@ -1,6 +1,7 @@
 #include "tools/app/run/memory_option.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,13 @@
 // --max-memory SIZE: what a work trace may take of the host's memory.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "sim/base/units.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

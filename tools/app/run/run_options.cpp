@@ -1,6 +1,7 @@
 #include "tools/app/run/run_options.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <limits>
 

@@ -1,11 +1,14 @@
 // The options of `leviosim run` as typed, and what they ask for once checked.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "tools/app/run/run_request.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

@@ -1,6 +1,7 @@
 #include "tools/app/run/run_printout.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,7 @@
 #include "tools/app/study/batch_plan.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <limits>

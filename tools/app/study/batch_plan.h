@@ -2,7 +2,6 @@
 // seeds over sequences: options, points, the manifest.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,10 @@
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/study/run_outcome.h"
 #include "tools/app/study/sequence.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

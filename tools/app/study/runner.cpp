@@ -1,6 +1,7 @@
 #include "tools/app/study/runner.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <mutex>
 #include <string_view>

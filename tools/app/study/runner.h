@@ -2,13 +2,16 @@
 // Outcomes are found again if they have been computed before, and kept as soon as they are there.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "tools/app/cli/progress_line.h"
 #include "tools/app/study/outcome_cache.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

@@ -1,6 +1,7 @@
 #include "tools/app/timeline/requested_timeline.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include "sim/base/error.h"
 #include "sim/base/file_system.h"

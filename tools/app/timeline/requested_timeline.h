@@ -1,13 +1,16 @@
 // The timeline that a command was asked for: its options, and what the command does with it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "sim/base/output_file.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/timeline/timeline_collector.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 

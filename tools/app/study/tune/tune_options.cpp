@@ -1,6 +1,7 @@
 #include "tools/app/study/tune/tune_options.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 // The options of `leviosim tune`: as typed, and what they ask for once checked.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,10 @@
 #include "tools/app/run/run_options.h"
 #include "tools/app/study/run_outcome.h"
 #include "tools/app/study/sequence.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 
