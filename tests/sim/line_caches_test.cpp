@@ -22,7 +22,7 @@ using tests::Walker;
 
 constexpr double kWork = 5;  ///< cycles of work on a line: some four instructions
 
-InstructionCacheConfig caches() {
+InstructionCacheConfig stepped_caches() {
   InstructionCacheConfig c;
   c.line = Bytes(16);
   c.worker = Bytes(512);
@@ -48,7 +48,7 @@ LineList rounds_of(const LineList& loop, int rounds) {
 }
 
 SteppedCaches stepped(const LineList& lines, std::size_t cores, double work = kWork) {
-  return LineCaches(caches(), caches().worker, 1)
+  return LineCaches(stepped_caches(), stepped_caches().worker, 1)
       .run(std::vector<Walker>(cores, {&lines, work, 0}));
 }
 
@@ -150,7 +150,7 @@ double stepped_stall(const Loop& loop, std::size_t cores, bool in_step) {
       walkers.push_back(
           {&lines, kWork,
            in_step ? 0 : random.below(static_cast<std::uint32_t>(lines.size() / kRounds))});
-    sum += LineCaches(caches(), caches().worker, layout).run(walkers).mean_stall();
+    sum += LineCaches(stepped_caches(), stepped_caches().worker, layout).run(walkers).mean_stall();
   }
   return sum / kLayouts;
 }
@@ -162,7 +162,7 @@ double modelled_stall(const Loop& loop, int cores) {
   for (const std::uint64_t n : counts.code) bytes += n;
   counts[work::Op::IntAlu] = static_cast<std::uint64_t>(kWork * static_cast<double>(bytes) / 16);
   ChipConfig config = test_chip();
-  config.cluster.icache = caches();
+  config.cluster.icache = stepped_caches();
   Chip chip(config, cores);
   JobTiming timing;
   const work::Job job{
