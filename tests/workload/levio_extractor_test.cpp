@@ -86,13 +86,13 @@ TEST(LevioExtractor, ACornersResponseReads8PixelsAt49Positions) {
 }
 
 TEST(LevioExtractor, TheBlurIsThatOfTheSharedExtraction) {
-  using P = work::Native;
-  PolicyImage<P> copy(picture());
+  using N = work::Native;
+  PolicyImage<N> copy(picture());
   std::vector<std::uint8_t> a(160 * 120), b(160 * 120);
   const auto image = copy.view();
-  std::vector<int> kernel(kBlurKernel<P>.begin(), kBlurKernel<P>.end());
-  vio::blur_rows<P>(image, {{a.data(), 160 * 120}, 160, 120}, 0, 120, {kernel.data(), kBlurTaps});
-  levio::blur_rows<P>(image, {{b.data(), 160 * 120}, 160, 120}, 0, 120);
+  std::vector<int> kernel(kBlurKernel<N>.begin(), kBlurKernel<N>.end());
+  vio::blur_rows<N>(image, {{a.data(), 160 * 120}, 160, 120}, 0, 120, {kernel.data(), kBlurTaps});
+  levio::blur_rows<N>(image, {{b.data(), 160 * 120}, 160, 120}, 0, 120);
   EXPECT_EQ(a, b);
 }
 

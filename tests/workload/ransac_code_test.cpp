@@ -21,7 +21,7 @@
 namespace leviosim::vio::test {
 namespace {
 
-using P = work::Counting;
+using Counted = work::Counting;
 using tests::CodeLayout;
 using tests::CodeWalk;
 using tests::LineCaches;
@@ -74,7 +74,7 @@ Recording recorded(int cores, const work::CodeMap& code, const Body& body) {
 Recording epnp(int cores, const work::CodeMap& code = platform::compiled_code()) {
   const TwoViewScene scene =
       make_two_view_scene(3, {.matches = 54, .outliers = 0.3, .rounded = true});
-  std::vector<P::F32> points, pixels;
+  std::vector<Counted::F32> points, pixels;
   for (std::size_t i = 0; i < scene.points_a.size(); ++i) {
     for (int c = 0; c < 3; ++c) points.emplace_back(static_cast<float>(scene.points_a[i](c)));
     pixels.emplace_back(static_cast<float>(scene.seen_b[i].x()) * kCamera.fx + kCamera.cx);
@@ -83,7 +83,7 @@ Recording epnp(int cores, const work::CodeMap& code = platform::compiled_code())
   PnpOptions options;
   options.iterations = 16;
   return recorded(cores, code, [&](work::Machine& machine) {
-    estimate_pose_epnp<P>(
+    estimate_pose_epnp<Counted>(
         machine, {{points.data(), 3 * scene.n}, {pixels.data(), 2 * scene.n}, scene.n, kCamera},
         options);
   });
@@ -92,12 +92,13 @@ Recording epnp(int cores, const work::CodeMap& code = platform::compiled_code())
 Recording eight_point(int cores, const work::CodeMap& code = platform::compiled_code()) {
   const TwoViewScene scene =
       make_two_view_scene(3, {.matches = 60, .outliers = 0.2, .rounded = true});
-  const MatchStorage<P> matches(scene);
-  std::vector<P::Byte> mask(static_cast<std::size_t>(scene.n));
+  const MatchStorage<Counted> matches(scene);
+  std::vector<Counted::Byte> mask(static_cast<std::size_t>(scene.n));
   EssentialOptions options;
   options.iterations = 80;
   return recorded(cores, code, [&](work::Machine& machine) {
-    estimate_essential<P>(machine, matches.view(), kCamera.fx, options, {mask.data(), scene.n});
+    estimate_essential<Counted>(machine, matches.view(), kCamera.fx, options,
+                                {mask.data(), scene.n});
   });
 }
 
