@@ -1,6 +1,10 @@
 #include "sim/chip/accelerator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "sim/base/check.h"
 
 namespace leviosim::sim {
 
@@ -18,7 +22,14 @@ work::Counts left_to_core(const work::Segment& segment, const Accelerators& acce
   work::Counts left = segment;
   for (const work::OffloadWork& calls : segment.offload) {
     if (accelerators[work::index(calls.kernel)].units == 0) continue;
-    for (std::size_t i = 0; i < work::kOpCount; ++i) left.n[i] -= calls.counts.n[i];
+    for (std::size_t i = 0; i < work::kOpCount; ++i) {
+      if (calls.counts.n[i] > left.n[i]) [[unlikely]]
+        check_failed(fmt::format("offload regions of {} counted {} {}, their segment has {} left",
+                                 work::kOffloadKinds[work::index(calls.kernel)].name,
+                                 calls.counts.n[i], work::kOps[i].name, left.n[i]),
+                     SourceLine::current());
+      left.n[i] -= calls.counts.n[i];
+    }
   }
   return left;
 }

@@ -32,24 +32,6 @@ void book(CycleBreakdown& breakdown, const SegmentTime& time) {
   breakdown.rounding += time.rounding;
 }
 
-double local_accesses(const work::Counts& counts) {
-  using work::Op;
-  return static_cast<double>(counts[Op::LoadStream] + counts[Op::LoadIndexed] +
-                             counts[Op::StoreStream] + counts[Op::StoreIndexed]);
-}
-
-/// The shares together. The scratch of a lone core begins where that of the first of a team does,
-/// so words straddle as often as in the first share.
-work::Segment on_one_core(const work::Fork& fork) {
-  work::Segment sum;
-  for (const work::Segment& share : fork.shares) sum += share;
-  const work::Counts& first = fork.shares.front();
-  if (const double accesses = local_accesses(first); accesses > 0)
-    sum[work::Op::Straddle] = static_cast<std::uint64_t>(std::llround(
-        static_cast<double>(first[work::Op::Straddle]) * local_accesses(sum) / accesses));
-  return sum;
-}
-
 }  // namespace
 
 Cluster::Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers)
@@ -176,7 +158,7 @@ Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
 
 Task<> Cluster::run_alone(const work::Fork& fork, CycleBreakdown& breakdown) {
   const Time begin = kernel_.now();
-  const work::Segment sum = on_one_core(fork);
+  const work::Segment sum = work::shares_on_one_core(fork);
   const SegmentTime time = co_await team_.execute(workers_, sum);
   note(workers_, begin, time);
   book(breakdown, time);

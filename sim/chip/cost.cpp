@@ -3,6 +3,7 @@
 namespace leviosim::sim {
 namespace {
 
+using work::Compiled;
 using work::Op;
 
 /// The breakdown that an operation's stall cycles are booked on.
@@ -49,32 +50,53 @@ UsefulCycles operator*(const UsefulCycles& b, double k) {
           b.arithmetic * k, b.fetch * k,    b.accelerator * k};
 }
 
+OperationsOfKind& OperationsOfKind::operator+=(const OperationsOfKind& o) {
+  count += o.count;
+  emitted += o.emitted;
+  used_at_once += o.used_at_once;
+  unmeasured += o.unmeasured;
+  return *this;
+}
+
+CompiledRatios::CompiledRatios(const work::Counts& segment)
+    : emitted_(work::compiled_ratio(segment.compiled, Compiled::Executed, Compiled::Priced, 1)),
+      loads_measured_(segment.compiled[static_cast<std::size_t>(Compiled::Loads)] > 0),
+      used_at_once_(
+          work::compiled_ratio(segment.compiled, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
+
+OperationsOfKind CompiledRatios::apply(double count) const {
+  return {count, count * emitted_, count * used_at_once_, loads_measured_ ? 0 : count};
+}
+
+void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKind& operations,
+               const CoreConfig& core) {
+  const OpCost& cost = core[info.op];
+  // A routine was counted with its moves and spills.
+  to.issue += cost.issue *
+              (cost.routine ? operations.count : operations.emitted * core.instruction_overhead);
+  to.*stall_breakdown(info.op) += operations.count * cost.stall;
+  if (info.op == Op::LoadStream || info.op == Op::LoadIndexed)
+    to.load_use += core.load_use_stall *
+                   (operations.used_at_once + operations.unmeasured * core.load_use_fraction);
+}
+
 Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {
-  using work::Compiled;
   Demand demand;
-  const double emitted =
-      core.instruction_overhead *
-      work::compiled_ratio(counts.compiled, Compiled::Executed, Compiled::Priced, 1);
+  const CompiledRatios ratios(counts);
   for (const work::OpInfo& info : work::kOps) {
     const auto n = static_cast<double>(counts[info.op]);
+    add_price(demand.alone, info, ratios.apply(n), core);
     const OpCost& cost = core[info.op];
-    // A routine was counted with its moves and spills.
-    demand.alone.issue += n * cost.issue * (cost.routine ? 1.0 : emitted);
-    demand.alone.*stall_breakdown(info.op) += n * cost.stall;
     if (cost.unit == Unit::Core) continue;
     UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];
     unit.requests += n;
     unit.cycles += n * cost.busy;
   }
-  const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
-  const double loads = sum(Op::LoadStream, Op::LoadIndexed);
-  const double used_at_once = work::compiled_ratio(counts.compiled, Compiled::LoadsUsedAtOnce,
-                                                   Compiled::Loads, core.load_use_fraction);
-  demand.alone.load_use = loads * used_at_once * core.load_use_stall;
   const CodeFetch fetch = code.fetch(counts.code);
   demand.alone.fetch = fetch.stall;
   demand.fetches = fetch.requests + code.lines_executed(demand.alone.issue);
   demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
+  const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   // The second half of a straddling access follows the first.
   demand.streamed = sum(Op::LoadStream, Op::StoreStream, Op::Straddle);
   demand.scattered = sum(Op::LoadIndexed, Op::StoreIndexed);

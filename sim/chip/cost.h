@@ -45,6 +45,32 @@ struct Demand {
   double cycles() const { return alone.total(); }
 };
 
+/// Operations of one kind, with what their segments' compiled code makes of them.
+struct OperationsOfKind {
+  double count = 0;
+  double emitted = 0;       ///< … each multiplied by executed to counted instructions
+  double used_at_once = 0;  ///< of loads: those whose value the next instruction needs
+  double unmeasured = 0;    ///< … of loads: those of which nobody knows
+
+  OperationsOfKind& operator+=(const OperationsOfKind& o);
+};
+
+/// The ratios of one segment's compiled code.
+class CompiledRatios {
+ public:
+  explicit CompiledRatios(const work::Counts& segment);
+  OperationsOfKind apply(double count) const;
+
+ private:
+  double emitted_;
+  bool loads_measured_;
+  double used_at_once_;
+};
+
+/// Adds what operations of one kind cost a core that runs alone.
+void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKind& operations,
+               const CoreConfig& core);
+
 /// @param code  the caches through which the core fetches; by default unlimited ones
 Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code = {});
 

@@ -29,6 +29,10 @@ struct Fork {
   bool master_takes_part = false;  ///< then the last share is the master's own
 };
 
+/// The shares of a fork together, as one core executes them alone. Its scratch begins where that of
+/// the first core of a team does, so words straddle as often as in the first share.
+Segment shares_on_one_core(const Fork& fork);
+
 /// External memory is reached from L2 only, by the controller.
 enum class Direction : std::uint8_t { L2ToL1, L1ToL2, ExternalToL2, L2ToExternal };
 

@@ -61,7 +61,7 @@ TEST(Isa, XpulpSavesLoopControlAddressesAndMultiplyAdds) {
 }
 
 TEST(Isa, SetsOfAFamilyShareWhatTheyDoNotChange) {
-  for (const Op op : {Op::IntAlu, Op::IntDiv, Op::BranchTaken, Op::F64Mul, Op::Straddle}) {
+  for (const Op op : {Op::IntAlu, Op::IntDiv, Op::BranchTaken, Op::Straddle}) {
     EXPECT_EQ(cycles(core_of("rv32imc_xpulp"), op), cycles(core_of("rv32imfc"), op));
     EXPECT_EQ(core_of("rv32imc_xpulp")[op].routine, core_of("rv32imfc")[op].routine);
   }

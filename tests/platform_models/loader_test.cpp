@@ -280,9 +280,9 @@ TEST(Loader, BuiltInPlatformsAreListedAndLoad) {
 TEST(Loader, KeepsSourcesRangesAndNotes) {
   for (const Parameter& p : resolve_platform("gap9").parameters) {
     if (p.path != "cluster.dma.programming") continue;
-    EXPECT_EQ(p.value, "25");
+    EXPECT_EQ(p.value, "30");
     EXPECT_EQ(p.unit, "cycles");
-    EXPECT_EQ(p.source, "DOC-3, derived (FACTS.md#cluster-dma)");
+    EXPECT_EQ(p.source, "DOC-3, derived, SIM (FACTS.md#cluster-dma, FACTS.md#published-kernels)");
     EXPECT_EQ(p.confidence, "medium");
     ASSERT_TRUE(p.range);
     EXPECT_EQ(p.range->low, 10);

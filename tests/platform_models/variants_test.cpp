@@ -81,7 +81,7 @@ TEST(Calibrated, SaysSoBesideTheNumberAndKeepsItsRange) {
   EXPECT_EQ(p.confidence, "calibrated");
   EXPECT_EQ(p.source, "calibrated (how)");
   ASSERT_TRUE(p.range.has_value());
-  EXPECT_EQ(p.range->high, 1.6);
+  EXPECT_EQ(p.range->high, 1.4);
   EXPECT_NE(text.find("\"calibrated\": \"what it means\""), std::string::npos);
   EXPECT_EQ(to_yaml(again), text);
 }

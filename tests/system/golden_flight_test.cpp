@@ -126,9 +126,14 @@ Figures figures_of(const ShortFlight& flight, const vio::Profile& profile) {
     trajectory.push_back({frame.t_ns, body_pose(report, flight)});
   }
   Figures figures = account.figures();
-  const traces::Evaluation ate = traces::evaluate(trajectory, flight.truth);
-  figures["ATE mm"] = fmt::format("{:.4f}", ate.translation.rmse * 1e3);
-  figures["rotation error deg"] = fmt::format("{:.5f}", ate.rotation_rmse_deg);
+  // Without an IMU the released program checks no pose, and is lost after frames that show nothing.
+  try {
+    const traces::Evaluation ate = traces::evaluate(trajectory, flight.truth);
+    figures["ATE mm"] = fmt::format("{:.4f}", ate.translation.rmse * 1e3);
+    figures["rotation error deg"] = fmt::format("{:.5f}", ate.rotation_rmse_deg);
+  } catch (const traces::NotComparable& why) {
+    figures["ATE mm"] = why.what();
+  }
   return figures;
 }
 

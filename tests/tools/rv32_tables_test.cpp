@@ -26,7 +26,8 @@ struct Segment {
 
 std::vector<Segment> segments() {
   base::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", base::Separator::comma,
-                      {"function", "after", "lines", "visits", "refetches"});
+                      {"function", "after", "lines", "visits", "refetches", "executed", "priced", "loads",
+                       "used_at_once"});
   const base::CsvRow* row = csv.next();
   EXPECT_EQ(row->text(0), "function");
   std::vector<Segment> result;

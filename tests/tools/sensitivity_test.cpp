@@ -81,11 +81,11 @@ TEST(Sensitivity, TheBaseIsWhatTheJobsTake) {
 
 TEST(Sensitivity, BothEndsOfARangeFollowTheFormula) {
   const Sensitivity s = sweep();
-  const Swing& factor = swing(s, "isa.instruction_overhead");  // 1 to 1.6
-  EXPECT_NEAR(factor.low.epnp.value(), (10'000 + kOffloads) * kMsPerCycle, 1e-9);
-  EXPECT_NEAR(factor.high.epnp.value(), (16'000 + kOffloads) * kMsPerCycle, 1e-9);
+  const Swing& factor = swing(s, "isa.instruction_overhead");  // 0.9 to 1.4
+  EXPECT_NEAR(factor.low.epnp.value(), (9'000 + kOffloads) * kMsPerCycle, 1e-9);
+  EXPECT_NEAR(factor.high.epnp.value(), (14'000 + kOffloads) * kMsPerCycle, 1e-9);
   EXPECT_EQ(factor.high.eight_point, s.base.eight_point);
-  EXPECT_NEAR(factor.high.iteration.value(), 1'000 * (1.6 * 12 + 2) * kMsPerCycle, 1e-9);
+  EXPECT_NEAR(factor.high.iteration.value(), 1'000 * (1.4 * 12 + 2) * kMsPerCycle, 1e-9);
   const Swing& rate = swing(s, "cluster.dma.bytes_per_cycle");  // 4 to 8
   EXPECT_NEAR(rate.low.eight_point.value() - s.base.eight_point.value(), 1'000 * kMsPerCycle, 1e-9);
   EXPECT_EQ(rate.high.eight_point, s.base.eight_point);
@@ -138,14 +138,14 @@ TEST(Sensitivity, TableAndFileShowTheEffect) {
   const std::string text = sensitivity_table(s, 8);
   const double factor = overhead();
   const std::string effect =
-      fmt::format("{:+.2f} … {:+.2f}", 100 * 10'000 * (1 - factor) / (10'000 * factor + kOffloads),
-                  100 * 10'000 * (1.6 - factor) / (10'000 * factor + kOffloads));
+      fmt::format("{:+.2f} … {:+.2f}", 100 * 10'000 * (0.9 - factor) / (10'000 * factor + kOffloads),
+                  100 * 10'000 * (1.4 - factor) / (10'000 * factor + kOffloads));
   EXPECT_NE(text.find(effect), std::string::npos) << effect << '\n' << text;
   EXPECT_NE(text.find("changing nothing"), std::string::npos);
   const std::string csv = sensitivity_csv(s);
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
             s.swings.size() + 1);
-  EXPECT_NE(csv.find(fmt::format("isa.instruction_overhead,calibrated,ratio,{},1,1.6,", factor)),
+  EXPECT_NE(csv.find(fmt::format("isa.instruction_overhead,calibrated,ratio,{},0.9,1.4,", factor)),
             std::string::npos);
 }
 

@@ -140,7 +140,7 @@ TEST(ValidationFlow, OnGap8) {
       run_on("gap8", {"cluster.clock=50MHz", "controller.clock=50MHz", "supply.voltage=1.0V"});
   if (!flight) GTEST_SKIP() << kNoData;
   expect_figure(*flight, "GAP8", FlowFigure::FrameRate, 1100, 1300);
-  expect_figure(*flight, "GAP8", FlowFigure::SpeedUp, 7.21 - 0.2, 7.21 + 0.2);
+  expect_figure(*flight, "GAP8", FlowFigure::SpeedUp, 6.73 - 0.2, 6.73 + 0.2);
   expect_figure(*flight, "GAP8", FlowFigure::Power, 14, 19);
 }
 

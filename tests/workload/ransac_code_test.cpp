@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,16 +41,18 @@ const work::CodeMap& scaled_code(double factor) {
   static std::map<double, work::CodeMap> maps;
   const auto [found, is_new] = maps.try_emplace(factor);
   if (!is_new) return found->second;
-  std::string scaled = "function,after,lines,visits,refetches\n";
+  std::string scaled = "function,after,lines,visits,refetches,executed,priced,loads,used_at_once\n";
   for (const base::BuiltinFile& file : platform::builtin_code()) {
     if (file.name != platform::kCompiledCode) continue;
     base::CsvReader csv(file.name, base::Separator::comma,
-                        {"function", "after", "lines", "visits", "refetches"},
+                        {"function", "after", "lines", "visits", "refetches", "executed", "priced",
+                         "loads", "used_at_once"},
                         std::string(file.text));
     csv.next();  // titles
     while (const base::CsvRow* row = csv.next())
-      scaled += fmt::format("{},{},{},{},{}\n", row->text(0), row->text(1), factor * row->number(2),
-                            row->text(3), factor * row->number(4));
+      scaled += fmt::format("{},{},{},{},{},{},{},{},{}\n", row->text(0), row->text(1),
+                            factor * row->number(2), row->text(3), factor * row->number(4),
+                            row->text(5), row->text(6), row->text(7), row->text(8));
   }
   return found->second = platform::code_map_from("scaled", scaled);
 }
@@ -112,8 +115,8 @@ struct Modelled {
   double work = 0;
   double stall = 0;
 };
-Modelled modelled(const Recording& recording) {
-  sim::Chip chip(gap9(), recording.cores);
+Modelled modelled(const Recording& recording, int workers) {
+  sim::Chip chip(gap9(), workers);
   sim::JobTiming timing;
   const auto body = [&]() -> sim::Process { timing = co_await chip.cluster().run(recording.job); };
   chip.kernel().spawn("test", body());
@@ -137,17 +140,20 @@ std::vector<std::vector<LineList>> lines_of(const Recording& recording, const Co
   return lists;
 }
 
-constexpr int kLayouts = 6;
+/// Where the linker puts functions moves what a core waits by tens of per cent.
+constexpr std::uint64_t kLayouts = 16;
 
 /// @param apart  the cores begin each fork at places of its code by chance, as far apart as this
 ///               share of it
 struct Case {
   const char* name;
   double apart;
+  int workers = 0;  ///< kMasterAlone: the master; else those of the recording
 };
 
 /// Mean over layouts and cores of what stepped cores wait.
-double stepped(const Recording& recording, double work, const Case& c) {
+/// @param own  the size of their private caches
+double stepped(const Recording& recording, double work, const Case& c, Bytes own) {
   double sum = 0;
   for (std::uint64_t layout = 1; layout <= kLayouts; ++layout) {
     const auto lists = lines_of(recording, CodeLayout(platform::compiled_code(), layout));
@@ -156,7 +162,7 @@ double stepped(const Recording& recording, double work, const Case& c) {
       for (const LineList& list : forks) lines += list.size();
     const double per_line = work * recording.cores / static_cast<double>(lines);
     tests::RandomNumbers random(layout);
-    LineCaches caches(gap9().cluster.icache, gap9().cluster.icache.worker, layout);
+    LineCaches caches(gap9().cluster.icache, own, layout);
     for (std::size_t fork = 0; fork < lists[0].size(); ++fork) {
       std::vector<Walker> walkers;
       for (const auto& forks : lists) {
@@ -180,16 +186,53 @@ Recording in_step(Recording recording) {
   return recording;
 }
 
-void compare(const char* name, const Recording& recording, const Case& c) {
-  const Modelled model = modelled(recording);
-  const double expected = stepped(recording, model.work, c);
-  EXPECT_NEAR(model.stall, expected, 0.1 * expected)
+void compare(const char* name, const Recording& recording, const Case& c, double tolerance = 0.1) {
+  const bool is_master = c.workers == sim::Cluster::kMasterAlone;
+  const sim::InstructionCacheConfig& icache = gap9().cluster.icache;
+  const Modelled model = modelled(recording, is_master ? c.workers : recording.cores);
+  const double expected =
+      stepped(recording, model.work, c, is_master ? icache.master : icache.worker);
+  EXPECT_NEAR(model.stall, expected, tolerance * expected)
       << name << ", " << c.name << ": " << 100 * (model.stall / expected - 1) << " %";
 }
 
-TEST(RansacCode, ALoneCoreWaitsAsSteppedCachesSay) {
+TEST(RansacCode, ALoneWorkerWaitsAsSteppedCachesSay) {
   compare("EPnP", epnp(1), {"alone", 0});
   compare("8-point", eight_point(1), {"alone", 0});
+}
+
+/// What the 8-point algorithm waits is known to be 15 % too little: its loop is nearly twice as
+/// large as the common cache, of which the master's own hides a part.
+TEST(RansacCode, TheMasterAloneWaitsAsSteppedCachesSay) {
+  const Case alone{"master alone", 0, sim::Cluster::kMasterAlone};
+  compare("EPnP", epnp(1), alone);
+  compare("8-point", eight_point(1), alone, 0.16);
+}
+
+/// Mean number of adjacent lines among the distinct ones of some ten thousand fetches.
+double mean_stretch(const LineList& lines) {
+  constexpr std::size_t kWindow = 80'000;  // about a hypothesis of EPnP
+  double runs = 0, distinct = 0;
+  for (std::size_t at = 0; at + kWindow < lines.size(); at += kWindow) {
+    const auto begin = lines.begin() + static_cast<std::ptrdiff_t>(at);
+    const std::set<std::uint32_t> window(begin, begin + kWindow);
+    distinct += static_cast<double>(window.size());
+    for (const std::uint32_t line : window) runs += window.contains(line - 1) ? 0 : 1;
+  }
+  return distinct / runs;
+}
+
+/// The constant of sim/chip/instruction_cache.cpp.
+TEST(RansacCode, LinesLieTogetherAsTheCachesTake) {
+  double sum = 0;
+  for (const Recording& recording : {epnp(1), eight_point(1)})
+    for (std::uint64_t layout = 1; layout <= kLayouts; ++layout) {
+      LineList all;
+      const auto lists = lines_of(recording, CodeLayout(platform::compiled_code(), layout));
+      for (const LineList& fork : lists[0]) all.insert(all.end(), fork.begin(), fork.end());
+      sum += mean_stretch(all);
+    }
+  EXPECT_NEAR(sum / (2 * kLayouts), 28, 1.4);
 }
 
 /// Out of step are cores some hundreds of lines apart. (Where they are in different parts of the
@@ -207,7 +250,7 @@ TEST(RansacCode, TeamsWaitAsSteppedCachesSay) {
 
 /// Cycles of the workers by the model.
 double cycles(const Recording& recording) {
-  const Modelled model = modelled(recording);
+  const Modelled model = modelled(recording, recording.cores);
   return model.work + model.stall;
 }
 

@@ -47,6 +47,17 @@ constexpr std::array kOfTheTeam{
 
 constexpr std::string_view kOther = "other";
 
+/// Adds to the calls of the same kind.
+void add_calls(std::vector<work::OffloadWork>& sums, const work::OffloadWork& calls) {
+  for (work::OffloadWork& sum : sums) {
+    if (sum.kernel != calls.kernel) continue;
+    sum.calls += calls.calls;
+    sum.items += calls.items;
+    return;
+  }
+  sums.push_back(calls);
+}
+
 template <class Keep>
 StageParts folded_unless(const StageParts& stage, Keep&& keep) {
   StageParts result{stage.stage, stage.on_controller, stage.cycles, {}};
@@ -61,6 +72,8 @@ StageParts folded_unless(const StageParts& stage, Keep&& keep) {
   if (other.cycles != 0) result.parts.push_back(other);
   return result;
 }
+
+}  // namespace
 
 /// The parts of one stage, in core-cycles over the cores.
 class PartList {
@@ -80,44 +93,6 @@ class PartList {
   double cores_;
   std::vector<CyclePart> parts_;
 };
-
-/// What work costs lone cores, operation by operation: the price of a segment is the sum of the
-/// prices of its operations and of its code.
-/// @param fetch   cycles that its code took
-/// @param factor  core-cycles that go by in a cycle of the work
-/// @returns its price in core-cycles
-double add_priced(PartList& list, std::string_view where, const work::Segment& segment,
-                  const sim::CoreConfig& core, const sim::Accelerators& accelerators, double fetch,
-                  double factor) {
-  double total = 0;
-  const auto add = [&](std::string_view operation, const UsefulCycles& price, double count) {
-    total += price.total() * factor;
-    for (const PricedMechanism& m : kPriced)
-      if (price.*m.of != 0) list.add(where, m.key, operation, price.*m.of * factor, count);
-    if (price.total() == 0) list.add(where, "issue", operation, 0, count);
-  };
-  const work::Counts left =
-      segment.offload.empty() ? work::Counts(segment) : sim::left_to_core(segment, accelerators);
-  for (const work::OpInfo& op : work::kOps) {
-    work::Counts one;
-    one[op.op] = left[op.op];
-    if (!one.empty()) add(op.name, price(one, core).alone, static_cast<double>(left[op.op]));
-  }
-  const auto bytes = std::accumulate(left.code.begin(), left.code.end(), 0.0);
-  if (bytes > 0) add("code", UsefulCycles{.fetch = fetch}, bytes);
-  for (const work::OffloadWork& calls : segment.offload) {
-    if (accelerators[work::index(calls.kernel)].units == 0) continue;
-    const sim::Service service = sim::service_of(calls, accelerators);
-    const std::string_view kernel = work::kOffloadKinds[work::index(calls.kernel)].name;
-    const auto items = static_cast<double>(calls.items);
-    list.add(where, "issue", kernel, service.instructions * factor, items);
-    list.add(where, "accelerator", kernel, service.waiting * factor, items);
-    total += (service.instructions + service.waiting) * factor;
-  }
-  return total;
-}
-
-}  // namespace
 
 std::string_view describe_mechanism(std::string_view key) {
   const auto it = std::find_if(kMechanisms.begin(), kMechanisms.end(),
@@ -143,28 +118,77 @@ CycleParts::Place& CycleParts::place(Stage& stage, std::string_view name) {
   const auto it = std::find_if(stage.places.begin(), stage.places.end(),
                                [&](const Place& p) { return p.name == name; });
   if (it != stage.places.end()) return *it;
-  return stage.places.emplace_back(Place{std::string(name), {}});
+  Place& added = stage.places.emplace_back();
+  added.name = name;
+  return added;
+}
+
+const sim::Accelerators& CycleParts::accelerators_of(const Stage& stage) const {
+  return stage.on_controller ? chip_.controller.accelerators : chip_.cluster.accelerators;
+}
+
+void CycleParts::add_segment(const Stage& stage, Place& place, const work::Segment& segment) const {
+  const sim::Accelerators& accelerators = accelerators_of(stage);
+  place.work.add(segment.offload.empty() ? work::Counts(segment)
+                                         : sim::left_to_core(segment, accelerators));
+  for (std::size_t i = 0; i < work::kReuseClasses; ++i) place.code[i] += segment.code[i];
+  for (const work::OffloadWork& calls : segment.offload)
+    if (accelerators[work::index(calls.kernel)].units > 0) add_calls(place.served, calls);
 }
 
 void CycleParts::add_steps(Stage& stage, const work::StageRun& run) {
+  // A controller runs all steps of a stage as one.
+  if (stage.on_controller) {
+    const work::Segment all = work::segments_of(run);
+    Place& alone = place(stage, kSerialPlace);
+    add_segment(stage, alone, all);
+    alone.fetch += controller_code_.fetch(all.code).stall;
+    return;
+  }
   for (const work::Step& step : run.steps) {
     if (const auto* serial = std::get_if<work::Serial>(&step)) {
       Place& alone = place(stage, kSerialPlace);
-      alone.work += serial->counts;
-      if (!stage.on_controller) alone.fetch += master_code_.fetch(serial->counts.code).stall;
+      add_segment(stage, alone, serial->counts);
+      alone.fetch += master_code_.fetch(serial->counts.code).stall;
     }
     if (const auto* fork = std::get_if<work::Fork>(&step)) add_fork(stage, *fork);
   }
-  // A controller runs all steps of a stage as one.
-  if (stage.on_controller)
-    place(stage, kSerialPlace).fetch += controller_code_.fetch(work::counts_of(run).code).stall;
 }
 
 void CycleParts::add_fork(Stage& stage, const work::Fork& fork) {
   // What the master does beside the workers is not in the account: they wait for it, or do not.
   const std::size_t shares = fork.shares.size() - (fork.master_takes_part ? 1 : 0);
   Place& here = place(stage, fork.name);
-  for (std::size_t i = 0; i < shares; ++i) here.work += fork.shares[i];
+  for (std::size_t i = 0; i < shares; ++i) add_segment(stage, here, fork.shares[i]);
+}
+
+/// What the work of a place costs lone cores, operation by operation, and its code.
+/// @param factor  core-cycles that go by in a cycle of the work
+/// @returns its price in core-cycles
+double CycleParts::add_priced(PartList& list, const Stage& stage, const Place& place,
+                              double factor) const {
+  const sim::CoreConfig& core = stage.on_controller ? chip_.controller.core : chip_.cluster.core;
+  double total = 0;
+  const auto add = [&](std::string_view operation, const UsefulCycles& price, double count) {
+    total += price.total() * factor;
+    for (const PricedMechanism& m : kPriced)
+      if (price.*m.of != 0) list.add(place.name, m.key, operation, price.*m.of * factor, count);
+    if (price.total() == 0) list.add(place.name, "issue", operation, 0, count);
+  };
+  for (const work::OpInfo& op : work::kOps)
+    if (const double count = place.work.count(op.op); count > 0)
+      add(op.name, place.work.price(op.op, core), count);
+  const auto bytes = std::accumulate(place.code.begin(), place.code.end(), 0.0);
+  if (bytes > 0) add("code", UsefulCycles{.fetch = place.fetch}, bytes);
+  for (const work::OffloadWork& calls : place.served) {
+    const sim::Service service = sim::service_of(calls, accelerators_of(stage));
+    const std::string_view kernel = work::kOffloadKinds[work::index(calls.kernel)].name;
+    const auto items = static_cast<double>(calls.items);
+    list.add(place.name, "issue", kernel, service.instructions * factor, items);
+    list.add(place.name, "accelerator", kernel, service.waiting * factor, items);
+    total += (service.instructions + service.waiting) * factor;
+  }
+  return total;
 }
 
 /// What all forks of a stage waited for code is known; it is divided as the prices of their sums
@@ -172,7 +196,7 @@ void CycleParts::add_fork(Stage& stage, const work::Fork& fork) {
 void CycleParts::divide_fetches(std::vector<Place>& places, double cycles) const {
   double all = 0;
   for (Place& place : places)
-    if (place.name != kSerialPlace) all += place.fetch = worker_code_.fetch(place.work.code).stall;
+    if (place.name != kSerialPlace) all += place.fetch = worker_code_.fetch(place.code).stall;
   for (Place& place : places)
     if (place.name != kSerialPlace && all > 0) place.fetch *= cycles / all;
 }
@@ -203,16 +227,9 @@ std::vector<StageParts> CycleParts::stages() const {
     std::vector<Place> places = stage.places;
     if (!stage.on_controller) divide_fetches(places, stage.breakdown.useful.fetch);
     for (const Place& p : places) {
-      const bool alone = p.name == kSerialPlace;
-      if (stage.on_controller)
-        add_priced(list, p.name, p.work, chip_.controller.core, chip_.controller.accelerators,
-                   p.fetch, 1);
-      else if (alone)
-        serial += add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators,
-                             p.fetch, cores);
-      else
-        add_priced(list, p.name, p.work, chip_.cluster.core, chip_.cluster.accelerators, p.fetch,
-                   1);
+      const bool master_alone = !stage.on_controller && p.name == kSerialPlace;
+      const double price = add_priced(list, stage, p, master_alone ? cores : 1);
+      if (master_alone) serial += price;
     }
     if (!stage.on_controller)
       list.add(kSerialPlace, "rounding", "", stage.breakdown.serial - serial);

@@ -18,6 +18,7 @@
 
 #include "sim/chip/config.h"
 #include "sim/chip/instruction_cache.h"
+#include "sim/chip/work_sum.h"
 #include "sim/work/program.h"
 #include "tools/app/run/run_observer.h"
 
@@ -72,6 +73,8 @@ struct StageParts {
   std::vector<CyclePart> parts;
 };
 
+class PartList;
+
 /// Looks on while a run happens and adds up what its jobs did.
 class CycleParts : public RunObserver {
  public:
@@ -87,7 +90,9 @@ class CycleParts : public RunObserver {
  private:
   struct Place {
     std::string name;
-    work::Segment work;
+    sim::WorkSum work;  ///< … without what accelerators serve
+    work::CodeReuse code{};
+    std::vector<work::OffloadWork> served;  ///< by accelerators
     double fetch = 0;  ///< core-cycles that code took; not the price of the sum
   };
   struct Stage {
@@ -100,9 +105,12 @@ class CycleParts : public RunObserver {
 
   Stage& find(std::string_view name, bool on_controller);
   static Place& place(Stage& stage, std::string_view name);
+  void add_segment(const Stage& stage, Place& place, const work::Segment& segment) const;
+  const sim::Accelerators& accelerators_of(const Stage& stage) const;
   void add(const work::Job& job, const sim::JobTiming& timing, bool on_controller);
   void add_steps(Stage& stage, const work::StageRun& run);
-  static void add_fork(Stage& stage, const work::Fork& fork);
+  void add_fork(Stage& stage, const work::Fork& fork);
+  double add_priced(PartList& list, const Stage& stage, const Place& place, double factor) const;
   void divide_fetches(std::vector<Place>& places, double cycles) const;
 
   sim::ChipConfig chip_;

@@ -39,7 +39,11 @@ void FrameLog::on_front_end(const FrontEndJob& event) {
     ++stage.calls;
     stage.parallel += event.parallel.stages[i].cycles;
     stage.single += event.single.stages[i].cycles;
-    stage.counts += work::counts_of(event.job.stages[i]);
+    for (const work::Step& step : event.job.stages[i].steps) {
+      if (const auto* serial = std::get_if<work::Serial>(&step)) stage.work.add(serial->counts);
+      if (const auto* fork = std::get_if<work::Fork>(&step))
+        stage.work.add(work::shares_on_one_core(*fork));
+    }
   }
   if (event.result.keyframe) keyframe_features_ = event.result.features;
   frames_.push_back(std::move(frame));

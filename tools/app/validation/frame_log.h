@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/chip/work_sum.h"
 #include "tools/app/run/run_observer.h"
 
 namespace leviosim::tools {
@@ -14,9 +15,9 @@ namespace leviosim::tools {
 struct LoggedStage {
   std::string_view name;
   int calls = 0;
-  Cycles single;        ///< on one core
-  Cycles parallel;      ///< on N cores
-  work::Counts counts;  ///< of all cores
+  Cycles single;      ///< on one core
+  Cycles parallel;    ///< on N cores
+  sim::WorkSum work;  ///< of all cores
 };
 
 struct LoggedFrame {

@@ -25,7 +25,7 @@ StageSum sum_over(const std::vector<LoggedFrame>& frames, const PaperStage& stag
     ++sum.frames;
     sum.single += logged->single;
     sum.parallel += logged->parallel;
-    sum.counts += logged->counts;
+    sum.work += logged->work;
     sum.pairs += pairs_of(frame, stage.stage);
     sum.features += frame.result.features;
     sum.landmarks += frame.landmarks_before;

@@ -49,7 +49,7 @@ struct StageSum {
   std::int64_t frames = 0;
   Cycles single;
   Cycles parallel;
-  work::Counts counts;
+  sim::WorkSum work;
   std::int64_t pairs = 0;      ///< features of the frame × what they are compared with, see below
   std::int64_t features = 0;   ///< of these frames
   std::int64_t landmarks = 0;  ///< in the map when these frames came

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "sim/base/error.h"
-#include "sim/chip/cost.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -16,14 +15,14 @@ double paper_cycles(const std::vector<Reference>& references, std::string_view k
 }
 
 /// Cycles of the operations alone, with their code at hand.
-double priced(const work::Counts& counts, const sim::ChipConfig& chip) {
-  return sim::price(counts, chip.cluster.core).cycles();
+double priced(const sim::WorkSum& work, const sim::ChipConfig& chip) {
+  return work.price(chip.cluster.core).total();
 }
 
 }  // namespace
 
 double StageModel::cycles(const sim::ChipConfig& chip) const {
-  return (priced(counts, chip) + fixed) / static_cast<double>(frames);
+  return (priced(work, chip) + fixed) / static_cast<double>(frames);
 }
 
 std::vector<StageModel> stage_models(const FrameLog& log, const sim::ChipConfig& chip) {
@@ -40,8 +39,8 @@ std::vector<StageModel> stage_models(const FrameLog& log, const sim::ChipConfig&
     model.key = stage.key;
     model.title = stage.title;
     model.frames = sum.frames;
-    model.counts = sum.counts;
-    model.fixed = static_cast<double>(sum.single.count()) - priced(sum.counts, chip);
+    model.work = sum.work;
+    model.fixed = static_cast<double>(sum.single.count()) - priced(sum.work, chip);
     model.reference = paper_cycles(references, stage.key);
     models.push_back(std::move(model));
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/chip/config.h"
+#include "sim/chip/work_sum.h"
 #include "tools/app/validation/paper_stages.h"
 
 namespace leviosim::tools {
@@ -19,7 +20,7 @@ struct StageModel {
   std::string key;
   std::string title;
   std::int64_t frames = 0;
-  work::Counts counts;   ///< summed over the frames
+  sim::WorkSum work;     ///< of the frames
   double fixed = 0;      ///< cycles beside the operations, summed over the frames
   double reference = 0;  ///< cycles of a mean call that the fit aims at
 

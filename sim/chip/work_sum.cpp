@@ -1,0 +1,29 @@
+#include "sim/chip/work_sum.h"
+
+namespace leviosim::sim {
+
+void WorkSum::add(const work::Counts& segment) {
+  const CompiledRatios ratios(segment);
+  for (std::size_t i = 0; i < work::kOpCount; ++i)
+    kinds_[i] += ratios.apply(static_cast<double>(segment.n[i]));
+}
+
+WorkSum& WorkSum::operator+=(const WorkSum& other) {
+  for (std::size_t i = 0; i < work::kOpCount; ++i) kinds_[i] += other.kinds_[i];
+  return *this;
+}
+
+UsefulCycles WorkSum::price(work::Op op, const CoreConfig& core) const {
+  UsefulCycles cycles;
+  add_price(cycles, work::kOps[work::index(op)], kinds_[work::index(op)], core);
+  return cycles;
+}
+
+UsefulCycles WorkSum::price(const CoreConfig& core) const {
+  UsefulCycles cycles;
+  for (const work::OpInfo& info : work::kOps)
+    add_price(cycles, info, kinds_[work::index(info.op)], core);
+  return cycles;
+}
+
+}  // namespace leviosim::sim
