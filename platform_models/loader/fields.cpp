@@ -208,6 +208,15 @@ void add_instruction_cache(Table& table, const std::string& path, const std::str
       [caches](auto& chip) -> auto& { return caches(chip).ways; });
 }
 
+/// Of both: the compiler is the same.
+template <class Caches>
+void add_code_size(Table& table, const std::string& path, Caches caches) {
+  table.add(
+      optional(quantity(path + ".code_size", kRatio, 0.1, 10,
+                        "bytes of code for each one that was measured; 1 unless said")),
+      [caches](auto& chip) -> auto& { return caches(chip).code_size; });
+}
+
 void add_code_of_cluster(Table& table) {
   const auto caches = [](auto& chip) -> auto& { return chip.cluster.icache; };
   const std::string path = "cluster.icache";
@@ -235,6 +244,7 @@ void add_code_of_cluster(Table& table) {
       quantity(path + ".refills", kUnits, kLeastTime, kMaxParts,
                "lines that the shared instruction cache can await from L2 at once"),
       [](auto& chip) -> auto& { return chip.cluster.icache.refills; });
+  add_code_size(table, path, caches);
 }
 
 /// The controller has no shared cache in front of L2.
@@ -246,6 +256,8 @@ void add_code_of_controller(Table& table) {
       quantity("controller.icache.miss", kCycles, kLeastTime, kMaxCost,
                "cycles that the controller waits for a line that has to come from L2"),
       [](auto& chip) -> auto& { return chip.controller.icache.shared_miss; });
+  add_code_size(
+      table, "controller.icache", [](auto& chip) -> auto& { return chip.controller.icache; });
 }
 
 void add_l1_and_dma(Table& table) {

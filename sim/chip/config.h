@@ -82,6 +82,7 @@ struct InstructionCacheConfig {
   double shared_miss = 0;  ///< cycles waited for a line that has to come from L2
   double refills = 1;      ///< lines that the shared cache can await from L2 at once
   int ways = 4;            ///< lines of a set, in all caches
+  double code_size = 1;    ///< bytes of code for each one that was measured
 };
 
 struct L1Config {

@@ -91,6 +91,33 @@ Walk walk_of(const work::CodeReuse& code, double line) {
   return walk;
 }
 
+/// The same fetches by code that is larger or smaller.
+work::CodeReuse resized(const work::CodeReuse& code, double ratio) {
+  work::CodeReuse result{};
+  for (std::size_t k = 0; k < code.size(); ++k) {
+    if (code[k] == 0) continue;
+    const auto bytes =
+        static_cast<std::uint64_t>(std::llround(static_cast<double>(code[k]) * ratio));
+    if (k == work::kNeverFetched) {
+      result[k] += bytes;
+      continue;
+    }
+    const double distance = work::kReuseDistances[k] * ratio;
+    const std::size_t farther = work::reuse_class(static_cast<std::uint32_t>(std::ceil(distance)));
+    if (farther == 0 || farther == work::kNeverFetched) {
+      result[farther] += bytes;
+      continue;
+    }
+    const double near = work::kReuseDistances[farther - 1];
+    const double share = (distance - near) / (work::kReuseDistances[farther] - near);
+    const auto far_bytes = static_cast<std::uint64_t>(
+        std::llround(static_cast<double>(bytes) * std::clamp(share, 0.0, 1.0)));
+    result[farther] += far_bytes;
+    result[farther - 1] += bytes - far_bytes;
+  }
+  return result;
+}
+
 /// exp(-x), near enough for x above 0, in instructions that compilers make vectors of.
 double survival(double x) { return 1 / (1 + x * (1 + x * (0.5 + x / 6))); }
 
@@ -154,17 +181,18 @@ CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sh
       shared_hit_(config.shared_hit),
       shared_miss_(config.shared_miss),
       sharers_(sharers),
+      code_size_(config.code_size),
       own_(level_of(own, config.line, config.ways)),
       shared_(level_of(config.shared, config.line, config.ways)) {}
 
 double CodeFetcher::lines_executed(double instructions) const {
   if (line_ == 0 || own_.bytes > 0 || shared_.bytes == 0) return 0;
-  return instructions * kInstructionBytes / line_;
+  return instructions * kInstructionBytes * code_size_ / line_;
 }
 
 CodeFetch CodeFetcher::fetch(const work::CodeReuse& code) const {
   if (line_ == 0) return {};
-  const Walk walk = walk_of(code, line_);
+  const Walk walk = walk_of(code_size_ == 1 ? code : resized(code, code_size_), line_);
   if (walk.lines == 0) return {};
   const bool is_private = own_.bytes > 0;
   OfClasses missing;

@@ -72,6 +72,7 @@ class CodeFetcher {
   double shared_hit_ = 0;
   double shared_miss_ = 0;
   double sharers_ = 1;
+  double code_size_ = 1;
   Level own_;
   Level shared_;
 };

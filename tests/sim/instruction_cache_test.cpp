@@ -329,6 +329,19 @@ TEST(InstructionCache, ATeamSharesTrafficAndWaitsAsALoneCore) {
   }
 }
 
+/// Twice the code is the same as a loop of twice the bytes.
+TEST(InstructionCache, FetchesCodeOfAnotherSize) {
+  InstructionCacheConfig twice = caches();
+  twice.code_size = 2;
+  for (const std::uint32_t bytes : {300U, 1024U, 3000U, 8192U}) {
+    const CodeFetch expected =
+        CodeFetcher(caches(), caches().worker, 1).fetch(loop_over(2 * bytes, 50));
+    const CodeFetch found = CodeFetcher(twice, twice.worker, 1).fetch(loop_over(bytes, 50));
+    EXPECT_NEAR(found.stall, expected.stall, 0.02 * expected.stall + 1) << bytes;
+    EXPECT_NEAR(found.refills, expected.refills, 0.02 * expected.refills + 1) << bytes;
+  }
+}
+
 TEST(InstructionCache, StepsAtEachCapacity) {
   const CodeFetcher fetcher(caches(), caches().worker, 1);
   const auto stall_per_line = [&](std::uint32_t bytes) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "platform_models/loader/loader.h"
 #include "tools/app/result/summary.h"
@@ -95,6 +96,23 @@ TEST(Sensitivity, BothEndsOfARangeFollowTheFormula) {
   EXPECT_EQ(effect_on_frame(call, s.base), 0);
 }
 
+TEST(Sensitivity, BandsOfStagesAreRootsOfSumsOfSquaresWithoutWhatWasFitted) {
+  const Sensitivity s = sweep();
+  const std::vector<StageBand> bands = stage_bands(s);
+  ASSERT_EQ(bands.size(), 3u);  // e, o, m
+  EXPECT_EQ(bands[0].stage, "e");
+  EXPECT_NEAR(bands[0].kcycles, 10 * overhead(), 1e-3);  // whole cycles
+  // Of integer operations only the fitted number has a range.
+  EXPECT_EQ(bands[0].low, bands[0].kcycles);
+  EXPECT_EQ(bands[0].high, bands[0].kcycles);
+  // Of the transfer: bytes per cycle 4 … 8, programming 10 … 30, first data and completion.
+  const double slow = 1.0, programming = 0.02, first = 0.01, completion = 0.008;
+  EXPECT_NEAR(bands[2].kcycles, 1.062, 1e-9);
+  EXPECT_NEAR(bands[2].high, 1.062 + std::hypot(slow, first), 1e-9);
+  EXPECT_NEAR(bands[2].low, 1.062 - std::hypot(programming, first, completion), 1e-9);
+  EXPECT_NE(sensitivity_table(s, 8).find("if all these numbers are uncertain"), std::string::npos);
+}
+
 TEST(Sensitivity, TheLargestEffectOnTheFrameComesFirst) {
   const Sensitivity s = sweep();
   EXPECT_EQ(s.swings[0].parameter.path, "cluster.events.offload");
@@ -137,9 +155,9 @@ TEST(Sensitivity, TableAndFileShowTheEffect) {
   const Sensitivity s = sweep();
   const std::string text = sensitivity_table(s, 8);
   const double factor = overhead();
-  const std::string effect =
-      fmt::format("{:+.2f} … {:+.2f}", 100 * 10'000 * (0.9 - factor) / (10'000 * factor + kOffloads),
-                  100 * 10'000 * (1.4 - factor) / (10'000 * factor + kOffloads));
+  const std::string effect = fmt::format(
+      "{:+.2f} … {:+.2f}", 100 * 10'000 * (0.9 - factor) / (10'000 * factor + kOffloads),
+      100 * 10'000 * (1.4 - factor) / (10'000 * factor + kOffloads));
   EXPECT_NE(text.find(effect), std::string::npos) << effect << '\n' << text;
   EXPECT_NE(text.find("changing nothing"), std::string::npos);
   const std::string csv = sensitivity_csv(s);

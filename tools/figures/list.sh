@@ -67,6 +67,11 @@ needs data
 shows 'leviosim sensitivity --data euroc/MH_01_easy_t05_t20 --frames 0:100'
 cut 'table number number confidence value range frame optimiser | first 14'
 
+figure bands
+needs data
+shows 'leviosim sensitivity --data euroc/MH_01_easy_t05_t20 --frames 0:100'
+cut 'sed -n "/^a mean call/,/^changing/p" | grep -v "^changing"'
+
 figure calibrate
 needs data
 shows 'leviosim calibrate --data euroc/MH_01_easy_t05_t20 --constants isa.instruction_overhead'

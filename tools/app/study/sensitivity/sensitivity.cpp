@@ -12,6 +12,8 @@
 namespace leviosim::tools {
 namespace {
 
+constexpr std::string_view kCalibrated = "calibrated";
+
 /// A chip to time: a parameter at one end of its range, or, without parameter, the base.
 struct Trial {
   const platform::Parameter* parameter = nullptr;
@@ -72,6 +74,50 @@ class Average {
   std::int64_t n_ = 0;
 };
 
+/// Calls of stages, by name.
+class StageAverages {
+ public:
+  void add(const sim::JobTiming& timing) {
+    for (const sim::StageTiming& stage : timing.stages) {
+      const auto found = std::find_if(stages_.begin(), stages_.end(),
+                                      [&](const auto& s) { return s.first == stage.stage; });
+      Sum& sum = found != stages_.end()
+                     ? found->second
+                     : stages_.emplace_back(std::string(stage.stage), Sum{}).second;
+      sum.cycles += static_cast<double>(stage.cycles.count());
+      ++sum.calls;
+    }
+  }
+  std::vector<std::pair<std::string, double>> kcycles() const {
+    std::vector<std::pair<std::string, double>> result;
+    for (const auto& [name, sum] : stages_)
+      result.emplace_back(name, sum.cycles / 1e3 / static_cast<double>(sum.calls));
+    return result;
+  }
+
+ private:
+  struct Sum {
+    double cycles = 0;
+    std::int64_t calls = 0;
+  };
+  std::vector<std::pair<std::string, Sum>> stages_;
+};
+
+/// The root of the sum of the squares of what falls below, or rises above, the value.
+double together(const Sensitivity& sensitivity, const std::string& stage, double value, bool rise) {
+  double squares = 0;
+  for (const Swing& swing : sensitivity.swings) {
+    if (swing.parameter.confidence == kCalibrated) continue;
+    double farthest = 0;
+    for (const MeanTimes* end : {&swing.low, &swing.high}) {
+      const double change = end->stage(stage).value_or(value) - value;
+      farthest = std::max(farthest, rise ? change : -change);
+    }
+    squares += farthest * farthest;
+  }
+  return std::sqrt(squares);
+}
+
 double largest(std::optional<double> a, std::optional<double> b) {
   return std::max(std::abs(a.value_or(0)), std::abs(b.value_or(0)));
 }
@@ -99,23 +145,41 @@ MeanTimes time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTr
   Average epnp;
   Average eight_point;
   Average iteration;
+  StageAverages stages;
   traces::WorkFrames reader(trace, sim::has_accelerators(chip));
   for (traces::WorkFrame recorded; reader.next(recorded);) {
     for (const work::Job& job : recorded.iterations) {
       Cycles cycles;
-      for (const sim::StageTiming& stage : timer.optimiser(job).stages) cycles += stage.cycles;
+      const sim::JobTiming timing = timer.optimiser(job);
+      for (const sim::StageTiming& stage : timing.stages) cycles += stage.cycles;
+      stages.add(timing);
       iteration.add(static_cast<double>(cycles.count()));
     }
     if (recorded.source == name_of(PoseSource::First)) continue;  // which only starts a map
     const sim::JobTiming timing = timer.front_end(recorded.front_end);
     const auto cycles = static_cast<double>(timer.front_end_cycles(timing).count());
+    stages.add(timing);
     frame.add(cycles);
     if (recorded.source == name_of(PoseSource::Epnp)) epnp.add(cycles);
     if (recorded.source == name_of(PoseSource::EightPoint)) eight_point.add(cycles);
   }
   const Hertz clock = chip.cluster.clock;
   return {frame.ms(clock), epnp.ms(clock), eight_point.ms(clock),
-          iteration.ms(chip.controller.clock)};
+          iteration.ms(chip.controller.clock), stages.kcycles()};
+}
+
+std::optional<double> MeanTimes::stage(std::string_view name) const {
+  for (const auto& [stage, kcycles] : stages)
+    if (stage == name) return kcycles;
+  return std::nullopt;
+}
+
+std::vector<StageBand> stage_bands(const Sensitivity& sensitivity) {
+  std::vector<StageBand> bands;
+  for (const auto& [stage, kcycles] : sensitivity.base.stages)
+    bands.push_back({stage, kcycles, kcycles - together(sensitivity, stage, kcycles, false),
+                     kcycles + together(sensitivity, stage, kcycles, true)});
+  return bands;
 }
 
 std::optional<double> percent_change(std::optional<double> value, std::optional<double> base) {

@@ -9,6 +9,8 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "platform_models/loader/variants.h"
@@ -23,6 +25,11 @@ struct MeanTimes {
   std::optional<double> epnp;         ///< … from EPnP
   std::optional<double> eight_point;  ///< … from the 8-point algorithm
   std::optional<double> iteration;    ///< of the optimiser, with its share of updates
+  /// Stages in the order in which they came first, with the kcycles of a mean call.
+  std::vector<std::pair<std::string, double>> stages;
+
+  /// Absent if there is no such stage.
+  std::optional<double> stage(std::string_view name) const;
 };
 
 /// Frame by frame, without a camera and without queues. @param workers  cores of the team
@@ -47,6 +54,17 @@ std::optional<double> percent_change(std::optional<double> value, std::optional<
 /// Largest absolute change of the frame time at either end, in per cent.
 double effect_on_frame(const Swing& swing, const MeanTimes& base);
 double effect_on_iteration(const Swing& swing, const MeanTimes& base);
+
+/// What a stage takes if no number with a range is certain: the changes at the ends of all ranges,
+/// taken as independent, so as the root of the sum of their squares. Numbers that were fitted to
+/// stages are left out: they follow the others.
+struct StageBand {
+  std::string stage;
+  double kcycles = 0;  ///< of a mean call
+  double low = 0;
+  double high = 0;
+};
+std::vector<StageBand> stage_bands(const Sensitivity& sensitivity);
 
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
                         const traces::WorkTrace& trace, const RunnerOptions& options);

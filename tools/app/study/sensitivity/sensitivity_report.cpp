@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "sim/base/csv_table.h"
@@ -43,6 +44,26 @@ std::string list_line(const std::string& title, const std::vector<std::string>& 
   return title + "\n  " + wrap(names, ", ", 2, kWidth) + '\n';
 }
 
+std::string bands_table(const Sensitivity& sensitivity) {
+  TextTable table({{"stage", kLeft}, {"kcycles"}, {"band"}, {"per cent"}});
+  for (const StageBand& band : stage_bands(sensitivity))
+    table.add({band.stage, fmt::format("{:.1f}", band.kcycles),
+               fmt::format("{:.1f} … {:.1f}", band.low, band.high),
+               fmt::format("{:+.1f} … {:+.1f}", percent_change(band.low, band.kcycles).value_or(0),
+                           percent_change(band.high, band.kcycles).value_or(0))});
+  return "a mean call of each stage if all these numbers are uncertain at once (root of the sum "
+         "of\n"
+         "squares; without numbers that were fitted)\n" +
+         table.str();
+}
+
+/// As part of a column's name.
+std::string key_of(std::string stage) {
+  std::replace_if(
+      stage.begin(), stage.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  return stage;
+}
+
 }  // namespace
 
 std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
@@ -71,6 +92,7 @@ std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
              "change of them in per cent at the low and at the high end of a number's range\n{}",
              ms(base.frame), workers, ms(base.epnp), ms(base.eight_point), ms(base.iteration),
              table.str()) +
+         bands_table(sensitivity) +
          list_line("changing nothing by 0.005 % or more:", without_effect) +
          list_line("not certain, but without a range:", sensitivity.unbounded);
 }
@@ -96,6 +118,16 @@ std::string sensitivity_csv(const Sensitivity& sensitivity) {
     add("high_ms", [=](S s) { return s.high.*of; });
     add("low_percent", [=](S s) { return percent_change(s.low.*of, base_ms); });
     add("high_percent", [=](S s) { return percent_change(s.high.*of, base_ms); });
+  }
+  for (const auto& [stage, kcycles] : sensitivity.base.stages) {
+    const auto add = [&table, stage = stage, kcycles = kcycles](const char* name,
+                                                                MeanTimes Swing::*end) {
+      table.add(fmt::format("{}_{}", key_of(stage), name), [=](S s) {
+        return base::fixed(percent_change((s.*end).stage(stage), kcycles), 6);
+      });
+    };
+    add("low_percent", &Swing::low);
+    add("high_percent", &Swing::high);
   }
   return table.text(sensitivity.swings);
 }
