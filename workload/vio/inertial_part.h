@@ -26,6 +26,8 @@ class InertialPart {
   /// Since the last keyframe, at the bias of the graph.
   ImuDelta<P> motion_since_keyframe() const;
 
+  /// A keyframe's pose, moved on by the motion since then.
+  Pose<P> moved_on(const KeyframeState<P>& from, const ImuDelta<P>& delta) const;
   /// The last keyframe's pose, moved on as the IMU measured; without an IMU, at its velocity.
   Pose<P> predicted_pose() const;
 

@@ -10,6 +10,7 @@
 #include "workload/geometry/essential_ransac.h"
 #include "workload/geometry/pnp_ransac.h"
 #include "workload/geometry/pose_refinement.h"
+#include "workload/graph/alignment.h"
 #include "workload/graph/optimiser.h"
 #include "workload/inertial/bias_estimation.h"
 #include "workload/inertial/initialisation.h"
@@ -47,6 +48,10 @@ struct RecoveryOptions {
 struct RestOptions {
   float position = 0.05f;  ///< m
   float rotation = 0.02f;  ///< rad
+  /// While there are no landmarks: of the motion since the keyframe, over the distance of what is
+  /// seen. Below it the camera has not moved, whatever the IMU says.
+  float image_motion = 0.006f;
+  float wrong_match = 0.03f;  ///< a match that moved farther is none, in normalised coordinates
 };
 
 struct Profile {
@@ -69,6 +74,9 @@ struct Profile {
   RefinementOptions refinement;
   RecoveryOptions recovery;
   RestOptions rest;
+  AlignmentOptions alignment;       ///< of a map that begins in motion; needs the joint optimiser
+  float alignment_parallax = 0.5f;  ///< of its keyframes, as a share of keyframe_parallax
+  int initial_frames = 0;           ///< before it whose poses are told anew when it comes
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

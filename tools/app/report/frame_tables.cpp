@@ -33,6 +33,7 @@ constexpr std::array<std::pair<PoseSource, std::string_view>, vio::kPoseSources.
     {PoseSource::Epnp, "EPnP"},
     {PoseSource::EightPoint, "8-point"},
     {PoseSource::Predicted, "predicted"},
+    {PoseSource::Initialising, "initialising"},
     {PoseSource::Kept, "pose kept"},
     {PoseSource::First, "first of a map"},
 }};
@@ -125,8 +126,7 @@ std::string trajectory_summary(const RunResult& run) {
   std::string text = fmt::format("trajectory: {} poses, {:.2f} m long\n", run.trajectory.size(),
                                  path_length(run.trajectory));
   if (run.poses_left_out > 0)
-    text +=
-        fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
+    text += fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
   if (const std::string why = why_incomparable(run); !why.empty())
     return text + "ATE: none: " + why + '\n';
   if (!run.ate) return text + "ATE: no ground truth in the data\n";

@@ -13,10 +13,13 @@ namespace leviosim::vio {
 
 template <class P>
 NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-                              work::Arena& keyframe_memory, const PoseGraph<P>& graph)
+                              work::Arena& keyframe_memory, const PoseGraph<P>& graph,
+                              MapStatus& map)
     : state_(profile, rig, cluster, keyframe_memory, graph),
+      map_(map),
       inertial_(state_),
-      prediction_(state_, inertial_, keyframe_memory) {}
+      prediction_(state_, inertial_, map_, keyframe_memory),
+      path_(state_, inertial_, keyframe_memory, profile.initial_frames) {}
 
 template <class P>
 FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
@@ -28,18 +31,23 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   inertial_.integrate(input);
   extract_frame<P>(state_, frame);
   report.keyframe = true;
+  if (state_.started && !initialises()) report.earlier = path_.poses();
   if (!state_.started) {
     start_map<P>(state_, frame);
-  } else if (inertial_.rest() && !prediction_.window_is_full()) {
+  } else if (inertial_.rest() && (initialises() || !prediction_.window_is_full())) {
     start_at_rest(frame);
   } else if (!map_is_plausible(state_, prediction_)) {
     start_anew(frame);
     report.map_restarts = 1;
   } else {
-    locate(frame, report);
+    if (initialises())
+      follow(frame, report);
+    else
+      locate(frame, report);
     report.keyframe = is_keyframe(frame, report);
-    if (report.keyframe) insert_keyframe<P>(state_, frame);
+    if (report.keyframe) insert_keyframe<P>(state_, frame, !initialises());
   }
+  if (initialises()) path_.remember();
   prediction_.remember(frame, report);
   complete<P>(state_, frame, report);
   return report;
@@ -65,7 +73,7 @@ void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame) {
   const float stddev = state_.profile.optimiser.prior.rest_gyro_bias;
   prior.gyro_information = 1.0f / (stddev * stddev);
   state_.graph_in_l2.set_bias_prior(prior);
-  prediction_.begin_map(true);
+  map_.aligned = true;
 }
 
 /// What became of the map cannot be true: another one begins where the camera was seen last.
@@ -81,7 +89,32 @@ void NextFrontEnd<P>::start_anew(TrackedFrame<P>& frame) {
   const Vec3<P>& force = inertial_.recent_force();
   if (dot(force, force) > F(0.0f)) R = levelled<P>(R, force);
   begin_map<P>(state_, frame, record, ImuBias<P>::zero(), {0.0f, 0.0f, -kGravity});
-  prediction_.begin_map(false);
+  map_.aligned = false;
+}
+
+/// Whether the map waits for its alignment.
+template <class P>
+bool NextFrontEnd<P>::initialises() const {
+  return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
+}
+
+/// Landmarks without a distance tell no pose: the IMU moves the last keyframe on, as far as its
+/// velocity is known by now, while features are followed from keyframe to keyframe.
+template <class P>
+void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
+  frame.T_world_last = prediction_.last_pose();
+  alloc_keyframe_matches<P>(state_, frame);
+  {
+    const work::Arena::Frame descriptors(state_.machine.local());
+    match_keyframe<P>(state_, frame);
+  }
+  report.source = PoseSource::Initialising;
+  {
+    const auto stage = state_.machine.stage(stages::kGuided);
+    frame.T_world_camera = inertial_.predicted_pose();
+    if (is_still(frame)) frame.T_world_camera.t = state_.newest_keyframe().T_world_camera.t;
+  }
+  frame.T_world_camera = settled(frame.T_world_camera);
 }
 
 /// From landmarks; without enough of them, by prediction; without one, from the last keyframe.
@@ -115,7 +148,9 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
   if (prediction_.imu_predicts()) {
     const auto stage = state_.machine.stage(stages::kGuided);
     report.source = PoseSource::Predicted;
-    return inertial_.predicted_pose();
+    const Pose<P> predicted = inertial_.predicted_pose();
+    if (state_.graph_in_l2.keyframe_count() > I32(1) || !is_still(frame)) return predicted;
+    return Pose<P>{predicted.R, state_.newest_keyframe().T_world_camera.t};
   }
   if (state_.graph_in_l2.keyframe_count() == I32(1) && !is_keyframe(frame, report)) {
     const auto stage = state_.machine.stage(stages::kGuided);
@@ -123,6 +158,16 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
     return Pose<P>{prediction_.by_motion(frame).R, frame.T_world_last.t};
   }
   return std::nullopt;
+}
+
+/// Whether the images say that the camera is where it was at the last keyframe. Works inside a
+/// stage.
+template <class P>
+bool NextFrontEnd<P>::is_still(const Frame<P>& frame) {
+  using F = typename P::F32;
+  const RestOptions& limits = state_.profile.rest;
+  const auto moved = motion_over_distance(state_, inertial_, frame, limits.wrong_match);
+  return moved && bool(dot(*moved, *moved) < F(limits.image_motion * limits.image_motion));
 }
 
 /// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
@@ -161,6 +206,8 @@ bool NextFrontEnd<P>::is_keyframe(const Frame<P>& frame, const FrameReport& repo
   if (report.source == PoseSource::Kept) return false;  // its place is not known
   const F sum = total_parallax(state_, inertial_, frame);
   float parallax = profile.keyframe_parallax;
+  if (initialises())
+    return bool(sum > F(profile.alignment_parallax * parallax * static_cast<float>(matches)));
   const bool lost = report.source == PoseSource::Predicted;
   // Without a map, noise would look like motion.
   if ((lost || report.inliers < recovery.min_tracked) &&

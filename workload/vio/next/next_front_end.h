@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "workload/vio/front_end.h"
+#include "workload/vio/next/initial_path.h"
 #include "workload/vio/next/prediction.h"
 
 namespace leviosim::vio {
@@ -12,10 +13,10 @@ namespace leviosim::vio {
 template <class P>
 class NextFrontEnd : public FrontEnd<P> {
  public:
-  /// @param profile  outlives this
+  /// @param profile, map  outlive this
   /// @param graph    in L2; shared with the back end
   NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-               work::Arena& keyframe_memory, const PoseGraph<P>& graph);
+               work::Arena& keyframe_memory, const PoseGraph<P>& graph, MapStatus& map);
 
   FrameReport process(const FrameInput& input) override;
 
@@ -24,14 +25,19 @@ class NextFrontEnd : public FrontEnd<P> {
 
   void start_at_rest(TrackedFrame<P>& frame);
   void start_anew(TrackedFrame<P>& frame);
+  bool initialises() const;
+  void follow(TrackedFrame<P>& frame, FrameReport& report);
   void locate(TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> pose_by_prediction(const TrackedFrame<P>& frame, FrameReport& report);
+  bool is_still(const Frame<P>& frame);
   Pose<P> settled(const Pose<P>& T_world_camera);
   bool is_keyframe(const Frame<P>& frame, const FrameReport& report);
 
   FrontEndState<P> state_;
+  MapStatus& map_;
   InertialPart<P> inertial_;
   Prediction<P> prediction_;
+  InitialPath<P> path_;   ///< while the map waits for its alignment
   bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still
 };
 
