@@ -6,6 +6,7 @@
 
 #include "workload/graph/anchored_landmarks.h"
 #include "workload/graph/carried_poses.h"
+#include "workload/vin_exp.h"
 #include "workload/inertial/initialisation.h"
 
 namespace leviosim::vio {
@@ -138,7 +139,9 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   const MatrixView<P> factor = alloc_matrix<P>(arena, "information of the alignment",
                                                kAlignmentUnknowns, kAlignmentUnknowns);
   const auto column = arena.alloc<Span>("column of the alignment", kAlignmentUnknowns);
-  const LandmarkPrior prior{options.inverse_depth, information(options.inverse_depth_stddev)};
+  const LandmarkPrior prior{options.inverse_depth, information(window.keyframes < static_cast<int>(vin("ALIGN_FULL", 5))
+                                            ? vin("ALIGN_COARSE", 0.1f)
+                                            : options.inverse_depth_stddev)};
   const AnchoredLandmarks<P> landmarks(arena, window, PixelModel<P>(optimiser.visual), prior);
   const auto trial = arena.alloc<Span>("trial landmarks", 3 * window.landmarks);
 
@@ -172,26 +175,43 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
     lm.lambda = work::min(F(lm.lambda * optimiser.lambda_up), F(optimiser.max_lambda));
   }
   const CarriedPoses<P>& best = report.accepted ? trial_poses : poses;
-  report.landmarks = landmarks.judge(window, best);
+  const auto verdict = landmarks.judge(window, best);
+  report.landmarks = verdict.told;
   landmarks.release(window);
   report.cost_before = work::value(cost);
   report.cost_after = work::value(trial_cost);
   if (!cholesky_factor<P>(factor)) return report;
   report.uncertainty =
       work::value(uncertainty_of_way<P>(best[window.keyframes - 1], factor, column));
-  report.determined = report.uncertainty < options.max_uncertainty &&
-                      report.landmarks >= options.min_landmarks &&
+  const float bg_unc = [&] {
+    F v = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < kAlignmentUnknowns; ++i) column[i] = 0.0f;
+      column[kGyro + axis] = 1.0f;
+      for (int i = 0; i < kAlignmentUnknowns; ++i) {
+        F sum = column[i];
+        for (int k = 0; k < i; ++k) sum -= factor(i, k) * column[k];
+        column[i] = sum * factor(i, i);
+        v += F(column[i]) * F(column[i]);
+      }
+    }
+    return work::value(work::sqrt(v));
+  }();
+  report.determined = bg_unc < vin("ALIGN_BG", 1) && window.keyframes >= static_cast<int>(vin("ALIGN_FULL", 5)) && report.uncertainty < options.max_uncertainty * (window.keyframes == window.capacity.keyframes ? vin("ALIGN_MORE", 2) : 1) &&
+                      verdict.told >= options.min_landmarks &&
+                      static_cast<float>(verdict.explained) >=
+                          vin("ALIGN_EXPL", 0.7f) * static_cast<float>(window.landmarks) &&
                       report.cost_before - report.cost_after < 0.01f * report.cost_before;
 #ifdef VIN_TRACE
   if (std::getenv("VIN_TRACE")) {
     const Vec3<P> v = window.state.keyframe(window.keyframes - 1).velocity;
-    std::printf("align kf %d t %.2f way %.3f lm %d/%d cost %.0f->%.0f lam %g acc %d unc %.3f |v| %.2f bg %.3f %.3f %.3f ba %.3f %.3f %.3f det %d\n",
+    std::printf("align kf %d t %.2f way %.3f lm %d/%d cost %.0f->%.0f lam %g acc %d unc %.3f |v| %.2f bg %.3f %.3f %.3f ba %.3f %.3f %.3f det %d bgunc %.3f\n",
                 window.keyframes, (double)work::value(best[window.keyframes - 1].time), (double)work::value(norm(best[window.keyframes - 1].p)), report.landmarks, window.landmarks, report.cost_before,
                 report.cost_after, report.lambda, report.accepted, report.uncertainty,
                 (double)work::value(norm(v)), (double)work::value(window.bias.gyro.x),
                 (double)work::value(window.bias.gyro.y), (double)work::value(window.bias.gyro.z),
                 (double)work::value(window.bias.accel.x), (double)work::value(window.bias.accel.y),
-                (double)work::value(window.bias.accel.z), report.determined);
+                (double)work::value(window.bias.accel.z), report.determined, bg_unc);
   }
 #endif
   return report;

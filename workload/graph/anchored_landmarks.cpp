@@ -199,23 +199,25 @@ typename P::F32 AnchoredLandmarks<P>::add(const Window<P>& window, const Carried
 }
 
 template <class P>
-int AnchoredLandmarks<P>::judge(const Window<P>& window, const CarriedPoses<P>& poses) const {
+typename AnchoredLandmarks<P>::Verdict AnchoredLandmarks<P>::judge(const Window<P>& window, const CarriedPoses<P>& poses) const {
   const typename P::Function function("judge_landmarks");
   constexpr float kErrors = 3;    // standard deviations of an observation that is explained
   constexpr float kDistance = 2;  // standard deviations of an inverse depth that is told
   const F limit = F(kErrors * kErrors) / model_.information * F(2.0f);
-  int good = 0;
+  Verdict verdict{0, 0};
   for (int i : P::range(0, window.landmarks)) {
     const Vec3<P> landmark = load_vec3<P>(all_, 3 * i);
     const Normal normal = normal_of(window, poses, i, landmark);
     Mat3<P> inverse;
     const bool told = invert_spd3<P>(normal.H, inverse) &&
                       landmark.z * landmark.z > F(kDistance * kDistance) * inverse.m[2][2];
-    const bool lost = !told || normal.worst_sq > limit;
+    const bool explained = bool(normal.worst_sq < limit);
+    const bool lost = !told || !explained;
     window.lost[i] = work::narrow<typename P::Byte>(I32(lost ? 1 : 0));
-    if (!lost) ++good;
+    if (explained) ++verdict.explained;
+    if (!lost) ++verdict.told;
   }
-  return good;
+  return verdict;
 }
 
 template class AnchoredLandmarks<work::Native>;

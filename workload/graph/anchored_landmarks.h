@@ -50,8 +50,11 @@ class AnchoredLandmarks {
         const ReducedSystem<P>& system) const;
 
   /// Marks those as lost that do not explain their observations, or whose distance is not told.
-  /// @return the number of the others
-  int judge(const Window<P>& window, const CarriedPoses<P>& poses) const;
+  /// @return the numbers of those that explain them, and of those whose distance is told as well
+  struct Verdict {
+    int explained, told;
+  };
+  Verdict judge(const Window<P>& window, const CarriedPoses<P>& poses) const;
 
  private:
   /// Normal equations of one landmark.

@@ -85,7 +85,7 @@ void InertialPart<P>::detect_stillness(const Preintegration<P>& interval, float 
       state_.profile.optimiser.joint && seen.still ? stillness_.without_recent(seen) : seen;
   stillness_.end_frame();
   rest_.reset();
-  recent_force_ = seen.accel_mean;
+  recent_ = seen;
   if (!state_.started || !state_.profile.use_imu || !seen.still) return;
   if (state_.profile.optimiser.joint) {
     rest_ = at_rest;

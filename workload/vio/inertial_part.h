@@ -33,8 +33,8 @@ class InertialPart {
 
   /// Means over the last second if the vehicle stands still; only for the joint optimiser.
   const std::optional<Stillness<P>>& rest() const { return rest_; }
-  /// Mean specific force over the last second [m/s²].
-  const Vec3<P>& recent_force() const { return recent_force_; }
+  /// The same means, whether it stands still or not.
+  const Stillness<P>& recent() const { return recent_; }
 
  private:
   ImuNoise noise_of(const ImuInput& sample) const;
@@ -44,7 +44,7 @@ class InertialPart {
   Mat3<P> R_camera_body_;
   StillnessDetector<P> stillness_;
   std::optional<Stillness<P>> rest_;
-  Vec3<P> recent_force_{0.0f, 0.0f, 0.0f};
+  Stillness<P> recent_{false, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
 };
 
 }  // namespace leviosim::vio

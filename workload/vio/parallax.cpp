@@ -57,10 +57,9 @@ typename P::F32 total_parallax(const FrontEndState<P>& state, const InertialPart
 /// (y t.z - t.y) / d.
 template <class P>
 std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state,
-                                            const InertialPart<P>& inertial, const Frame<P>& frame,
-                                            float most) {
+                                            const Frame<P>& frame,
+                                            const Mat3<P>& R_camera_keyframe, float most) {
   using F = typename P::F32;
-  const Mat3<P> R_camera_keyframe = rotation_to_undo(state, inertial, frame);
   F x = 0.0f, y = 0.0f, radius_sq = 0.0f;
   Vec3<P> b{0.0f, 0.0f, 0.0f};
   int near = 0;
@@ -87,10 +86,10 @@ template work::Counting::F32 total_parallax(const FrontEndState<work::Counting>&
                                             const InertialPart<work::Counting>&,
                                             const Frame<work::Counting>&);
 template std::optional<Vec3<work::Native>> motion_over_distance(const FrontEndState<work::Native>&,
-                                                                const InertialPart<work::Native>&,
-                                                                const Frame<work::Native>&, float);
+                                                                const Frame<work::Native>&,
+                                                                const Mat3<work::Native>&, float);
 template std::optional<Vec3<work::Counting>> motion_over_distance(
-    const FrontEndState<work::Counting>&, const InertialPart<work::Counting>&,
-    const Frame<work::Counting>&, float);
+    const FrontEndState<work::Counting>&, const Frame<work::Counting>&,
+    const Mat3<work::Counting>&, float);
 
 }  // namespace leviosim::vio

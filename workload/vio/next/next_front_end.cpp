@@ -1,5 +1,6 @@
 #include "workload/vio/next/next_front_end.h"
 
+#include "workload/vin_exp.h"
 #include "workload/vio/keyframe_insertion.h"
 #include "workload/vio/keyframe_matching.h"
 #include "workload/vio/map_start.h"
@@ -31,11 +32,12 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   inertial_.integrate(input);
   extract_frame<P>(state_, frame);
   report.keyframe = true;
+  still_ = rests_ = false;
   if (state_.started && !initialises()) report.earlier = path_.poses();
   if (!state_.started) {
     start_map<P>(state_, frame);
   } else if (inertial_.rest() && (initialises() || !prediction_.window_is_full())) {
-    start_at_rest(frame);
+    start_at_rest(frame, *inertial_.rest());
   } else if (!map_is_plausible(state_, prediction_)) {
     start_anew(frame);
     report.map_restarts = 1;
@@ -44,8 +46,13 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
       follow(frame, report);
     else
       locate(frame, report);
-    report.keyframe = is_keyframe(frame, report);
-    if (report.keyframe) insert_keyframe<P>(state_, frame, !initialises());
+    if (images_rest()) {
+      report.source = PoseSource::First;
+      start_at_rest(frame, inertial_.recent());
+    } else {
+      report.keyframe = is_keyframe(frame, report);
+      if (report.keyframe) insert_keyframe<P>(state_, frame, !initialises());
+    }
   }
   if (initialises()) path_.remember();
   prediction_.remember(frame, report);
@@ -58,12 +65,11 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
 /// zero, while noise alone would sooner or later look like parallax, and the scale of a map with
 /// few keyframes is a guess.
 template <class P>
-void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame) {
+void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest) {
   work::Arena& local = state_.machine.local();
   const work::Arena::Frame memory(local);
   const auto stage = state_.machine.stage(stages::kTriangulation);
   const auto record = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
-  const Stillness<P>& rest = *inertial_.rest();
   frame.T_world_last = frame.T_world_camera = prediction_.last_pose();
   Mat3<P>& R = frame.T_world_camera.R;
   R = levelled<P>(R, rest.accel_mean);
@@ -86,7 +92,7 @@ void NextFrontEnd<P>::start_anew(TrackedFrame<P>& frame) {
   const auto record = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
   frame.T_world_last = frame.T_world_camera = prediction_.last_reported();
   Mat3<P>& R = frame.T_world_camera.R;
-  const Vec3<P>& force = inertial_.recent_force();
+  const Vec3<P>& force = inertial_.recent().accel_mean;
   if (dot(force, force) > F(0.0f)) R = levelled<P>(R, force);
   begin_map<P>(state_, frame, record, ImuBias<P>::zero(), {0.0f, 0.0f, -kGravity});
   map_.aligned = false;
@@ -111,8 +117,8 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
   report.source = PoseSource::Initialising;
   {
     const auto stage = state_.machine.stage(stages::kGuided);
-    frame.T_world_camera = inertial_.predicted_pose();
-    if (is_still(frame)) frame.T_world_camera.t = state_.newest_keyframe().T_world_camera.t;
+    const std::optional<Pose<P>> still = still_pose(frame);
+    frame.T_world_camera = still ? *still : inertial_.predicted_pose();
   }
   frame.T_world_camera = settled(frame.T_world_camera);
 }
@@ -148,9 +154,9 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
   if (prediction_.imu_predicts()) {
     const auto stage = state_.machine.stage(stages::kGuided);
     report.source = PoseSource::Predicted;
-    const Pose<P> predicted = inertial_.predicted_pose();
-    if (state_.graph_in_l2.keyframe_count() > I32(1) || !is_still(frame)) return predicted;
-    return Pose<P>{predicted.R, state_.newest_keyframe().T_world_camera.t};
+    if (state_.graph_in_l2.keyframe_count() == I32(1))
+      if (const std::optional<Pose<P>> still = still_pose(frame)) return still;
+    return inertial_.predicted_pose();
   }
   if (state_.graph_in_l2.keyframe_count() == I32(1) && !is_keyframe(frame, report)) {
     const auto stage = state_.machine.stage(stages::kGuided);
@@ -160,14 +166,30 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
   return std::nullopt;
 }
 
-/// Whether the images say that the camera is where it was at the last keyframe. Works inside a
-/// stage.
+/// The pose of a camera of which the images say that it is where it was at the last keyframe,
+/// turned at most. What does not move in the image at all has not even turned, whatever the gyro
+/// says, whose bias need not be known yet. Works inside a stage.
 template <class P>
-bool NextFrontEnd<P>::is_still(const Frame<P>& frame) {
+std::optional<Pose<P>> NextFrontEnd<P>::still_pose(const Frame<P>& frame) {
   using F = typename P::F32;
   const RestOptions& limits = state_.profile.rest;
-  const auto moved = motion_over_distance(state_, inertial_, frame, limits.wrong_match);
-  return moved && bool(dot(*moved, *moved) < F(limits.image_motion * limits.image_motion));
+  const auto is_still = [&](const Mat3<P>& R_camera_keyframe) {
+    const auto moved =
+        motion_over_distance(state_, frame, R_camera_keyframe, limits.wrong_match);
+    return moved && bool(dot(*moved, *moved) < F(limits.image_motion * limits.image_motion));
+  };
+  const Pose<P> keyframe = state_.newest_keyframe().T_world_camera;
+  const Mat3<P> turn = inertial_.motion_since_keyframe().R;
+  rests_ = is_still(Mat3<P>::identity());
+  still_ = rests_ || is_still(transpose(turn));
+  if (!still_) return std::nullopt;
+  return rests_ ? keyframe : Pose<P>{keyframe.R * turn, keyframe.t};
+}
+
+/// Whether the images have shown rest for as long as the IMU must. It may see rotors that idle.
+template <class P>
+bool NextFrontEnd<P>::images_rest() const {
+  return rests_ && state_.time_since_keyframe > vin("REST_T", 1.0f);
 }
 
 /// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
@@ -207,7 +229,9 @@ bool NextFrontEnd<P>::is_keyframe(const Frame<P>& frame, const FrameReport& repo
   const F sum = total_parallax(state_, inertial_, frame);
   float parallax = profile.keyframe_parallax;
   if (initialises())
-    return bool(sum > F(profile.alignment_parallax * parallax * static_cast<float>(matches)));
+    return !still_ && (state_.time_since_keyframe > vin("ALIGN_DT", 0.25f) ||
+                       bool(sum > F(profile.alignment_parallax * parallax *
+                                    static_cast<float>(matches))));
   const bool lost = report.source == PoseSource::Predicted;
   // Without a map, noise would look like motion.
   if ((lost || report.inliers < recovery.min_tracked) &&

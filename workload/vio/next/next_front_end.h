@@ -23,13 +23,14 @@ class NextFrontEnd : public FrontEnd<P> {
  private:
   using Floats = typename P::template Span<typename P::F32>;
 
-  void start_at_rest(TrackedFrame<P>& frame);
+  void start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest);
+  bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);
   bool initialises() const;
   void follow(TrackedFrame<P>& frame, FrameReport& report);
   void locate(TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> pose_by_prediction(const TrackedFrame<P>& frame, FrameReport& report);
-  bool is_still(const Frame<P>& frame);
+  std::optional<Pose<P>> still_pose(const Frame<P>& frame);
   Pose<P> settled(const Pose<P>& T_world_camera);
   bool is_keyframe(const Frame<P>& frame, const FrameReport& report);
 
@@ -38,6 +39,8 @@ class NextFrontEnd : public FrontEnd<P> {
   InertialPart<P> inertial_;
   Prediction<P> prediction_;
   InitialPath<P> path_;   ///< while the map waits for its alignment
+  bool still_ = false;   ///< the images say that the camera has not moved since the keyframe
+  bool rests_ = false;   ///< nor turned
   bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still
 };
 

@@ -1,6 +1,7 @@
 #include "workload/vio/odometry/back_end.h"
 
 #include "workload/vio/levio/optimiser/optimiser.h"
+#include "workload/vin_exp.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
@@ -22,10 +23,11 @@ BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& contr
 
 template <class P>
 bool BackEnd<P>::begin() {
-  if (work::value(graph_.keyframe_count()) < 2) return false;
+  aligns_ = profile_.alignment.enabled && options_.joint && !map_.aligned;
+  const int least = aligns_ ? static_cast<int>(vin("ALIGN_KF", 3)) : 2;
+  if (work::value(graph_.keyframe_count()) < least) return false;
   if (options_.joint && is_settled()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
-  aligns_ = profile_.alignment.enabled && options_.joint && !map_.aligned;
   determined_ = false;
   if (aligns_) {
     prior_.keyframes = 0;
@@ -37,7 +39,10 @@ bool BackEnd<P>::begin() {
   take_snapshot<P>(graph_, profile_.imu_noise, machine_.local(), window_);
   if (options_.joint && !aligns_ && prior_.keyframes == 0)
     start_prior<P>(window_, options_.prior, prior_);
-  damping_ = LmState<P>(options_);
+  if (!aligns_)
+    damping_ = LmState<P>(options_);
+  else if (snapshots_ == 1)
+    damping_.lambda = vin("ALIGN_LAMBDA", 1e-2f);
   solved_ = false;
   return true;
 }
