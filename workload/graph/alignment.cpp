@@ -1,12 +1,7 @@
 #include "workload/graph/alignment.h"
-#ifdef VIN_TRACE
-#include <cstdio>
-#include <cstdlib>
-#endif
 
 #include "workload/graph/anchored_landmarks.h"
 #include "workload/graph/carried_poses.h"
-#include "workload/vin_exp.h"
 #include "workload/inertial/initialisation.h"
 
 namespace leviosim::vio {
@@ -121,6 +116,22 @@ typename P::F32 uncertainty_of_way(const CarriedPose<P>& end, MatrixView<P> fact
   return work::sqrt(F(variance / work::max(F(dot(end.p, end.p)), F(1e-6f))));
 }
 
+/// Whether the window has settled, and tells enough that can be true.
+/// @param knowledge  the cost of what is known apart from the images
+template <class P>
+bool is_determined(const Window<P>& window, const AlignmentReport& report, float knowledge,
+                   const AlignmentOptions& options) {
+  constexpr float kSettled = 0.01f;  // share of the cost that another iteration may gain
+  const bool full = window.keyframes == window.capacity.keyframes;
+  const float limit = options.max_uncertainty * (full ? options.full_uncertainty : 1.0f);
+  return window.keyframes > options.few_keyframes && report.uncertainty < limit &&
+         2 * knowledge < options.max_surprise * options.max_surprise &&
+         report.landmarks >= options.min_landmarks &&
+         static_cast<float>(report.explained) >=
+             options.min_explained * static_cast<float>(window.landmarks) &&
+         report.cost_before - report.cost_after < kSettled * report.cost_before;
+}
+
 }  // namespace
 
 template <class P>
@@ -139,9 +150,10 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   const MatrixView<P> factor = alloc_matrix<P>(arena, "information of the alignment",
                                                kAlignmentUnknowns, kAlignmentUnknowns);
   const auto column = arena.alloc<Span>("column of the alignment", kAlignmentUnknowns);
-  const LandmarkPrior prior{options.inverse_depth, information(window.keyframes < static_cast<int>(vin("ALIGN_FULL", 5))
-                                            ? vin("ALIGN_COARSE", 0.1f)
-                                            : options.inverse_depth_stddev)};
+  const LandmarkPrior prior{
+      options.inverse_depth,
+      information(window.keyframes > options.few_keyframes ? options.inverse_depth_stddev
+                                                           : options.first_inverse_depth_stddev)};
   const AnchoredLandmarks<P> landmarks(arena, window, PixelModel<P>(optimiser.visual), prior);
   const auto trial = arena.alloc<Span>("trial landmarks", 3 * window.landmarks);
 
@@ -177,43 +189,16 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   const CarriedPoses<P>& best = report.accepted ? trial_poses : poses;
   const auto verdict = landmarks.judge(window, best);
   report.landmarks = verdict.told;
+  report.explained = verdict.explained;
   landmarks.release(window);
   report.cost_before = work::value(cost);
   report.cost_after = work::value(trial_cost);
   if (!cholesky_factor<P>(factor)) return report;
   report.uncertainty =
       work::value(uncertainty_of_way<P>(best[window.keyframes - 1], factor, column));
-  const float bg_unc = [&] {
-    F v = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < kAlignmentUnknowns; ++i) column[i] = 0.0f;
-      column[kGyro + axis] = 1.0f;
-      for (int i = 0; i < kAlignmentUnknowns; ++i) {
-        F sum = column[i];
-        for (int k = 0; k < i; ++k) sum -= factor(i, k) * column[k];
-        column[i] = sum * factor(i, i);
-        v += F(column[i]) * F(column[i]);
-      }
-    }
-    return work::value(work::sqrt(v));
-  }();
-  report.determined = bg_unc < vin("ALIGN_BG", 1) && window.keyframes >= static_cast<int>(vin("ALIGN_FULL", 5)) && report.uncertainty < options.max_uncertainty * (window.keyframes == window.capacity.keyframes ? vin("ALIGN_MORE", 2) : 1) &&
-                      verdict.told >= options.min_landmarks &&
-                      static_cast<float>(verdict.explained) >=
-                          vin("ALIGN_EXPL", 0.7f) * static_cast<float>(window.landmarks) &&
-                      report.cost_before - report.cost_after < 0.01f * report.cost_before;
-#ifdef VIN_TRACE
-  if (std::getenv("VIN_TRACE")) {
-    const Vec3<P> v = window.state.keyframe(window.keyframes - 1).velocity;
-    std::printf("align kf %d t %.2f way %.3f lm %d/%d cost %.0f->%.0f lam %g acc %d unc %.3f |v| %.2f bg %.3f %.3f %.3f ba %.3f %.3f %.3f det %d bgunc %.3f\n",
-                window.keyframes, (double)work::value(best[window.keyframes - 1].time), (double)work::value(norm(best[window.keyframes - 1].p)), report.landmarks, window.landmarks, report.cost_before,
-                report.cost_after, report.lambda, report.accepted, report.uncertainty,
-                (double)work::value(norm(v)), (double)work::value(window.bias.gyro.x),
-                (double)work::value(window.bias.gyro.y), (double)work::value(window.bias.gyro.z),
-                (double)work::value(window.bias.accel.x), (double)work::value(window.bias.accel.y),
-                (double)work::value(window.bias.accel.z), report.determined, bg_unc);
-  }
-#endif
+  const F knowledge =
+      add_knowledge<P>(window, best, report.accepted ? to : from, optimiser, options, nullptr);
+  report.determined = is_determined<P>(window, report, work::value(knowledge), options);
   return report;
 }
 

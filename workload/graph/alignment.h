@@ -24,16 +24,27 @@ namespace leviosim::vio {
 /// What is assumed before anything is known, in standard deviations, and when enough is known.
 struct AlignmentOptions {
   bool enabled = false;
-  float inverse_depth = 0.3f;         ///< of any landmark, 1/m
+  float inverse_depth = 0.15f;        ///< of any landmark, 1/m
   float inverse_depth_stddev = 1.0f;  ///< likewise
-  float velocity = 3;                 ///< m/s
-  float acceleration = 2;             ///< mean over the window, m/s²
-  float max_uncertainty = 0.1f;       ///< of the way over the window, as a share of it
-  int min_landmarks = 30;             ///< whose distance is told
+  /// The same while the window has few keyframes: with all landmarks about equally far away the
+  /// problem is nearly linear, and what it finds is near enough to begin with.
+  float first_inverse_depth_stddev = 0.05f;
+  float velocity = 3;            ///< m/s
+  float acceleration = 2;        ///< mean over the window, m/s²
+  int min_keyframes = 3;         ///< of a window that says anything
+  int few_keyframes = 4;         ///< that leave landmarks equally far away, and a map not aligned
+  float initial_lambda = 1e-2f;  ///< damping with every new keyframe
+  // A map is aligned when all of these hold.
+  float max_uncertainty = 0.1f;  ///< of the way over the window, as a share of it
+  float full_uncertainty = 2;    ///< times that, where the window has no room for more keyframes
+  float max_surprise = 3;        ///< standard deviations of velocity, biases and gravity in all
+  float min_explained = 0.7f;    ///< share of the landmarks that agree with the alignment
+  int min_landmarks = 30;        ///< that do and whose distance is told
 };
 
 struct AlignmentReport : IterationReport {
   float uncertainty = 0;  ///< of the way over the window, as a share of it
+  int explained = 0;      ///< landmarks that agree with the alignment
   bool determined = false;
 };
 

@@ -199,7 +199,8 @@ typename P::F32 AnchoredLandmarks<P>::add(const Window<P>& window, const Carried
 }
 
 template <class P>
-typename AnchoredLandmarks<P>::Verdict AnchoredLandmarks<P>::judge(const Window<P>& window, const CarriedPoses<P>& poses) const {
+typename AnchoredLandmarks<P>::Verdict AnchoredLandmarks<P>::judge(
+    const Window<P>& window, const CarriedPoses<P>& poses) const {
   const typename P::Function function("judge_landmarks");
   constexpr float kErrors = 3;    // standard deviations of an observation that is explained
   constexpr float kDistance = 2;  // standard deviations of an inverse depth that is told

@@ -56,8 +56,7 @@ typename P::F32 total_parallax(const FrontEndState<P>& state, const InertialPart
 /// A camera that moves by t sees a point at distance d and (x, y) move by (x t.z - t.x) / d and
 /// (y t.z - t.y) / d.
 template <class P>
-std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state,
-                                            const Frame<P>& frame,
+std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state, const Frame<P>& frame,
                                             const Mat3<P>& R_camera_keyframe, float most) {
   using F = typename P::F32;
   F x = 0.0f, y = 0.0f, radius_sq = 0.0f;
@@ -89,7 +88,7 @@ template std::optional<Vec3<work::Native>> motion_over_distance(const FrontEndSt
                                                                 const Frame<work::Native>&,
                                                                 const Mat3<work::Native>&, float);
 template std::optional<Vec3<work::Counting>> motion_over_distance(
-    const FrontEndState<work::Counting>&, const Frame<work::Counting>&,
-    const Mat3<work::Counting>&, float);
+    const FrontEndState<work::Counting>&, const Frame<work::Counting>&, const Mat3<work::Counting>&,
+    float);
 
 }  // namespace leviosim::vio

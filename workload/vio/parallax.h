@@ -23,8 +23,7 @@ typename P::F32 total_parallax(const FrontEndState<P>& state, const InertialPart
 /// @param R_camera_keyframe  the rotation since then
 /// @param most               in normalised coordinates; a match that moved farther is a wrong one
 template <class P>
-std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state,
-                                            const Frame<P>& frame,
+std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state, const Frame<P>& frame,
                                             const Mat3<P>& R_camera_keyframe, float most);
 
 }  // namespace leviosim::vio

@@ -51,6 +51,7 @@ struct RestOptions {
   /// While there are no landmarks: of the motion since the keyframe, over the distance of what is
   /// seen. Below it the camera has not moved, whatever the IMU says.
   float image_motion = 0.006f;
+  float image_time = 1;       ///< for which the images must show it to say that it rests [s]
   float wrong_match = 0.03f;  ///< a match that moved farther is none, in normalised coordinates
 };
 
@@ -74,9 +75,10 @@ struct Profile {
   RefinementOptions refinement;
   RecoveryOptions recovery;
   RestOptions rest;
-  AlignmentOptions alignment;       ///< of a map that begins in motion; needs the joint optimiser
-  float alignment_parallax = 0.5f;  ///< of its keyframes, as a share of keyframe_parallax
-  int initial_frames = 0;           ///< before it whose poses are told anew when it comes
+  AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser
+  float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
+  float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]
+  int initial_frames = 0;            ///< before it whose poses are told anew when it comes
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

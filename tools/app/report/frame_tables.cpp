@@ -45,12 +45,6 @@ std::int64_t count_of(const RunResult& run, PoseSource source) {
 
 }  // namespace
 
-std::int64_t map_restarts(const RunResult& run) {
-  std::int64_t restarts = 0;
-  for (const FrameResult& frame : run.frames) restarts += frame.map_restarts;
-  return restarts;
-}
-
 std::string latency_table(const RunResult& run, int width) {
   const auto period_ns = static_cast<double>(run.frame_period_ns);
   TextTable table({{"pose from", TextTable::Align::Left},

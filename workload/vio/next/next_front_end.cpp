@@ -1,6 +1,5 @@
 #include "workload/vio/next/next_front_end.h"
 
-#include "workload/vin_exp.h"
 #include "workload/vio/keyframe_insertion.h"
 #include "workload/vio/keyframe_matching.h"
 #include "workload/vio/map_start.h"
@@ -38,7 +37,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
     start_map<P>(state_, frame);
   } else if (inertial_.rest() && (initialises() || !prediction_.window_is_full())) {
     start_at_rest(frame, *inertial_.rest());
-  } else if (!map_is_plausible(state_, prediction_)) {
+  } else if (!map_is_plausible(state_, prediction_, !initialises())) {
     start_anew(frame);
     report.map_restarts = 1;
   } else {
@@ -174,8 +173,7 @@ std::optional<Pose<P>> NextFrontEnd<P>::still_pose(const Frame<P>& frame) {
   using F = typename P::F32;
   const RestOptions& limits = state_.profile.rest;
   const auto is_still = [&](const Mat3<P>& R_camera_keyframe) {
-    const auto moved =
-        motion_over_distance(state_, frame, R_camera_keyframe, limits.wrong_match);
+    const auto moved = motion_over_distance(state_, frame, R_camera_keyframe, limits.wrong_match);
     return moved && bool(dot(*moved, *moved) < F(limits.image_motion * limits.image_motion));
   };
   const Pose<P> keyframe = state_.newest_keyframe().T_world_camera;
@@ -189,7 +187,7 @@ std::optional<Pose<P>> NextFrontEnd<P>::still_pose(const Frame<P>& frame) {
 /// Whether the images have shown rest for as long as the IMU must. It may see rotors that idle.
 template <class P>
 bool NextFrontEnd<P>::images_rest() const {
-  return rests_ && state_.time_since_keyframe > vin("REST_T", 1.0f);
+  return rests_ && state_.time_since_keyframe > state_.profile.rest.image_time;
 }
 
 /// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
@@ -229,9 +227,9 @@ bool NextFrontEnd<P>::is_keyframe(const Frame<P>& frame, const FrameReport& repo
   const F sum = total_parallax(state_, inertial_, frame);
   float parallax = profile.keyframe_parallax;
   if (initialises())
-    return !still_ && (state_.time_since_keyframe > vin("ALIGN_DT", 0.25f) ||
-                       bool(sum > F(profile.alignment_parallax * parallax *
-                                    static_cast<float>(matches))));
+    return !still_ &&
+           (state_.time_since_keyframe > profile.alignment_interval ||
+            bool(sum > F(profile.alignment_parallax * parallax * static_cast<float>(matches))));
   const bool lost = report.source == PoseSource::Predicted;
   // Without a map, noise would look like motion.
   if ((lost || report.inliers < recovery.min_tracked) &&

@@ -39,8 +39,8 @@ class NextFrontEnd : public FrontEnd<P> {
   InertialPart<P> inertial_;
   Prediction<P> prediction_;
   InitialPath<P> path_;   ///< while the map waits for its alignment
-  bool still_ = false;   ///< the images say that the camera has not moved since the keyframe
-  bool rests_ = false;   ///< nor turned
+  bool still_ = false;    ///< the images say that the camera has not moved since the keyframe
+  bool rests_ = false;    ///< nor turned
   bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still
 };
 

@@ -1,7 +1,6 @@
 #include "workload/vio/odometry/back_end.h"
 
 #include "workload/vio/levio/optimiser/optimiser.h"
-#include "workload/vin_exp.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
@@ -24,7 +23,7 @@ BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& contr
 template <class P>
 bool BackEnd<P>::begin() {
   aligns_ = profile_.alignment.enabled && options_.joint && !map_.aligned;
-  const int least = aligns_ ? static_cast<int>(vin("ALIGN_KF", 3)) : 2;
+  const int least = aligns_ ? profile_.alignment.min_keyframes : 2;
   if (work::value(graph_.keyframe_count()) < least) return false;
   if (options_.joint && is_settled()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
@@ -42,7 +41,7 @@ bool BackEnd<P>::begin() {
   if (!aligns_)
     damping_ = LmState<P>(options_);
   else if (snapshots_ == 1)
-    damping_.lambda = vin("ALIGN_LAMBDA", 1e-2f);
+    damping_.lambda = profile_.alignment.initial_lambda;
   solved_ = false;
   return true;
 }
@@ -122,8 +121,25 @@ void BackEnd<P>::publish_alignment() {
   vio::publish<P>(window_, graph_);
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
   if (!aligned) return;
+  retire_unplaced();
   map_.aligned = true;
   newest_ = -1;
+}
+
+/// Landmarks that the window does not hold, seen once, still lie at the distance that any may have.
+template <class P>
+void BackEnd<P>::retire_unplaced() {
+  using Byte = typename P::Byte;
+  work::Arena& arena = machine_.local();
+  const work::Arena::Frame memory(arena);
+  const int landmarks = work::value(graph_.landmark_count());
+  const auto placed =
+      arena.alloc<typename P::template Span<Byte>>("landmarks with a place", landmarks);
+  for (int i : P::range(0, landmarks)) placed[i] = work::narrow<Byte>(I32(0));
+  for (int i : P::range(0, window_.landmarks))
+    placed[I32(window_.landmark_slots[i])] = work::narrow<Byte>(I32(1));
+  for (int i : P::range(0, landmarks))
+    if (I32(placed[i]) == I32(0)) graph_.retire_landmark(i);
 }
 
 /// Without an IMU a keyframe's velocity is that at which it was reached from the one before, and

@@ -29,6 +29,7 @@ class BackEnd {
 
   bool is_settled();
   void publish_alignment();
+  void retire_unplaced();
   void update_prior();
   void follow_positions();
   void move_newer_keyframes(const Pose<P>& T_new_old);

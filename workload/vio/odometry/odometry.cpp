@@ -101,7 +101,8 @@ std::vector<StageName> stage_names(const Profile& profile) {
                                   {stages::kOptimiserUpdate, "update", true},
                                   {stages::kOptimiser, "iteration", true}};
   if (!profile.guided.enabled) return names;
-  names.insert(names.end() - 2, {stages::kInitialisation, "iteration", true});
+  if (profile.alignment.enabled)
+    names.insert(names.end() - 2, {stages::kInitialisation, "iteration", true});
   const auto epnp = names.begin() + 3;
   names.insert(epnp + 1, {stages::kRefinement, "frame", false});
   names.insert(names.begin() + 2, {stages::kGuided, "frame", false});
