@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include "tests/support/run_program.h"
 #include "tools/app/report/statistic_list.h"
@@ -114,6 +115,10 @@ TEST_F(BenchmarkOfFewFrames, GoesOnWhereItWasAndDrawsNothingTwice) {
   const ProgramResult first = run(words(kPlan, "out", {"--seed", "1", "--jobs", "1"}));
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_EQ(drawn(), 2u);
+  std::set<std::string> pictures;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "cache/leviosim/rendered"))
+    if (entry.path().extension() == ".png") pictures.insert(read_text_file(entry.path()));
+  EXPECT_EQ(pictures.size(), 6u) << "three of each world";
   const ProgramResult more = run(words(kPlan, "more", {"--report", path("page.html")}));
   ASSERT_EQ(more.status, 0) << more.err;
   EXPECT_NE(more.err.find("run 4/4, 2 of them done before"), std::string::npos) << more.err;

@@ -368,6 +368,7 @@ TEST_F(FlightPieces, BeginAtTheStartsAndEndWithinTheFlight) {
   EXPECT_EQ(some.pieces[2].world, 3u);
   ASSERT_EQ(drawn_flights(some).size(), 3u);
   EXPECT_EQ(text_of(drawn_flights(some)[0].frames), "2:5 ");
+  EXPECT_EQ(benchmark("[4]").pieces.size(), 3u) << "up to the last frame";
   const Benchmark both = benchmark("[3, whole]");
   EXPECT_EQ(both.pieces.size(), 6u);
   EXPECT_EQ(text_of(drawn_flights(both)[0].frames), "0:6 ");
