@@ -78,7 +78,7 @@ struct Profile {
   AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser
   float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
   float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]
-  int initial_frames = 0;            ///< before it whose poses are told anew when it comes
+  int initial_frames = 0;            ///< before it whose poses wait until it corrects them
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

@@ -52,7 +52,7 @@ work::MachineConfig controller_machine(const RunRequest& request) {
 
 /// With room for the frames whose poses may wait for the initialisation.
 vio::Profile with_delay(vio::Profile profile, double frames) {
-  profile.initial_frames = static_cast<int>(std::ceil(frames));
+  if (frames > 0) profile.initial_frames = static_cast<int>(std::ceil(frames));
   return profile;
 }
 

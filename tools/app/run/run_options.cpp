@@ -150,10 +150,11 @@ RunRequest make_request(const CLI::App& command, const RunOptions& options) {
     require(command, "--platform", "the name of a chip or a platform file, or --native");
     resolve_chip(options, request);
     request.camera = parse_camera(options.camera_fps, options.deadline);
-    if (request.initial_delay_s > 0 && options.record)
+    const bool waits = request.initial_delay_s > 0 || profile_of(request).initial_frames > 0;
+    if (waits && options.record)
       throw InputError(
           "run: --record keeps poses as they were when their frames were processed; leave out "
-          "--initial-delay");
+          "--initial-delay and workload.initialisation.frames");
     if (request.camera && options.record)
       throw InputError(
           "run: --record is for open loops, whose trace holds the work of every frame; with "
