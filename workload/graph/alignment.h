@@ -35,11 +35,11 @@ struct AlignmentOptions {
   int few_keyframes = 4;         ///< that leave landmarks equally far away, and a map not aligned
   float initial_lambda = 1e-2f;  ///< damping with every new keyframe
   // A map is aligned when all of these hold.
-  float max_uncertainty = 0.1f;  ///< of the way over the window, as a share of it
-  float full_uncertainty = 2;    ///< times that, where the window has no room for more keyframes
-  float max_surprise = 3;        ///< standard deviations of velocity, biases and gravity in all
-  float min_explained = 0.7f;    ///< share of the landmarks that agree with the alignment
-  int min_landmarks = 30;        ///< that do and whose distance is told
+  float max_uncertainty = 0.05f;  ///< of the way over the window, as a share of it
+  float full_uncertainty = 4;     ///< times that, where the window has no room for more keyframes
+  float max_surprise = 3;         ///< standard deviations of velocity, biases and gravity in all
+  float min_explained = 0.7f;     ///< share of the landmarks that agree with the alignment
+  int min_landmarks = 30;         ///< that do and whose distance is told
 };
 
 struct AlignmentReport : IterationReport {
