@@ -55,6 +55,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   }
   if (initialises()) path_.remember();
   prediction_.remember(frame, report);
+  if (initialises()) hold_position(frame);
   complete<P>(state_, frame, report);
   return report;
 }
@@ -101,6 +102,18 @@ void NextFrontEnd<P>::start_anew(TrackedFrame<P>& frame) {
 template <class P>
 bool NextFrontEnd<P>::initialises() const {
   return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
+}
+
+/// While a map has few keyframes its scale is a guess, and so is how far the camera has gone: it is
+/// told to be where the map began. The map itself keeps the guess. The newest keyframe does not
+/// count, as the alignment has hardly seen it.
+template <class P>
+void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {
+  using I32 = typename P::I32;
+  const auto stage = state_.machine.stage(stages::kGuided);
+  const auto& graph = state_.graph_in_l2;
+  if (graph.keyframe_count() <= I32(state_.profile.alignment.few_keyframes + 1))
+    frame.T_world_camera.t = graph.keyframe(graph.keyframe_slot(0)).T_world_camera.t;
 }
 
 /// Landmarks without a distance tell no pose: the IMU moves the last keyframe on, as far as its
