@@ -16,7 +16,7 @@ using work::Native;
 const Matrix3d kUp = exp_of({-M_PI / 2, 0, 0});
 
 struct Options {
-  int keyframes = 10;
+  int keyframes = 12;
   double interval_s = 0.15;
   double outliers = 0;      ///< share of observations that are 15 px off
   bool accelerates = true;  ///< otherwise the camera flies on at the speed that it has at first

@@ -104,17 +104,17 @@ cut 'table peak | rows ^feature ^triangulation "L2  "'
 
 figure flights-mid-air
 needs motions slow
-shows 'leviosim benchmark-flights mid-air --motions euroc_motion --profile levio,next --out flown'
+shows 'leviosim benchmark-flights mid-air --motions euroc_motion --out flown'
 cut 'sed "/^  /d" | table profile profile set motion pieces "ATE %" "of pieces" "of seeds" "worst %" diverged'
 
 figure flights-mid-air-notes
 needs motions slow
-shows 'leviosim benchmark-flights mid-air --motions euroc_motion --profile levio,next --out flown'
+shows 'leviosim benchmark-flights mid-air --motions euroc_motion --out flown'
 cut 'lines "^  of pieces" "^  a piece"'
 
 figure flights-mid-air-long
 needs motions slow
-shows 'leviosim benchmark-flights mid-air-long --motions euroc_motion --profile next --out flown-long'
+shows 'leviosim benchmark-flights mid-air-long --motions euroc_motion --out flown-long'
 cut 'sed "/^  /d" | table profile profile set motion pieces "ATE %" "of pieces" "of seeds" "worst %" scale "σ %" diverged restarts'
 
 figure flights-whole
