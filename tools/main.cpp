@@ -15,6 +15,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
 #include "tools/commands/ablate_command.h"
+#include "tools/commands/benchmark_flights_command.h"
 #include "tools/commands/budget_command.h"
 #include "tools/commands/calibrate_command.h"
 #include "tools/commands/check_command.h"
@@ -65,18 +66,29 @@ int run_program(const Words& words) {
   app.footer("leviosim help COMMAND: its options, with examples");
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
   try {
-    const int status =
-        run_command_line(app, {add_run_command(app, words),     add_synth_command(app),
-                               add_platforms_command(app),      add_workload_command(app),
-                               add_eval_command(app),           add_ablate_command(app, words),
-                               add_explore_command(app, words), add_validate_command(app, words),
-                               add_calibrate_command(app),      add_sensitivity_command(app),
-                               add_microbench_command(app),     add_replay_command(app, words),
-                               add_trace_command(app),          add_tune_command(app, words),
-                               add_sweep_command(app),          add_flow_command(app, words),
-                               add_compare_command(app),        add_check_command(app),
-                               add_budget_command(app),         add_report_command(app)},
-                         words);
+    const int status = run_command_line(app,
+                                        {add_run_command(app, words),
+                                         add_synth_command(app),
+                                         add_platforms_command(app),
+                                         add_workload_command(app),
+                                         add_eval_command(app),
+                                         add_ablate_command(app, words),
+                                         add_explore_command(app, words),
+                                         add_benchmark_flights_command(app, words),
+                                         add_validate_command(app, words),
+                                         add_calibrate_command(app),
+                                         add_sensitivity_command(app),
+                                         add_microbench_command(app),
+                                         add_replay_command(app, words),
+                                         add_trace_command(app),
+                                         add_tune_command(app, words),
+                                         add_sweep_command(app),
+                                         add_flow_command(app, words),
+                                         add_compare_command(app),
+                                         add_check_command(app),
+                                         add_budget_command(app),
+                                         add_report_command(app)},
+                                        words);
     flush_results();
     throw_if_interrupted();
     return status;

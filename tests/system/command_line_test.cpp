@@ -114,9 +114,11 @@ TEST_F(CommandLine, OptionsHaveOneNameEach) {
   EXPECT_EQ(help("synth").find("--overwrite"), std::string::npos);
   for (const char* command : {"sensitivity", "microbench", "platforms", "calibrate"})
     EXPECT_EQ(help(command).find("  --out"), std::string::npos) << command;
-  for (const char* command : {"run", "replay", "tune", "sweep", "flow", "validate", "ablate"})
+  for (const char* command :
+       {"run", "replay", "tune", "sweep", "flow", "validate", "ablate", "benchmark-flights"})
     EXPECT_NE(help(command).find("  --out DIR"), std::string::npos) << command;
-  for (const char* command : {"tune", "sweep", "ablate", "explore", "sensitivity", "platforms"})
+  for (const char* command :
+       {"tune", "sweep", "ablate", "explore", "sensitivity", "platforms", "benchmark-flights"})
     EXPECT_NE(help(command).find("  --jobs N"), std::string::npos) << command;
   expect_run_refused({"--camera-fps", "0"}, {"--fps '0'"});
   expect_run_refused({"--camera-fps=0"}, {"--fps '0'"});

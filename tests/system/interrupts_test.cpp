@@ -45,6 +45,9 @@ const std::vector<Started>& commands() {
       {"microbench", {"microbench"}, 100},
       {"feasibility", {"platforms", "feasibility", "--data", "FLIGHT"}, 1000},
       {"ablate", {"ablate", "--data", "FLIGHT", "--cache", "CACHE", "--out", "OUT"}, 500},
+      {"benchmark-flights",
+       {"benchmark-flights", "FLIGHTS.yaml", "--motions", ".", "--cache", "CACHE", "--out", "OUT"},
+       500},
       {"explore",
        {"explore", "--data", "FLIGHT", "--points", "20000", "--relative", "0.1", "--cache", "CACHE",
         "--out", "OUT"},
@@ -78,6 +81,8 @@ class Interrupts : public ::testing::Test {
                     "platform.cluster.clock: {{ from: 100, to: 300 }}, "
                     "platform.cluster.dma.bytes_per_cycle: {{ from: 1, to: 16 }} }} }} }}\n",
                     path("TRACE")));
+    base::write_file_atomically(folder_ / "FLIGHTS.yaml",
+                                "motions: [FLIGHT]\nworlds: { one: [1, 2, 3] }\npieces: [whole]\n");
     std::string table;
     for (int i = 0; i < 300'000; ++i)
       table += fmt::format("{}.{:03} {} {} 0 0 0 0 1\n", i / 100, i % 100 * 10, i * 0.001, i % 7);

@@ -91,6 +91,41 @@ TEST(NextRobustnessOf, StartsInMotion) {
   EXPECT_LT(median_ate(draw_flight(PacedFlight(3, at_pace(1, 4)), 8)), 0.3);
 }
 
+/// With an initialisation, the first poses are told anew when it comes.
+TEST(NextRobustnessOf, StartsInMotionWithADelay) {
+  const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 6);
+  Profile profile = profile_named("next", 1);
+  const Flown at_once = fly(flight, profile);
+  ASSERT_GT(at_once.count(PoseSource::Initialising), 5);
+  EXPECT_EQ(at_once.sources.back(), PoseSource::Tracked);
+  profile.initial_frames = 80;
+  const Flown delayed = fly(flight, profile);
+  EXPECT_EQ(delayed.sources, at_once.sources);
+  EXPECT_EQ(delayed.trajectory.back().T_world_body.matrix(),
+            at_once.trajectory.back().T_world_body.matrix());
+  EXPECT_NE(delayed.trajectory[3].T_world_body.matrix(),
+            at_once.trajectory[3].T_world_body.matrix());
+  EXPECT_LT(delayed.ate, at_once.ate);
+  RecordProperty("ate_mm", static_cast<int>(delayed.ate * 1000));
+}
+
+/// Images tell that a shaken vehicle stands where it stood, before and after rest was first told.
+TEST(NextRobustnessOf, NudgeAtRestBeforeThereIsAMap) {
+  for (const std::size_t first : {8u, 40u}) {
+    ShortFlight flight = draw_flight(PacedFlight(3, at_pace(0)), 4);
+    nudge(flight, first, first + 6);
+    const Flown flown = fly(flight, profile_named("next", 1));
+    ASSERT_TRUE(flown.finite);
+    double moved = 0;
+    for (const traces::StampedPose& pose : flown.trajectory)
+      moved = std::max(moved, (pose.T_world_body.translation() -
+                               flown.trajectory.front().T_world_body.translation())
+                                  .norm());
+    EXPECT_LT(moved, 0.02) << first;
+    RecordProperty("moved_mm", static_cast<int>(moved * 1000));
+  }
+}
+
 TEST(NextRobustnessOf, FastMotion) {
   EXPECT_LT(median_ate(draw_flight(PacedFlight(3, at_pace(2.5)), 6)), 0.6);
 }

@@ -48,6 +48,8 @@ struct Inputs {
     write_text(folder / "plan.yaml",
                "base: { data: flight, platform: gap9 }\n"
                "points: { grid: { seed: [1] } }\n");
+    write_text(folder / "flights.yaml",
+               "motions: [flight]\nworlds: { one: [1] }\npieces: [whole]\nseeds: [1]\n");
     write_text(folder / "budgets.yaml", "budgets:\n  - limits: [L1 peak <= 128 KiB]\n");
     const ProgramResult recorded =
         run_program(folder.path(), {"run", "--platform", "gap9", "--data", flight, "--record",
@@ -71,6 +73,11 @@ struct Inputs {
         {"validate", with({"validate"}, data), "--out", "out"},
         {"ablate", with({"ablate"}, batch), "--out", "out"},
         {"explore", with({"explore", "--points", "1"}, batch), "--out", "out"},
+        {"benchmark-flights",
+         {"benchmark-flights", path("flights.yaml"), "--motions", folder.path().string(), "--cache",
+          path("cache"), "--quiet"},
+         "--out",
+         "out"},
         {"tune", with({"tune", "--clock", "370", "--cache", path("cache")}, data), "--out", "out"},
         {"synth", {"synth", "--motion", flight, "--frames", "0:2", "--quiet"}, "--out", "out"},
         {"sweep",

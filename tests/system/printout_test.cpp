@@ -100,6 +100,9 @@ TEST_F(PrintoutTest, TablesFitTheTerminal) {
                               "points: { grid: { platform.cluster.clock: [200MHz, 240MHz],\n"
                               "  platform.controller.clock: [200MHz],\n"
                               "  platform.cluster.dma.bytes_per_cycle: [4] } }\n");
+  base::write_file_atomically(folder_ / "tables-flights.yaml",
+                              "motions: [flight]\nworlds: { one: [1] }\npieces: [whole]\n"
+                              "size: 32x24\nseeds: [1]\n");
   base::write_file_atomically(folder_ / "tables-budgets.yaml",
                               "budgets:\n  - limits: [frame latency p99 <= 1 ms]\n");
   const std::string few =
@@ -111,10 +114,15 @@ TEST_F(PrintoutTest, TablesFitTheTerminal) {
         fmt::format("eval {0}/trajectory.tum {1} --relative 0.0001 --also {0}", run_folder, flight),
         fmt::format("compare {0} {0}", run_folder),
         fmt::format("check {} --budget {}", run_folder, path("tables-budgets.yaml")),
-        fmt::format("trace info {}/work.trace", run_folder), std::string("workload"),
-        std::string("microbench"), std::string("platforms diff gap8 gap9"),
-        "platforms feasibility gap8 gap9" + chip, "platforms stages gap9 gap9-eigen" + chip,
-        "platforms systems" + chip, "validate" + chip, "sensitivity" + chip,
+        fmt::format("trace info {}/work.trace", run_folder),
+        std::string("workload"),
+        std::string("microbench"),
+        std::string("platforms diff gap8 gap9"),
+        "platforms feasibility gap8 gap9" + chip,
+        "platforms stages gap9 gap9-eigen" + chip,
+        "platforms systems" + chip,
+        "validate" + chip,
+        "sensitivity" + chip,
         fmt::format("flow --platform gap8 --data {} --quiet --force --out {}", flight,
                     path("shown-flow")),
         fmt::format("sweep {} --quiet --cache {} --out {} --budget {}", path("tables.yaml"),
@@ -123,7 +131,10 @@ TEST_F(PrintoutTest, TablesFitTheTerminal) {
         fmt::format("ablate{} --size 32x24 --relative 0.0001 --force --out {}", few,
                     path("shown-ablate")),
         fmt::format("explore{} --size 32x24 --points 1 --relative 0.0001 --force --out {}", few,
-                    path("shown-explore"))}) {
+                    path("shown-explore")),
+        fmt::format("benchmark-flights {} --motions {} --quiet --cache {} --force --out {}",
+                    path("tables-flights.yaml"), folder_.string(), path("cache"),
+                    path("shown-flights"))}) {
     const std::vector<std::string> lines =
         lines_of(on_terminal(fmt::format("$L {} || [ $? = 1 ]", words)));  // 1: a limit is not met
     int tables = 0;
@@ -155,6 +166,9 @@ TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
   base::write_file_atomically(
       folder_ / "plan.yaml",
       "base: { trace: run }\npoints: { grid: { platform.cluster.clock: [200, 240] } }\n");
+  base::write_file_atomically(folder_ / "flights.yaml",
+                              "motions: [flight]\nworlds: { one: [1] }\npieces: [whole]\n"
+                              "size: 32x24\nseeds: [1]\n");
   const std::vector<std::vector<std::string>> commands{
       {"run", "--native", "--data", flight, "--quiet", "--out", path("native")},
       {"eval", est, flight},
@@ -177,6 +191,8 @@ TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
                 path("ablate")}),
       with_few({"explore", "--data", flight, "--size", "32x24", "--points", "1", "--relative",
                 "0.0001", "--out", path("explore")}),
+      {"benchmark-flights", path("flights.yaml"), "--motions", folder_.string(), "--quiet",
+       "--cache", path("cache"), "--out", path("flown")},
   };
   for (std::vector<std::string> words : commands) {
     words.emplace_back("--json");

@@ -196,7 +196,8 @@ TEST(LatencyTable, TellsTheKindsOfFrameApart) {
   EXPECT_EQ(row("EPnP, keyframe"), (Cells{"0", "–", "–", "–", "–", "0"}));
   EXPECT_EQ(row("8-point"), (Cells{"1", "20.00", "20.00", "40.0", "40.0", "0"}));
   EXPECT_EQ(row("8-point, keyframe"), (Cells{"1", "60.00", "60.00", "120.0", "120.0", "1"}));
-  EXPECT_EQ(row("other (first, pose kept)"), (Cells{"1", "10.00", "10.00", "20.0", "20.0", "0"}));
+  EXPECT_EQ(row("other (first, initialising, pose kept)"),
+            (Cells{"1", "10.00", "10.00", "20.0", "20.0", "0"}));
   EXPECT_NE(text.find("frame period 50.00 ms"), std::string::npos);
   EXPECT_NE(text.find("waited for the front end: 1, the longest 2.50 ms"), std::string::npos);
 }
@@ -215,7 +216,7 @@ TEST(LatencyTable, PredictedFramesAreAKindOfTheirOwn) {
   const std::string both = latency_table(run);
   EXPECT_EQ(cells_after(line_of(both, "tracked  "), 7).front(), "1");
   EXPECT_EQ(cells_after(line_of(both, "predicted  "), 9).front(), "1");
-  EXPECT_EQ(cells_after(line_of(both, "other (first, pose kept)"), 24).front(), "1");
+  EXPECT_EQ(cells_after(line_of(both, "other (first, initialising, pose kept)"), 38).front(), "1");
 }
 
 /// Every source is named, and the restarts of the map are.

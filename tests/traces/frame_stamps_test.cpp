@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/traces/test_folder.h"
-
 namespace leviosim::traces {
 namespace {
 
@@ -25,15 +23,6 @@ TEST(FrameStamps, FramesFollowTheJitteringGrid) {
   const StampList grid{0, 5, 10, 20, 25, 30, 40, 50, 55, 65, 70, 81, 85, 95, 100};
   EXPECT_EQ(stamps_nearest_to_period(grid, {4, 99}, 20), (StampList{5, 25, 50, 65, 85}));
   EXPECT_EQ(stamps_nearest_to_period(grid, {101, 200}, 20), StampList{});
-}
-
-TEST(FrameStamps, RangesSelect) {
-  EXPECT_EQ(selected({1, 2, 3, 4}, {1, 3}, "x"), (StampList{2, 3}));
-  testing::expect_input_error(
-      [] {
-        selected({1, 2}, {1, 3}, "flight");
-      },
-      {"1:3", "flight has 2 frames"});
 }
 
 }  // namespace

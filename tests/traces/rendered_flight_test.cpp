@@ -164,14 +164,29 @@ TEST(RenderedFlight, ARangeHasTheImagesOfTheWhole) {
   const TempFolder out;
   RenderedFlightOptions options = coarse();
   write_rendered_flight(motion.root(), out / "all", options);
-  options.frames = FrameRange{2, 4};
-  write_rendered_flight(motion.root(), out / "part", options);
-  const auto all = contents(out / "all"), part = contents(out / "part");
-  EXPECT_EQ(part.size(), 5u + 2u);
-  for (const int frame : {2, 3}) {
-    const std::string name = "mav0/cam0/data/" + image_name(AslFolder::frame_ns(frame));
-    EXPECT_EQ(all.at(name), part.at(name));
-  }
+  const auto all = contents(out / "all");
+  options.overwrite = true;
+  const auto expect_frames = [&](const std::vector<FrameRange>& ranges,
+                                 const std::vector<int>& frames) {
+    options.frames = ranges;
+    write_rendered_flight(motion.root(), out / "part", options);
+    const auto part = contents(out / "part");
+    EXPECT_EQ(part.size(), 5u + frames.size());
+    for (const int frame : frames) {
+      const std::string name = "mav0/cam0/data/" + image_name(AslFolder::frame_ns(frame));
+      EXPECT_EQ(all.at(name), part.at(name));
+    }
+    EXPECT_EQ(open_asl(out / "part").frames.size(), frames.size());
+  };
+  expect_frames({{2, 4}}, {2, 3});
+  expect_frames({{0, 1}, {3, 4}, {4, 6}}, {0, 3, 4, 5});
+}
+
+TEST(RenderedFlight, SaysWhenTheFramesOfTheWholeAreTaken) {
+  const AslFolder motion;
+  const std::vector<std::int64_t> stamps = rendered_frame_stamps(open_motion(motion.root()));
+  ASSERT_EQ(stamps.size(), 6u);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(stamps[i], AslFolder::frame_ns(i));
 }
 
 TEST(RenderedFlight, ASimulatedImuFollowsTheMotion) {
@@ -231,8 +246,10 @@ TEST(RenderedFlight, RefusesWhatCannotBeRendered) {
   options.texels = 0;
   refused(AslFolder(), options, {"texel width [px] 0"});
   options = coarse();
-  options.frames = FrameRange{4, 7};
+  options.frames = {{4, 7}};
   refused(AslFolder(), options, {"4:7", "6 frames"});
+  options.frames = {{2, 4}, {3, 5}};
+  refused(AslFolder(), options, {"3:5", "does not lie behind"});
   options = coarse();
   options.prepared = ImageSize{64, 48};
   refused(AslFolder(), options, {"64x48", "32x24"});

@@ -184,6 +184,19 @@ inline void cut_imu(ShortFlight& flight, std::size_t first, std::size_t last) {
   flight.frames[last].imu.front().dt += missing;
 }
 
+/// Pushed and shaken, by less than a camera can see.
+inline void nudge(ShortFlight& flight, std::size_t first, std::size_t last) {
+  double t_s = 0;
+  for (std::size_t i = first; i < last; ++i)
+    for (ImuInput& s : flight.frames[i].imu) {
+      const auto wave = static_cast<float>(std::sin(2 * M_PI * 10 * (t_s += 0.005)));
+      for (int a = 0; a < 3; ++a) {
+        s.gyro[a] += 0.4f * wave;
+        s.accel[a] += 3.0f * wave;
+      }
+    }
+}
+
 /// What the odometry made of a flight.
 struct Flown {
   traces::Trajectory trajectory;  ///< of the body
@@ -197,6 +210,19 @@ struct Flown {
     return static_cast<int>(std::count(sources.begin(), sources.end(), source));
   }
 };
+
+/// Of the body.
+inline Eigen::Isometry3d body_pose(const CameraPose& pose, const Eigen::Isometry3d& T_body_camera) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c)
+      T.linear()(r, c) =
+          static_cast<double>(pose.R_world_camera[static_cast<std::size_t>(3 * r + c)]);
+    T.translation()[r] = static_cast<double>(pose.p_world_camera[static_cast<std::size_t>(r)]);
+  }
+  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+  return T * T_body_camera.inverse();
+}
 
 inline Flown fly(const ShortFlight& flight, const Profile& profile) {
   work::Machine cluster({8, "L1", Bytes(1 << 24), 1, false});
@@ -222,8 +248,10 @@ inline Flown fly(const ShortFlight& flight, const Profile& profile) {
     flown.finite = flown.finite && T.matrix().allFinite();
     const Eigen::Matrix3d square = T.linear().transpose() * T.linear();
     flown.skew = std::max(flown.skew, (square - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff());
-    T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
-    flown.trajectory.push_back({frame.t_ns, T * flight.T_body_camera.inverse()});
+    flown.trajectory.push_back({frame.t_ns, body_pose(report, flight.T_body_camera)});
+    for (const EarlierPose& earlier : report.earlier)
+      flown.trajectory[flown.trajectory.size() - 1 - static_cast<std::size_t>(earlier.frames_ago)]
+          .T_world_body = body_pose(earlier, flight.T_body_camera);
     flown.sources.push_back(report.source);
     flown.map_restarts += report.map_restarts;
   }

@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_options.h"
@@ -57,7 +56,7 @@ traces::RenderedFlightOptions rendered_options(const CLI::App& command,
   rendered.seed = seed(options);
   if (!options.full_size) rendered.prepared = parse_size(options.size);
   rendered.imu = parse_imu(options.imu);
-  if (!options.frames.empty()) rendered.frames = traces::parse_frame_range(options.frames);
+  if (!options.frames.empty()) rendered.frames = {traces::parse_frame_range(options.frames)};
   if (!options.motion_blur.empty())
     rendered.exposure_s = 1e-3 * parse_positive("--motion-blur", options.motion_blur);
   rendered.illumination = options.illumination;
@@ -67,18 +66,8 @@ traces::RenderedFlightOptions rendered_options(const CLI::App& command,
 
 void render(const CLI::App& command, const SynthOptions& options) {
   const traces::RenderedFlightOptions rendered = rendered_options(command, options);
-  ProgressLine line(ProgressLine::style_of_stderr(options.quiet));
-  traces::write_rendered_flight(
-      options.motion, options.out, rendered, [&](std::size_t done, std::size_t total) {
-        throw_if_interrupted();
-        const auto drawn = static_cast<std::int64_t>(done);
-        const auto all = static_cast<std::int64_t>(total);
-        line.show(drawn, all, [&] {
-          return fmt::format("rendered flight: image {}/{}{}", done, total,
-                             time_left_text(drawn, all, line.host_seconds()));
-        });
-      });
-  line.clear();
+  render_flight(options.motion, options.out, rendered, "rendered flight",
+                ProgressLine::style_of_stderr(options.quiet));
   print_result("rendered flight: {}\n", printable(options.out));
   if (!options.full_size && options.size != SynthOptions().size)
     print_result("its images are prepared for one size: run --size {}\n", options.size);

@@ -1,5 +1,6 @@
 # The figures of the pages: tools/figures.sh reads this file and says what its words mean. `data` are
-# 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `slow` takes minutes.
+# 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `motions` are recorded motions,
+# euroc_motion/ beside them; `slow` takes minutes.
 # Tables have all their columns: 1000 fit.
 # No figure shows the host's times, the commit, or anything else that differs from run to run.
 
@@ -105,6 +106,26 @@ figure next-memory
 needs data
 shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --tables all --out next'
 cut 'table peak | rows ^feature ^triangulation "L2  "'
+
+figure flights-mid-air
+needs motions slow
+shows 'leviosim benchmark-flights mid-air --motions euroc_motion --out flown'
+cut 'sed "/^  /d" | table profile profile set motion pieces "ATE %" "of pieces" "of seeds" "worst %" diverged'
+
+figure flights-mid-air-notes
+needs motions slow
+shows 'leviosim benchmark-flights mid-air --motions euroc_motion --out flown'
+cut 'lines "^  of pieces" "^  a piece"'
+
+figure flights-mid-air-long
+needs motions slow
+shows 'leviosim benchmark-flights mid-air-long --motions euroc_motion --out flown-long'
+cut 'sed "/^  /d" | table profile profile set motion pieces "ATE %" "of pieces" "of seeds" "worst %" scale "σ %" diverged restarts'
+
+figure flights-whole
+needs motions slow
+shows 'leviosim benchmark-flights whole-flights --motions euroc_motion --profile next --out whole'
+cut 'sed "/^  /d" | table profile profile set motion pieces "ATE m" "worst m" "ATE %" scale "σ %" diverged restarts'
 
 # platform_models/CHIPS.md
 figure chips

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace leviosim::traces {
 
@@ -30,12 +29,6 @@ StampList stamps_nearest_to_period(const StampList& grid, TimeSpan span, std::in
     if (chosen.empty() || nearest > chosen.back()) chosen.push_back(nearest);
   }
   return chosen;
-}
-
-StampList selected(const StampList& stamps, const FrameRange& range, const std::string& what) {
-  check_frame_range(range, stamps.size(), what);
-  return {stamps.begin() + static_cast<std::ptrdiff_t>(range.begin),
-          stamps.begin() + static_cast<std::ptrdiff_t>(range.end)};
 }
 
 }  // namespace leviosim::traces

@@ -2,10 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
-
-#include "traces/datasets/frame_range.h"
 
 namespace leviosim::traces {
 
@@ -24,8 +21,5 @@ StampList stamps_within(const StampList& stamps, TimeSpan span);
 /// The first of the grid's stamps in the span and then, for each further period, the nearest one:
 /// a camera that is triggered by the clock of another sensor.
 StampList stamps_nearest_to_period(const StampList& grid, TimeSpan span, std::int64_t period_ns);
-
-/// The stamps in a range. Throws as check_frame_range() does.
-StampList selected(const StampList& stamps, const FrameRange& range, const std::string& what);
 
 }  // namespace leviosim::traces

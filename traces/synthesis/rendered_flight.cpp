@@ -34,7 +34,7 @@ struct Plan {
   RecordedMotion motion;
   std::vector<std::int64_t> imu_stamps;
   std::vector<std::int64_t> frames;
-  std::size_t first_frame;  ///< index of frames[0] in the whole flight, which selects its noise
+  std::vector<std::size_t> numbers;  ///< of the frames in the whole flight, which select noise
 };
 
 void check_options(const RenderedFlightOptions& options) {
@@ -89,6 +89,20 @@ std::vector<std::int64_t> make_frame_stamps(const MotionRecord& record,
   return frames;
 }
 
+/// Numbers of the frames that are drawn, of `count`.
+std::vector<std::size_t> frame_numbers(const std::vector<FrameRange>& ranges, std::size_t count,
+                                       const std::string& what) {
+  std::vector<std::size_t> numbers;
+  for (const FrameRange& range : ranges.empty() ? std::vector{FrameRange{0, count}} : ranges) {
+    check_frame_range(range, count, what);
+    if (!numbers.empty() && range.begin <= numbers.back())
+      throw InputError(fmt::format("frame range {}:{}: does not lie behind the one before it",
+                                   range.begin, range.end));
+    for (std::size_t i = range.begin; i < range.end; ++i) numbers.push_back(i);
+  }
+  return numbers;
+}
+
 Plan make_plan(const fs::path& motion_dir, const RenderedFlightOptions& options) {
   MotionRecord record = open_motion(motion_dir);
   const bool simulate = simulates_imu(record, options.imu);
@@ -96,11 +110,13 @@ Plan make_plan(const fs::path& motion_dir, const RenderedFlightOptions& options)
   RecordedMotion motion(record.ground_truth, origin_ns,
                         simulate ? RecordedMotion::kSmoothHz : SmoothingSpline::kInterpolate);
   std::vector<std::int64_t> imu_stamps = make_imu_stamps(record, simulate);
-  std::vector<std::int64_t> frames = make_frame_stamps(record, imu_stamps, options.exposure_s);
-  if (options.frames) frames = selected(frames, *options.frames, record.mav0.string());
-  const std::size_t first_frame = options.frames ? options.frames->begin : 0;
-  return {std::move(record),     simulate,          origin_ns,  std::move(motion),
-          std::move(imu_stamps), std::move(frames), first_frame};
+  const std::vector<std::int64_t> all = make_frame_stamps(record, imu_stamps, options.exposure_s);
+  std::vector<std::size_t> numbers =
+      frame_numbers(options.frames, all.size(), record.mav0.string());
+  std::vector<std::int64_t> frames;
+  for (const std::size_t number : numbers) frames.push_back(all[number]);
+  return {std::move(record),     simulate,          origin_ns,         std::move(motion),
+          std::move(imu_stamps), std::move(frames), std::move(numbers)};
 }
 
 double seconds_of_motion(const Plan& plan, std::int64_t t_ns) {
@@ -186,7 +202,7 @@ void write_pictures(base::OutputFolder& out, const Plan& plan, const RenderedFli
     const double gain =
         options.illumination ? light.gain(seconds_of_motion(plan, plan.frames[i])) : 1;
     std::vector<std::uint8_t> pixels =
-        renderer.render({poses, static_cast<float>(gain), plan.first_frame + i});
+        renderer.render({poses, static_cast<float>(gain), plan.numbers[i]});
     if (!options.prepared) return pixels;
     return preparation.apply(cv::Mat(camera.height, camera.width, CV_8UC1, pixels.data()));
   };
@@ -196,13 +212,20 @@ void write_pictures(base::OutputFolder& out, const Plan& plan, const RenderedFli
 
 }  // namespace
 
+std::vector<std::int64_t> rendered_frame_stamps(const MotionRecord& record,
+                                                const RenderedFlightOptions& options) {
+  return make_frame_stamps(record, make_imu_stamps(record, simulates_imu(record, options.imu)),
+                           options.exposure_s);
+}
+
 void write_rendered_flight(const fs::path& motion_dir, const fs::path& out_dir,
                            const RenderedFlightOptions& options, const FlightProgress& progress) {
   check_options(options);
   base::OutputFolder out({.option = {},
                           .path = out_dir.string(),
-                          .replace = options.overwrite,
-                          .inputs = {motion_dir, motion_dir / "mav0"}});
+                          .replace = options.overwrite || options.repair,
+                          .inputs = {motion_dir, motion_dir / "mav0"},
+                          .repair = options.repair});
   const Plan plan = make_plan(motion_dir, options);
   const CameraModel& camera = plan.record.camera;
   const ImageSize size = options.prepared.value_or(ImageSize{camera.width, camera.height});

@@ -17,7 +17,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
+#include "traces/datasets/asl_reader.h"
 #include "traces/datasets/frame_range.h"
 #include "traces/datasets/image_preparation.h"
 #include "traces/synthesis/flight_images.h"
@@ -30,15 +32,23 @@ struct RenderedFlightOptions {
   std::uint64_t seed = 1;                ///< of hall, light, and noise
   std::optional<ImageSize> prepared;     ///< size of the prepared images; absent: full images
   ImuSource imu = ImuSource::automatic;  ///< automatic: recorded if there is a recording
-  std::optional<FrameRange> frames;      ///< all if absent
-  double exposure_s = 0;                 ///< of the motion blur, centred on the stamp; 0: none
-  bool illumination = false;             ///< changes with time (illumination.h)
-  double image_noise = 1.2;              ///< standard deviation [grey levels]
-  double spot_px = 2;                    ///< softness of the lens, RenderOptions::spot_px
-  double texels = 1;                     ///< HallOptions::texels
-  unsigned threads = 0;    ///< 0: as many as the host has; the result does not depend on it
-  bool overwrite = false;  ///< replace a flight that was written before (sim/base)
+  /// Of the whole flight, one behind the other; all frames if there is none. A frame has the same
+  /// picture whichever others are drawn.
+  std::vector<FrameRange> frames;
+  double exposure_s = 0;      ///< of the motion blur, centred on the stamp; 0: none
+  bool illumination = false;  ///< changes with time (illumination.h)
+  double image_noise = 1.2;   ///< standard deviation [grey levels]
+  double spot_px = 2;         ///< softness of the lens, RenderOptions::spot_px
+  double texels = 1;          ///< HallOptions::texels
+  unsigned threads = 0;       ///< 0: as many as the host has; the result does not depend on it
+  bool overwrite = false;     ///< replace a flight that was written before (sim/base)
+  bool repair = false;        ///< also if its files were changed since, as those of a cache may be
 };
+
+/// When the frames of the whole flight are taken, which FrameRange counts. [ns] Throws InputError
+/// if there is none.
+std::vector<std::int64_t> rendered_frame_stamps(const MotionRecord& record,
+                                                const RenderedFlightOptions& options = {});
 
 /// Writes `out_dir`/mav0/... from the motion in `motion_dir`. The folder appears under its name
 /// only when complete. Throws InputError for input that cannot be used, options out of range, if

@@ -39,6 +39,8 @@ class Preintegration {
   using Span = typename P::template Span<F>;
 
   static constexpr int kFloats = 148;
+  /// Of these, without the covariance: all that corrected() reads.
+  static constexpr int kMotionFloats = 67;
 
   Preintegration() = default;
   /// @param record  kFloats floats, uninitialised until reset()
@@ -92,7 +94,7 @@ class Preintegration {
     kPositionByAccel = 58,
     kCovariance = 67,
   };
-  static_assert(kCovariance + 81 == kFloats);
+  static_assert(kCovariance == kMotionFloats && kCovariance + 81 == kFloats);
 
   /// What one step does to all parts of the record.
   struct Step {

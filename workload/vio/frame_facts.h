@@ -11,7 +11,15 @@
 
 namespace leviosim::vio {
 
-enum class PoseSource : std::uint8_t { First, Epnp, EightPoint, Kept, Predicted, Tracked };
+enum class PoseSource : std::uint8_t {
+  First,
+  Epnp,
+  EightPoint,
+  Kept,
+  Predicted,
+  Tracked,
+  Initialising
+};
 
 struct PoseSourceInfo {
   PoseSource source;
@@ -29,6 +37,8 @@ inline constexpr std::array kPoseSources{
                    "EPnP found too few inliers: the last keyframe's pose, moved on"},
     PoseSourceInfo{PoseSource::Tracked, "tracked",
                    "refined from landmarks that a predicted pose found, or from EPnP's pose"},
+    PoseSourceInfo{PoseSource::Initialising, "initialising",
+                   "moved on by the IMU before velocity, gravity and scale are known"},
 };
 
 constexpr std::string_view name_of(PoseSource source) {

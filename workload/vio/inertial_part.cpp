@@ -85,7 +85,7 @@ void InertialPart<P>::detect_stillness(const Preintegration<P>& interval, float 
       state_.profile.optimiser.joint && seen.still ? stillness_.without_recent(seen) : seen;
   stillness_.end_frame();
   rest_.reset();
-  recent_force_ = seen.accel_mean;
+  recent_ = seen;
   if (!state_.started || !state_.profile.use_imu || !seen.still) return;
   if (state_.profile.optimiser.joint) {
     rest_ = at_rest;
@@ -114,19 +114,25 @@ ImuDelta<P> InertialPart<P>::motion_since_keyframe() const {
 }
 
 template <class P>
-Pose<P> InertialPart<P>::predicted_pose() const {
-  const KeyframeState<P> last = state_.newest_keyframe();
-  const Pose<P>& from = last.T_world_camera;
-  if (!state_.profile.use_imu)
-    return {from.R, from.t + last.velocity * F(state_.time_since_keyframe)};
-  const ImuDelta<P> delta = motion_since_keyframe();
+Pose<P> InertialPart<P>::moved_on(const KeyframeState<P>& keyframe,
+                                  const ImuDelta<P>& delta) const {
+  const Pose<P>& from = keyframe.T_world_camera;
   const Vec3<P> fall = state_.graph_in_l2.gravity() * F(delta.dt * F(0.5f));
   const Pose<P> moved{from.R * delta.R,
-                      from.t + (last.velocity + fall) * delta.dt + from.R * delta.p};
+                      from.t + (keyframe.velocity + fall) * delta.dt + from.R * delta.p};
   if (!state_.profile.optimiser.joint) return moved;
   const Vec3<P> lever_arm{state_.rig.p_camera_body[0], state_.rig.p_camera_body[1],
                           state_.rig.p_camera_body[2]};
   return {moved.R, moved.t + from.R * lever_arm - moved.R * lever_arm};
+}
+
+template <class P>
+Pose<P> InertialPart<P>::predicted_pose() const {
+  const KeyframeState<P> last = state_.newest_keyframe();
+  if (!state_.profile.use_imu)
+    return {last.T_world_camera.R,
+            last.T_world_camera.t + last.velocity * F(state_.time_since_keyframe)};
+  return moved_on(last, motion_since_keyframe());
 }
 
 template class InertialPart<work::Native>;

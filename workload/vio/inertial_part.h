@@ -26,13 +26,15 @@ class InertialPart {
   /// Since the last keyframe, at the bias of the graph.
   ImuDelta<P> motion_since_keyframe() const;
 
+  /// A keyframe's pose, moved on by the motion since then.
+  Pose<P> moved_on(const KeyframeState<P>& from, const ImuDelta<P>& delta) const;
   /// The last keyframe's pose, moved on as the IMU measured; without an IMU, at its velocity.
   Pose<P> predicted_pose() const;
 
   /// Means over the last second if the vehicle stands still; only for the joint optimiser.
   const std::optional<Stillness<P>>& rest() const { return rest_; }
-  /// Mean specific force over the last second [m/s²].
-  const Vec3<P>& recent_force() const { return recent_force_; }
+  /// The same means, whether it stands still or not.
+  const Stillness<P>& recent() const { return recent_; }
 
  private:
   ImuNoise noise_of(const ImuInput& sample) const;
@@ -42,7 +44,7 @@ class InertialPart {
   Mat3<P> R_camera_body_;
   StillnessDetector<P> stillness_;
   std::optional<Stillness<P>> rest_;
-  Vec3<P> recent_force_{0.0f, 0.0f, 0.0f};
+  Stillness<P> recent_{false, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
 };
 
 }  // namespace leviosim::vio

@@ -1,6 +1,7 @@
 #include "workload/vio/keyframe_insertion.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "workload/geometry/triangulate.h"
 #include "workload/vio/stages.h"
@@ -18,7 +19,7 @@ bool is_in_use(const FrontEndState<P>& state, const PoseGraph<P>& graph, typenam
 /// Landmarks that were recognised, directly or through the features of the last keyframe.
 template <class P>
 void register_observations(const FrontEndState<P>& state, const Frame<P>& frame,
-                           const PoseGraph<P>& graph, typename P::I32 slot) {
+                           const PoseGraph<P>& graph, typename P::I32 slot, bool aligned) {
   using I32 = typename P::I32;
   using U16 = typename P::U16;
   const typename P::Function function("register_observations");
@@ -41,9 +42,9 @@ void register_observations(const FrontEndState<P>& state, const Frame<P>& frame,
     const I32 v = features.y[i];
     const Vec2<P> seen = state.camera.normalised(u, v);
     const bool seen_already = bool(age == I32(0));
-    if (seen_already ||
-        !agrees_with_view<P>(T_camera_world, graph.point(landmark), seen, state.rig.camera,
-                             state.profile.max_observation_error_sq)) {
+    if (seen_already || (aligned && !agrees_with_view<P>(T_camera_world, graph.point(landmark),
+                                                         seen, state.rig.camera,
+                                                         state.profile.max_observation_error_sq))) {
       frame.features.landmarks[i] = work::narrow<U16>(I32(kNoLandmark));
       continue;
     }
@@ -53,11 +54,33 @@ void register_observations(const FrontEndState<P>& state, const Frame<P>& frame,
   }
 }
 
-/// Matches that show no landmark yet become one, if both views agree on it and tell how far it is.
+/// The point that two views see, if they agree on it and tell how far it is.
 template <class P>
-void triangulate_landmarks(const FrontEndState<P>& state, const Frame<P>& frame,
-                           const PoseGraph<P>& graph, typename P::I32 previous_slot,
-                           typename P::I32 slot) {
+std::optional<Vec3<P>> point_of(const FrontEndState<P>& state, const Pose<P>& T_old,
+                                const Pose<P>& T_now, const Vec2<P>& before, const Vec2<P>& now) {
+  const PinholeCamera& camera = state.rig.camera;
+  const float limit = state.profile.max_landmark_error_sq;
+  if (agrees_with_infinity<P>(T_old, T_now, before, now, camera, limit)) return std::nullopt;
+  const Triangulated<P> point = triangulate<P>(T_old, T_now, before, now, state.machine.local());
+  if (!point.valid || !agrees_with_view<P>(T_old, point.point, before, camera, limit) ||
+      !agrees_with_view<P>(T_now, point.point, now, camera, limit))
+    return std::nullopt;
+  return point.point;
+}
+
+/// A point where a view sees it, as far away as any may be.
+template <class P>
+Vec3<P> any_point_of(const FrontEndState<P>& state, const Pose<P>& T_camera_world,
+                     const Vec2<P>& seen) {
+  using F = typename P::F32;
+  const F depth = 1.0f / state.profile.alignment.inverse_depth;
+  return inverse(T_camera_world) * Vec3<P>{seen.x * depth, seen.y * depth, depth};
+}
+
+/// Matches that show no landmark yet become one.
+template <class P>
+void add_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, const PoseGraph<P>& graph,
+                   typename P::I32 previous_slot, typename P::I32 slot, bool aligned) {
   using I32 = typename P::I32;
   using U16 = typename P::U16;
   const typename P::Function function("triangulate_landmarks");
@@ -73,15 +96,12 @@ void triangulate_landmarks(const FrontEndState<P>& state, const Frame<P>& frame,
     const I32 old_u = frame.matches.u(old), old_v = frame.matches.v(old);
     const Vec2<P> now = state.camera.normalised(u, v),
                   before = state.camera.normalised(old_u, old_v);
-    const float limit = state.profile.max_landmark_error_sq;
-    if (agrees_with_infinity<P>(T_old, T_now, before, now, state.rig.camera, limit)) continue;
-    const Triangulated<P> point = triangulate<P>(T_old, T_now, before, now, state.machine.local());
-    if (!point.valid || !agrees_with_view<P>(T_old, point.point, before, state.rig.camera, limit) ||
-        !agrees_with_view<P>(T_now, point.point, now, state.rig.camera, limit))
-      continue;
+    const std::optional<Vec3<P>> point = aligned ? point_of<P>(state, T_old, T_now, before, now)
+                                                 : any_point_of<P>(state, T_old, before);
+    if (!point) continue;
     const auto words = frame.features.list.descriptors.subspan(I32(feature * I32(kDescriptorWords)),
                                                                kDescriptorWords);
-    const I32 landmark = graph.add_landmark(point.point, words);
+    const I32 landmark = graph.add_landmark(*point, words);
     if (landmark < I32(0)) return;
     graph.add_observation(previous_slot, landmark, old_u, old_v);
     graph.add_observation(slot, landmark, u, v);
@@ -106,7 +126,7 @@ Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera
 }
 
 template <class P>
-void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame) {
+void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, bool aligned) {
   using I32 = typename P::I32;
   using Floats = typename P::template Span<typename P::F32>;
   work::Machine& machine = state.machine;
@@ -123,8 +143,8 @@ void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame) {
   const I32 previous = graph.newest_keyframe();
   graph.age_landmarks();
   const I32 slot = graph.add_keyframe(newest, interval);
-  register_observations(state, frame, graph, slot);
-  triangulate_landmarks(state, frame, graph, previous, slot);
+  register_observations(state, frame, graph, slot, aligned);
+  add_landmarks(state, frame, graph, previous, slot, aligned);
 
   Preintegration<P>(interval).reset(graph.bias());
   machine.copy_out(state.keyframe.interval, interval);
@@ -146,8 +166,8 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
   state.time_since_keyframe = 0;
 }
 
-template void insert_keyframe(FrontEndState<work::Native>&, Frame<work::Native>&);
-template void insert_keyframe(FrontEndState<work::Counting>&, Frame<work::Counting>&);
+template void insert_keyframe(FrontEndState<work::Native>&, Frame<work::Native>&, bool);
+template void insert_keyframe(FrontEndState<work::Counting>&, Frame<work::Counting>&, bool);
 template Vec3<work::Native> velocity_at(const FrontEndState<work::Native>&,
                                         const Pose<work::Native>&, const PoseGraph<work::Native>&,
                                         work::Native::Span<work::Native::F32>);

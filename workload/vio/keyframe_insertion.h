@@ -8,8 +8,10 @@ namespace leviosim::vio {
 
 /// Puts the frame, whose pose is known, into the graph, and its features into the place of the last
 /// keyframe's.
+/// @param aligned  poses can tell where landmarks are; else those that are new get a distance that
+///                 any may have, and all matches are believed
 template <class P>
-void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame);
+void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, bool aligned = true);
 
 /// Velocity of the camera in the world: the last keyframe's, carried on by the IMU; without an IMU,
 /// the mean since the last keyframe.

@@ -2,6 +2,8 @@
 // keyframe is told.
 #pragma once
 
+#include <optional>
+
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
 
@@ -14,5 +16,14 @@ namespace leviosim::vio {
 template <class P>
 typename P::F32 total_parallax(const FrontEndState<P>& state, const InertialPart<P>& inertial,
                                const Frame<P>& frame);
+
+/// How far the camera has moved since the last keyframe, over the distance of what it sees: the
+/// translation that explains the parallax best if all is equally far. Nothing is known of it with
+/// fewer than min_frame_matches that have moved by less than `most`. Works inside a stage.
+/// @param R_camera_keyframe  the rotation since then
+/// @param most               in normalised coordinates; a match that moved farther is a wrong one
+template <class P>
+std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state, const Frame<P>& frame,
+                                            const Mat3<P>& R_camera_keyframe, float most);
 
 }  // namespace leviosim::vio

@@ -40,6 +40,7 @@ void make_levio(Profile& p) {
 /// workload/ACCURACY.md says how these were found.
 void make_next(Profile& p) {
   p.guided.enabled = true;
+  p.alignment.enabled = true;
   p.keyframe_parallax = 0.06f;
   p.optimiser_keyframes = 12;
   p.max_observation_error_sq = 9.0f;

@@ -10,6 +10,7 @@
 #include "workload/geometry/essential_ransac.h"
 #include "workload/geometry/pnp_ransac.h"
 #include "workload/geometry/pose_refinement.h"
+#include "workload/graph/alignment.h"
 #include "workload/graph/optimiser.h"
 #include "workload/inertial/bias_estimation.h"
 #include "workload/inertial/initialisation.h"
@@ -47,6 +48,11 @@ struct RecoveryOptions {
 struct RestOptions {
   float position = 0.05f;  ///< m
   float rotation = 0.02f;  ///< rad
+  /// While there are no landmarks: of the motion since the keyframe, over the distance of what is
+  /// seen. Below it the camera has not moved, whatever the IMU says.
+  float image_motion = 0.006f;
+  float image_time = 1;       ///< for which the images must show it to say that it rests [s]
+  float wrong_match = 0.03f;  ///< a match that moved farther is none, in normalised coordinates
 };
 
 struct Profile {
@@ -69,6 +75,10 @@ struct Profile {
   RefinementOptions refinement;
   RecoveryOptions recovery;
   RestOptions rest;
+  AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser
+  float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
+  float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]
+  int initial_frames = 0;            ///< before it whose poses wait until it corrects them
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

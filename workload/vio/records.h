@@ -35,9 +35,18 @@ struct Rig {
   std::array<float, 3> p_camera_body{};  ///< of the body (IMU) in the camera frame [m]
 };
 
-struct FrameReport : FrameFacts {
+struct CameraPose {
   std::array<float, 9> R_world_camera{};  ///< row-major
   std::array<float, 3> p_world_camera{};  ///< [m]
+};
+
+/// Where an earlier frame was after all.
+struct EarlierPose : CameraPose {
+  int frames_ago = 0;  ///< frames processed since then
+};
+
+struct FrameReport : FrameFacts, CameraPose {
+  std::vector<EarlierPose> earlier;
 };
 
 }  // namespace leviosim::vio

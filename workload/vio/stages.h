@@ -15,6 +15,7 @@ inline constexpr std::string_view kFrameMatching = "frame matching";
 inline constexpr std::string_view kEightPoint = "8-point RANSAC";
 inline constexpr std::string_view kKeyframeSelection = "keyframe selection";
 inline constexpr std::string_view kTriangulation = "triangulation";
+inline constexpr std::string_view kInitialisation = "initialisation";
 inline constexpr std::string_view kOptimiserUpdate = "optimiser update";
 inline constexpr std::string_view kOptimiser = "optimiser iteration";
 

@@ -33,6 +33,7 @@ constexpr std::array<std::pair<PoseSource, std::string_view>, vio::kPoseSources.
     {PoseSource::Epnp, "EPnP"},
     {PoseSource::EightPoint, "8-point"},
     {PoseSource::Predicted, "predicted"},
+    {PoseSource::Initialising, "initialising"},
     {PoseSource::Kept, "pose kept"},
     {PoseSource::First, "first of a map"},
 }};
@@ -43,12 +44,6 @@ std::int64_t count_of(const RunResult& run, PoseSource source) {
 }
 
 }  // namespace
-
-std::int64_t map_restarts(const RunResult& run) {
-  std::int64_t restarts = 0;
-  for (const FrameResult& frame : run.frames) restarts += frame.map_restarts;
-  return restarts;
-}
 
 std::string latency_table(const RunResult& run, int width) {
   const auto period_ns = static_cast<double>(run.frame_period_ns);
@@ -125,8 +120,7 @@ std::string trajectory_summary(const RunResult& run) {
   std::string text = fmt::format("trajectory: {} poses, {:.2f} m long\n", run.trajectory.size(),
                                  path_length(run.trajectory));
   if (run.poses_left_out > 0)
-    text +=
-        fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
+    text += fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
   if (const std::string why = why_incomparable(run); !why.empty())
     return text + "ATE: none: " + why + '\n';
   if (!run.ate) return text + "ATE: no ground truth in the data\n";

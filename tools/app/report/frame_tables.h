@@ -19,9 +19,6 @@ std::string camera_summary(const RunResult& run);
 /// numbers of features and matches.
 std::string frame_summary(const RunResult& run);
 
-/// How often the map was started anew.
-std::int64_t map_restarts(const RunResult& run);
-
 /// Length of the trajectory, and its error with the protocol where ground truth exists.
 std::string trajectory_summary(const RunResult& run);
 

@@ -12,6 +12,7 @@
 #include "tools/app/report/tables.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
+#include "tools/app/result/map_faults.h"
 #include "tools/app/result/summary.h"
 #include "traces/trajectories/attitude_error.h"
 
@@ -114,7 +115,11 @@ std::string short_protocol(const traces::Evaluation& ate) {
 
 std::vector<std::string> trajectory_lines(const RunResult& run) {
   const std::int64_t restarts = map_restarts(run);
-  const std::string again = restarts > 0 ? fmt::format(", restarts of the map {}", restarts) : "";
+  std::string again = restarts > 0 ? fmt::format(", restarts of the map {}", restarts) : "";
+  const std::int64_t initialising = std::count_if(
+      run.frames.begin(), run.frames.end(),
+      [](const FrameResult& frame) { return frame.source == PoseSource::Initialising; });
+  if (initialising > 0) again += fmt::format(", initialising for {} frames", initialising);
   const std::string length = fmt::format("trajectory: {} poses, {:.2f} m", run.trajectory.size(),
                                          path_length(run.trajectory));
   if (const std::string why = why_incomparable(run); !why.empty())

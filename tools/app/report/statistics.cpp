@@ -1,6 +1,7 @@
 #include "tools/app/report/statistics.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -8,6 +9,7 @@
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
+#include "tools/app/result/map_faults.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
@@ -116,6 +118,10 @@ void add_frames(StatisticList& list, const RunResult& run) {
     for (const FrameResult& frame : run.frames) sum += frame.*fact.of;
     list.add(fmt::format("frames.{}.sum", fact.name), "1", "summed over the frames", sum);
   }
+  list.add(
+      "frames.map_faults", "text",
+      "what is plainly wrong with the map, as the end of the run warns of it; empty if nothing",
+      fmt::format("{}", fmt::join(map_faults(run), ", ")));
 }
 
 void add_latencies(StatisticList& list, const RunResult& run) {

@@ -26,11 +26,11 @@ double scale_of(const std::vector<traces::MatchedPose>& poses) {
          spread(poses, [](const Pose& pose) { return pose.truth.translation(); });
 }
 
-/// The longest time from a pose to the last that was kept after it.
-double longest_kept_s(const RunResult& run) {
+/// The longest time from a pose to the last of its successors that all come from `source`.
+double longest_s(const RunResult& run, PoseSource source) {
   std::int64_t longest_ns = 0;
   for (std::size_t i = 1, known = 0; i < run.frames.size(); ++i) {
-    if (run.frames[i].source != PoseSource::Kept)
+    if (run.frames[i].source != source)
       known = i;
     else
       longest_ns = std::max(longest_ns, run.frames[i].t_ns - run.frames[known].t_ns);
@@ -38,7 +38,19 @@ double longest_kept_s(const RunResult& run) {
   return static_cast<double>(longest_ns) * 1e-9;
 }
 
+double duration_s(const RunResult& run) {
+  return run.frames.empty()
+             ? 0
+             : static_cast<double>(run.frames.back().t_ns - run.frames.front().t_ns) * 1e-9;
+}
+
 }  // namespace
+
+std::int64_t map_restarts(const RunResult& run) {
+  std::int64_t restarts = 0;
+  for (const FrameResult& frame : run.frames) restarts += frame.map_restarts;
+  return restarts;
+}
 
 std::vector<std::string> map_faults(const RunResult& run, const MapLimits& limits) {
   std::vector<std::string> faults;
@@ -52,10 +64,14 @@ std::vector<std::string> map_faults(const RunResult& run, const MapLimits& limit
         faults.push_back(fmt::format("the scale is {:.2f}", scale));
     }
   }
-  if (const double kept = longest_kept_s(run); kept > limits.kept_s)
+  if (const double kept = longest_s(run, PoseSource::Kept); kept > limits.kept_s)
     faults.push_back(fmt::format("the pose was kept for {:.1f} s", kept));
-  if (run.poses_left_out > 0)
-    faults.push_back(fmt::format("{} poses are NaN", run.poses_left_out));
+  if (const double waits = longest_s(run, PoseSource::Initialising); waits > limits.initialising_s)
+    faults.push_back(fmt::format("the initialisation took {:.1f} s", waits));
+  if (const std::int64_t restarts = map_restarts(run);
+      restarts > 2 && static_cast<double>(restarts) > limits.restarts_per_s * duration_s(run))
+    faults.push_back(fmt::format("the map was begun anew {} times", restarts));
+  if (run.poses_left_out > 0) faults.push_back(fmt::format("{} poses are NaN", run.poses_left_out));
   return faults;
 }
 

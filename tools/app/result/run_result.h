@@ -37,6 +37,8 @@ struct FrameResult : vio::FrameFacts, soc::FrameTiming {
   int index = 0;          ///< in the data set
   std::int64_t t_ns = 0;  ///< camera timestamp
   traces::StampedPose pose;
+  /// Of frames processed before, counted back from this one: where they were after all.
+  std::vector<std::pair<int, traces::StampedPose>> earlier = {};
   std::vector<StageCycles> stage_cycles = {};  ///< on N cores, of the stages that ran, in order
 
   /// None if the stage did not run.

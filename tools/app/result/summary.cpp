@@ -38,7 +38,7 @@ std::vector<Scenario> empty_scenarios() {
       {"tracked, keyframe", "tracked_keyframe"},
       {"predicted", "predicted"},
       {"predicted, keyframe", "predicted_keyframe"},
-      {"other (first, pose kept)", "other"},
+      {"other (first, initialising, pose kept)", "other"},
   }};
   std::vector<Scenario> all;
   for (const auto& [name, key] : names) {

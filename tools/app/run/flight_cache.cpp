@@ -47,29 +47,44 @@ bool is_whole(const fs::path& folder) {
   return record && !record->paths().empty() && record->is_complete(folder);
 }
 
-}  // namespace
-
-fs::path flight_folder() {
-  return cache_folder() / fmt::format("synthetic-{}-{:g}s-{}", kFlightSeed, kFlightSeconds,
-                                      flight_version().substr(0, 12));
+/// The name of the synthetic flight.
+std::string synthetic_name() {
+  return fmt::format("synthetic-{}-{:g}s-{}", kFlightSeed, kFlightSeconds,
+                     flight_version().substr(0, 12));
 }
 
-void write_flight(const fs::path& folder, const traces::SyntheticOptions& options,
-                  ProgressLine::Style progress) {
-  ProgressLine line(progress);
-  traces::write_synthetic_flight(folder, options, [&](std::size_t done, std::size_t total) {
+/// Progress of drawing: "TITLE: image 3/60 · done in 0:00:12".
+traces::FlightProgress shown_on(ProgressLine& line, const std::string& title) {
+  return [&line, title](std::size_t done, std::size_t total) {
     throw_if_interrupted();
     const auto drawn = static_cast<std::int64_t>(done);
     const auto all = static_cast<std::int64_t>(total);
     line.show(drawn, all, [&] {
-      return fmt::format("synthetic flight: image {}/{}{}", done, total,
+      return fmt::format("{}: image {}/{}{}", title, done, total,
                          time_left_text(drawn, all, line.host_seconds()));
     });
-  });
+  };
 }
 
-fs::path cached_flight(ProgressLine::Style progress) {
-  const fs::path folder = flight_folder();
+}  // namespace
+
+fs::path flight_folder() { return cache_folder() / synthetic_name(); }
+
+void write_flight(const fs::path& folder, const traces::SyntheticOptions& options,
+                  ProgressLine::Style progress) {
+  ProgressLine line(progress);
+  traces::write_synthetic_flight(folder, options, shown_on(line, "synthetic flight"));
+}
+
+void render_flight(const fs::path& motion, const fs::path& folder,
+                   const traces::RenderedFlightOptions& options, const std::string& title,
+                   ProgressLine::Style progress) {
+  ProgressLine line(progress);
+  traces::write_rendered_flight(motion, folder, options, shown_on(line, title));
+}
+
+fs::path cached_flight(const std::string& name, const std::function<void(const fs::path&)>& write) {
+  const fs::path folder = cache_folder() / name;
   std::error_code error;
   fs::create_directories(folder.parent_path(), error);
   if (error)
@@ -78,13 +93,18 @@ fs::path cached_flight(ProgressLine::Style progress) {
   cache_folder();  // refuses it if it is not the user's
   FileLock lock(folder.string() + ".lock");
   lock.acquire();
-  if (is_whole(folder)) return folder;
-  traces::SyntheticOptions options;
-  options.seed = kFlightSeed;
-  options.duration_s = kFlightSeconds;
-  options.repair = true;
-  write_flight(folder, options, progress);
+  if (!is_whole(folder)) write(folder);
   return folder;
+}
+
+fs::path cached_flight(ProgressLine::Style progress) {
+  return cached_flight(synthetic_name(), [&](const fs::path& folder) {
+    traces::SyntheticOptions options;
+    options.seed = kFlightSeed;
+    options.duration_s = kFlightSeconds;
+    options.repair = true;
+    write_flight(folder, options, progress);
+  });
 }
 
 }  // namespace leviosim::tools

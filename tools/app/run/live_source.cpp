@@ -50,8 +50,14 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .code = &platform::compiled_code()};
 }
 
+/// With room for the frames whose poses may wait for the initialisation.
+vio::Profile with_delay(vio::Profile profile, double frames) {
+  if (frames > 0) profile.initial_frames = static_cast<int>(std::ceil(frames));
+  return profile;
+}
+
 /// The pose that the workload reports for the camera, of the body and in double precision.
-traces::StampedPose body_pose(const vio::FrameReport& report, const traces::CameraModel& camera,
+traces::StampedPose body_pose(const vio::CameraPose& report, const traces::CameraModel& camera,
                               std::int64_t t_ns) {
   Eigen::Matrix3d R;
   Eigen::Vector3d p;
@@ -75,7 +81,9 @@ LiveSource::LiveSource(const RunRequest& request)
       feed_(request),
       cluster_(cluster_machine(request, profile_)),
       controller_(controller_machine(request)),
-      odometry_(vio::make_odometry(!request.native, profile_, feed_.rig(), cluster_, controller_)) {
+      odometry_(vio::make_odometry(!request.native,
+                                   with_delay(profile_, request.initial_delay_s * feed_.rate_hz()),
+                                   feed_.rig(), cluster_, controller_)) {
   if (evaluate_) traces::require_truth_at(feed_.data(), stamps_of(feed_));
 }
 
@@ -91,6 +99,12 @@ const work::Job& LiveSource::process(FrameResult& result) {
   result.t_ns = feed_.time_ns(frame_);
   static_cast<vio::FrameFacts&>(result) = report;
   result.pose = body_pose(report, feed_.data().camera, result.t_ns);
+  processed_ns_.push_back(result.t_ns);
+  for (const vio::EarlierPose& earlier : report.earlier)
+    result.earlier.emplace_back(
+        earlier.frames_ago, body_pose(earlier, feed_.data().camera,
+                                      processed_ns_[processed_ns_.size() - 1 -
+                                                    static_cast<std::size_t>(earlier.frames_ago)]));
   return front_end_job_;
 }
 

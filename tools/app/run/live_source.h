@@ -34,7 +34,8 @@ class LiveSource : public RunSource {
   work::Machine cluster_;
   work::Machine controller_;
   std::unique_ptr<vio::Odometry> odometry_;
-  int frame_ = 0;  ///< begun last
+  int frame_ = 0;                           ///< begun last
+  std::vector<std::int64_t> processed_ns_;  ///< stamps of the frames processed so far
   work::Job front_end_job_;
   work::Job optimiser_job_;
 };

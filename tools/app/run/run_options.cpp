@@ -55,6 +55,21 @@ RunRequest make_workload_request(const RunOptions& options) {
   return request;
 }
 
+/// What waits is bounded by the memory for it.
+double parse_initial_delay(const std::string& text, const RunRequest& request) {
+  if (text.empty()) return 0;
+  constexpr double kLongest = 10;
+  const double seconds = parse_positive("--initial-delay", text);
+  if (seconds > kLongest)
+    throw InputError(fmt::format("--initial-delay '{}': expected at most {:g} s", text, kLongest));
+  if (!profile_of(request).alignment.enabled)
+    throw InputError(fmt::format(
+        "--initial-delay: profile '{}' has no initialisation that would correct poses; expected "
+        "--profile next",
+        request.profile));
+  return seconds;
+}
+
 void resolve_chip(const RunOptions& options, RunRequest& request) {
   request.platform =
       platform::resolve_platform(options.platform, split_overrides(options.overrides).chip);
@@ -94,6 +109,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
            "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
   add_text(command, "--deadline", options.deadline, "drop|queue",
            "closed loop: what becomes of a frame that finds the front end busy [drop]");
+  add_text(command, "--initial-delay", options.initial_delay, "S",
+           "seconds that the first poses may wait for the initialisation, which corrects them [0]");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
   add_out_options(command, options);
 }
@@ -127,12 +144,18 @@ RunRequest make_request(const CLI::App& command, const RunOptions& options) {
   require(command, "--data", "an ASL folder or 'synthetic'");
   require(command, "--out", "a folder for the results");
   RunRequest request = make_workload_request(options);
+  request.initial_delay_s = parse_initial_delay(options.initial_delay, request);
   if (options.native) {
     refuse_chip_options(command, options);
   } else {
     require(command, "--platform", "the name of a chip or a platform file, or --native");
     resolve_chip(options, request);
     request.camera = parse_camera(options.camera_fps, options.deadline);
+    const bool waits = request.initial_delay_s > 0 || profile_of(request).initial_frames > 0;
+    if (waits && options.record)
+      throw InputError(
+          "run: --record keeps poses as they were when their frames were processed; leave out "
+          "--initial-delay and workload.initialisation.frames");
     if (request.camera && options.record)
       throw InputError(
           "run: --record is for open loops, whose trace holds the work of every frame; with "

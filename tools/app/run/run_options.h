@@ -22,6 +22,7 @@ struct RunOptions {
   std::string size = "160x120";
   std::string camera_fps;
   std::string deadline;
+  std::string initial_delay;
   std::string out;
   std::vector<std::string> overrides;
   bool native = false;

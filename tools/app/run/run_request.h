@@ -36,6 +36,8 @@ struct RunRequest {
   std::optional<CameraRequest> camera;
   /// Whether the trajectory is compared with the truth. What diverged cannot be, and is refused.
   bool evaluate = true;
+  /// Poses may wait for so long that the initialisation corrects them; 0: as the workload says. [s]
+  double initial_delay_s = 0;
   RunObserver* observer = nullptr;     ///< sees every job; unused if native
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
 };

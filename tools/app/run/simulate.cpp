@@ -27,6 +27,12 @@ std::vector<StageCycles> stage_cycles(const sim::JobTiming& timing) {
   return list;
 }
 
+/// The last frame may tell where others were after all.
+void correct_earlier(std::vector<FrameResult>& frames) {
+  for (const auto& [ago, pose] : frames.back().earlier)
+    frames[frames.size() - 1 - static_cast<std::size_t>(ago)].pose = pose;
+}
+
 /// Joins what the frames yielded with when they were processed.
 class FrameCollector : public soc::Observer {
  public:
@@ -37,6 +43,7 @@ class FrameCollector : public soc::Observer {
 
   void on_front_end(const soc::FrontEndJob& e) override {
     FrameResult& frame = frames.emplace_back(source_.frame());
+    correct_earlier(frames);
     static_cast<soc::FrameTiming&>(frame) = e.times;
     frame.stage_cycles = stage_cycles(e.parallel);
     if (observer_ != nullptr)
@@ -105,6 +112,7 @@ RunResult run_natively(const RunRequest& request, const ProgressCallback& progre
       ++result.optimiser_published;
     }
     result.frames.push_back(frame);
+    correct_earlier(result.frames);
     progress({i + 1, source.frames(), source.time_ns(i) - source.time_ns(0)});
   }
   describe(result, request, source);

@@ -17,13 +17,6 @@
 namespace leviosim::tools {
 namespace {
 
-void add_list(CLI::App& command, const char* name, std::vector<std::string>& values,
-              const char* type, const char* help, bool split) {
-  CLI::Option* option =
-      command.add_option(name, values, help)->type_name(type)->take_all()->allow_extra_args(false);
-  if (split) option->delimiter(',');
-}
-
 /// The same input twice would only look like more runs.
 template <class T>
 std::vector<T> without_repetitions(const std::string& option, std::vector<T> values,
@@ -35,33 +28,10 @@ std::vector<T> without_repetitions(const std::string& option, std::vector<T> val
   return values;
 }
 
-std::vector<std::uint32_t> parse_seeds(const std::vector<std::string>& words) {
-  std::vector<std::uint32_t> seeds;
-  for (const std::string& word : words)
-    seeds.push_back(static_cast<std::uint32_t>(
-        parse_whole("--seed", word, 0, std::numeric_limits<std::uint32_t>::max())));
-  return without_repetitions("--seed", seeds, words);
-}
-
 std::vector<traces::ImageSize> parse_sizes(const std::vector<std::string>& words) {
   std::vector<traces::ImageSize> sizes;
   for (const std::string& word : words) sizes.push_back(parse_size(word));
   return without_repetitions("--size", sizes, words);
-}
-
-std::vector<std::string> known_profiles(const std::vector<std::string>& words) {
-  for (const std::string& word : words) vio::profile_named(word, 1);
-  return without_repetitions("--profile", words, words);
-}
-
-std::vector<vio::Assignment> workload_of(const std::vector<std::string>& overrides) {
-  const SplitOverrides split = split_overrides(overrides);
-  if (!split.chip.empty())
-    throw InputError(
-        fmt::format("-p {}: runs here are native, without a chip; expected a parameter of the "
-                    "workload, such as workload.window=6 (leviosim workload lists them)",
-                    split.chip.front()));
-  return parse_workload_overrides(split.workload);
 }
 
 /// Digests of what is read are kept with the folder's name for the messages.
@@ -82,18 +52,50 @@ std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan) {
 
 }  // namespace
 
+void add_list_option(CLI::App& command, const char* name, std::vector<std::string>& values,
+                     const char* type, const char* help, bool split) {
+  CLI::Option* option =
+      command.add_option(name, values, help)->type_name(type)->take_all()->allow_extra_args(false);
+  if (split) option->delimiter(',');
+}
+
+std::vector<std::uint32_t> batch_seeds(const std::vector<std::string>& words) {
+  std::vector<std::uint32_t> seeds;
+  for (const std::string& word : words)
+    seeds.push_back(static_cast<std::uint32_t>(
+        parse_whole("--seed", word, 0, std::numeric_limits<std::uint32_t>::max())));
+  return without_repetitions("--seed", seeds, words);
+}
+
+std::vector<std::string> known_profiles(const std::vector<std::string>& words) {
+  for (const std::string& word : words) vio::profile_named(word, 1);
+  return without_repetitions("--profile", words, words);
+}
+
+std::vector<vio::Assignment> native_workload(const std::vector<std::string>& overrides) {
+  const SplitOverrides split = split_overrides(overrides);
+  if (!split.chip.empty())
+    throw InputError(
+        fmt::format("-p {}: runs here are native, without a chip; expected a parameter of the "
+                    "workload, such as workload.window=6 (leviosim workload lists them)",
+                    split.chip.front()));
+  return parse_workload_overrides(split.workload);
+}
+
 void add_batch_options(CLI::App& command, BatchWords& words) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     command.add_option(name, value, help)->type_name(type);
   };
-  add_list(command, "--data", words.data, "[NAME=]DIR",
-           "ASL/EuRoC folder of a sequence; repeatable. Folders of one name are pooled", false);
-  add_list(command, "--profile", words.profiles, "NAME,...",
-           "of the workload [levio,levio-no-imu,levio-no-imu-no-epnp]", true);
-  add_list(command, "--size", words.sizes, "WxH,...", "image sizes [160x120]", true);
-  add_list(command, "--seed", words.seeds, "N,...", "of the workload's random draws [1,2,3]", true);
-  add_list(command, "-p,--set", words.overrides, "PATH=VALUE",
-           "parameter of the workload in every run (leviosim workload); repeatable", false);
+  add_list_option(command, "--data", words.data, "[NAME=]DIR",
+                  "ASL/EuRoC folder of a sequence; repeatable. Folders of one name are pooled",
+                  false);
+  add_list_option(command, "--profile", words.profiles, "NAME,...",
+                  "of the workload [levio,levio-no-imu,levio-no-imu-no-epnp]", true);
+  add_list_option(command, "--size", words.sizes, "WxH,...", "image sizes [160x120]", true);
+  add_list_option(command, "--seed", words.seeds, "N,...", "of the workload's random draws [1,2,3]",
+                  true);
+  add_list_option(command, "-p,--set", words.overrides, "PATH=VALUE",
+                  "parameter of the workload in every run (leviosim workload); repeatable", false);
   add("--frames", words.frames, "A:B", "frames, B exclusive [all]");
   add("--align", words.align, "KIND", "se3, sim3, posyaw or none [se3]");
   add("--relative", words.relative, "M", "length of sub-trajectories in metres [40]");
@@ -109,8 +111,8 @@ BatchPlan make_plan(const CLI::App& command, const BatchWords& words) {
   BatchPlan plan;
   plan.profiles = known_profiles(words.profiles);
   plan.sizes = parse_sizes(words.sizes);
-  plan.seeds = parse_seeds(words.seeds);
-  plan.workload = workload_of(words.overrides);
+  plan.seeds = batch_seeds(words.seeds);
+  plan.workload = native_workload(words.overrides);
   if (!words.frames.empty()) plan.frames = traces::parse_frame_range(words.frames);
   plan.measure = {traces::parse_alignment(words.align),
                   parse_positive("--relative", words.relative)};

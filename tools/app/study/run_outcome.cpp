@@ -50,6 +50,10 @@ class Numbers {
     take("frames", outcome.frames);
     take("matched", outcome.matched);
     take("completion", outcome.completion);
+    take("map_restarts", outcome.map_restarts);
+    take("scale.windows", outcome.scale.windows);
+    take("scale.mean", outcome.scale.mean);
+    take("scale.sigma", outcome.scale.sigma);
     take("path_m", outcome.path_m);
     if (read_.count(kArrived) > 0) outcome.loop.emplace();
     if (outcome.loop) all_of(*outcome.loop);
@@ -133,6 +137,7 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
     outcome.completion = evaluation.completion;
     outcome.path_m = evaluation.path_length_m;
     outcome.protocol = evaluation.protocol;
+    outcome.scale = traces::summarize_scales(traces::scales_in_windows(evaluation));
   } catch (const InputError& failure) {
     outcome.failure = failure.what();
   }
@@ -150,8 +155,15 @@ RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, con
   else
     outcome = measure(run.trajectory, truth, how, expected);
   outcome.frames = expected;
+  for (const FrameResult& frame : run.frames)
+    outcome.map_restarts += static_cast<std::size_t>(frame.map_restarts);
   if (run.camera) outcome.loop = loop_of(run);
   return outcome;
+}
+
+std::optional<double> error_of(const RunOutcome& outcome) {
+  const bool diverged = !outcome.ate_m || *outcome.ate_m > outcome.path_m;
+  return diverged ? std::nullopt : outcome.ate_m;
 }
 
 Outcome figures_of(const RunOutcome& outcome) {

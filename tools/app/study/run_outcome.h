@@ -11,6 +11,7 @@
 #include "tools/app/study/point.h"
 #include "tools/app/study/runner.h"
 #include "traces/trajectories/alignment.h"
+#include "traces/trajectories/scale_windows.h"
 #include "traces/trajectories/trajectory.h"
 
 namespace leviosim::tools {
@@ -44,8 +45,10 @@ struct RunOutcome {
   std::size_t frames = 0;  ///< that the estimate ought to have
   std::size_t matched = 0;
   double completion = 0;
-  double path_m = 0;     ///< of the truth
-  std::string protocol;  ///< traces::Evaluation::protocol
+  std::size_t map_restarts = 0;
+  traces::ScaleSummary scale;  ///< of the estimate over the truth
+  double path_m = 0;           ///< of the truth
+  std::string protocol;        ///< traces::Evaluation::protocol
   std::optional<LoopOutcome> loop;
 };
 
@@ -58,6 +61,9 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
                    const Measure& how);
 /// All of a run, which was not evaluated.
 RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, const Measure& how);
+
+/// The error of the run; none if it diverged: it has no error, or one above the length of the path.
+std::optional<double> error_of(const RunOutcome& outcome);
 
 /// As it is kept, and back.
 Outcome figures_of(const RunOutcome& outcome);

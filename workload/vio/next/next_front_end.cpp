@@ -13,10 +13,13 @@ namespace leviosim::vio {
 
 template <class P>
 NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-                              work::Arena& keyframe_memory, const PoseGraph<P>& graph)
+                              work::Arena& keyframe_memory, const PoseGraph<P>& graph,
+                              MapStatus& map)
     : state_(profile, rig, cluster, keyframe_memory, graph),
+      map_(map),
       inertial_(state_),
-      prediction_(state_, inertial_, keyframe_memory) {}
+      prediction_(state_, inertial_, map_, keyframe_memory),
+      path_(state_, inertial_, keyframe_memory, profile.initial_frames) {}
 
 template <class P>
 FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
@@ -28,19 +31,31 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   inertial_.integrate(input);
   extract_frame<P>(state_, frame);
   report.keyframe = true;
+  still_ = rests_ = false;
+  if (state_.started && !initialises()) report.earlier = path_.poses();
   if (!state_.started) {
     start_map<P>(state_, frame);
-  } else if (inertial_.rest() && !prediction_.window_is_full()) {
-    start_at_rest(frame);
-  } else if (!map_is_plausible(state_, prediction_)) {
+  } else if (inertial_.rest() && (initialises() || !prediction_.window_is_full())) {
+    start_at_rest(frame, *inertial_.rest());
+  } else if (!map_is_plausible(state_, prediction_, !initialises())) {
     start_anew(frame);
     report.map_restarts = 1;
   } else {
-    locate(frame, report);
-    report.keyframe = is_keyframe(frame, report);
-    if (report.keyframe) insert_keyframe<P>(state_, frame);
+    if (initialises())
+      follow(frame, report);
+    else
+      locate(frame, report);
+    if (images_rest()) {
+      report.source = PoseSource::First;
+      start_at_rest(frame, inertial_.recent());
+    } else {
+      report.keyframe = is_keyframe(frame, report);
+      if (report.keyframe) insert_keyframe<P>(state_, frame, !initialises());
+    }
   }
+  if (initialises()) path_.remember();
   prediction_.remember(frame, report);
+  if (initialises()) hold_position(frame);
   complete<P>(state_, frame, report);
   return report;
 }
@@ -50,12 +65,11 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
 /// zero, while noise alone would sooner or later look like parallax, and the scale of a map with
 /// few keyframes is a guess.
 template <class P>
-void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame) {
+void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest) {
   work::Arena& local = state_.machine.local();
   const work::Arena::Frame memory(local);
   const auto stage = state_.machine.stage(stages::kTriangulation);
   const auto record = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
-  const Stillness<P>& rest = *inertial_.rest();
   frame.T_world_last = frame.T_world_camera = prediction_.last_pose();
   Mat3<P>& R = frame.T_world_camera.R;
   R = levelled<P>(R, rest.accel_mean);
@@ -65,7 +79,7 @@ void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame) {
   const float stddev = state_.profile.optimiser.prior.rest_gyro_bias;
   prior.gyro_information = 1.0f / (stddev * stddev);
   state_.graph_in_l2.set_bias_prior(prior);
-  prediction_.begin_map(true);
+  map_.aligned = true;
 }
 
 /// What became of the map cannot be true: another one begins where the camera was seen last.
@@ -78,10 +92,47 @@ void NextFrontEnd<P>::start_anew(TrackedFrame<P>& frame) {
   const auto record = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
   frame.T_world_last = frame.T_world_camera = prediction_.last_reported();
   Mat3<P>& R = frame.T_world_camera.R;
-  const Vec3<P>& force = inertial_.recent_force();
+  const Vec3<P>& force = inertial_.recent().accel_mean;
   if (dot(force, force) > F(0.0f)) R = levelled<P>(R, force);
   begin_map<P>(state_, frame, record, ImuBias<P>::zero(), {0.0f, 0.0f, -kGravity});
-  prediction_.begin_map(false);
+  map_.aligned = false;
+}
+
+/// Whether the map waits for its alignment.
+template <class P>
+bool NextFrontEnd<P>::initialises() const {
+  return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
+}
+
+/// While a map has few keyframes its scale is a guess, and so is how far the camera has gone: it is
+/// told to be where the map began. The map itself keeps the guess. The newest keyframe does not
+/// count, as the alignment has hardly seen it.
+template <class P>
+void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {
+  using I32 = typename P::I32;
+  const auto stage = state_.machine.stage(stages::kGuided);
+  const auto& graph = state_.graph_in_l2;
+  if (graph.keyframe_count() <= I32(state_.profile.alignment.few_keyframes + 1))
+    frame.T_world_camera.t = graph.keyframe(graph.keyframe_slot(0)).T_world_camera.t;
+}
+
+/// Landmarks without a distance tell no pose: the IMU moves the last keyframe on, as far as its
+/// velocity is known by now, while features are followed from keyframe to keyframe.
+template <class P>
+void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
+  frame.T_world_last = prediction_.last_pose();
+  alloc_keyframe_matches<P>(state_, frame);
+  {
+    const work::Arena::Frame descriptors(state_.machine.local());
+    match_keyframe<P>(state_, frame);
+  }
+  report.source = PoseSource::Initialising;
+  {
+    const auto stage = state_.machine.stage(stages::kGuided);
+    const std::optional<Pose<P>> still = still_pose(frame);
+    frame.T_world_camera = still ? *still : inertial_.predicted_pose();
+  }
+  frame.T_world_camera = settled(frame.T_world_camera);
 }
 
 /// From landmarks; without enough of them, by prediction; without one, from the last keyframe.
@@ -115,6 +166,8 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
   if (prediction_.imu_predicts()) {
     const auto stage = state_.machine.stage(stages::kGuided);
     report.source = PoseSource::Predicted;
+    if (state_.graph_in_l2.keyframe_count() == I32(1))
+      if (const std::optional<Pose<P>> still = still_pose(frame)) return still;
     return inertial_.predicted_pose();
   }
   if (state_.graph_in_l2.keyframe_count() == I32(1) && !is_keyframe(frame, report)) {
@@ -123,6 +176,31 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
     return Pose<P>{prediction_.by_motion(frame).R, frame.T_world_last.t};
   }
   return std::nullopt;
+}
+
+/// The pose of a camera of which the images say that it is where it was at the last keyframe,
+/// turned at most. What does not move in the image at all has not even turned, whatever the gyro
+/// says, whose bias need not be known yet. Works inside a stage.
+template <class P>
+std::optional<Pose<P>> NextFrontEnd<P>::still_pose(const Frame<P>& frame) {
+  using F = typename P::F32;
+  const RestOptions& limits = state_.profile.rest;
+  const auto is_still = [&](const Mat3<P>& R_camera_keyframe) {
+    const auto moved = motion_over_distance(state_, frame, R_camera_keyframe, limits.wrong_match);
+    return moved && bool(dot(*moved, *moved) < F(limits.image_motion * limits.image_motion));
+  };
+  const Pose<P> keyframe = state_.newest_keyframe().T_world_camera;
+  const Mat3<P> turn = inertial_.motion_since_keyframe().R;
+  rests_ = is_still(Mat3<P>::identity());
+  still_ = rests_ || is_still(transpose(turn));
+  if (!still_) return std::nullopt;
+  return rests_ ? keyframe : Pose<P>{keyframe.R * turn, keyframe.t};
+}
+
+/// Whether the images have shown rest for as long as the IMU must. It may see rotors that idle.
+template <class P>
+bool NextFrontEnd<P>::images_rest() const {
+  return rests_ && state_.time_since_keyframe > state_.profile.rest.image_time;
 }
 
 /// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
@@ -161,6 +239,10 @@ bool NextFrontEnd<P>::is_keyframe(const Frame<P>& frame, const FrameReport& repo
   if (report.source == PoseSource::Kept) return false;  // its place is not known
   const F sum = total_parallax(state_, inertial_, frame);
   float parallax = profile.keyframe_parallax;
+  if (initialises())
+    return !still_ &&
+           (state_.time_since_keyframe > profile.alignment_interval ||
+            bool(sum > F(profile.alignment_parallax * parallax * static_cast<float>(matches))));
   const bool lost = report.source == PoseSource::Predicted;
   // Without a map, noise would look like motion.
   if ((lost || report.inliers < recovery.min_tracked) &&

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "workload/vio/front_end.h"
+#include "workload/vio/next/initial_path.h"
 #include "workload/vio/next/prediction.h"
 
 namespace leviosim::vio {
@@ -12,26 +13,35 @@ namespace leviosim::vio {
 template <class P>
 class NextFrontEnd : public FrontEnd<P> {
  public:
-  /// @param profile  outlives this
+  /// @param profile, map  outlive this
   /// @param graph    in L2; shared with the back end
   NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-               work::Arena& keyframe_memory, const PoseGraph<P>& graph);
+               work::Arena& keyframe_memory, const PoseGraph<P>& graph, MapStatus& map);
 
   FrameReport process(const FrameInput& input) override;
 
  private:
   using Floats = typename P::template Span<typename P::F32>;
 
-  void start_at_rest(TrackedFrame<P>& frame);
+  void start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest);
+  bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);
+  bool initialises() const;
+  void hold_position(TrackedFrame<P>& frame) const;
+  void follow(TrackedFrame<P>& frame, FrameReport& report);
   void locate(TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> pose_by_prediction(const TrackedFrame<P>& frame, FrameReport& report);
+  std::optional<Pose<P>> still_pose(const Frame<P>& frame);
   Pose<P> settled(const Pose<P>& T_world_camera);
   bool is_keyframe(const Frame<P>& frame, const FrameReport& report);
 
   FrontEndState<P> state_;
+  MapStatus& map_;
   InertialPart<P> inertial_;
   Prediction<P> prediction_;
+  InitialPath<P> path_;   ///< while the map waits for its alignment
+  bool still_ = false;    ///< the images say that the camera has not moved since the keyframe
+  bool rests_ = false;    ///< nor turned
   bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still
 };
 

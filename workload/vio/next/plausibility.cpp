@@ -6,7 +6,7 @@ namespace leviosim::vio {
 
 /// The comparisons are not true either of what is not a number.
 template <class P>
-bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction) {
+bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction, bool stays) {
   using F = typename P::F32;
   const auto stage = state.machine.stage(stages::kGuided);
   const RecoveryOptions& limits = state.profile.recovery;
@@ -15,7 +15,8 @@ bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& predic
   const auto below = [](const Vec3<P>& v, float limit) { return dot(v, v) < F(limit * limit); };
   return below(last.velocity, limits.max_speed) && below(bias.gyro, limits.max_gyro_bias) &&
          below(bias.accel, limits.max_accel_bias) &&
-         pose_is_plausible(state, prediction, last.T_world_camera, state.time_since_keyframe);
+         (!stays ||
+          pose_is_plausible(state, prediction, last.T_world_camera, state.time_since_keyframe));
 }
 
 template <class P>
@@ -43,9 +44,10 @@ bool agrees_with_gyro(const FrontEndState<P>& state, const InertialPart<P>& iner
   return bool(F(3.0f) - (R[0][0] + R[1][1] + R[2][2]) < F(limit * limit));
 }
 
-template bool map_is_plausible(const FrontEndState<work::Native>&, const Prediction<work::Native>&);
+template bool map_is_plausible(const FrontEndState<work::Native>&, const Prediction<work::Native>&,
+                               bool);
 template bool map_is_plausible(const FrontEndState<work::Counting>&,
-                               const Prediction<work::Counting>&);
+                               const Prediction<work::Counting>&, bool);
 template bool pose_is_plausible(const FrontEndState<work::Native>&, const Prediction<work::Native>&,
                                 const Pose<work::Native>&, float);
 template bool pose_is_plausible(const FrontEndState<work::Counting>&,

@@ -6,8 +6,9 @@
 namespace leviosim::vio {
 
 /// Whether the map has a meaning.
+/// @param stays  poses do not change by metres any more, as they may before a map is aligned
 template <class P>
-bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction);
+bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction, bool stays);
 
 /// Whether T_world_camera is a pose to which the camera can have got from where it was reported
 /// last.

@@ -26,7 +26,7 @@ bool Prediction<P>::imu_predicts() const {
   const Profile& profile = state_.profile;
   const float longest = lost_ ? profile.recovery.max_blind_time : profile.max_translation_time;
   return profile.optimiser.joint && state_.time_since_keyframe < longest &&
-         (velocity_known_ || window_is_full());
+         (map_.aligned || window_is_full());
 }
 
 template <class P>

@@ -4,6 +4,7 @@
 
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
+#include "workload/vio/map_status.h"
 #include "workload/vio/next/motion_record.h"
 
 namespace leviosim::vio {
@@ -18,18 +19,18 @@ struct TrackedFrame : Frame<P> {
 template <class P>
 class Prediction {
  public:
-  /// @param state, inertial  outlive this
-  Prediction(const FrontEndState<P>& state, const InertialPart<P>& inertial,
+  /// @param state, inertial, map  outlive this
+  Prediction(const FrontEndState<P>& state, const InertialPart<P>& inertial, const MapStatus& map,
              work::Arena& keyframe_memory)
-      : state_(state), inertial_(inertial), motion_(keyframe_memory) {}
+      : state_(state), inertial_(inertial), map_(map), motion_(keyframe_memory) {}
 
   /// Where the last frame was, in the map as it is now.
   Pose<P> last_pose() const;
   /// The last frame's pose as it was reported, which the optimiser does not move.
   Pose<P> last_reported() const { return motion_.T_world_camera(); }
 
-  /// Whether the newest keyframe's velocity is known, at rest or from a window full of keyframes,
-  /// and recent enough to carry the prediction.
+  /// Whether the newest keyframe's velocity is known, from the begin of the map or from a window
+  /// full of keyframes, and recent enough to carry the prediction.
   bool imu_predicts() const;
   bool window_is_full() const;
   /// The last frame's pose, turned as the gyro says and moved on at its velocity.
@@ -39,17 +40,15 @@ class Prediction {
     return imu_predicts() ? inertial_.predicted_pose() : by_motion(frame);
   }
 
-  /// A map has begun with the present frame.
-  void begin_map(bool at_rest) { velocity_known_ = at_rest; }
   /// Leaves the motion over this frame for the next one.
   void remember(const TrackedFrame<P>& frame, const FrameReport& report);
 
  private:
   const FrontEndState<P>& state_;
   const InertialPart<P>& inertial_;
+  const MapStatus& map_;
   MotionRecord<P> motion_;
-  bool velocity_known_ = false;  ///< the map began at rest
-  bool lost_ = false;            ///< the last pose was predicted
+  bool lost_ = false;  ///< the last pose was predicted
 };
 
 }  // namespace leviosim::vio

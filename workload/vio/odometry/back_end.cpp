@@ -7,11 +7,12 @@ namespace leviosim::vio {
 
 template <class P>
 BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& controller,
-                    const PoseGraph<P>& graph)
+                    const PoseGraph<P>& graph, MapStatus& map)
     : profile_(profile),
       options_(profile.optimiser),
       machine_(controller),
       graph_(graph),
+      map_(map),
       window_(controller.local(), graph.capacity),
       damping_(options_) {
   if (!options_.joint) return;
@@ -21,17 +22,26 @@ BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& contr
 
 template <class P>
 bool BackEnd<P>::begin() {
-  if (work::value(graph_.keyframe_count()) < 2) return false;
+  aligns_ = profile_.alignment.enabled && options_.joint && !map_.aligned;
+  const int least = aligns_ ? profile_.alignment.min_keyframes : 2;
+  if (work::value(graph_.keyframe_count()) < least) return false;
   if (options_.joint && is_settled()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
-  if (options_.joint) {
+  determined_ = false;
+  if (aligns_) {
+    prior_.keyframes = 0;
+  } else if (options_.joint) {
     update_prior();
   } else if (profile_.use_imu) {
     absorb_departed_intervals<P>(window_, graph_, profile_.imu_noise, profile_.biases);
   }
   take_snapshot<P>(graph_, profile_.imu_noise, machine_.local(), window_);
-  if (options_.joint && prior_.keyframes == 0) start_prior<P>(window_, options_.prior, prior_);
-  damping_ = LmState<P>(options_);
+  if (options_.joint && !aligns_ && prior_.keyframes == 0)
+    start_prior<P>(window_, options_.prior, prior_);
+  if (!aligns_)
+    damping_ = LmState<P>(options_);
+  else if (snapshots_ == 1)
+    damping_.lambda = profile_.alignment.initial_lambda;
   solved_ = false;
   return true;
 }
@@ -63,6 +73,14 @@ void BackEnd<P>::update_prior() {
 
 template <class P>
 OptimiserReport BackEnd<P>::optimise() {
+  if (aligns_) {
+    const auto stage = machine_.stage(stages::kInitialisation);
+    const AlignmentReport report =
+        align_once<P>(machine_, window_, damping_, options_, profile_.alignment);
+    solved_ = solved_ || report.positive_definite;
+    determined_ = report.determined;
+    return {true, report.accepted, report.cost_before, report.cost_after};
+  }
   const auto stage = machine_.stage(stages::kOptimiser);
   const IterationReport report =
       options_.joint ? optimise_jointly_once<P>(machine_, window_, prior_, damping_, options_)
@@ -82,8 +100,46 @@ void BackEnd<P>::publish() {
   const I32 slot = window_.keyframe_slots[last];
   const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
   const Pose<P> before = graph_.keyframe(slot).T_world_camera;
+  if (aligns_) return publish_alignment();
   vio::publish<P>(window_, graph_);
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
+}
+
+/// A map is aligned as a whole, with its newest keyframe; landmarks that the alignment had no place
+/// for are given up then.
+template <class P>
+void BackEnd<P>::publish_alignment() {
+  const int last = window_.keyframes - 1;
+  const I32 newest = graph_.keyframe_ids[graph_.newest_keyframe()];
+  const bool aligned = determined_ && bool(newest == I32(window_.keyframe_ids[last]));
+  if (!aligned)
+    for (int i : P::range(0, window_.landmarks))
+      window_.lost[i] = work::narrow<typename P::Byte>(I32(0));
+  const I32 slot = window_.keyframe_slots[last];
+  const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
+  const Pose<P> before = graph_.keyframe(slot).T_world_camera;
+  vio::publish<P>(window_, graph_);
+  if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
+  if (!aligned) return;
+  retire_unplaced();
+  map_.aligned = true;
+  newest_ = -1;
+}
+
+/// Landmarks that the window does not hold, seen once, still lie at the distance that any may have.
+template <class P>
+void BackEnd<P>::retire_unplaced() {
+  using Byte = typename P::Byte;
+  work::Arena& arena = machine_.local();
+  const work::Arena::Frame memory(arena);
+  const int landmarks = work::value(graph_.landmark_count());
+  const auto placed =
+      arena.alloc<typename P::template Span<Byte>>("landmarks with a place", landmarks);
+  for (int i : P::range(0, landmarks)) placed[i] = work::narrow<Byte>(I32(0));
+  for (int i : P::range(0, window_.landmarks))
+    placed[I32(window_.landmark_slots[i])] = work::narrow<Byte>(I32(1));
+  for (int i : P::range(0, landmarks))
+    if (I32(placed[i]) == I32(0)) graph_.retire_landmark(i);
 }
 
 /// Without an IMU a keyframe's velocity is that at which it was reached from the one before, and

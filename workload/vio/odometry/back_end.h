@@ -7,6 +7,7 @@
 #include "workload/graph/optimiser.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/graph/window.h"
+#include "workload/vio/map_status.h"
 #include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::vio {
@@ -14,9 +15,9 @@ namespace leviosim::vio {
 template <class P>
 class BackEnd {
  public:
-  /// @param graph  in L2; shared with the front end
+  /// @param graph, map  in L2; shared with the front end
   BackEnd(const Profile& profile, const Rig& rig, work::Machine& controller,
-          const PoseGraph<P>& graph);
+          const PoseGraph<P>& graph, MapStatus& map);
 
   bool begin();
   OptimiserReport optimise();
@@ -27,6 +28,8 @@ class BackEnd {
   using I32 = typename P::I32;
 
   bool is_settled();
+  void publish_alignment();
+  void retire_unplaced();
   void update_prior();
   void follow_positions();
   void move_newer_keyframes(const Pose<P>& T_new_old);
@@ -35,12 +38,15 @@ class BackEnd {
   const OptimiserOptions& options_;
   work::Machine& machine_;
   PoseGraph<P> graph_;
+  MapStatus& map_;
   Window<P> window_;
   WindowPrior<P> prior_;  ///< only if the optimiser works jointly
   LmState<P> damping_;
-  int newest_ = -1;      ///< serial number of the newest keyframe
-  int snapshots_ = 0;    ///< that were taken of it
-  bool solved_ = false;  ///< the system of this snapshot could be solved
+  int newest_ = -1;          ///< serial number of the newest keyframe
+  int snapshots_ = 0;        ///< that were taken of it
+  bool solved_ = false;      ///< the system of this snapshot could be solved
+  bool aligns_ = false;      ///< this snapshot is of a map that is not aligned yet
+  bool determined_ = false;  ///< its alignment is
 };
 
 }  // namespace leviosim::vio

@@ -47,9 +47,9 @@ namespace {
 template <class P>
 std::unique_ptr<FrontEnd<P>> make_front_end(const Profile& profile, const Rig& rig,
                                             work::Machine& cluster, work::Arena& keyframe_memory,
-                                            const PoseGraph<P>& graph) {
+                                            const PoseGraph<P>& graph, MapStatus& map) {
   if (profile.guided.enabled)
-    return std::make_unique<NextFrontEnd<P>>(profile, rig, cluster, keyframe_memory, graph);
+    return std::make_unique<NextFrontEnd<P>>(profile, rig, cluster, keyframe_memory, graph, map);
   return std::make_unique<LevioFrontEnd<P>>(profile, rig, cluster, keyframe_memory, graph);
 }
 
@@ -63,9 +63,9 @@ class OdometryOf : public Odometry {
         graph_memory_("L2", controller.local().capacity()),
         graph_(graph_memory_, keyframe_memory_,
                {profile.optimiser_keyframes, profile.max_landmarks, profile.max_observations}),
-        front_end_(make_front_end(profile_, rig, cluster, keyframe_memory_, graph_)),
+        front_end_(make_front_end(profile_, rig, cluster, keyframe_memory_, graph_, map_)),
         reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),
-        back_end_(profile_, rig, controller, graph_) {
+        back_end_(profile_, rig, controller, graph_, map_) {
     graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
   }
 
@@ -81,6 +81,7 @@ class OdometryOf : public Odometry {
   work::Arena keyframe_memory_;
   work::Arena graph_memory_;
   PoseGraph<P> graph_;
+  MapStatus map_;
   std::unique_ptr<FrontEnd<P>> front_end_;
   Reservation reserved_;
   BackEnd<P> back_end_;
@@ -100,6 +101,8 @@ std::vector<StageName> stage_names(const Profile& profile) {
                                   {stages::kOptimiserUpdate, "update", true},
                                   {stages::kOptimiser, "iteration", true}};
   if (!profile.guided.enabled) return names;
+  if (profile.alignment.enabled)
+    names.insert(names.end() - 2, {stages::kInitialisation, "iteration", true});
   const auto epnp = names.begin() + 3;
   names.insert(epnp + 1, {stages::kRefinement, "frame", false});
   names.insert(names.begin() + 2, {stages::kGuided, "frame", false});

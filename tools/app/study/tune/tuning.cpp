@@ -62,11 +62,6 @@ double TunePoint::completion() const {
   return least;
 }
 
-std::optional<double> error_of(const RunOutcome& outcome) {
-  const bool diverged = !outcome.ate_m || *outcome.ate_m > outcome.path_m;
-  return diverged ? std::nullopt : outcome.ate_m;
-}
-
 RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
                       std::uint32_t seed) {
   RunRequest request = plan.request;

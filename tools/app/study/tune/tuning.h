@@ -28,9 +28,6 @@ struct TunePoint {
   double completion() const;
 };
 
-/// The absolute error; none if it diverged: above the length of the path.
-std::optional<double> error_of(const RunOutcome& outcome);
-
 /// The closed loop of a point.
 RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
                       std::uint32_t seed);

@@ -1,0 +1,67 @@
+// A benchmark of flights: the pieces that a plan asks for, and the native runs over them. Worlds
+// are rendered along recorded motions when a run needs them, each once, and only the frames of its
+// pieces; they are kept in the user's cache (run/flight_cache.h). Runs that are finished need no
+// pictures: they are found by what the pictures are made from.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/app/study/flights/flight_plan.h"
+#include "tools/app/study/flights/starts.h"
+#include "tools/app/study/run_outcome.h"
+#include "tools/app/study/sequence.h"
+
+namespace leviosim::tools {
+
+/// A motion of the plan, opened.
+struct FlightMotion {
+  Sequence sequence;  ///< of the whole flight; without pictures
+  std::vector<std::int64_t> stamps_ns;
+  Starts starts;
+};
+
+/// Frames of a flight in one world.
+struct FlightPiece {
+  std::size_t motion = 0;  ///< of the benchmark
+  std::size_t set = 0;     ///< of the plan
+  std::uint64_t world = 0;
+  std::size_t length = kWholeFlight;  ///< as in the plan
+  traces::FrameRange frames;          ///< of the whole flight
+  double start_s = 0;                 ///< from the first frame of the flight
+  double path_m = 0;                  ///< of the truth
+};
+
+struct Benchmark {
+  FlightPlan plan;
+  std::vector<FlightMotion> motions;
+  std::vector<FlightPiece> pieces;  ///< by length, set, motion, world, then start
+  std::size_t too_late =
+      0;  ///< starts in motion from which a length goes beyond the end of a flight
+};
+
+/// @param folder  holds an ASL folder for each motion of the plan; images need not be there
+/// @throws InputError naming the option or file
+Benchmark make_benchmark(FlightPlan plan, const std::string& folder);
+
+/// A run for each variant, piece and seed, in this order; its row is row_of(). The benchmark must
+/// outlive them. They name no data yet.
+std::vector<Point> benchmark_runs(const Benchmark& benchmark);
+std::size_t row_of(const Benchmark& benchmark, std::size_t variant, std::size_t piece);
+
+/// What is drawn of a motion in a world: the frames of all its pieces.
+struct DrawnFlight {
+  std::size_t motion = 0;
+  std::uint64_t world = 0;
+  std::vector<traces::FrameRange> frames;  ///< merged()
+};
+/// By motion, then world.
+std::vector<DrawnFlight> drawn_flights(const Benchmark& benchmark);
+
+/// Draws what runs need that are not finished, and tells them where it is.
+/// @throws InputError, Interrupted
+void draw_flights(const Benchmark& benchmark, const Measure& how, const RunnerOptions& options,
+                  std::vector<Point>& runs);
+
+}  // namespace leviosim::tools

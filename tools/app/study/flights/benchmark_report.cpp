@@ -1,0 +1,167 @@
+#include "tools/app/study/flights/benchmark_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
+
+#include "tools/app/report/number_text.h"
+#include "tools/app/report/table_document.h"
+#include "tools/app/report/text_table.h"
+#include "tools/app/study/flights/benchmark_files.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kAllMotions = "all";
+constexpr const char* kDiverged = "diverged";
+
+std::string error_text(const std::optional<double>& error, int decimals) {
+  return figure_text(error, decimals, kDiverged);
+}
+
+/// "1.2 … 3.4"; nothing of a single value.
+std::string interval_text(const MedianInterval& interval, int decimals) {
+  if (interval.values < 2) return kNothing;
+  return fmt::format("{} … {}", error_text(interval.low, decimals),
+                     error_text(interval.high, decimals));
+}
+
+std::string motion_name(const Benchmark& benchmark, const BenchmarkRow& row) {
+  return row.motion ? benchmark.plan.motions[*row.motion] : kAllMotions;
+}
+
+/// Percent of the path for pieces, which differ in length; metres as well for whole flights.
+TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
+  const FlightPlan& plan = benchmark.plan;
+  TextTable table({{"profile", kLeft, 1},
+                   {"piece", kLeft, 1},
+                   {"set", kLeft},
+                   {"motion", kLeft},
+                   {"pieces", kRight, 4},
+                   {"ATE %"},
+                   {"of pieces", kRight, 2},
+                   {"of seeds", kRight, 3},
+                   {"worst %"},
+                   {"ATE m"},
+                   {"worst m", kRight, 1},
+                   {"scale", kRight, 4},
+                   {"σ %", kRight, 3},
+                   {"diverged"},
+                   {"restarts", kRight, 5}});
+  for (const BenchmarkRow& row : result.rows)
+    table.add({plan.variants[row.variant].name(), length_text(row.length), plan.sets[row.set].name,
+               motion_name(benchmark, row), fmt::format("{}", row.pieces),
+               error_text(row.percent.median, 2), interval_text(row.percent.over_pieces, 2),
+               interval_text(row.percent.over_seeds, 2), error_text(row.percent.worst, 2),
+               error_text(row.metres.median, 3), error_text(row.metres.worst, 3),
+               figure_text(row.scale.median, 3),
+               figure_text(row.scale_sigma.median ? std::optional(100 * *row.scale_sigma.median)
+                                                  : std::nullopt,
+                           1),
+               fmt::format("{} of {}", row.diverged, row.runs),
+               fmt::format("{}", row.map_restarts)});
+  return table;
+}
+
+/// "75 % (3 values), 96 % (9 values)".
+std::string confidences(const std::vector<const MedianInterval*>& intervals) {
+  std::set<std::string> texts;
+  for (const MedianInterval* interval : intervals)
+    if (interval->values >= 2)
+      texts.insert(
+          fmt::format("{:.0f} % ({} values)", 100 * interval->confidence, interval->values));
+  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string notes(const Benchmark& benchmark, const BenchmarkResult& result,
+                  const std::string& bullet) {
+  const FlightPlan& plan = benchmark.plan;
+  std::vector<const MedianInterval*> of_pieces;
+  std::vector<const MedianInterval*> of_seeds;
+  for (const BenchmarkRow& row : result.rows) {
+    of_pieces.push_back(&row.percent.over_pieces);
+    of_seeds.push_back(&row.percent.over_seeds);
+  }
+  std::size_t at_rest = 0;
+  for (const FlightMotion& motion : benchmark.motions) at_rest += motion.starts.at_rest;
+  std::string text = fmt::format(
+      "{0}ATE: SE3-aligned RMSE, % of the true path; median of the pieces, each with the median of "
+      "seeds {1}; worst of all runs\n"
+      "{0}of pieces, of seeds: where the median lies if these are draws of many; confidence of "
+      "pieces {2}; of seeds {3}\n"
+      "{0}scale of the estimate in windows of 5 s, and its standard deviation in a flight: medians "
+      "of runs; diverged: an error above the path\n",
+      bullet, fmt::join(plan.seeds, ", "), confidences(of_pieces), confidences(of_seeds));
+  text += fmt::format(
+      "{}a piece begins every {:g} s where the vehicle moves; left out of these starts: {} at "
+      "rest, "
+      "{} too near the end\n",
+      bullet, plan.every_s, at_rest, benchmark.too_late);
+  for (const FlightSet& set : plan.sets)
+    text += fmt::format("{}{}: worlds {}\n", bullet, set.name, fmt::join(set.worlds, ", "));
+  return text;
+}
+
+Json value(const std::optional<double>& v) { return v ? rounded(*v) : Json(nullptr); }
+
+Json interval_json(const MedianInterval& interval) {
+  return {{"values", interval.values},
+          {"confidence", rounded(interval.confidence)},
+          {"low", value(interval.low)},
+          {"high", value(interval.high)}};
+}
+
+Json error_json(const RowError& error, const char* unit) {
+  return {{"unit", unit},
+          {"median", value(error.median)},
+          {"over_pieces", interval_json(error.over_pieces)},
+          {"over_seeds", interval_json(error.over_seeds)},
+          {"worst", value(error.worst)}};
+}
+
+Json spread_json(const Spread& spread) {
+  return {{"runs", spread.runs},
+          {"median", value(spread.median)},
+          {"low", value(spread.low)},
+          {"high", value(spread.high)}};
+}
+
+Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
+  const FlightPlan& plan = benchmark.plan;
+  return {{"variant", plan.variants[row.variant].name()},
+          {"piece", length_text(row.length)},
+          {"set", plan.sets[row.set].name},
+          {"motion", row.motion ? Json(plan.motions[*row.motion]) : Json(nullptr)},
+          {"pieces", row.pieces},
+          {"runs", row.runs},
+          {"diverged", row.diverged},
+          {"map_restarts", row.map_restarts},
+          {"ate_percent", error_json(row.percent, "%")},
+          {"ate", error_json(row.metres, "m")},
+          {"scale", spread_json(row.scale)},
+          {"scale_sigma", spread_json(row.scale_sigma)}};
+}
+
+}  // namespace
+
+std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& result, int width) {
+  return table_of(benchmark, result).str(width) + notes(benchmark, result, "  ");
+}
+
+std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult& result) {
+  return table_of(benchmark, result).markdown() + '\n' + notes(benchmark, result, "- ");
+}
+
+Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result) {
+  Json document;
+  document["format"] = "leviosim flight benchmark";
+  document["version"] = 1;
+  document["plan"] = benchmark.plan.name;
+  document["rows"] = Json::array();
+  for (const BenchmarkRow& row : result.rows) document["rows"].push_back(row_json(benchmark, row));
+  document["pieces"] = rows_of_csv(pieces_csv(benchmark, result));
+  return document;
+}
+
+}  // namespace leviosim::tools

@@ -1,0 +1,244 @@
+#include "tools/app/study/flights/flight_plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "platform_models/loader/instruction_set.h"
+#include "platform_models/loader/yaml_entries.h"
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "sim/base/nearest.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/run/workload_overrides.h"
+
+namespace leviosim::tools {
+namespace {
+
+using platform::Place;
+using platform::YamlEntry;
+using platform::YamlNode;
+
+constexpr std::int64_t kFewestFrames = 3;  // that can be aligned
+constexpr std::int64_t kMostFrames = 1'000'000;
+constexpr double kLeastEvery = 0.01;
+
+/// A value of a list and where it stands.
+struct Item {
+  std::string text;
+  Place place;
+};
+
+class PlanReader {
+ public:
+  PlanReader(const std::string& file, const std::string& text) : file_(file) {
+    plan_.name = file;
+    plan_.text = text;
+  }
+
+  FlightPlan read() {
+    const YamlNode root = platform::parse_yaml(file_, plan_.text);
+    const std::vector<std::string> keys{"motions", "worlds", "pieces",  "every",
+                                        "seeds",   "size",   "variants"};
+    const std::vector<YamlEntry> all = platform::entries_of(root, file_, "");
+    for (const YamlEntry& entry : all) {
+      if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
+        place(entry).fail(fmt::format("unknown key{}; expected {}",
+                                      base::did_you_mean(entry.key, keys), fmt::join(keys, ", ")));
+      read_key(entry);
+    }
+    for (const char* key : {"motions", "worlds", "pieces"})
+      if (std::none_of(all.begin(), all.end(), [&](const YamlEntry& e) { return e.key == key; }))
+        Place{file_}.fail(fmt::format("missing key '{}'", key));
+    if (plan_.variants.empty()) plan_.variants = {{"next", {}}};
+    return std::move(plan_);
+  }
+
+ private:
+  Place place(const YamlEntry& entry, const std::string& path = {}) const {
+    return platform::place_of(file_, entry.line, platform::joined(path, entry.key));
+  }
+
+  void read_key(const YamlEntry& entry) {
+    const Place at = place(entry);
+    if (entry.key == "motions") {
+      for (const Item& item : items(entry, at)) plan_.motions.push_back(plain_name(item));
+    } else if (entry.key == "worlds") {
+      read_sets(entry);
+    } else if (entry.key == "pieces") {
+      for (const Item& item : items(entry, at))
+        plan_.lengths.push_back(item.text == "whole" ? kWholeFlight : frames(item));
+    } else if (entry.key == "seeds") {
+      plan_.seeds.clear();
+      for (const Item& item : items(entry, at))
+        plan_.seeds.push_back(
+            whole<std::uint32_t>("a seed", item, 0, std::numeric_limits<std::uint32_t>::max()));
+    } else if (entry.key == "every") {
+      plan_.every_s = seconds({platform::scalar(entry.value, at), at});
+    } else if (entry.key == "size") {
+      const std::string text = platform::scalar(entry.value, at);
+      checked(at, [&] { plan_.size = parse_size(text); });
+    } else {
+      read_variants(entry);
+    }
+  }
+
+  /// The values of a list: at least one, none twice.
+  std::vector<Item> items(const YamlEntry& entry, const Place& at) const {
+    if (!entry.value.is_sequence())
+      at.fail(fmt::format("is {}; expected a list", platform::kind_of(entry.value)));
+    std::vector<Item> all;
+    for (const YamlNode& node : entry.value.items()) {
+      Item item{platform::scalar(node, at), at};
+      for (const Item& other : all)
+        if (other.text == item.text) at.fail(fmt::format("'{}' is given twice", item.text));
+      all.push_back(std::move(item));
+    }
+    if (all.empty()) at.fail("is empty; expected at least one value");
+    return all;
+  }
+
+  template <class Check>
+  static void checked(const Place& at, const Check& check) {
+    try {
+      check();
+    } catch (const InputError& error) {
+      at.fail(error.what());
+    }
+  }
+
+  template <class Number>
+  static Number whole(const char* what, const Item& item, std::int64_t low, std::int64_t high) {
+    std::int64_t value = 0;
+    checked(item.place, [&] { value = parse_whole(what, item.text, low, high); });
+    return static_cast<Number>(value);
+  }
+
+  static std::size_t frames(const Item& item) {
+    std::size_t count = 0;
+    checked(item.place, [&] {
+      count = static_cast<std::size_t>(
+          parse_whole("frames", item.text, kFewestFrames, kMostFrames, ", or whole"));
+    });
+    return count;
+  }
+
+  static double seconds(const Item& item) {
+    double value = 0;
+    checked(item.place, [&] { value = parse_positive("a time in seconds", item.text); });
+    if (value < kLeastEvery)
+      item.place.fail(
+          fmt::format("{} s is too short; expected at least {:g}", item.text, kLeastEvery));
+    return value;
+  }
+
+  /// Of a folder or a set, as it stands in tables.
+  static std::string plain_name(const Item& item) {
+    if (item.text.empty() || item.text.front() == '.' ||
+        item.text.find_first_of("/,\"|\n\r") != std::string::npos)
+      item.place.fail(fmt::format("'{}' is no plain name, such as MH_01_easy", item.text));
+    return item.text;
+  }
+
+  void read_sets(const YamlEntry& worlds) {
+    std::set<std::uint64_t> seen;
+    for (const YamlEntry& entry : platform::entries_of(worlds.value, file_, "worlds")) {
+      const Place at = place(entry, "worlds");
+      FlightSet set{plain_name({entry.key, at}), {}};
+      for (const Item& item : items(entry, at)) {
+        set.worlds.push_back(
+            whole<std::uint64_t>("a world", item, 0, std::numeric_limits<std::int64_t>::max()));
+        if (!seen.insert(set.worlds.back()).second)
+          at.fail(fmt::format("world {} is in another set, too; sets share no world", item.text));
+      }
+      plan_.sets.push_back(std::move(set));
+    }
+    if (plan_.sets.empty()) place(worlds).fail("is empty; expected sets of worlds");
+  }
+
+  void read_variants(const YamlEntry& variants) {
+    const Place all = place(variants);
+    if (!variants.value.is_sequence())
+      all.fail(fmt::format("is {}; expected a list of {{ profile: NAME, workload.NAME: VALUE }}",
+                           platform::kind_of(variants.value)));
+    for (const YamlNode& node : variants.value.items()) {
+      FlightVariant& variant = plan_.variants.emplace_back(FlightVariant{"next", {}});
+      for (const YamlEntry& entry : platform::entries_of(node, file_, "variants"))
+        read_setting(entry, place(entry, "variants"), variant);
+    }
+    if (plan_.variants.empty()) all.fail("is empty; expected at least one variant");
+  }
+
+  static void read_setting(const YamlEntry& entry, const Place& at, FlightVariant& variant) {
+    const std::string text = platform::scalar(entry.value, at);
+    if (entry.key == "profile") {
+      checked(at, [&] { vio::profile_named(text, 1); });
+      variant.profile = text;
+      return;
+    }
+    const vio::Parameter& parameter = workload_parameter(at.where, entry.key);
+    variant.workload.push_back({&parameter, parse_workload_value(at.where, parameter, text)});
+  }
+
+  std::string file_;
+  FlightPlan plan_;
+};
+
+}  // namespace
+
+std::string length_text(std::size_t frames) {
+  return frames == kWholeFlight ? "whole" : fmt::format("{} frames", frames);
+}
+
+std::string FlightVariant::name() const {
+  std::string text = profile;
+  for (const vio::Assignment& a : workload)
+    text += ' ' + a.text().substr(vio::kParameterPrefix.size());
+  return text;
+}
+
+FlightPlan parse_flight_plan(const std::string& file, const std::string& text) {
+  FlightPlan plan = PlanReader(file, text).read();
+  check_variants(plan);
+  return plan;
+}
+
+FlightPlan flight_plan_named(const std::string& name) {
+  if (platform::is_path(name))
+    return parse_flight_plan(name, base::read_file(name, base::InputKind::plan));
+  std::vector<std::string> names;
+  for (const base::BuiltinFile& file : builtin_flight_plans()) {
+    if (file.name == name) {
+      FlightPlan plan = parse_flight_plan(fmt::format("{}.yaml", name), std::string(file.text));
+      plan.name = name;
+      return plan;
+    }
+    names.emplace_back(file.name);
+  }
+  throw InputError(fmt::format("there is no plan '{}'{}; expected {}, or a file", name,
+                               base::did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
+void check_variants(const FlightPlan& plan) {
+  std::set<std::string> names;
+  for (const FlightVariant& variant : plan.variants) {
+    const std::string name = variant.name();
+    if (!names.insert(name).second)
+      throw InputError(fmt::format("{}: the variant '{}' is given twice", plan.name, name));
+    try {
+      RunRequest request;
+      request.profile = variant.profile;
+      request.workload = variant.workload;
+      profile_of(request);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}: {}", plan.name, name, error.what()));
+    }
+  }
+}
+
+}  // namespace leviosim::tools

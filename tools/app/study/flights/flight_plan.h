@@ -1,0 +1,72 @@
+// What a benchmark of flights runs: motions, texture worlds in sets, pieces, variants of the
+// workload, seeds. A plan is part of the program and has a name, or a file:
+//
+//   motions: [MH_01_easy, V1_02_medium]      # folders, where the user says
+//   worlds:                                   # seeds of what is drawn, in sets
+//     development: [1, 2, 3]
+//     fresh: [4, 5, 6]
+//   pieces: [90, 400, whole]                  # frames from every start in mid-air; whole flights
+//   every: 20                                 # seconds from start to start [20]
+//   seeds: [1, 2, 3]                          # of the workload's random draws [1, 2, 3]
+//   size: 160x120                             # of the images [160x120]
+//   variants:                                 # [next]
+//     - { profile: next, workload.window: 8 }
+//
+// All faults are InputErrors with file, line, key and the nearest valid name.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/base/builtin_file.h"
+#include "traces/datasets/image_preparation.h"
+#include "workload/vio/parameters.h"
+
+namespace leviosim::tools {
+
+/// In place of a number of frames: from the first to the last.
+inline constexpr std::size_t kWholeFlight = 0;
+
+/// "90 frames", "whole".
+std::string length_text(std::size_t frames);
+
+struct FlightSet {
+  std::string name;  ///< "fresh"
+  std::vector<std::uint64_t> worlds;
+};
+
+struct FlightVariant {
+  std::string profile;
+  std::vector<vio::Assignment> workload;  ///< parameters that differ from the profile's
+
+  /// "next window=8".
+  std::string name() const;
+};
+
+struct FlightPlan {
+  std::string name;  ///< or file
+  std::string text;
+  std::vector<std::string> motions;
+  std::vector<FlightSet> sets;
+  std::vector<std::size_t> lengths;  ///< of the pieces, in frames; kWholeFlight
+  double every_s = 20;
+  std::vector<std::uint32_t> seeds{1, 2, 3};
+  traces::ImageSize size{160, 120};
+  std::vector<FlightVariant> variants;
+};
+
+/// plans/*.yaml as part of the program, sorted by name.
+std::span<const base::BuiltinFile> builtin_flight_plans();
+
+/// A plan of the program, or that of a file if the name has a slash or ends in .yaml.
+/// @throws InputError
+FlightPlan flight_plan_named(const std::string& name);
+/// The same from its text. @param file  for messages
+FlightPlan parse_flight_plan(const std::string& file, const std::string& text);
+
+/// Refuses parameters that contradict each other, and variants that are the same. @throws
+/// InputError that names the variant
+void check_variants(const FlightPlan& plan);
+
+}  // namespace leviosim::tools

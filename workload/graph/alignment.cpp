@@ -1,0 +1,211 @@
+#include "workload/graph/alignment.h"
+
+#include "workload/graph/anchored_landmarks.h"
+#include "workload/graph/carried_poses.h"
+#include "workload/inertial/initialisation.h"
+
+namespace leviosim::vio {
+namespace {
+
+/// Places of the unknowns.
+constexpr int kVelocity = 0, kGravityAt = 3, kGyro = 6, kAccel = 9;
+
+constexpr float information(float stddev) { return 1.0f / (stddev * stddev); }
+
+/// The window's state as what the IMU carries its first keyframe from.
+template <class P>
+CarriedFrom<P> start_of(const Window<P>& window) {
+  const KeyframeState<P> first = window.state.keyframe(0);
+  const Mat3<P> R_camera_world = transpose(first.T_world_camera.R);
+  return {R_camera_world * first.velocity, R_camera_world * window.gravity, window.bias};
+}
+
+/// The keyframes of the window where they were carried to. The first one is turned so that gravity
+/// points down.
+template <class P>
+void place_keyframes(const CarriedPoses<P>& poses, const CarriedFrom<P>& from, Window<P>& window) {
+  Pose<P> T_world_first = window.state.pose(0);
+  T_world_first.R = levelled<P>(orthonormalised<P>(T_world_first.R), -from.gravity);
+  for (int k : P::range(0, window.keyframes)) {
+    const CarriedPose<P> at = poses[k];
+    window.state.set_keyframe(k, {T_world_first * Pose<P>{orthonormalised<P>(at.R), at.p},
+                                  T_world_first.R * at.velocity});
+  }
+  window.bias = from.bias;
+  window.bias_is_new = true;
+}
+
+/// Mean specific force over the window, which gravity opposes but for the mean acceleration.
+template <class P>
+Vec3<P> mean_force_of(const CarriedPoses<P>& poses, const CarriedFrom<P>& from, int last) {
+  using F = typename P::F32;
+  const CarriedPose<P> end = poses[last];
+  return (end.velocity - from.velocity) * F(F(1.0f) / end.time) - from.gravity;
+}
+
+/// What is known apart from the images, at `from`.
+template <class P>
+typename P::F32 add_knowledge(const Window<P>& window, const CarriedPoses<P>& poses,
+                              const CarriedFrom<P>& from, const OptimiserOptions& optimiser,
+                              const AlignmentOptions& options, const ReducedSystem<P>* system) {
+  using F = typename P::F32;
+  F cost = 0.0f;
+  const auto hold = [&](int at, const Vec3<P>& off, float stddev) {
+    const F weight = information(stddev);
+    cost += F(0.5f) * weight * dot(off, off);
+    if (system == nullptr) return;
+    const F offs[3] = {off.x, off.y, off.z};
+    for (int i = 0; i < 3; ++i) {
+      system->matrix()(at + i, at + i) += weight;
+      system->vector()[at + i] -= weight * offs[i];
+    }
+  };
+  hold(kVelocity, from.velocity, options.velocity);
+  hold(kGravityAt, from.gravity + mean_force_of<P>(poses, from, window.keyframes - 1),
+       options.acceleration);
+  hold(kGyro, from.bias.gyro - window.bias_prior.mean.gyro, optimiser.prior.gyro_bias);
+  hold(kAccel, from.bias.accel - window.bias_prior.mean.accel, optimiser.prior.accel_bias);
+  return cost;
+}
+
+/// Gravity keeps its length: it moves on its sphere.
+template <class P>
+void hold_length(const Vec3<P>& gravity, const ReducedSystem<P>& system) {
+  using F = typename P::F32;
+  constexpr float kStddev = 1e-3f;  // m/s², of the length
+  const F weight = F(information(kStddev)) / dot(gravity, gravity);
+  const F g[3] = {gravity.x, gravity.y, gravity.z};
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c <= r; ++c)
+      system.matrix()(kGravityAt + r, kGravityAt + c) += weight * g[r] * g[c];
+}
+
+template <class P>
+CarriedFrom<P> stepped(const CarriedFrom<P>& from, const ReducedSystem<P>& solved) {
+  using F = typename P::F32;
+  const auto step = solved.vector();
+  const Vec3<P> gravity = from.gravity + load_vec3<P>(step, kGravityAt);
+  return {
+      from.velocity + load_vec3<P>(step, kVelocity),
+      gravity * F(F(kGravity) / norm(gravity)),
+      {from.bias.gyro + load_vec3<P>(step, kGyro), from.bias.accel + load_vec3<P>(step, kAccel)}};
+}
+
+/// How uncertain the way over the window is, as a share of it.
+/// @param factor  of the information of the unknowns
+template <class P>
+typename P::F32 uncertainty_of_way(const CarriedPose<P>& end, MatrixView<P> factor,
+                                   typename P::template Span<typename P::F32> column) {
+  using F = typename P::F32;
+  const F half_square = end.time * end.time * F(0.5f);
+  F variance = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i : P::range(0, kAlignmentUnknowns)) column[i] = 0.0f;
+    column[kVelocity + axis] = end.time;
+    column[kGravityAt + axis] = half_square;
+    store_vec3<P>(column, kGyro, end.p_by_gyro.row(axis));
+    store_vec3<P>(column, kAccel, end.p_by_accel.row(axis));
+    // The variance is |L⁻¹ x|².
+    for (int i : P::range(0, kAlignmentUnknowns)) {
+      F sum = column[i];
+      for (int k : P::range(0, i)) sum -= factor(i, k) * column[k];
+      column[i] = sum * factor(i, i);
+      variance += F(column[i]) * F(column[i]);
+    }
+  }
+  return work::sqrt(F(variance / work::max(F(dot(end.p, end.p)), F(1e-6f))));
+}
+
+/// Whether the window has settled, and tells enough that can be true.
+/// @param knowledge  the cost of what is known apart from the images
+template <class P>
+bool is_determined(const Window<P>& window, const AlignmentReport& report, float knowledge,
+                   const AlignmentOptions& options) {
+  constexpr float kSettled = 0.01f;  // share of the cost that another iteration may gain
+  const bool full = window.keyframes == window.capacity.keyframes;
+  const float limit = options.max_uncertainty * (full ? options.full_uncertainty : 1.0f);
+  return window.keyframes > options.few_keyframes && report.uncertainty < limit &&
+         2 * knowledge < options.max_surprise * options.max_surprise &&
+         report.landmarks >= options.min_landmarks &&
+         static_cast<float>(report.explained) >=
+             options.min_explained * static_cast<float>(window.landmarks) &&
+         report.cost_before - report.cost_after < kSettled * report.cost_before;
+}
+
+}  // namespace
+
+template <class P>
+AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
+                           const OptimiserOptions& optimiser, const AlignmentOptions& options) {
+  using F = typename P::F32;
+  using Span = typename P::template Span<F>;
+  const typename P::Function function("align_once");
+  AlignmentReport report;
+  report.lambda = work::value(lm.lambda);
+  if (window.keyframes < 2) return report;
+  work::Arena& arena = fc.local();
+  const work::Arena::Frame frame(arena);
+  const CarriedPoses<P> poses(arena, window.keyframes), trial_poses(arena, window.keyframes);
+  const ReducedSystem<P> system(arena, 0, false, kAlignmentUnknowns);
+  const MatrixView<P> factor = alloc_matrix<P>(arena, "information of the alignment",
+                                               kAlignmentUnknowns, kAlignmentUnknowns);
+  const auto column = arena.alloc<Span>("column of the alignment", kAlignmentUnknowns);
+  const LandmarkPrior prior{
+      options.inverse_depth,
+      information(window.keyframes > options.few_keyframes ? options.inverse_depth_stddev
+                                                           : options.first_inverse_depth_stddev)};
+  const AnchoredLandmarks<P> landmarks(arena, window, PixelModel<P>(optimiser.visual), prior);
+  const auto trial = arena.alloc<Span>("trial landmarks", 3 * window.landmarks);
+
+  const CarriedFrom<P> from = start_of<P>(window);
+  landmarks.anchor(window);
+  carry<P>(window, from, poses);
+  landmarks.settle(window, poses, landmarks.all());
+  system.clear();
+  F cost = landmarks.add(window, poses, system);
+  cost += add_knowledge<P>(window, poses, from, optimiser, options, &system);
+  hold_length<P>(from.gravity, system);
+  copy<P>(factor, system.matrix());
+  system.damp(lm.lambda);
+  F trial_cost = cost;
+  CarriedFrom<P> to = from;
+  report.positive_definite = system.solve();
+  if (report.positive_definite) {
+    to = stepped<P>(from, system);
+    carry<P>(window, to, trial_poses);
+    for (int i : P::range(0, 3 * window.landmarks)) trial[i] = F(landmarks.all()[i]);
+    trial_cost = landmarks.settle(window, trial_poses, trial);
+    trial_cost += add_knowledge<P>(window, trial_poses, to, optimiser, options, nullptr);
+  }
+  report.accepted = bool(trial_cost < cost);
+  if (report.accepted) {
+    for (int i : P::range(0, 3 * window.landmarks)) landmarks.all()[i] = F(trial[i]);
+    place_keyframes<P>(trial_poses, to, window);
+    lm.lambda = work::max(F(lm.lambda * optimiser.lambda_down), F(optimiser.min_lambda));
+  } else {
+    place_keyframes<P>(poses, from, window);
+    lm.lambda = work::min(F(lm.lambda * optimiser.lambda_up), F(optimiser.max_lambda));
+  }
+  const CarriedPoses<P>& best = report.accepted ? trial_poses : poses;
+  const auto verdict = landmarks.judge(window, best);
+  report.landmarks = verdict.told;
+  report.explained = verdict.explained;
+  landmarks.release(window);
+  report.cost_before = work::value(cost);
+  report.cost_after = work::value(trial_cost);
+  if (!cholesky_factor<P>(factor)) return report;
+  report.uncertainty =
+      work::value(uncertainty_of_way<P>(best[window.keyframes - 1], factor, column));
+  const F knowledge =
+      add_knowledge<P>(window, best, report.accepted ? to : from, optimiser, options, nullptr);
+  report.determined = is_determined<P>(window, report, work::value(knowledge), options);
+  return report;
+}
+
+template AlignmentReport align_once(work::Machine&, Window<work::Native>&, LmState<work::Native>&,
+                                    const OptimiserOptions&, const AlignmentOptions&);
+template AlignmentReport align_once(work::Machine&, Window<work::Counting>&,
+                                    LmState<work::Counting>&, const OptimiserOptions&,
+                                    const AlignmentOptions&);
+
+}  // namespace leviosim::vio

@@ -1,0 +1,59 @@
+// Visual-inertial initialisation: what a map needs that begins in motion. Over a window of
+// keyframes with tracked features and pre-integrated IMU it finds velocity, gravity, both biases
+// and with them the scale, all at once: the IMU carries the first keyframe through the window
+// (carried_poses.h), so that twelve numbers and the landmarks explain all observations. Minimised
+// are reprojection errors, as the optimiser does it (Huber loss), with landmarks as a direction and
+// an inverse depth in the keyframe that saw them first, by Levenberg-Marquardt, the landmarks
+// eliminated.
+//
+// No structure from motion comes first, for which two views at a base line of a few pixels are a
+// poor start: rotation comes from the gyro but for its bias, and translation is linear in what is
+// looked for. Any landmarks in front of the camera will do to begin with.
+//
+// Observability: the covariance of the unknowns gives that of the way over the window. While it is
+// uncertain beside its length, the window has not seen enough motion, and the map waits.
+//
+// Left out: the noise of the IMU in the window, which the optimiser takes up afterwards.
+#pragma once
+
+#include "workload/graph/marginalisation.h"
+#include "workload/graph/optimiser.h"
+
+namespace leviosim::vio {
+
+/// What is assumed before anything is known, in standard deviations, and when enough is known.
+struct AlignmentOptions {
+  bool enabled = false;
+  float inverse_depth = 0.15f;        ///< of any landmark, 1/m
+  float inverse_depth_stddev = 1.0f;  ///< likewise
+  /// The same while the window has few keyframes: with all landmarks about equally far away the
+  /// problem is nearly linear, and what it finds is near enough to begin with.
+  float first_inverse_depth_stddev = 0.05f;
+  float velocity = 3;            ///< m/s
+  float acceleration = 2;        ///< mean over the window, m/s²
+  int min_keyframes = 3;         ///< of a window that says anything
+  int few_keyframes = 4;         ///< that leave landmarks equally far away, and a map not aligned
+  float initial_lambda = 1e-2f;  ///< damping with every new keyframe
+  // A map is aligned when all of these hold.
+  float max_uncertainty = 0.05f;  ///< of the way over the window, as a share of it
+  float full_uncertainty = 4;     ///< times that, where the window has no room for more keyframes
+  float max_surprise = 3;         ///< standard deviations of velocity, biases and gravity in all
+  float min_explained = 0.7f;     ///< share of the landmarks that agree with the alignment
+  int min_landmarks = 30;         ///< that do and whose distance is told
+};
+
+struct AlignmentReport : IterationReport {
+  float uncertainty = 0;  ///< of the way over the window, as a share of it
+  int explained = 0;      ///< landmarks that agree with the alignment
+  bool determined = false;
+};
+
+/// One iteration on a snapshot of at least two keyframes; changes poses, velocities and points of
+/// `window.state`, and `window.bias`. Position and heading of the first keyframe stay. Landmarks
+/// that no place explains, or whose distance is not told, are marked as lost.
+/// Must run in a stage of `fc`, whose local memory it uses for some tens of kB, freed on return.
+template <class P>
+AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
+                           const OptimiserOptions& optimiser, const AlignmentOptions& options);
+
+}  // namespace leviosim::vio

@@ -1,0 +1,93 @@
+// The landmarks of a window for its alignment: each as a direction (x/z, y/z) and an inverse depth
+// in the keyframe that saw it first. So even one that is far away is nearly linear in its unknowns.
+#pragma once
+
+#include "workload/graph/carried_poses.h"
+#include "workload/graph/reduced_system.h"
+#include "workload/graph/reprojection.h"
+
+namespace leviosim::vio {
+
+/// Velocity, gravity, biases of gyro and accelerometer.
+inline constexpr int kAlignmentUnknowns = 12;
+
+/// What is known of the inverse depth of any landmark.
+struct LandmarkPrior {
+  float inverse_depth;  ///< 1/m
+  float information;    ///< m²
+};
+
+template <class P>
+class AnchoredLandmarks {
+ public:
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  using Span = typename P::template Span<F>;
+
+  AnchoredLandmarks(work::Arena& arena, const Window<P>& window, const PixelModel<P>& model,
+                    const LandmarkPrior& prior)
+      : model_(model),
+        prior_(prior),
+        all_(arena.alloc<Span>("anchored landmarks", 3 * window.landmarks)),
+        row_(arena.alloc<Span>("alignment row", kAlignmentUnknowns)),
+        by_landmark_(arena.alloc<Span>("alignment by landmark", 3 * kAlignmentUnknowns)) {}
+
+  /// Direction and inverse depth of each.
+  Span all() const { return all_; }
+
+  /// From the points of the window's state to anchored landmarks, and back; seen from the window's
+  /// poses.
+  void anchor(const Window<P>& window) const;
+  void release(const Window<P>& window) const;
+
+  /// Moves each landmark one step to where it explains its observations best.
+  /// @return the cost then
+  F settle(const Window<P>& window, const CarriedPoses<P>& poses, Span landmarks) const;
+
+  /// Adds the landmarks, eliminated, to a system of kAlignmentUnknowns.
+  /// @return the cost
+  F add(const Window<P>& window, const CarriedPoses<P>& poses,
+        const ReducedSystem<P>& system) const;
+
+  /// Marks those as lost that do not explain their observations, or whose distance is not told.
+  /// @return the numbers of those that explain them, and of those whose distance is told as well
+  struct Verdict {
+    int explained, told;
+  };
+  Verdict judge(const Window<P>& window, const CarriedPoses<P>& poses) const;
+
+ private:
+  /// Normal equations of one landmark.
+  struct Normal {
+    Mat3<P> H = Mat3<P>::zero();
+    Vec3<P> b{0.0f, 0.0f, 0.0f};
+    F cost = 0.0f;
+    F worst_sq = 0.0f;  ///< largest squared error, px²
+  };
+  /// An observation, linearised.
+  struct Term {
+    F residual[2];
+    Vec3<P> by_point[2];  ///< in the observing camera's frame, at the anchor's depth
+    Vec3<P> by_landmark[2];
+    Vec3<P> point;  ///< in that frame
+    Mat3<P> R_camera_anchor;
+  };
+
+  bool linearise(const CarriedPose<P>& anchor, const CarriedPose<P>& camera,
+                 const Vec3<P>& landmark, const Vec2<P>& observed, Term& term,
+                 Normal& normal) const;
+  Normal normal_of(const Window<P>& window, const CarriedPoses<P>& poses, int i,
+                   const Vec3<P>& landmark) const;
+  void add_observation(const CarriedPose<P>& anchor, const CarriedPose<P>& camera,
+                       const Vec3<P>& landmark, const Term& term,
+                       const ReducedSystem<P>& system) const;
+  void eliminate(const Normal& normal, const ReducedSystem<P>& system) const;
+
+  PixelModel<P> model_;
+  LandmarkPrior prior_;
+  Span all_;
+  Span row_;
+  Span by_landmark_;
+};
+
+}  // namespace leviosim::vio

@@ -1,0 +1,12 @@
+// What front end and back end tell each other about the map beside the pose graph.
+#pragma once
+
+namespace leviosim::vio {
+
+struct MapStatus {
+  /// Velocity, gravity and scale are known: from rest, or from the initialisation. Until then a map
+  /// that has an initialisation has landmarks without a distance.
+  bool aligned = false;
+};
+
+}  // namespace leviosim::vio
