@@ -38,14 +38,19 @@ void forget_landmarks(const Frame<P>& frame) {
 }
 
 template <class P>
+void store(const Pose<P>& T_world_camera, FrameReport& report) {
+  const Pose<P>& T = T_world_camera;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) report.R_world_camera[3 * r + c] = work::value(T.R.m[r][c]);
+  report.p_world_camera = {work::value(T.t.x), work::value(T.t.y), work::value(T.t.z)};
+}
+
+template <class P>
 void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport& report) {
   report.features = frame.features.list.count;
   report.frame_matches = frame.matches.list.count;
   report.landmarks = work::value(state.graph.landmark_count());
-  const Pose<P>& T = frame.T_world_camera;
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c) report.R_world_camera[3 * r + c] = work::value(T.R.m[r][c]);
-  report.p_world_camera = {work::value(T.t.x), work::value(T.t.y), work::value(T.t.z)};
+  store(frame.T_world_camera, report);
 }
 
 template void take_image(const FrameInput&, FrontEndState<work::Native>&);
@@ -54,6 +59,8 @@ template void extract_frame(FrontEndState<work::Native>&, Frame<work::Native>&);
 template void extract_frame(FrontEndState<work::Counting>&, Frame<work::Counting>&);
 template void forget_landmarks(const Frame<work::Native>&);
 template void forget_landmarks(const Frame<work::Counting>&);
+template void store(const Pose<work::Native>&, FrameReport&);
+template void store(const Pose<work::Counting>&, FrameReport&);
 template void complete(const FrontEndState<work::Native>&, const Frame<work::Native>&,
                        FrameReport&);
 template void complete(const FrontEndState<work::Counting>&, const Frame<work::Counting>&,

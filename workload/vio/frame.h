@@ -42,6 +42,10 @@ void extract_frame(FrontEndState<P>& state, Frame<P>& frame);
 template <class P>
 void forget_landmarks(const Frame<P>& frame);
 
+/// The pose of the camera, as plain numbers.
+template <class P>
+void store(const Pose<P>& T_world_camera, FrameReport& report);
+
 /// What the frame came to, as plain numbers.
 template <class P>
 void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport& report);

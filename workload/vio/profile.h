@@ -14,6 +14,7 @@
 #include "workload/inertial/bias_estimation.h"
 #include "workload/inertial/initialisation.h"
 #include "workload/inertial/preintegration.h"
+#include "workload/loop/options.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/guided_matcher.h"
 #include "workload/vision/matcher.h"
@@ -69,6 +70,7 @@ struct Profile {
   RefinementOptions refinement;
   RecoveryOptions recovery;
   RestOptions rest;
+  LoopOptions loop;
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

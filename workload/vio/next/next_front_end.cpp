@@ -13,10 +13,13 @@ namespace leviosim::vio {
 
 template <class P>
 NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-                              work::Arena& keyframe_memory, const PoseGraph<P>& graph)
+                              work::Arena& keyframe_memory, work::Arena& loop_memory,
+                              const PoseGraph<P>& graph)
     : state_(profile, rig, cluster, keyframe_memory, graph),
       inertial_(state_),
-      prediction_(state_, inertial_, keyframe_memory) {}
+      prediction_(state_, inertial_, keyframe_memory) {
+  if (profile.loop.enabled) loop_.emplace(state_, loop_memory);
+}
 
 template <class P>
 FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
@@ -35,13 +38,16 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   } else if (!map_is_plausible(state_, prediction_)) {
     start_anew(frame);
     report.map_restarts = 1;
+    if (loop_) loop_->doubt();
   } else {
     locate(frame, report);
     report.keyframe = is_keyframe(frame, report);
+    if (loop_) loop_->follow(frame, report);
     if (report.keyframe) insert_keyframe<P>(state_, frame);
   }
   prediction_.remember(frame, report);
   complete<P>(state_, frame, report);
+  if (loop_) loop_->correct(frame, frame.dt, report);
   return report;
 }
 

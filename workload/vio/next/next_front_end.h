@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "workload/vio/front_end.h"
+#include "workload/vio/loop/loop_part.h"
 #include "workload/vio/next/prediction.h"
 
 namespace leviosim::vio {
@@ -15,7 +16,7 @@ class NextFrontEnd : public FrontEnd<P> {
   /// @param profile  outlives this
   /// @param graph    in L2; shared with the back end
   NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-               work::Arena& keyframe_memory, const PoseGraph<P>& graph);
+               work::Arena& keyframe_memory, work::Arena& loop_memory, const PoseGraph<P>& graph);
 
   FrameReport process(const FrameInput& input) override;
 
@@ -32,6 +33,7 @@ class NextFrontEnd : public FrontEnd<P> {
   FrontEndState<P> state_;
   InertialPart<P> inertial_;
   Prediction<P> prediction_;
+  std::optional<LoopPart<P>> loop_;  ///< if loops are closed
   bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still
 };
 

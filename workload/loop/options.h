@@ -1,0 +1,78 @@
+// What closes loops, and under which conditions (README.md).
+#pragma once
+
+namespace leviosim::vio {
+
+/// Which keyframes are kept. With the sizes below all of it takes 244 kB of L2 (place_store.h).
+struct PlaceOptions {
+  int places = 120;           ///< kept at most
+  int features = 48;          ///< of each, at most
+  int min_features = 20;      ///< with fewer a keyframe is no place
+  float min_distance = 0.3f;  ///< to the place before, m …
+  float min_turn = 0.3f;      ///< … or angle between the optical axes, rad
+  float metres_per_rad = 1;   ///< of a turn, where places are told near or far
+};
+
+/// Which places are compared with a keyframe.
+struct SearchOptions {
+  int candidates = 3;
+  float candidate_distance = 0.8f;  ///< between them, m: they have to contradict each other
+  float min_travelled = 6;          ///< since the place was visited, m
+  float max_angle = 0.7f;           ///< between the optical axes, rad
+  // The position gate: the estimate's drift at most.
+  float gate = 0.4f;         ///< m
+  float gate_share = 0.03f;  ///< of what was travelled since the place, or the last closure
+  float gate_yaw = 0.15f;    ///< rad
+};
+
+/// When a view shows a place.
+struct VerificationOptions {
+  int max_distance = 60;   ///< bits; a match is strictly closer
+  int ratio_percent = 90;  ///< of the second best distance, at most
+  int min_matches = 9;
+  int ransac_iterations = 32;
+  float ransac_inlier_px = 2;
+  int min_ransac_inliers = 7;
+  float radius_px = 4;       ///< of the search for all points of the place, around RANSAC's pose
+  int guided_distance = 70;  ///< bits, in that search
+  float inlier_px = 2;       ///< reprojection error of a point that agrees
+  int min_inliers = 15;
+  float min_share = 0.55f;  ///< of the points in view that have to agree
+  int min_cells = 5;        ///< of 4 × 3 of the image, which inliers have to lie in
+  float max_tilt = 0.03f;   ///< rad; gravity is known in both views
+};
+
+/// When the views of several keyframes make a closure.
+struct ConfirmationOptions {
+  int keyframes = 3;             ///< that have to agree
+  float position = 0.2f;         ///< m
+  float yaw = 0.03f;             ///< rad
+  float max_travelled = 4;       ///< from one of them to the next, m
+  float known_position = 0.03f;  ///< what is nearer than this to the graph's answer adds nothing, m
+  float known_yaw = 0.004f;      ///< likewise, rad
+};
+
+/// Standard deviations in the pose graph, and its solution.
+struct LoopGraphOptions {
+  int closures = 32;             ///< kept at most
+  float drift_position = 0.02f;  ///< m after 1 m, and with the root of the path
+  float drift_yaw = 0.003f;      ///< rad, likewise
+  float loop_position = 0.05f;   ///< of a closure, m
+  float loop_yaw = 0.01f;        ///< of a closure, rad
+  int steps = 4;                 ///< Gauss–Newton, one in a frame
+  int iterations = 24;           ///< of conjugate gradients in a step, at most
+  float converged = 1e-3f;       ///< change of a position below which no step follows, m
+};
+
+struct LoopOptions {
+  bool enabled = false;
+  PlaceOptions places;
+  SearchOptions search;
+  VerificationOptions verification;
+  ConfirmationOptions confirmation;
+  LoopGraphOptions graph;
+  float restart_travelled = 20;  ///< what a restart of the map counts as in drift, m of path
+  float smoothing = 1;           ///< in which a correction is applied, s
+};
+
+}  // namespace leviosim::vio
