@@ -70,7 +70,8 @@ PlaceList<P> to_list(const Graph& graph, work::Arena& arena) {
                           {number(p.odometry[0]), number(p.odometry[1]), number(p.odometry[2])}});
     list.set_node(i, {number(p.yaw), {number(p.node[0]), number(p.node[1]), number(p.node[2])}});
     list.travelled[i] = number(p.travelled);
-    list.slots[i] = list.features[i] = 0;
+    list.slots[i] = 0;
+    list.features[i] = 0;
   }
   for (const Loop& loop : graph.loops)
     list.set_closure(list.closure_count++,

@@ -143,6 +143,7 @@ PlaceList<Native> row_of_places(work::Arena& arena, const std::vector<double>& x
 
 TEST(Forgetting, TakesTheLaterOfTheTwoNearestPlaces) {
   work::Machine machine({8, "L1", Bytes(1 << 17), 1, false});
+  const auto stage = machine.stage("forgetting");
   const auto densest = [&](const std::vector<double>& xs) {
     const work::Arena::Frame frame(machine.local());
     return densest_place(machine, row_of_places(machine.local(), xs), 1.0f);
@@ -250,6 +251,7 @@ TEST(PlaceMatching, IsWhatItSays) {
     EXPECT_GT(expected.size(), 5u);
     EXPECT_LT(expected.size(), 28u);
     work::Machine machine({8, "L1", Bytes(1 << 17), 1, false});
+    const auto stage = machine.stage("matching");
     work::Arena& local = machine.local();
     FeatureList<Native> list = alloc_features<Native>(local, static_cast<int>(features.size()));
     list.count = list.capacity;

@@ -41,7 +41,8 @@ struct WorldPoint {
 /// Along x from 0 to length, along y from 0 to width, 4 m high.
 struct HallOptions {
   double length = 16, width = 10;
-  int textures = 0;  ///< that the panels choose from; 0: each has its own
+  Eigen::Vector2d shift{0, 0};  ///< of its walls against the path
+  int textures = 0;             ///< that the panels choose from; 0: each has its own
   std::uint64_t seed = 1;
   std::uint64_t texture_seed = 1;
 };
@@ -64,13 +65,14 @@ inline std::vector<WorldPoint> make_panels(const HallOptions& hall) {
   for (int i = 0; i < hall.textures; ++i) textures.push_back(make_texture());
   std::vector<WorldPoint> points;
   const auto wall = [&](const Eigen::Vector3d& from, double length, double turn) {
+    const Eigen::Vector3d corner = from + Eigen::Vector3d(hall.shift.x(), hall.shift.y(), 0);
     const Eigen::Matrix3d R = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     for (int panel = 0; panel < static_cast<int>(length / kPanel); ++panel) {
       const Texture texture = textures.empty()
                                   ? make_texture()
                                   : textures[static_cast<std::size_t>(choice.below(hall.textures))];
       for (const WorldPoint& p : texture)
-        points.push_back({from + R * (p.position + Eigen::Vector3d(kPanel * panel, 0, 0)),
+        points.push_back({corner + R * (p.position + Eigen::Vector3d(kPanel * panel, 0, 0)),
                           R * p.facing, p.descriptor});
     }
   };
@@ -113,16 +115,17 @@ inline double lap_length(const HallOptions& hall) {
   return std::numbers::pi * (3 * (a + b) - std::sqrt((3 * a + b) * (a + 3 * b)));
 }
 
-/// An odometry that is wrong by a constant share of the way and a constant turn of the heading per
-/// metre, which errs with the path; gravity it knows.
+/// An odometry that drifts by a constant vector and a constant turn of the heading per metre;
+/// gravity it knows.
 class DriftingOdometry {
  public:
-  DriftingOdometry(double scale, double yaw_per_m) : scale_(scale), yaw_per_m_(yaw_per_m) {}
+  DriftingOdometry(const Eigen::Vector3d& drift_per_m, double yaw_per_m)
+      : drift_per_m_(drift_per_m), yaw_per_m_(yaw_per_m) {}
 
   Eigen::Isometry3d follow(const Eigen::Isometry3d& T_true) {
     if (started_) {
       const Eigen::Vector3d moved = T_true.translation() - last_.translation();
-      position_ += (1 + scale_) * (about_z(yaw_) * moved);
+      position_ += about_z(yaw_) * moved + moved.norm() * drift_per_m_;
       yaw_ += yaw_per_m_ * moved.norm();
     } else {
       position_ = T_true.translation();
@@ -140,7 +143,8 @@ class DriftingOdometry {
     return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   }
 
-  double scale_, yaw_per_m_;
+  Eigen::Vector3d drift_per_m_;
+  double yaw_per_m_;
   bool started_ = false;
   Eigen::Isometry3d last_;
   Eigen::Vector3d position_;
@@ -223,6 +227,10 @@ class LoopFlight {
   LoopOutcome show(const Sight& sight, const Eigen::Isometry3d& T_odometry_camera) {
     work::Arena& local = machine_.local();
     const work::Arena::Frame frame(local);
+    {
+      const auto stage = machine_.stage(stages::kPlaceRecognition);
+      if (!closer_.is_due(to_pose<Pose<P>>(T_odometry_camera))) return {};
+    }
     const int n = static_cast<int>(sight.features.size());
     LoopView<P> view;
     view.features = alloc_features<P>(local, n);

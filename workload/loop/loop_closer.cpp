@@ -12,6 +12,16 @@ Vec3<P> optical_axis(const Pose<P>& T) {
   return T.R.column(2);
 }
 
+/// Whether two views are farther from each other than `distance`, or look in directions with a
+/// larger angle than `turn` between them.
+template <class P>
+bool are_apart(const Pose<P>& a, const Pose<P>& b, float distance, float turn) {
+  using F = typename P::F32;
+  const Vec3<P> moved = b.t - a.t;
+  if (dot(moved, moved) > F(distance * distance)) return true;
+  return bool(dot(optical_axis(a), optical_axis(b)) < F(cos_of<work::Native>(turn)));
+}
+
 /// Some of the tracked features, spread evenly over their list, which goes through the image row by
 /// row.
 template <class P>
@@ -48,7 +58,7 @@ LoopOutcome LoopCloser<P>::visit(const LoopView<P>& view) {
   {
     const auto stage = machine_.stage(stages::kPlaceRecognition);
     copy_places_in(machine_, places_, places);
-    follow_path(view.T_odometry_camera.t);
+    follow_path(view.T_odometry_camera);
     const Numbers chosen = choose(local, view, options_.places.features);
     const Words signature = local.alloc<Words>("signature", kSignatureWords);
     for (int w : P::range(0, kSignatureWords)) signature[w] = 0u;
@@ -81,9 +91,16 @@ LoopOutcome LoopCloser<P>::visit(const LoopView<P>& view) {
 }
 
 template <class P>
-void LoopCloser<P>::follow_path(const Vec3<P>& position) {
-  if (last_position_) travelled_ += norm(position - *last_position_);
-  last_position_ = position;
+bool LoopCloser<P>::is_due(const Pose<P>& T_odometry_camera) const {
+  const SearchOptions& options = options_.search;
+  return !last_view_ ||
+         are_apart(*last_view_, T_odometry_camera, options.view_distance, options.view_turn);
+}
+
+template <class P>
+void LoopCloser<P>::follow_path(const Pose<P>& T_odometry_camera) {
+  if (last_view_) travelled_ += norm(T_odometry_camera.t - last_view_->t);
+  last_view_ = T_odometry_camera;
 }
 
 template <class P>
@@ -99,11 +116,8 @@ bool LoopCloser<P>::is_new_place(const PlaceList<P>& places, const LoopView<P>& 
   const PlaceOptions& options = options_.places;
   if (view.tracked_count < options.min_features) return false;
   if (places.count == 0) return true;
-  const Pose<P> newest = places.odometry(places.count - 1);
-  const Vec3<P> moved = view.T_odometry_camera.t - newest.t;
-  if (dot(moved, moved) > F(options.min_distance * options.min_distance)) return true;
-  return bool(dot(optical_axis(newest), optical_axis(view.T_odometry_camera)) <
-              F(cos_of<work::Native>(options.min_turn)));
+  return are_apart(places.odometry(places.count - 1), view.T_odometry_camera, options.min_distance,
+                   options.min_turn);
 }
 
 /// @return whether another place was forgotten for it
@@ -221,7 +235,7 @@ auto LoopCloser<P>::only_hypothesis(const PlaceList<P>& places, const LoopView<P
   return best;
 }
 
-/// Whether enough keyframes in a row have said the same.
+/// Whether enough views have said the same, one after the other.
 template <class P>
 bool LoopCloser<P>::confirms(const Hypothesis& hypothesis, const Vec3<P>& position) {
   const ConfirmationOptions& options = options_.confirmation;
@@ -229,11 +243,10 @@ bool LoopCloser<P>::confirms(const Hypothesis& hypothesis, const Vec3<P>& positi
       agreeing_ > 0 && travelled_ - recognised_at_ < F(options.max_travelled) &&
       agree(hypothesis.T_world_odometry, hypothesis_, position, options.position, options.yaw);
   agreeing_ = follows ? agreeing_ + 1 : 1;
+  if (!follows) first_recognised_at_ = travelled_;
   hypothesis_ = hypothesis.T_world_odometry;
   recognised_at_ = travelled_;
-  if (agreeing_ < options.keyframes) return false;
-  agreeing_ = 0;
-  return true;
+  return agreeing_ >= options.views && travelled_ - first_recognised_at_ >= F(options.span);
 }
 
 /// Whether two corrections move a position of the odometry to about the same place.

@@ -1,10 +1,10 @@
-// Loop closure beside an odometry that knows nothing of it: keyframes are kept as places, later
-// keyframes are recognised at them, and what the two say about the drift moves the estimate.
+// Loop closure beside an odometry that knows nothing of it: some views are kept as places, later
+// views are recognised at them, and what the two say about the drift moves the estimate.
 //
-// A keyframe does all of the recognition; the frames after one that closed a loop take a step of
-// the pose graph each. A closure needs several keyframes in a row that are recognised, by places
-// within the estimate's drift, with gravity where it has to be, and that agree on the correction;
-// a keyframe recognised at two places that contradict each other was recognised at none.
+// A view does all of its recognition in its own frame; the frames after one that closed a loop take
+// a step of the pose graph each. A closure needs several views that are recognised, by places
+// within the estimate's drift, with gravity where it has to be, and that agree on the correction; a
+// view that is recognised at two places that contradict each other was recognised at none.
 //
 // The correction is a transform of the odometry's world, T_world_odometry, of four degrees of
 // freedom. It is applied over a while, so that poses do not jump.
@@ -24,7 +24,7 @@ inline constexpr std::string_view kLoopVerification = "loop verification";
 inline constexpr std::string_view kLoopCorrection = "loop correction";
 }  // namespace stages
 
-/// A keyframe as place recognition sees it, in local memory. The world of its pose has its z axis
+/// A view as place recognition sees it, in local memory. The world of its pose has its z axis
 /// up.
 template <class P>
 struct LoopView {
@@ -36,7 +36,7 @@ struct LoopView {
   Pose<P> T_odometry_camera;
 };
 
-/// What a keyframe came to.
+/// What a view came to.
 struct LoopOutcome {
   int places = 0;     ///< that are kept
   int forgotten = 0;  ///< 1 if a place was forgotten for this one
@@ -54,6 +54,8 @@ class LoopCloser {
   LoopCloser(const LoopOptions& options, const LoopCamera& camera, work::Machine& machine,
              work::Arena& memory);
 
+  /// Whether the camera has moved far enough for another view.
+  bool is_due(const Pose<P>& T_odometry_camera) const;
   LoopOutcome visit(const LoopView<P>& view);
   /// Whether a step of the pose graph is due.
   bool has_to_improve() const { return steps_left_ > 0; }
@@ -77,7 +79,7 @@ class LoopCloser {
     int inliers = 0;
   };
 
-  void follow_path(const Vec3<P>& position);
+  void follow_path(const Pose<P>& T_odometry_camera);
   PlaceQuery<P> query_of(const LoopView<P>& view, Words signature) const;
   bool is_new_place(const PlaceList<P>& places, const LoopView<P>& view) const;
   bool remember(PlaceList<P>& places, const LoopView<P>& view, Numbers chosen, Words signature);
@@ -97,12 +99,12 @@ class LoopCloser {
   PlaceFeatures<P> features_;
   // Of the path, in m.
   F travelled_ = 0.0f;
-  F bound_at_ = 0.0f;  ///< where a closure bound the estimate to places
-  std::optional<Vec3<P>> last_position_;
-  // Of the keyframes that were recognised last.
+  F bound_at_ = 0.0f;                 ///< where a closure bound the estimate to places
+  std::optional<Pose<P>> last_view_;  ///< T_odometry_camera
+  // Of the views that were recognised last.
   int agreeing_ = 0;
   YawTransform<P> hypothesis_ = YawTransform<P>::identity();
-  F recognised_at_ = 0.0f;
+  F first_recognised_at_ = 0.0f, recognised_at_ = 0.0f;
   std::uint32_t seed_ = 1;  ///< of RANSAC
   // Of the correction.
   int steps_left_ = 0;

@@ -3,18 +3,21 @@
 
 namespace leviosim::vio {
 
-/// Which keyframes are kept. With the sizes below all of it takes 244 kB of L2 (place_store.h).
+/// Which views are kept as places. With the sizes below all of it takes 244 kB of L2
+/// (place_store.h).
 struct PlaceOptions {
   int places = 120;           ///< kept at most
   int features = 48;          ///< of each, at most
-  int min_features = 20;      ///< with fewer a keyframe is no place
+  int min_features = 20;      ///< with fewer a view is no place
   float min_distance = 0.3f;  ///< to the place before, m …
   float min_turn = 0.3f;      ///< … or angle between the optical axes, rad
   float metres_per_rad = 1;   ///< of a turn, where places are told near or far
 };
 
-/// Which places are compared with a keyframe.
+/// Which views are looked at, and which places they are compared with.
 struct SearchOptions {
+  float view_distance = 0.15f;  ///< from one view that is looked at to the next, m …
+  float view_turn = 0.15f;      ///< … or angle between the optical axes, rad
   int candidates = 3;
   float candidate_distance = 0.8f;  ///< between them, m: they have to contradict each other
   float min_travelled = 6;          ///< since the place was visited, m
@@ -36,20 +39,23 @@ struct VerificationOptions {
   float radius_px = 4;       ///< of the search for all points of the place, around RANSAC's pose
   int guided_distance = 70;  ///< bits, in that search
   float inlier_px = 2;       ///< reprojection error of a point that agrees
-  int min_inliers = 15;
-  float min_share = 0.55f;  ///< of the points in view that have to agree
-  int min_cells = 5;        ///< of 4 × 3 of the image, which inliers have to lie in
-  float max_tilt = 0.03f;   ///< rad; gravity is known in both views
+  int min_inliers = 14;
+  float min_share = 0.4f;      ///< of the points in view that have to agree
+  int stripe_points = 8;       ///< of a place in a vertical quarter of the image …
+  int min_stripe_inliers = 2;  ///< … of which that many have to agree
+  int min_cells = 5;           ///< of 4 × 3 of the image, which inliers have to lie in
+  float max_tilt = 0.03f;      ///< rad; gravity is known in both views
 };
 
-/// When the views of several keyframes make a closure.
+/// When several views make a closure.
 struct ConfirmationOptions {
-  int keyframes = 3;             ///< that have to agree
+  int views = 4;                 ///< that have to agree
+  float span = 1;                ///< of the path, from the first of them to the last, at least, m
   float position = 0.2f;         ///< m
   float yaw = 0.03f;             ///< rad
   float max_travelled = 4;       ///< from one of them to the next, m
-  float known_position = 0.03f;  ///< what is nearer than this to the graph's answer adds nothing, m
-  float known_yaw = 0.004f;      ///< likewise, rad
+  float known_position = 0.05f;  ///< what is nearer than this to the graph's answer adds nothing, m
+  float known_yaw = 0.01f;       ///< likewise, rad
 };
 
 /// Standard deviations in the pose graph, and its solution.
@@ -57,8 +63,8 @@ struct LoopGraphOptions {
   int closures = 32;             ///< kept at most
   float drift_position = 0.02f;  ///< m after 1 m, and with the root of the path
   float drift_yaw = 0.003f;      ///< rad, likewise
-  float loop_position = 0.05f;   ///< of a closure, m
-  float loop_yaw = 0.01f;        ///< of a closure, rad
+  float loop_position = 0.1f;    ///< of a closure, m
+  float loop_yaw = 0.02f;        ///< of a closure, rad
   int steps = 4;                 ///< Gauss–Newton, one in a frame
   int iterations = 24;           ///< of conjugate gradients in a step, at most
   float converged = 1e-3f;       ///< change of a position below which no step follows, m

@@ -71,16 +71,27 @@ MatchList<P> search_around(work::Machine& machine, const StoredView<P>& place,
   return matches;
 }
 
-/// Points of the place that the pose puts into the image, away from its margin.
+/// What of a place is where it ought to be: points that a pose puts into the image, away from its
+/// margin, and those of them that are seen, by vertical stripes of the image.
 template <class P>
-typename P::I32 points_in_view(const StoredView<P>& place, const Pose<P>& T_camera_place,
-                               const LoopCamera& camera, float margin) {
+struct Coverage {
+  using I32 = typename P::I32;
+  using Numbers = typename P::template Span<I32>;
+
+  Numbers expected, seen;  ///< one for each stripe
+  I32 in_view = 0;
+  I32 cells = 0;  ///< of kColumns × kRows, that hold inliers
+};
+
+template <class P>
+void count_expected(const StoredView<P>& place, const Pose<P>& T_camera_place,
+                    const LoopCamera& camera, float margin, Coverage<P>& coverage) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const PinholeCamera& c = camera.camera;
   const F right = static_cast<float>(camera.width) - margin,
           bottom = static_cast<float>(camera.height) - margin;
-  I32 number = 0;
+  const F columns = static_cast<float>(kColumns) / static_cast<float>(camera.width);
   for (int i : P::range(0, place.count)) {
     const Vec3<P> stored{F(place.points[3 * i]), F(place.points[3 * i + 1]),
                          F(place.points[3 * i + 2])};
@@ -88,16 +99,15 @@ typename P::I32 points_in_view(const StoredView<P>& place, const Pose<P>& T_came
     if (!(x.z > F(0.05f))) continue;
     const F inverse = F(1.0f) / x.z;
     const F u = F(c.fx) * (x.x * inverse) + F(c.cx), v = F(c.fy) * (x.y * inverse) + F(c.cy);
-    if (u > F(margin) && u < right && v > F(margin) && v < bottom) ++number;
+    if (!(u > F(margin) && u < right && v > F(margin) && v < bottom)) continue;
+    ++coverage.in_view;
+    coverage.expected[work::to_i32(u * columns)] += I32(1);
   }
-  return number;
 }
 
-/// Cells of the image that hold inliers.
 template <class P>
-typename P::I32 cells_with_inliers(const PnpInput<P>& matches,
-                                   typename P::template Span<typename P::Byte> inliers,
-                                   const LoopCamera& camera) {
+void count_seen(const PnpInput<P>& matches, typename P::template Span<typename P::Byte> inliers,
+                const LoopCamera& camera, Coverage<P>& coverage) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   using U32 = typename P::U32;
@@ -109,8 +119,23 @@ typename P::I32 cells_with_inliers(const PnpInput<P>& matches,
     const I32 column = work::to_i32(F(matches.pixels[2 * i]) * columns);
     const I32 row = work::to_i32(F(matches.pixels[2 * i + 1]) * rows);
     cells |= U32(1u) << I32(row * I32(kColumns) + column);
+    coverage.seen[column] += I32(1);
   }
-  return work::popcount(cells);
+  coverage.cells = work::popcount(cells);
+}
+
+template <class P>
+bool is_covered(const Coverage<P>& coverage, int inliers, const VerificationOptions& options) {
+  using I32 = typename P::I32;
+  if (static_cast<float>(inliers) <
+      options.min_share * static_cast<float>(work::value(coverage.in_view)))
+    return false;
+  if (coverage.cells < I32(options.min_cells)) return false;
+  for (int stripe : P::range(0, kColumns))
+    if (I32(coverage.expected[stripe]) >= I32(options.stripe_points) &&
+        I32(coverage.seen[stripe]) < I32(options.min_stripe_inliers))
+      return false;
+  return true;
 }
 
 }  // namespace
@@ -133,12 +158,16 @@ std::optional<Recognised<P>> recognise(work::Machine& machine, const StoredView<
   refinement.rotation = refinement.position = 1.0f;  // EPnP's pose is no prediction
   const RefinedPose<P> refined = refine_pose<P>(machine, input, *first, refinement, inliers);
   if (!refined.ok || refined.inliers < options.min_inliers) return std::nullopt;
-  const int in_view =
-      work::value(points_in_view(place, refined.T_camera_world, camera, options.radius_px));
-  if (static_cast<float>(refined.inliers) < options.min_share * static_cast<float>(in_view))
-    return std::nullopt;
-  if (work::value(cells_with_inliers(input, inliers, camera)) < options.min_cells)
-    return std::nullopt;
+  Coverage<P> coverage;
+  coverage.expected = local.alloc<typename Coverage<P>::Numbers>("points in stripes", kColumns);
+  coverage.seen = local.alloc<typename Coverage<P>::Numbers>("inliers in stripes", kColumns);
+  for (int stripe : P::range(0, kColumns)) {
+    coverage.expected[stripe] = 0;
+    coverage.seen[stripe] = 0;
+  }
+  count_expected(place, refined.T_camera_world, camera, options.radius_px, coverage);
+  count_seen(input, inliers, camera, coverage);
+  if (!is_covered(coverage, refined.inliers, options)) return std::nullopt;
   return Recognised<P>{inverse(refined.T_camera_world), refined.inliers};
 }
 

@@ -1,7 +1,8 @@
 // Whether a view shows a place, and from where: matches of descriptors, EPnP RANSAC, a search for
 // all points of the place around the pose that it finds, refinement. The last word has what is
 // missing: of the points that the pose puts into the image, a share has to be there. A texture that
-// is found again elsewhere does not bring its surroundings along.
+// is found again elsewhere does not bring its surroundings along; nor may they be missing from a
+// whole stripe of the image.
 #pragma once
 
 #include <optional>

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 /// Of statistics documents; it rises with every statistic that is added. Those of all versions up
 /// to this one can be read.
-inline constexpr int kStatisticsVersion = 3;
+inline constexpr int kStatisticsVersion = 4;
 
 /// The text of any document. Bytes that are no UTF-8, which names of files may have, are replaced
 /// by U+FFFD instead of thrown.

@@ -23,7 +23,7 @@ LoopPart<P>::LoopPart(const FrontEndState<P>& state, work::Arena& memory)
 template <class P>
 void LoopPart<P>::follow(const Frame<P>& frame, FrameReport& report) {
   if (report.source == PoseSource::Tracked) {
-    if (report.keyframe) {
+    if (is_due(frame)) {
       const LoopOutcome outcome = visit(frame);
       places_ = outcome.places;
       report.places_forgotten = outcome.forgotten;
@@ -33,6 +33,12 @@ void LoopPart<P>::follow(const Frame<P>& frame, FrameReport& report) {
     }
   }
   report.places = places_;
+}
+
+template <class P>
+bool LoopPart<P>::is_due(const Frame<P>& frame) const {
+  const auto stage = state_.machine.stage(stages::kPlaceRecognition);
+  return closer_.is_due(frame.T_world_camera);
 }
 
 /// The landmarks of the frame, as seen from its camera.

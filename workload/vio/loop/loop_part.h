@@ -1,5 +1,5 @@
-// Loop closure as a part of a front end: what of its keyframes becomes a place, in which frames
-// there is time for it, and the corrected pose that the frame reports.
+// Loop closure as a part of a front end: which of its frames are looked at, when there is time for
+// it, what of them may become a place, and the corrected pose that the frame reports.
 #pragma once
 
 #include "workload/loop/loop_closer.h"
@@ -14,8 +14,8 @@ class LoopPart {
   /// @param memory  in L2
   LoopPart(const FrontEndState<P>& state, work::Arena& memory);
 
-  /// A frame with a pose from landmarks it was tracked by, before it is inserted as a keyframe: the
-  /// landmarks that it then adds are seen by two keyframes only, and their depth is uncertain yet.
+  /// A frame with a pose, before it may become a keyframe: landmarks that it then adds are seen by
+  /// two keyframes only, and their depth is uncertain yet.
   /// Frames whose pose took the long way (EPnP, 8-point) have no time to spare.
   void follow(const Frame<P>& frame, FrameReport& report);
   /// The front end began another map.
@@ -24,6 +24,7 @@ class LoopPart {
   void correct(const Frame<P>& frame, float dt, FrameReport& report);
 
  private:
+  bool is_due(const Frame<P>& frame) const;
   LoopOutcome visit(const Frame<P>& frame);
 
   const FrontEndState<P>& state_;
