@@ -44,7 +44,20 @@ TEST(NextLoop, ClosesLoopsAndIsNoWorseForIt) {
   EXPECT_LT(loop.ate, 1.05 * next.ate);
 }
 
-/// Each stage of it, in the longest frame, on GAP9 at 370 MHz.
+constexpr double kCyclesPerMs = 370e3;
+
+/// What loop closure takes of a frame.
+double loop_ms(const sim::JobTiming& timing) {
+  double ms = 0;
+  for (const sim::StageTiming& stage : timing.stages)
+    if (stage.stage == vio::stages::kPlaceRecognition ||
+        stage.stage == vio::stages::kLoopVerification ||
+        stage.stage == vio::stages::kLoopCorrection)
+      ms += static_cast<double>(stage.cycles.count()) / kCyclesPerMs;
+  return ms;
+}
+
+/// On all frames and in the longest, on GAP9 at 370 MHz.
 TEST(NextLoop, StaysWithinItsTimeAndMemory) {
   const sim::ChipConfig chip = platform::load_platform("gap9");
   const vio::Profile profile = vio::profile_named("next-loop", 1);
@@ -70,8 +83,8 @@ TEST(NextLoop, StaysWithinItsTimeAndMemory) {
                     .loop_closures;
     for (int k = 0; optimises && k < profile.optimiser_iterations; ++k) odometry->optimise();
     if (optimises) odometry->publish();
-    double ms = 0;
-    TIMED
+    const double ms = loop_ms(timer.front_end(cluster.take_job()));
+    controller.take_job();
     sum_ms += ms;
     worst_ms = std::max(worst_ms, ms);
     ++frames;

@@ -22,6 +22,14 @@ bool are_apart(const Pose<P>& a, const Pose<P>& b, float distance, float turn) {
   return bool(dot(optical_axis(a), optical_axis(b)) < F(cos_of<work::Native>(turn)));
 }
 
+/// Whether two corrections move a position of the odometry to about the same place.
+template <class P>
+bool are_close(const YawTransform<P>& a, const YawTransform<P>& b, const Vec3<P>& position,
+               typename P::F32 distance, typename P::F32 yaw) {
+  const Vec3<P> apart = a * position - b * position;
+  return dot(apart, apart) < distance * distance && work::abs(wrapped<P>(a.yaw - b.yaw)) < yaw;
+}
+
 /// Some of the tracked features, spread evenly over their list, which goes through the image row by
 /// row.
 template <class P>
@@ -79,9 +87,10 @@ LoopOutcome LoopCloser<P>::visit(const LoopView<P>& view) {
   const std::optional<Hypothesis> found = only_hypothesis(places, view, query, candidates);
   if (!found || !confirms(*found, view.T_odometry_camera.t)) return outcome;
   bound_at_ = travelled_;
+  bound_to_ = found->place_travelled;
   const ConfirmationOptions& known = options_.confirmation;
-  if (agree(found->T_world_odometry, T_world_odometry_, view.T_odometry_camera.t,
-            known.known_position, known.known_yaw))
+  if (are_close(found->T_world_odometry, T_world_odometry_, view.T_odometry_camera.t,
+                F(known.known_position), F(known.known_yaw)))
     return outcome;
   add_closure(places, found->closure);
   copy_places_out(machine_, places, places_);
@@ -107,7 +116,10 @@ template <class P>
 PlaceQuery<P> LoopCloser<P>::query_of(const LoopView<P>& view, Words signature) const {
   return {T_world_odometry_ * view.T_odometry_camera.t,
           turned<P>(sincos_of<P>(T_world_odometry_.yaw), optical_axis(view.T_odometry_camera)),
-          travelled_, travelled_ - bound_at_, signature};
+          travelled_,
+          bound_at_,
+          bound_to_,
+          signature};
 }
 
 /// Farther from the newest place than it need be.
@@ -170,6 +182,7 @@ auto LoopCloser<P>::recognise_at(const PlaceList<P>& places, int place, const Lo
   const I32 slot = places.slots[place];
   StoredView<P> stored;
   stored.count = work::value(I32(places.features[place]));
+  const Mat3<P> R_then = places.odometry(place).R;
   stored.descriptors =
       local.alloc<Words>("descriptors of the place", kDescriptorWords * stored.count);
   stored.points =
@@ -179,27 +192,27 @@ auto LoopCloser<P>::recognise_at(const PlaceList<P>& places, int place, const Lo
     const Numbers points = local.alloc<Numbers>("points in millimetres", 3 * stored.count);
     machine_.copy_in(stored.descriptors, features_.descriptors_of(slot));
     machine_.copy_in(points, features_.points_of(slot));
-    for (int i : P::range(0, points.size()))
-      stored.points[i] = loaded_coordinate<P>(I32(points[i]));
+    for (int i : P::range(0, stored.count)) {
+      const Vec3<P> x{loaded_coordinate<P>(I32(points[3 * i])),
+                      loaded_coordinate<P>(I32(points[3 * i + 1])),
+                      loaded_coordinate<P>(I32(points[3 * i + 2]))};
+      store_vec3<P>(stored.points, 3 * i, R_then * x);
+    }
   }
-  const std::optional<Recognised<P>> seen =
-      recognise<P>(machine_, stored, view.features, camera_, options_.verification, seed_++);
-  if (!seen) return std::nullopt;
   const Pose<P>& now = view.T_odometry_camera;
-  const Pose<P> then = places.odometry(place);
-  // How the odometry has turned since, against what the images say.
-  const Mat3<P> turn = then.R * seen->T_place_camera.R * transpose(now.R);
-  if (!tilts_less<P>(turn, options_.verification.max_tilt)) return std::nullopt;
+  const std::optional<Recognised<P>> seen =
+      recognise<P>(machine_, stored, view.features, now.R, camera_, options_.verification, seed_++);
+  if (!seen) return std::nullopt;
   Hypothesis found;
-  found.inliers = seen->inliers;
+  found.place_travelled = places.travelled[place];
   Closure<P>& closure = found.closure;
-  closure.yaw = yaw_of<P>(turn);
-  const Vec3<P> to_view = then.R * seen->T_place_camera.t;
+  closure.yaw = -seen->T_view_place.yaw;
+  const Vec3<P> to_view = -turned<P>(sincos_of<P>(closure.yaw), seen->T_view_place.t);
   const YawTransform<P> node = places.node(place);
   const F yaw = node.yaw + closure.yaw;
   const Vec3<P> position = node.t + turned<P>(sincos_of<P>(node.yaw), to_view);
   const Vec3<P> off = position - query.position;
-  const F gate = drift_gate(options_.search, query, F(places.travelled[place]));
+  const F gate = drift_gate(options_.search, query, found.place_travelled);
   if (dot(off, off) > gate * gate ||
       work::abs(wrapped<P>(yaw - T_world_odometry_.yaw)) > F(options_.search.gate_yaw))
     return std::nullopt;
@@ -214,48 +227,47 @@ auto LoopCloser<P>::recognise_at(const PlaceList<P>& places, int place, const Lo
   return found;
 }
 
-/// What the candidates say if they agree, by the one with most inliers.
+/// What the candidates say if they agree, by the one visited first: the estimate has drifted least
+/// there.
 template <class P>
 auto LoopCloser<P>::only_hypothesis(const PlaceList<P>& places, const LoopView<P>& view,
                                     const PlaceQuery<P>& query, const PlaceCandidates& candidates)
     -> std::optional<Hypothesis> {
-  const ConfirmationOptions& options = options_.confirmation;
-  std::optional<Hypothesis> best;
+  std::optional<Hypothesis> first;
   for (int k = 0; k < candidates.count; ++k) {
     const int place = candidates.places[static_cast<std::size_t>(k)];
     const std::optional<Hypothesis> found = recognise_at(places, place, view, query);
     if (!found) continue;
-    if (best && !agree(best->T_world_odometry, found->T_world_odometry, view.T_odometry_camera.t,
-                       options.position, options.yaw)) {
+    if (first && !agree(*first, *found, view.T_odometry_camera.t)) {
       agreeing_ = 0;
       return std::nullopt;
     }
-    if (!best || found->inliers > best->inliers) best = found;
+    if (!first || found->place_travelled < first->place_travelled) first = found;
   }
-  return best;
+  return first;
 }
 
 /// Whether enough views have said the same, one after the other.
 template <class P>
 bool LoopCloser<P>::confirms(const Hypothesis& hypothesis, const Vec3<P>& position) {
   const ConfirmationOptions& options = options_.confirmation;
-  const bool follows =
-      agreeing_ > 0 && travelled_ - recognised_at_ < F(options.max_travelled) &&
-      agree(hypothesis.T_world_odometry, hypothesis_, position, options.position, options.yaw);
+  const bool follows = agreeing_ > 0 && travelled_ - recognised_at_ < F(options.max_travelled) &&
+                       agree(hypothesis, *hypothesis_, position);
   agreeing_ = follows ? agreeing_ + 1 : 1;
   if (!follows) first_recognised_at_ = travelled_;
-  hypothesis_ = hypothesis.T_world_odometry;
+  hypothesis_ = hypothesis;
   recognised_at_ = travelled_;
   return agreeing_ >= options.views && travelled_ - first_recognised_at_ >= F(options.span);
 }
 
-/// Whether two corrections move a position of the odometry to about the same place.
+/// Whether what two places say differs by no more than the drift between them.
 template <class P>
-bool LoopCloser<P>::agree(const YawTransform<P>& a, const YawTransform<P>& b,
-                          const Vec3<P>& position, float distance, float yaw) const {
-  const Vec3<P> apart = a * position - b * position;
-  return dot(apart, apart) < F(distance * distance) &&
-         work::abs(wrapped<P>(a.yaw - b.yaw)) < F(yaw);
+bool LoopCloser<P>::agree(const Hypothesis& a, const Hypothesis& b, const Vec3<P>& position) const {
+  const ConfirmationOptions& options = options_.confirmation;
+  const F path = work::abs(a.place_travelled - b.place_travelled);
+  return are_close(a.T_world_odometry, b.T_world_odometry, position,
+                   F(options_.search.gate_share) * path + F(options.position),
+                   F(options_.search.yaw_share) * path + F(options.yaw));
 }
 
 template <class P>

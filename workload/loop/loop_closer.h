@@ -76,7 +76,7 @@ class LoopCloser {
   struct Hypothesis {
     YawTransform<P> T_world_odometry;
     Closure<P> closure;
-    int inliers = 0;
+    F place_travelled;  ///< path until the place, m
   };
 
   void follow_path(const Pose<P>& T_odometry_camera);
@@ -89,8 +89,7 @@ class LoopCloser {
                                             const PlaceQuery<P>& query,
                                             const PlaceCandidates& candidates);
   bool confirms(const Hypothesis& hypothesis, const Vec3<P>& position);
-  bool agree(const YawTransform<P>& a, const YawTransform<P>& b, const Vec3<P>& position,
-             float distance, float yaw) const;
+  bool agree(const Hypothesis& a, const Hypothesis& b, const Vec3<P>& position) const;
 
   const LoopOptions options_;
   const LoopCamera camera_;
@@ -99,11 +98,12 @@ class LoopCloser {
   PlaceFeatures<P> features_;
   // Of the path, in m.
   F travelled_ = 0.0f;
-  F bound_at_ = 0.0f;                 ///< where a closure bound the estimate to places
+  F bound_at_ = 0.0f;                 ///< where views last bound the estimate to a place …
+  F bound_to_ = 0.0f;                 ///< … that was visited there
   std::optional<Pose<P>> last_view_;  ///< T_odometry_camera
   // Of the views that were recognised last.
   int agreeing_ = 0;
-  YawTransform<P> hypothesis_ = YawTransform<P>::identity();
+  std::optional<Hypothesis> hypothesis_;
   F first_recognised_at_ = 0.0f, recognised_at_ = 0.0f;
   std::uint32_t seed_ = 1;  ///< of RANSAC
   // Of the correction.

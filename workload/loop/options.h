@@ -19,13 +19,23 @@ struct SearchOptions {
   float view_distance = 0.15f;  ///< from one view that is looked at to the next, m …
   float view_turn = 0.15f;      ///< … or angle between the optical axes, rad
   int candidates = 3;
-  float candidate_distance = 0.8f;  ///< between them, m: they have to contradict each other
+  float candidate_distance = 0.8f;  ///< between those of one visit, m: near ones say the same
   float min_travelled = 6;          ///< since the place was visited, m
   float max_angle = 0.7f;           ///< between the optical axes, rad
   // The position gate: the estimate's drift at most.
   float gate = 0.4f;         ///< m
   float gate_share = 0.03f;  ///< of what was travelled since the place, or the last closure
   float gate_yaw = 0.15f;    ///< rad
+  float yaw_share = 0.001f;  ///< rad/m, likewise: between two places
+};
+
+/// How a pose with a known vertical is found.
+struct UprightOptions {
+  int iterations = 32;      ///< of RANSAC
+  float inlier_px = 4;      ///< of a pair's pose; a pair is less exact than all
+  int steps = 4;            ///< Gauss–Newton
+  float huber_px = 1;       ///< errors count linearly from here on
+  float min_depth = 0.05f;  ///< of a point in view, m
 };
 
 /// When a view shows a place.
@@ -33,10 +43,9 @@ struct VerificationOptions {
   int max_distance = 60;   ///< bits; a match is strictly closer
   int ratio_percent = 90;  ///< of the second best distance, at most
   int min_matches = 9;
-  int ransac_iterations = 32;
-  float ransac_inlier_px = 2;
-  int min_ransac_inliers = 7;
-  float radius_px = 4;       ///< of the search for all points of the place, around RANSAC's pose
+  int min_pair_inliers = 6;  ///< of the best pose of two matches
+  UprightOptions pose;
+  float radius_px = 4;       ///< of the search for all points of the place, around that pose
   int guided_distance = 70;  ///< bits, in that search
   float inlier_px = 2;       ///< reprojection error of a point that agrees
   int min_inliers = 14;
@@ -44,15 +53,14 @@ struct VerificationOptions {
   int stripe_points = 8;       ///< of a place in a vertical quarter of the image …
   int min_stripe_inliers = 2;  ///< … of which that many have to agree
   int min_cells = 5;           ///< of 4 × 3 of the image, which inliers have to lie in
-  float max_tilt = 0.03f;      ///< rad; gravity is known in both views
 };
 
 /// When several views make a closure.
 struct ConfirmationOptions {
   int views = 4;                 ///< that have to agree
   float span = 1;                ///< of the path, from the first of them to the last, at least, m
-  float position = 0.2f;         ///< m
-  float yaw = 0.03f;             ///< rad
+  float position = 0.2f;         ///< besides the drift between the places, m
+  float yaw = 0.03f;             ///< likewise, rad
   float max_travelled = 4;       ///< from one of them to the next, m
   float known_position = 0.05f;  ///< what is nearer than this to the graph's answer adds nothing, m
   float known_yaw = 0.01f;       ///< likewise, rad
@@ -61,9 +69,9 @@ struct ConfirmationOptions {
 /// Standard deviations in the pose graph, and its solution.
 struct LoopGraphOptions {
   int closures = 32;             ///< kept at most
-  float drift_position = 0.02f;  ///< m after 1 m, and with the root of the path
+  float drift_position = 0.05f;  ///< m after 1 m, and with the root of the path
   float drift_yaw = 0.003f;      ///< rad, likewise
-  float loop_position = 0.1f;    ///< of a closure, m
+  float loop_position = 0.07f;   ///< of a closure, m
   float loop_yaw = 0.02f;        ///< of a closure, rad
   int steps = 4;                 ///< Gauss–Newton, one in a frame
   int iterations = 24;           ///< of conjugate gradients in a step, at most

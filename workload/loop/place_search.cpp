@@ -17,24 +17,29 @@ bool may_show(const PlaceList<P>& places, int i, const PlaceQuery<P>& query,
   return bool(dot(places.axis(i), query.axis) > F(least_cosine));
 }
 
-/// The most similar place that is not near one that was chosen already, or −1.
+/// Whether two places were visited one after the other, near each other: they say the same.
+template <class P>
+bool are_neighbours(const PlaceList<P>& places, int a, int b, const SearchOptions& options) {
+  using F = typename P::F32;
+  const Vec3<P> apart = places.node(a).t - places.node(b).t;
+  return dot(apart, apart) < F(options.candidate_distance * options.candidate_distance) &&
+         work::abs(F(places.travelled[a]) - F(places.travelled[b])) < F(options.min_travelled);
+}
+
+/// The most similar place that is no neighbour of one that was chosen already, or −1.
 template <class P>
 typename P::I32 next_candidate(const PlaceList<P>& places,
                                typename P::template Span<typename P::I32> scores,
-                               const PlaceCandidates& chosen, float distance) {
-  using F = typename P::F32;
+                               const PlaceCandidates& chosen, const SearchOptions& options) {
   using I32 = typename P::I32;
   I32 best = -1, best_score = -1;
   for (int i : P::range(0, places.count)) {
     const I32 score = scores[i];
     if (!(score > best_score)) continue;
-    bool apart = true;
-    for (int k = 0; k < chosen.count; ++k) {
-      const Vec3<P> d =
-          places.node(i).t - places.node(chosen.places[static_cast<std::size_t>(k)]).t;
-      apart = apart && dot(d, d) > F(distance * distance);
-    }
-    if (!apart) continue;
+    bool is_new = true;
+    for (int k = 0; k < chosen.count && is_new; ++k)
+      is_new = !are_neighbours(places, i, chosen.places[static_cast<std::size_t>(k)], options);
+    if (!is_new) continue;
     best = i;
     best_score = score;
   }
@@ -69,7 +74,7 @@ PlaceCandidates find_candidates(work::Machine& machine, const PlaceList<P>& plac
   PlaceCandidates candidates;
   const int most = std::min(options.candidates, PlaceCandidates::kMost);
   while (candidates.count < most) {
-    const I32 next = next_candidate<P>(places, scores, candidates, options.candidate_distance);
+    const I32 next = next_candidate<P>(places, scores, candidates, options);
     if (next < I32(0)) break;
     candidates.places[static_cast<std::size_t>(candidates.count++)] = work::value(next);
   }

@@ -12,10 +12,11 @@ namespace leviosim::vio {
 /// A view, by the present estimate.
 template <class P>
 struct PlaceQuery {
-  Vec3<P> position;                   ///< corrected, m
-  Vec3<P> axis;                       ///< of the camera, in the corrected world
-  typename P::F32 travelled;          ///< until now, m
-  typename P::F32 travelled_unbound;  ///< since a closure bound the estimate to places, m
+  Vec3<P> position;           ///< corrected, m
+  Vec3<P> axis;               ///< of the camera, in the corrected world
+  typename P::F32 travelled;  ///< until now, m
+  typename P::F32 bound_at;   ///< path until the estimate was last bound to a place, m …
+  typename P::F32 bound_to;   ///< … and until that place
   typename P::template Span<typename P::U32> signature;
 };
 
@@ -25,13 +26,15 @@ struct PlaceCandidates {
   int count = 0;
 };
 
-/// How far the estimate may have drifted since a place was visited [m].
+/// How far the estimate may have drifted since a place was visited [m]: by the way since then, or
+/// from there to the place that it was bound to, and since.
 template <class P>
 typename P::F32 drift_gate(const SearchOptions& options, const PlaceQuery<P>& query,
                            typename P::F32 travelled_at_place) {
   using F = typename P::F32;
   const F since = query.travelled - travelled_at_place;
-  return F(options.gate_share) * work::min(since, query.travelled_unbound) + F(options.gate);
+  const F bound = query.travelled - query.bound_at + work::abs(query.bound_to - travelled_at_place);
+  return F(options.gate_share) * work::min(since, bound) + F(options.gate);
 }
 
 /// Works inside a stage.

@@ -1,8 +1,7 @@
 #include "workload/loop/verification.h"
 
-#include "workload/geometry/pnp_ransac.h"
-#include "workload/geometry/pose_refinement.h"
 #include "workload/loop/place_matching.h"
+#include "workload/loop/upright_pose.h"
 #include "workload/vision/guided_matcher.h"
 
 namespace leviosim::vio {
@@ -30,24 +29,22 @@ PnpInput<P> gather(work::Arena& local, const StoredView<P>& place, const Feature
   return {points, pixels, matches.count, camera.camera};
 }
 
-/// T_camera_place by EPnP RANSAC on descriptors alone.
+/// The pose that descriptors alone lead to.
 template <class P>
-std::optional<Pose<P>> first_pose(work::Machine& machine, const StoredView<P>& place,
-                                  const FeatureList<P>& features, const LoopCamera& camera,
-                                  const VerificationOptions& options, std::uint32_t seed) {
+std::optional<YawTransform<P>> first_pose(work::Machine& machine, const StoredView<P>& place,
+                                          const FeatureList<P>& features,
+                                          const Mat3<P>& R_camera_upright, const LoopCamera& camera,
+                                          const VerificationOptions& options, std::uint32_t seed) {
   work::Arena& local = machine.local();
   const work::Arena::Frame memory(local);
   MatchList<P> matches = alloc_matches<P>(local, place.count);
   match_place<P>(machine, features, place.descriptors, place.count, options, matches);
   if (matches.count < options.min_matches) return std::nullopt;
-  PnpOptions ransac;
-  ransac.iterations = options.ransac_iterations;
-  ransac.inlier_px = options.ransac_inlier_px;
-  ransac.seed = seed;
-  const PnpResult<P> found =
-      estimate_pose_epnp<P>(machine, gather(local, place, features, matches, camera), ransac);
-  if (!found.ok || found.inliers < options.min_ransac_inliers) return std::nullopt;
-  return found.T_camera_world;
+  const UprightInput<P> input{gather(local, place, features, matches, camera), R_camera_upright};
+  UprightPose<P> found = find_upright_pose<P>(machine, input, options.pose, seed);
+  if (found.inliers < options.min_pair_inliers) return std::nullopt;
+  if (!refine_upright_pose<P>(local, input, options.pose, found.T)) return std::nullopt;
+  return found.T;
 }
 
 /// Features around where a pose puts the points of the place.
@@ -142,22 +139,26 @@ bool is_covered(const Coverage<P>& coverage, int inliers, const VerificationOpti
 
 template <class P>
 std::optional<Recognised<P>> recognise(work::Machine& machine, const StoredView<P>& place,
-                                       const FeatureList<P>& features, const LoopCamera& camera,
+                                       const FeatureList<P>& features,
+                                       const Mat3<P>& R_odometry_camera, const LoopCamera& camera,
                                        const VerificationOptions& options, std::uint32_t seed) {
   work::Arena& local = machine.local();
   const work::Arena::Frame memory(local);
-  const std::optional<Pose<P>> first = first_pose(machine, place, features, camera, options, seed);
+  const Mat3<P> R = transpose(R_odometry_camera);
+  const std::optional<YawTransform<P>> first =
+      first_pose(machine, place, features, R, camera, options, seed);
   if (!first) return std::nullopt;
-  const MatchList<P> matches = search_around(machine, place, features, camera, *first, options);
+  const MatchList<P> matches =
+      search_around(machine, place, features, camera, upright_camera_pose<P>(R, *first), options);
   if (matches.count < options.min_inliers) return std::nullopt;
-  const PnpInput<P> input = gather(local, place, features, matches, camera);
+  const UprightInput<P> input{gather(local, place, features, matches, camera), R};
+  YawTransform<P> T = *first;
+  if (!refine_upright_pose<P>(local, input, options.pose, T)) return std::nullopt;
   const auto inliers =
       local.alloc<typename P::template Span<typename P::Byte>>("inlier mask", matches.count);
-  RefinementOptions refinement;
-  refinement.inlier_px = options.inlier_px;
-  refinement.rotation = refinement.position = 1.0f;  // EPnP's pose is no prediction
-  const RefinedPose<P> refined = refine_pose<P>(machine, input, *first, refinement, inliers);
-  if (!refined.ok || refined.inliers < options.min_inliers) return std::nullopt;
+  const int agreeing =
+      mark_inliers<P>(input, T, options.inlier_px, options.pose.min_depth, inliers);
+  if (agreeing < options.min_inliers) return std::nullopt;
   Coverage<P> coverage;
   coverage.expected = local.alloc<typename Coverage<P>::Numbers>("points in stripes", kColumns);
   coverage.seen = local.alloc<typename Coverage<P>::Numbers>("inliers in stripes", kColumns);
@@ -165,17 +166,17 @@ std::optional<Recognised<P>> recognise(work::Machine& machine, const StoredView<
     coverage.expected[stripe] = 0;
     coverage.seen[stripe] = 0;
   }
-  count_expected(place, refined.T_camera_world, camera, options.radius_px, coverage);
-  count_seen(input, inliers, camera, coverage);
-  if (!is_covered(coverage, refined.inliers, options)) return std::nullopt;
-  return Recognised<P>{inverse(refined.T_camera_world), refined.inliers};
+  count_expected(place, upright_camera_pose<P>(R, T), camera, options.radius_px, coverage);
+  count_seen(input.matches, inliers, camera, coverage);
+  if (!is_covered(coverage, agreeing, options)) return std::nullopt;
+  return Recognised<P>{T, agreeing};
 }
 
 template std::optional<Recognised<work::Native>> recognise(
     work::Machine&, const StoredView<work::Native>&, const FeatureList<work::Native>&,
-    const LoopCamera&, const VerificationOptions&, std::uint32_t);
+    const Mat3<work::Native>&, const LoopCamera&, const VerificationOptions&, std::uint32_t);
 template std::optional<Recognised<work::Counting>> recognise(
     work::Machine&, const StoredView<work::Counting>&, const FeatureList<work::Counting>&,
-    const LoopCamera&, const VerificationOptions&, std::uint32_t);
+    const Mat3<work::Counting>&, const LoopCamera&, const VerificationOptions&, std::uint32_t);
 
 }  // namespace leviosim::vio

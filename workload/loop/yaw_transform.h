@@ -58,18 +58,4 @@ typename P::F32 wrapped(typename P::F32 angle) {
   return angle;
 }
 
-/// The two parts of a rotation that the vertical tells apart: how far it turns about the vertical,
-/// and whether it tilts the vertical by less than an angle.
-template <class P>
-typename P::F32 yaw_of(const Mat3<P>& R) {
-  return atan2_of<P>(R.m[1][0] - R.m[0][1], R.m[0][0] + R.m[1][1]);
-}
-/// @param sin_limit  sine of the angle, which is below π/2
-template <class P>
-bool tilts_less(const Mat3<P>& R, float sin_limit) {
-  using F = typename P::F32;
-  const F x = R.m[0][2], y = R.m[1][2];
-  return R.m[2][2] > F(0.0f) && x * x + y * y < F(sin_limit * sin_limit);
-}
-
 }  // namespace leviosim::vio
