@@ -205,6 +205,8 @@ auto LoopCloser<P>::recognise_at(const PlaceList<P>& places, int place, const Lo
   if (!seen) return std::nullopt;
   Hypothesis found;
   found.place_travelled = places.travelled[place];
+  found.travelled = travelled_;
+  found.ambiguous = false;
   Closure<P>& closure = found.closure;
   closure.yaw = -seen->T_view_place.yaw;
   const Vec3<P> to_view = -turned<P>(sincos_of<P>(closure.yaw), seen->T_view_place.t);
@@ -238,26 +240,33 @@ auto LoopCloser<P>::only_hypothesis(const PlaceList<P>& places, const LoopView<P
     const int place = candidates.places[static_cast<std::size_t>(k)];
     const std::optional<Hypothesis> found = recognise_at(places, place, view, query);
     if (!found) continue;
-    if (first && !agree(*first, *found, view.T_odometry_camera.t)) {
-      agreeing_ = 0;
-      return std::nullopt;
-    }
+    const bool ambiguous =
+        first && (first->ambiguous || !agree(*first, *found, view.T_odometry_camera.t));
     if (!first || found->place_travelled < first->place_travelled) first = found;
+    first->ambiguous = ambiguous;
   }
   return first;
 }
 
-/// Whether enough views have said the same, one after the other.
+/// Whether enough views have said the same of late, and few something else.
 template <class P>
 bool LoopCloser<P>::confirms(const Hypothesis& hypothesis, const Vec3<P>& position) {
   const ConfirmationOptions& options = options_.confirmation;
-  const bool follows = agreeing_ > 0 && travelled_ - recognised_at_ < F(options.max_travelled) &&
-                       agree(hypothesis, *hypothesis_, position);
-  agreeing_ = follows ? agreeing_ + 1 : 1;
-  if (!follows) first_recognised_at_ = travelled_;
-  hypothesis_ = hypothesis;
-  recognised_at_ = travelled_;
-  return agreeing_ >= options.views && travelled_ - first_recognised_at_ >= F(options.span);
+  int agreeing = 1, contradicting = 0;
+  F first = travelled_;
+  for (int i = 0; i < std::min(recent_count_, kRecent); ++i) {
+    const Hypothesis& other = recent_[static_cast<std::size_t>(i)];
+    if (travelled_ - other.travelled > F(options.window)) continue;
+    if (other.ambiguous || !agree(hypothesis, other, position)) {
+      ++contradicting;
+    } else {
+      ++agreeing;
+      first = work::min(first, other.travelled);
+    }
+  }
+  recent_[static_cast<std::size_t>(recent_count_++ % kRecent)] = hypothesis;
+  return !hypothesis.ambiguous && agreeing >= options.views && agreeing > 2 * contradicting &&
+         travelled_ - first >= F(options.span);
 }
 
 /// Whether what two places say differs by no more than the drift between them.
@@ -291,7 +300,7 @@ void LoopCloser<P>::improve() {
 template <class P>
 void LoopCloser<P>::doubt() {
   travelled_ += F(options_.restart_travelled);
-  agreeing_ = 0;
+  recent_count_ = 0;
 }
 
 /// In equal parts over the time that is left, of the yaw and of the position of the camera.

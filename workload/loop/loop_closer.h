@@ -3,13 +3,15 @@
 //
 // A view does all of its recognition in its own frame; the frames after one that closed a loop take
 // a step of the pose graph each. A closure needs several views that are recognised, by places
-// within the estimate's drift, with gravity where it has to be, and that agree on the correction; a
-// view that is recognised at two places that contradict each other was recognised at none.
+// within the estimate's drift, with gravity where it has to be, and that agree on the correction,
+// while few of those in between contradict. A view that is recognised at two places that contradict
+// each other contradicts all others.
 //
 // The correction is a transform of the odometry's world, T_world_odometry, of four degrees of
 // freedom. It is applied over a while, so that poses do not jump.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "workload/loop/loop_graph.h"
@@ -72,11 +74,16 @@ class LoopCloser {
   using Words = typename P::template Span<typename P::U32>;
   using Numbers = typename P::template Span<typename P::U16>;
 
+  /// Views that are remembered to confirm what later ones say.
+  static constexpr int kRecent = 8;
+
   /// What recognising a place says.
   struct Hypothesis {
     YawTransform<P> T_world_odometry;
     Closure<P> closure;
     F place_travelled;  ///< path until the place, m
+    F travelled;        ///< path until the view, m
+    bool ambiguous;     ///< another place says something else
   };
 
   void follow_path(const Pose<P>& T_odometry_camera);
@@ -102,9 +109,8 @@ class LoopCloser {
   F bound_to_ = 0.0f;                 ///< … that was visited there
   std::optional<Pose<P>> last_view_;  ///< T_odometry_camera
   // Of the views that were recognised last.
-  int agreeing_ = 0;
-  std::optional<Hypothesis> hypothesis_;
-  F first_recognised_at_ = 0.0f, recognised_at_ = 0.0f;
+  std::array<Hypothesis, kRecent> recent_{};
+  int recent_count_ = 0;    ///< ever; the newest is at (recent_count_ − 1) mod kRecent
   std::uint32_t seed_ = 1;  ///< of RANSAC
   // Of the correction.
   int steps_left_ = 0;

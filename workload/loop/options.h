@@ -9,6 +9,7 @@ struct PlaceOptions {
   int places = 120;           ///< kept at most
   int features = 48;          ///< of each, at most
   int min_features = 20;      ///< with fewer a view is no place
+  int min_observations = 3;   ///< of a feature's landmark; by two its depth is not sure yet
   float min_distance = 0.3f;  ///< to the place before, m …
   float min_turn = 0.3f;      ///< … or angle between the optical axes, rad
   float metres_per_rad = 1;   ///< of a turn, where places are told near or far
@@ -61,7 +62,7 @@ struct ConfirmationOptions {
   float span = 1;                ///< of the path, from the first of them to the last, at least, m
   float position = 0.2f;         ///< besides the drift between the places, m
   float yaw = 0.03f;             ///< likewise, rad
-  float max_travelled = 4;       ///< from one of them to the next, m
+  float window = 4;              ///< of the path, in which views are remembered, m
   float known_position = 0.05f;  ///< what is nearer than this to the graph's answer adds nothing, m
   float known_yaw = 0.01f;       ///< likewise, rad
 };

@@ -10,6 +10,32 @@ bool is_storable(const Vec3<P>& x) {
   return farthest < F(kFarthestPoint) && x.z > F(0.0f);
 }
 
+/// How many of the keyframes in the window have seen each landmark.
+template <class P>
+auto count_observations(const FrontEndState<P>& state, work::Arena& local) {
+  using I32 = typename P::I32;
+  using Byte = typename P::Byte;
+  using Bytes = typename P::template Span<Byte>;
+  using Numbers = typename P::template Span<typename P::U16>;
+  const auto& graph = state.graph_in_l2;
+  const Bytes counts = local.alloc<Bytes>("observations of landmarks", graph.capacity.landmarks);
+  const work::Arena::Frame memory(local);
+  const int n = work::value(graph.observation_count());
+  const Numbers landmarks = local.alloc<Numbers>("landmarks of observations", n);
+  const Bytes meant = local.alloc<Bytes>("generations of observations", n),
+              alive = local.alloc<Bytes>("generations of landmarks", counts.size());
+  state.machine.copy_in(landmarks, state.graph.observation_landmarks.subspan(0, n));
+  state.machine.copy_in(meant, state.graph.observation_generations.subspan(0, n));
+  state.machine.copy_in(alive, state.graph.generations);
+  for (int i : P::range(0, counts.size())) counts[i] = work::narrow<Byte>(I32(0));
+  for (int i : P::range(0, n)) {
+    const I32 landmark = landmarks[i];
+    if (I32(meant[i]) != I32(alive[landmark])) continue;
+    counts[landmark] = work::narrow<Byte>(I32(counts[landmark]) + I32(1));
+  }
+  return counts;
+}
+
 }  // namespace
 
 template <class P>
@@ -58,9 +84,11 @@ LoopOutcome LoopPart<P>::visit(const Frame<P>& frame) {
   {
     const auto stage = state_.machine.stage(stages::kPlaceRecognition);
     const Pose<P> T_camera_world = inverse(frame.T_world_camera);
+    const auto observations = count_observations(state_, local);
     for (int i : P::range(0, features.count)) {
       const I32 landmark = frame.features.landmarks[i];
       if (landmark == I32(kNoLandmark)) continue;
+      if (I32(observations[landmark]) < I32(state_.profile.loop.places.min_observations)) continue;
       const Vec3<P> x = T_camera_world * state_.graph_in_l2.point(landmark);
       if (!is_storable(x)) continue;
       view.tracked[view.tracked_count] = work::narrow<U16>(I32(i));
