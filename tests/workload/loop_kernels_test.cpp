@@ -33,25 +33,10 @@ TEST(YawTransform, TurnsAboutTheVerticalAndMoves) {
   EXPECT_NEAR(again.t.z, 3, 2e-6);
 }
 
-TEST(YawTransform, TellsYawFromTilt) {
-  const auto rotation = [](double yaw, double tilt) {
-    const Pose<Native> pose = to_pose<Pose<Native>>([&] {
-      Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-      T.linear() = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                    Eigen::AngleAxisd(tilt, Eigen::Vector3d(0.6, 0.8, 0)))
-                       .toRotationMatrix();
-      return T;
-    }());
-    return pose.R;
-  };
-  for (const double yaw : {-2.5, -0.1, 0.0, 0.02, 3.0}) {
-    EXPECT_NEAR(yaw_of<Native>(rotation(yaw, 0)), yaw, 1e-6);
-    EXPECT_TRUE(tilts_less<Native>(rotation(yaw, 0.029), 0.03f));
-    EXPECT_FALSE(tilts_less<Native>(rotation(yaw, 0.031), 0.03f));
-  }
-  EXPECT_FALSE(tilts_less<Native>(rotation(0.2, 3.14159), 0.03f));
+TEST(YawTransform, WrapsAngles) {
   EXPECT_NEAR(wrapped<Native>(3.5f), 3.5 - 2 * std::numbers::pi, 1e-6);
   EXPECT_NEAR(wrapped<Native>(-3.5f), 2 * std::numbers::pi - 3.5, 1e-6);
+  EXPECT_EQ(wrapped<Native>(0.5f), 0.5f);
 }
 
 TEST(PlaceStore, KeepsPointsToHalfAMillimetre) {
