@@ -42,6 +42,7 @@ void extract_frame(FrontEndState<P>& state, Frame<P>& frame);
 template <class P>
 void forget_landmarks(const Frame<P>& frame);
 
+/// The pose of the camera, as plain numbers.
 template <class P>
 CameraPose plain(const Pose<P>& T_world_camera);
 

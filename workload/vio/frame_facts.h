@@ -61,6 +61,9 @@ struct FrameFacts {
   int inliers = 0;
   int landmarks = 0;
   int map_restarts = 0;
+  int places = 0;
+  int places_forgotten = 0;
+  int loop_closures = 0;
 };
 
 /// A number that is never negative.
@@ -79,6 +82,10 @@ inline constexpr std::array kFrameFacts{
     FrameFact{"landmarks", "landmarks alive after the frame", &FrameFacts::landmarks},
     FrameFact{"map_restarts", "restarts of the map, since what it had become could not be true",
               &FrameFacts::map_restarts},
+    FrameFact{"places", "places that loop closure keeps", &FrameFacts::places},
+    FrameFact{"places_forgotten", "places given up for this frame, where places lay densest",
+              &FrameFacts::places_forgotten},
+    FrameFact{"loop_closures", "loops closed with this frame", &FrameFacts::loop_closures},
 };
 
 }  // namespace leviosim::vio

@@ -72,6 +72,11 @@ constexpr std::array kProfiles = {
                    p.use_imu = p.optimiser.use_imu = p.use_epnp = false;
                  }},
     NamedProfile{"next", "the best accuracy that fits GAP9", make_next},
+    NamedProfile{"next-loop", "next, with loop closure",
+                 [](Profile& p) {
+                   make_next(p);
+                   p.loop.enabled = true;
+                 }},
 };
 
 const NamedProfile* find(std::string_view name) {

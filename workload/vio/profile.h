@@ -15,6 +15,7 @@
 #include "workload/inertial/bias_estimation.h"
 #include "workload/inertial/initialisation.h"
 #include "workload/inertial/preintegration.h"
+#include "workload/loop/options.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/guided_matcher.h"
 #include "workload/vision/matcher.h"
@@ -79,6 +80,7 @@ struct Profile {
   float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
   float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]
   int initial_frames = 0;            ///< before it whose poses wait until it corrects them
+  LoopOptions loop;
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates

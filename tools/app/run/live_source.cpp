@@ -139,8 +139,9 @@ void LiveSource::describe(RunResult& result) const {
   result.image_height = feed_.rig().height;
   for (const auto& [name, arena] : {std::pair<const char*, const work::Arena&>{
                                         "last keyframe", odometry_->last_keyframe_memory()},
-                                    {"pose graph", odometry_->pose_graph_memory()}})
-    result.l2.push_back({name, arena.used(), arena.live()});
+                                    {"pose graph", odometry_->pose_graph_memory()},
+                                    {"loop closure", odometry_->loop_memory()}})
+    if (arena.used() > Bytes(0)) result.l2.push_back({name, arena.used(), arena.live()});
   if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= 3 &&
       why_incomparable(result).empty())
     evaluate(result);

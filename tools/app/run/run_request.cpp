@@ -13,6 +13,11 @@ void check_together(const vio::Profile& profile) {
     throw InputError(
         "workload.joint is on, but the profile works without IMU: expected workload.joint=off, or "
         "a profile with IMU");
+  if (profile.loop.enabled && !(profile.guided.enabled && profile.optimiser.joint))
+    throw InputError(
+        "workload.loop is on: it takes landmarks that were tracked and a world whose vertical is "
+        "known; expected workload.guided=on and workload.joint=on, as next has them, or "
+        "workload.loop=off");
 }
 
 vio::Profile profile_of(const RunRequest& request) {

@@ -13,13 +13,15 @@ namespace leviosim::vio {
 
 template <class P>
 NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-                              work::Arena& keyframe_memory, const PoseGraph<P>& graph,
-                              MapStatus& map)
+                              work::Arena& keyframe_memory, work::Arena& loop_memory,
+                              const PoseGraph<P>& graph, MapStatus& map)
     : state_(profile, rig, cluster, keyframe_memory, graph),
       map_(map),
       inertial_(state_),
       prediction_(state_, inertial_, map_, keyframe_memory),
-      path_(state_, inertial_, keyframe_memory, profile.initial_frames) {}
+      path_(state_, inertial_, keyframe_memory, profile.initial_frames) {
+  if (profile.loop.enabled) loop_.emplace(state_, loop_memory);
+}
 
 template <class P>
 FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
@@ -40,6 +42,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   } else if (!map_is_plausible(state_, prediction_, !initialises())) {
     start_anew(frame);
     report.map_restarts = 1;
+    if (loop_) loop_->doubt();
   } else {
     if (initialises())
       follow(frame, report);
@@ -50,6 +53,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
       start_at_rest(frame, inertial_.recent());
     } else {
       report.keyframe = is_keyframe(frame, report);
+      if (loop_ && !initialises()) loop_->follow(frame, report);
       if (report.keyframe) insert_keyframe<P>(state_, frame, !initialises());
     }
   }
@@ -57,6 +61,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   prediction_.remember(frame, report);
   if (initialises()) hold_position(frame);
   complete<P>(state_, frame, report);
+  if (loop_) loop_->correct(frame, frame.dt, report);
   return report;
 }
 

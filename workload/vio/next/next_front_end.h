@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "workload/vio/front_end.h"
+#include "workload/vio/loop/loop_part.h"
 #include "workload/vio/next/initial_path.h"
 #include "workload/vio/next/prediction.h"
 
@@ -16,7 +17,8 @@ class NextFrontEnd : public FrontEnd<P> {
   /// @param profile, map  outlive this
   /// @param graph    in L2; shared with the back end
   NextFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
-               work::Arena& keyframe_memory, const PoseGraph<P>& graph, MapStatus& map);
+               work::Arena& keyframe_memory, work::Arena& loop_memory, const PoseGraph<P>& graph,
+               MapStatus& map);
 
   FrameReport process(const FrameInput& input) override;
 
@@ -39,7 +41,8 @@ class NextFrontEnd : public FrontEnd<P> {
   MapStatus& map_;
   InertialPart<P> inertial_;
   Prediction<P> prediction_;
-  InitialPath<P> path_;   ///< while the map waits for its alignment
+  std::optional<LoopPart<P>> loop_;  ///< if loops are closed
+  InitialPath<P> path_;              ///< while the map waits for its alignment
   bool still_ = false;    ///< the images say that the camera has not moved since the keyframe
   bool rests_ = false;    ///< nor turned
   bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still

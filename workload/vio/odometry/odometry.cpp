@@ -1,5 +1,8 @@
 #include "workload/vio/odometry/odometry.h"
 
+#include <algorithm>
+
+#include "workload/loop/loop_closer.h"
 #include "workload/vio/levio/levio_front_end.h"
 #include "workload/vio/next/next_front_end.h"
 #include "workload/vio/odometry/back_end.h"
@@ -47,9 +50,11 @@ namespace {
 template <class P>
 std::unique_ptr<FrontEnd<P>> make_front_end(const Profile& profile, const Rig& rig,
                                             work::Machine& cluster, work::Arena& keyframe_memory,
-                                            const PoseGraph<P>& graph, MapStatus& map) {
+                                            work::Arena& loop_memory, const PoseGraph<P>& graph,
+                                            MapStatus& map) {
   if (profile.guided.enabled)
-    return std::make_unique<NextFrontEnd<P>>(profile, rig, cluster, keyframe_memory, graph, map);
+    return std::make_unique<NextFrontEnd<P>>(profile, rig, cluster, keyframe_memory, loop_memory,
+                                             graph, map);
   return std::make_unique<LevioFrontEnd<P>>(profile, rig, cluster, keyframe_memory, graph);
 }
 
@@ -61,10 +66,13 @@ class OdometryOf : public Odometry {
       : profile_(fitted_to(rig, profile)),
         keyframe_memory_("L2", controller.local().capacity()),
         graph_memory_("L2", controller.local().capacity()),
+        loop_memory_("L2", controller.local().capacity()),
         graph_(graph_memory_, keyframe_memory_,
                {profile.optimiser_keyframes, profile.max_landmarks, profile.max_observations}),
-        front_end_(make_front_end(profile_, rig, cluster, keyframe_memory_, graph_, map_)),
-        reserved_(controller.local(), keyframe_memory_.used() + graph_memory_.used()),
+        front_end_(
+            make_front_end(profile_, rig, cluster, keyframe_memory_, loop_memory_, graph_, map_)),
+        reserved_(controller.local(),
+                  keyframe_memory_.used() + graph_memory_.used() + loop_memory_.used()),
         back_end_(profile_, rig, controller, graph_, map_) {
     graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
   }
@@ -75,11 +83,13 @@ class OdometryOf : public Odometry {
   void publish() override { back_end_.publish(); }
   const work::Arena& last_keyframe_memory() const override { return keyframe_memory_; }
   const work::Arena& pose_graph_memory() const override { return graph_memory_; }
+  const work::Arena& loop_memory() const override { return loop_memory_; }
 
  private:
   Profile profile_;
   work::Arena keyframe_memory_;
   work::Arena graph_memory_;
+  work::Arena loop_memory_;
   PoseGraph<P> graph_;
   MapStatus map_;
   std::unique_ptr<FrontEnd<P>> front_end_;
@@ -106,6 +116,12 @@ std::vector<StageName> stage_names(const Profile& profile) {
   const auto epnp = names.begin() + 3;
   names.insert(epnp + 1, {stages::kRefinement, "frame", false});
   names.insert(names.begin() + 2, {stages::kGuided, "frame", false});
+  if (!profile.loop.enabled) return names;
+  const auto controller =
+      std::find_if(names.begin(), names.end(), [](const StageName& n) { return n.on_controller; });
+  names.insert(controller, {{stages::kPlaceRecognition, "keyframe", false},
+                            {stages::kLoopVerification, "keyframe", false},
+                            {stages::kLoopCorrection, "frame", false}});
   return names;
 }
 

@@ -50,9 +50,11 @@ class Odometry {
   /// Makes what the iterations since begin_optimisation() found visible to the front end.
   virtual void publish() = 0;
 
-  /// Persistent blocks in L2: the last keyframe and the pose graph.
+  /// Persistent blocks in L2: the last keyframe, the pose graph, and what loop closure keeps, which
+  /// is nothing where it is off.
   virtual const work::Arena& last_keyframe_memory() const = 0;
   virtual const work::Arena& pose_graph_memory() const = 0;
+  virtual const work::Arena& loop_memory() const = 0;
 };
 
 /// The profile with what depends on the images, as make_odometry() runs it: the optimiser's camera
