@@ -24,8 +24,8 @@ struct Options {
 
 /// A graph as the front end leaves it before the alignment, keyframe by keyframe: velocity and
 /// biases unknown, attitude from the first force, every landmark at the same distance.
-struct Scene {
-  explicit Scene(const Options& o = {})
+struct MovingScene {
+  explicit MovingScene(const Options& o = {})
       : options(o),
         fc({.cores = 1, .memory = "L2", .capacity = Bytes(1'600'000)}),
         graph(fc.local(), {12, 1000, 2400}),
@@ -159,7 +159,7 @@ struct Scene {
 };
 
 TEST(Alignment, FindsVelocityGravityAndBiasesOfAFlight) {
-  Scene scene;
+  MovingScene scene;
   EXPECT_GT(scene.align(), scene.alignment.few_keyframes);
   EXPECT_NEAR(scene.scale(), 1, 0.05);
   EXPECT_LT(scene.tilt_error(), 0.02);
@@ -168,7 +168,7 @@ TEST(Alignment, FindsVelocityGravityAndBiasesOfAFlight) {
 }
 
 TEST(Alignment, IsRobustAgainstWrongMatches) {
-  Scene scene({.outliers = 0.05});
+  MovingScene scene({.outliers = 0.05});
   scene.alignment.min_explained = 0.5f;
   EXPECT_GT(scene.align(), 0);
   EXPECT_NEAR(scene.scale(), 1, 0.1);
@@ -176,20 +176,20 @@ TEST(Alignment, IsRobustAgainstWrongMatches) {
 
 /// Without acceleration no IMU tells how fast the camera is.
 TEST(Alignment, WaitsWhileTheMotionTellsNoScale) {
-  Scene scene({.keyframes = 11, .accelerates = false});
+  MovingScene scene({.keyframes = 11, .accelerates = false});
   EXPECT_EQ(scene.align(), 0);
   EXPECT_GT(scene.report.uncertainty, scene.alignment.max_uncertainty);
 }
 
 TEST(Alignment, RefusesBiasesThatCannotBeTrue) {
-  Scene scene;
+  MovingScene scene;
   scene.accel_bias = {0.5, -0.4, 0.5};
   EXPECT_EQ(scene.align(), 0);
 }
 
 /// The first keyframe is where the map begins: position and heading are not the alignment's to say.
 TEST(Alignment, LeavesPositionAndHeadingOfTheFirstKeyframe) {
-  Scene scene;
+  MovingScene scene;
   scene.align();
   const Pose<Native> first = scene.window.state.pose(0);
   EXPECT_EQ(norm(first.t), 0.0f);
