@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "eigen_conversions.h"
 #include "preintegration_motion.h"
 #include "workload/graph/alignment.h"
 #include "workload/inertial/initialisation.h"
@@ -39,7 +40,7 @@ struct MovingScene {
     optimiser.visual.sigma_px *= 0.3f;
     graph.clear(ImuBias<Native>::zero(), {0, 0, -kGravity});
     graph.set_bias_prior(BiasPrior<Native>::unknown({}));
-    T_world_first = {upright_rotation<Native>(vec3<Native>(force(time(0)))), {0, 0, 0}};
+    T_world_first = {upright_rotation<Native>(to_vec3<Native>(force(time(0)))), {0, 0, 0}};
     TestRandom scatter(3);
     for (int i = 0; i < 150; ++i) {
       const int first = static_cast<int>(scatter.uniform(0, options.keyframes - 3));
@@ -63,8 +64,8 @@ struct MovingScene {
   }
   ImuSample<Native> sample(double t, double dt) const {
     const Vector3d rate = options.accelerates ? Motion::rate(t) : Vector3d::Zero();
-    return {static_cast<float>(dt), vec3<Native>(rate + gyro_bias),
-            vec3<Native>(force(t) + accel_bias)};
+    return {static_cast<float>(dt), to_vec3<Native>(rate + gyro_bias),
+            to_vec3<Native>(force(t) + accel_bias)};
   }
 
   void add_keyframe(int k) {
@@ -106,16 +107,16 @@ struct MovingScene {
   /// Length of the way over the window, over the true one.
   double scale() const {
     const int last = window.keyframes - 1;
-    return eigen<Native>(window.state.pose(last).t - window.state.pose(0).t).norm() /
+    return to_eigen<Native>(window.state.pose(last).t - window.state.pose(0).t).norm() /
            (position(time(last)) - position(time(0))).norm();
   }
   double tilt_error() const {
-    const Vector3d down = eigen<Native>(window.state.pose(0).R).transpose() * Vector3d(0, 0, -1);
+    const Vector3d down = to_eigen<Native>(window.state.pose(0).R).transpose() * Vector3d(0, 0, -1);
     return std::acos(down.dot(rotation(time(0)).transpose() * Vector3d(0, 0, -1)));
   }
   double velocity_error() const {
-    const Vector3d v = eigen<Native>(window.state.pose(0).R).transpose() *
-                       eigen<Native>(window.state.keyframe(0).velocity);
+    const Vector3d v = to_eigen<Native>(window.state.pose(0).R).transpose() *
+                       to_eigen<Native>(window.state.keyframe(0).velocity);
     return (v - Motion::rotation(time(0)).transpose() * Motion::velocity(time(0))).norm();
   }
 
@@ -164,7 +165,7 @@ TEST(Alignment, FindsVelocityGravityAndBiasesOfAFlight) {
   EXPECT_NEAR(scene.scale(), 1, 0.05);
   EXPECT_LT(scene.tilt_error(), 0.02);
   EXPECT_LT(scene.velocity_error(), 0.1);
-  EXPECT_LT((eigen<Native>(scene.window.bias.gyro) - scene.gyro_bias).norm(), 0.01);
+  EXPECT_LT((to_eigen<Native>(scene.window.bias.gyro) - scene.gyro_bias).norm(), 0.01);
 }
 
 TEST(Alignment, IsRobustAgainstWrongMatches) {
@@ -193,7 +194,8 @@ TEST(Alignment, LeavesPositionAndHeadingOfTheFirstKeyframe) {
   scene.align();
   const Pose<Native> first = scene.window.state.pose(0);
   EXPECT_EQ(norm(first.t), 0.0f);
-  const Matrix3d turned = eigen<Native>(first.R) * eigen<Native>(scene.T_world_first.R).transpose();
+  const Matrix3d turned =
+      to_eigen<Native>(first.R) * to_eigen<Native>(scene.T_world_first.R).transpose();
   EXPECT_LT(std::abs(log_of(turned).z()), 0.01);
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 using Native = work::Native;
 
-constexpr double kStep = 0.2;     ///< of a keyframe, m
-constexpr float kSeconds = 0.2f;  ///< for it
+constexpr double kKeyframeStep = 0.2;  ///< of a keyframe, m
+constexpr float kSeconds = 0.2f;       ///< for it
 
 struct Ending {
   double drift = 0;  ///< of the odometry at the end, m
@@ -32,7 +32,7 @@ Ending fly_laps(const HallOptions& hall, double metres, std::uint64_t seed,
       random.uniform(-0.001, 0.001));
   LoopFlight<Native> flight{LoopOptions{}};
   Ending ending;
-  for (double path = 0; path < metres; path += kStep) {
+  for (double path = 0; path < metres; path += kKeyframeStep) {
     const Eigen::Isometry3d T = pose_on_lap(hall, path);
     const Eigen::Isometry3d T_odometry = odometry.follow(T);
     const bool elsewhere = other != nullptr && path >= switch_at;
@@ -65,7 +65,7 @@ TEST(LoopCloser, LeavesPosesAloneUntilALoopIsClosed) {
   const std::vector<WorldPoint> world = make_panels(hall);
   Random random(1);
   LoopFlight<Native> flight{LoopOptions{}};
-  for (double path = 0; path < 10; path += kStep) {
+  for (double path = 0; path < 10; path += kKeyframeStep) {
     const Eigen::Isometry3d T = pose_on_lap(hall, path);
     flight.show(look(world, T, random), T);
     const Pose<Native> before = to_pose<Pose<Native>>(T), after = flight.corrected(T, kSeconds);
@@ -86,7 +86,7 @@ TEST(LoopCloser, AppliesACorrectionOverAWhile) {
   LoopFlight<Native> flight{options};
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   double largest = 0;
-  for (double path = 0; path < lap_length(hall) + 6; path += kStep) {
+  for (double path = 0; path < lap_length(hall) + 6; path += kKeyframeStep) {
     const Eigen::Isometry3d T = pose_on_lap(hall, path);
     const Eigen::Isometry3d T_odometry = odometry.follow(T);
     flight.show(look(world, T, random), T_odometry);
@@ -109,7 +109,7 @@ TEST(LoopCloser, IsTheSameUnderBothPolicies) {
   options.places.places = 40;
   LoopFlight<Native> plain{options};
   LoopFlight<work::Counting> counting{options, true};
-  for (double path = 0; path < lap_length(hall) + 4; path += kStep) {
+  for (double path = 0; path < lap_length(hall) + 4; path += kKeyframeStep) {
     const Eigen::Isometry3d T = pose_on_lap(hall, path);
     const Eigen::Isometry3d T_odometry = odometry.follow(T);
     const Sight sight = look(world, T, random);

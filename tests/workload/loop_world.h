@@ -48,7 +48,7 @@ struct HallOptions {
 };
 
 inline std::vector<WorldPoint> make_panels(const HallOptions& hall) {
-  constexpr double kPanel = 2, kHeight = 4;
+  constexpr double kPanel = 2, kPanelHeight = 4;
   constexpr int kPoints = 72;
   using Texture = std::vector<WorldPoint>;  // x along the wall, y away from it, z up
   Random paint(hall.texture_seed), choice(hall.seed * 7919 + 13);
@@ -56,7 +56,7 @@ inline std::vector<WorldPoint> make_panels(const HallOptions& hall) {
     Texture texture;
     for (int i = 0; i < kPoints; ++i)
       texture.push_back(
-          {{paint.uniform(0, kPanel), paint.uniform(0, 0.5), paint.uniform(0, kHeight)},
+          {{paint.uniform(0, kPanel), paint.uniform(0, 0.5), paint.uniform(0, kPanelHeight)},
            Eigen::Vector3d::UnitY(),
            random_descriptor(paint)});
     return texture;

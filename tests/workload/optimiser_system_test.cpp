@@ -8,7 +8,7 @@ namespace leviosim::vio::test {
 namespace {
 
 using work::Native;
-using Scene = OptimiserScene<Native>;
+using GraphScene = OptimiserScene<Native>;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -20,7 +20,7 @@ struct Parts {
 
 /// One linearisation of a scene, undamped but for the landmarks.
 struct Linearised {
-  Linearised(Scene& scene, float lambda, bool velocities, Parts parts = {})
+  Linearised(GraphScene& scene, float lambda, bool velocities, Parts parts = {})
       : frame(scene.fc.local()),
         records(scene.fc.local(), scene.window.landmarks, scene.window.capacity.keyframes),
         system(scene.fc.local(), scene.window.keyframes, velocities),
@@ -90,7 +90,7 @@ Dense dense_visual(const Window<Native>& window, const LandmarkRecords<Native>& 
 }
 
 TEST(NormalEquations, SchurComplementIsThatOfTheDenseMatrix) {
-  Scene scene;
+  GraphScene scene;
   const float lambda = 1e-3f;
   const Linearised l(scene, lambda, true, {true, false, false});
   const Dense d = dense_visual(scene.window, l.records, 9, lambda);
@@ -105,7 +105,7 @@ TEST(NormalEquations, SchurComplementIsThatOfTheDenseMatrix) {
 
 /// Steps of keyframes and landmarks, against one dense solve of all unknowns.
 void expect_steps_of_the_dense_system(bool imu) {
-  Scene scene;
+  GraphScene scene;
   const float lambda = 1e-2f;
   Linearised l(scene, lambda, imu, {true, imu, true});
   const Linearised rest(scene, lambda, imu, {false, imu, true});
@@ -146,7 +146,7 @@ TEST(NormalEquations, ReducedSystemIsPositiveDefinite) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     OptimiserSceneOptions options;
     options.seed = seed;
-    Scene scene(options);
+    GraphScene scene(options);
     EXPECT_GT(smallest_eigenvalue(Linearised(scene, 1e-4f, true).matrix()), 0) << "start";
     scene.optimise(6);
     EXPECT_GT(smallest_eigenvalue(Linearised(scene, 1e-4f, true).matrix()), 0) << "solution";
@@ -155,7 +155,7 @@ TEST(NormalEquations, ReducedSystemIsPositiveDefinite) {
 
 /// The mistake that PARAMETERS.md warns of would show.
 TEST(NormalEquations, InertialTermOfTheWrongSignIsNotPositiveDefinite) {
-  Scene scene;
+  GraphScene scene;
   const MatrixXd visual = Linearised(scene, 1e-4f, true, {true, false, true}).matrix();
   const MatrixXd inertial = Linearised(scene, 1e-4f, true, {false, true, false}).matrix();
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(visual + inertial).eigenvalues().minCoeff(), 0);
@@ -166,7 +166,7 @@ TEST(NormalEquations, InertialTermOfTheWrongSignIsNotPositiveDefinite) {
 /// Whitened rows of an interval are JᵀΣ⁻¹J, here by finite differences of the inertial cost along
 /// random directions: gradient and curvature at a small residual.
 TEST(NormalEquations, InertialTermIsTheSlopeOfItsCost) {
-  Scene scene;
+  GraphScene scene;
   const Linearised l(scene, 0, true, {false, true, false});
   TestRandom random(5);
   const WindowState<Native>& at = scene.window.state;
@@ -196,7 +196,7 @@ TEST(NormalEquations, InertialTermIsTheSlopeOfItsCost) {
 }
 
 TEST(NormalEquations, LandmarksBehindTheCamerasTakeNoPart) {
-  Scene scene;
+  GraphScene scene;
   const Linearised all(scene, 1e-4f, true);
   EXPECT_EQ(all.use.landmarks, scene.window.landmarks);
   for (int i = 0; i < 10; ++i) scene.window.state.points[3 * i + 2] = -5.0f;
@@ -213,7 +213,7 @@ TEST(NormalEquations, LandmarksBehindTheCamerasTakeNoPart) {
 }
 
 TEST(NormalEquations, UntouchedUnknownsStayWhereTheyAre) {
-  Scene scene;
+  GraphScene scene;
   // No inertial term: no residual touches the velocities.
   Linearised l(scene, 1e-4f, true, {true, false, true});
   l.system.damp(1e-4f);

@@ -12,13 +12,13 @@ namespace {
 
 using work::Counting;
 using work::Native;
-using Scene = OptimiserScene<Native>;
+using GraphScene = OptimiserScene<Native>;
 
 TEST(Optimiser, FindsTheTruthFromExactMeasurements) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     OptimiserSceneOptions options;
     options.seed = seed;
-    Scene scene(options);
+    GraphScene scene(options);
     ASSERT_GT(scene.position_rms(), 0.05);
     const auto reports = scene.optimise(10);
     EXPECT_LT(scene.position_rms(), 2e-3) << "seed " << seed;
@@ -34,7 +34,7 @@ TEST(Optimiser, CostNeverRisesAndEveryStepCanBeSolved) {
     OptimiserSceneOptions options;
     options.seed = seed;
     options.whole_pixels = true;
-    Scene scene(options);
+    GraphScene scene(options);
     float cost = 0;
     for (const IterationReport& r : scene.optimise(12)) {
       EXPECT_TRUE(r.positive_definite);
@@ -51,7 +51,7 @@ TEST(Optimiser, CostNeverRisesAndEveryStepCanBeSolved) {
 TEST(Optimiser, ARejectedStepChangesNothingButTheDamping) {
   OptimiserSceneOptions options;
   options.whole_pixels = true;
-  Scene scene(options);
+  GraphScene scene(options);
   scene.optimise(15);  // as far as single precision goes
   LmState<Native> lm(scene.options);
   bool seen = false;
@@ -72,7 +72,7 @@ TEST(Optimiser, ARejectedStepChangesNothingButTheDamping) {
 }
 
 TEST(Optimiser, ALandmarkThatLeavesTheViewStaysWhereItWas) {
-  Scene scene;
+  GraphScene scene;
   const PixelModel<Native> model(scene.options.visual);
   const Window<Native>& window = scene.window;
   std::vector<float> points(window.state.points.data(),
@@ -89,7 +89,7 @@ TEST(Optimiser, ALandmarkThatLeavesTheViewStaysWhereItWas) {
 }
 
 TEST(Optimiser, MarksLandmarksItHasLost) {
-  Scene scene;
+  GraphScene scene;
   const Vector3d ahead = Motion::rotation(0).col(2);
   for (int c = 0; c < 3; ++c)
     scene.window.state.points[3 * 7 + c] -= static_cast<float>(20 * ahead[c]);
@@ -101,7 +101,7 @@ TEST(Optimiser, MarksLandmarksItHasLost) {
 }
 
 TEST(Optimiser, TheFirstVelocityOfAllHasAnAnchorOfItsOwn) {
-  Scene scene;
+  GraphScene scene;
   AnchorOptions anchor;
   anchor.velocity = 0.1f;
   anchor.initial_velocity = 2.0f;
@@ -117,7 +117,7 @@ TEST(Optimiser, TheFirstVelocityOfAllHasAnAnchorOfItsOwn) {
 }
 
 TEST(Optimiser, DampingFallsWithSuccess) {
-  Scene scene;
+  GraphScene scene;
   const auto reports = scene.optimise(4);
   for (std::size_t i = 1; i < 4; ++i)
     EXPECT_FLOAT_EQ(reports[i].lambda,
@@ -127,7 +127,7 @@ TEST(Optimiser, DampingFallsWithSuccess) {
 TEST(Optimiser, HuberLimitsTheInfluenceOfOutliers) {
   OptimiserSceneOptions options;
   options.outliers = 0.05;
-  Scene robust(options), plain(options);
+  GraphScene robust(options), plain(options);
   plain.options.visual.huber_px = 1e6f;
   robust.optimise(30);
   plain.optimise(30);
@@ -138,7 +138,7 @@ TEST(Optimiser, HuberLimitsTheInfluenceOfOutliers) {
 }
 
 TEST(Optimiser, WithoutImuFindsThePosesUpToScale) {
-  Scene scene;
+  GraphScene scene;
   scene.options.use_imu = false;
   const std::vector<float> velocities(scene.window.state.velocities.data(),
                                       scene.window.state.velocities.data() + 24);
@@ -165,7 +165,7 @@ TEST(Optimiser, ImuRestoresTheScale) {
   options.rotation_noise = options.position_noise = options.velocity_noise = options.depth_noise =
       0;
   const auto scale_after = [&](bool use_imu) {
-    Scene scene(options);
+    GraphScene scene(options);
     scene.options.use_imu = use_imu;
     const Vector3d origin = Motion::position(0);
     const auto scaled_about = [&](const Vec3<Native>& x) {
@@ -189,7 +189,7 @@ TEST(Optimiser, ImuRestoresTheScale) {
 }
 
 TEST(Optimiser, AnchorHoldsTheOldestKeyframe) {
-  Scene scene;
+  GraphScene scene;
   scene.optimise(8);
   EXPECT_LT(scene.position_error(0), 1e-4);
   EXPECT_LT(scene.rotation_error(0), 1e-4);
@@ -200,10 +200,10 @@ TEST(Optimiser, LeavesASingleKeyframeAlone) {
   options.keyframes = 1;
   options.landmarks = 5;
   options.shortest_track = options.longest_track = 1;
-  Scene scene(options);
+  GraphScene scene(options);
   const auto reports = scene.optimise(1);
   EXPECT_FALSE(reports[0].accepted);
-  EXPECT_EQ(scene.position_error(0), Scene(options).position_error(0));
+  EXPECT_EQ(scene.position_error(0), GraphScene(options).position_error(0));
 }
 
 /// A window of inertial intervals only: the motion follows the IMU.
@@ -211,7 +211,7 @@ TEST(Optimiser, WorksWithoutLandmarks) {
   OptimiserSceneOptions options;
   options.landmarks = 0;
   options.position_noise = 0.01;
-  Scene scene(options);
+  GraphScene scene(options);
   scene.optimise(5);
   EXPECT_LT(scene.rotation_rms(), 1e-3);
 }
@@ -222,7 +222,7 @@ TEST(Optimiser, AShortWindowUsesWhatItHas) {
   options.shortest_track = 2;
   options.longest_track = 3;
   options.landmarks = 60;
-  Scene scene(options);
+  GraphScene scene(options);
   const auto reports = scene.optimise(10);
   EXPECT_TRUE(reports.back().positive_definite);
   EXPECT_LT(reports.back().cost_after, 0.1f);
