@@ -51,7 +51,7 @@ std::string bands_table(const Sensitivity& sensitivity) {
                fmt::format("{:.1f} … {:.1f}", band.low, band.high),
                fmt::format("{:+.1f} … {:+.1f}", percent_change(band.low, band.kcycles).value_or(0),
                            percent_change(band.high, band.kcycles).value_or(0))});
-  return "a mean call of each stage if all these numbers are uncertain at once (root of the sum "
+  return "\na mean call of each stage if all these numbers are uncertain at once (root of the sum "
          "of\n"
          "squares; without numbers that were fitted)\n" +
          table.str();
