@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <limits>
 
 #include <algorithm>
+#include <limits>
 
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/statistic_list.h"
@@ -118,10 +120,11 @@ void add_frames(StatisticList& list, const RunResult& run) {
     for (const FrameResult& frame : run.frames) sum += frame.*fact.of;
     list.add(fmt::format("frames.{}.sum", fact.name), "1", "summed over the frames", sum);
   }
-  list.add(
-      "frames.map_faults", "text",
-      "what is plainly wrong with the map, as the end of the run warns of it; empty if nothing",
-      fmt::format("{}", fmt::join(map_faults(run), ", ")));
+  const MapLimits without_scale{.scale = std::numeric_limits<double>::infinity()};
+  list.add("frames.map_faults", "text",
+           "what is plainly wrong with the map, as the end of the run warns of it, but for the "
+           "scale, which replays do not know; empty if nothing",
+           fmt::format("{}", fmt::join(map_faults(run, without_scale), ", ")));
 }
 
 void add_latencies(StatisticList& list, const RunResult& run) {
