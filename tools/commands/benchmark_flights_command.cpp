@@ -1,5 +1,6 @@
 #include "tools/commands/benchmark_flights_command.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
