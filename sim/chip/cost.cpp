@@ -84,6 +84,7 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
   Demand demand;
   const CompiledRatios ratios(counts);
   for (const work::OpInfo& info : work::kOps) {
+    if (counts[info.op] == 0) continue;  // as most are in a short segment
     const auto n = static_cast<double>(counts[info.op]);
     add_price(demand.alone, info, ratios.apply(n), core);
     const OpCost& cost = core[info.op];
