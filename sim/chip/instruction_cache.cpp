@@ -11,8 +11,8 @@ namespace leviosim::sim {
 namespace {
 
 /// Adjacent lines among those that a loop over functions executes: the mean of both RANSACs on RV32
-/// (tests/workload/ransac_code_test.cpp), and what it is for other instruction sets as long as they
-/// are not measured.
+/// over as many fetches as a hypothesis of EPnP has (tests/workload/ransac_code_test.cpp; 23 over a
+/// sixteenth of them), and what it is for other instruction sets as long as they are not measured.
 constexpr double kStretch = 28;
 constexpr double kLineOfTable = 16;
 /// Of an instruction; compressed ones have half of it, which is left out.
@@ -102,18 +102,10 @@ work::CodeReuse resized(const work::CodeReuse& code, double ratio) {
       result[k] += bytes;
       continue;
     }
-    const double distance = work::kReuseDistances[k] * ratio;
-    const std::size_t farther = work::reuse_class(static_cast<std::uint32_t>(std::ceil(distance)));
-    if (farther == 0 || farther == work::kNeverFetched) {
-      result[farther] += bytes;
-      continue;
-    }
-    const double near = work::kReuseDistances[farther - 1];
-    const double share = (distance - near) / (work::kReuseDistances[farther] - near);
-    const auto far_bytes = static_cast<std::uint64_t>(
-        std::llround(static_cast<double>(bytes) * std::clamp(share, 0.0, 1.0)));
-    result[farther] += far_bytes;
-    result[farther - 1] += bytes - far_bytes;
+    constexpr std::uint32_t kParts = 1u << 20;
+    work::for_reuse_classes(
+        static_cast<std::uint32_t>(std::lround(work::kReuseDistances[k] * ratio)), kParts,
+        [&](std::size_t to, std::uint32_t parts) { result[to] += bytes * parts / kParts; });
   }
   return result;
 }

@@ -31,14 +31,7 @@ class Account : public ::testing::TestWithParam<std::string> {
   ChipConfig chip_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Chips, Account, ::testing::ValuesIn(platform_names()),
-                         [](const auto& chosen) {
-                           std::string name = chosen.param;
-                           std::replace_if(
-                               name.begin(), name.end(),
-                               [](char c) { return std::isalnum(c) == 0; }, '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Chips, Account, ::testing::ValuesIn(platform_names()), name_of_test);
 
 /// L2 answers on the clock of the controller.
 TEST_P(Account, AnOperationAloneCostsItsPrice) {

@@ -2,6 +2,10 @@
 // hold on any chip, whatever its numbers.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +44,14 @@ inline Segment plain_work(std::uint64_t scale, std::uint64_t flavour = 0) {
   Segment work = some_work(scale, flavour);
   work.code = {};
   return work;
+}
+
+/// A chip's name in letters and digits, as GoogleTest wants it.
+inline std::string name_of_test(const ::testing::TestParamInfo<std::string>& chip) {
+  std::string name = chip.param;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
 }
 
 inline Segment only(Op op, std::uint64_t n) {

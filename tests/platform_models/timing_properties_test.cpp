@@ -34,14 +34,7 @@ class OnEveryChip : public ::testing::TestWithParam<std::string> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Chips, OnEveryChip, ::testing::ValuesIn(platform_names()),
-                         [](const auto& chosen) {
-                           std::string name = chosen.param;
-                           std::replace_if(
-                               name.begin(), name.end(),
-                               [](char c) { return std::isalnum(c) == 0; }, '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Chips, OnEveryChip, ::testing::ValuesIn(platform_names()), name_of_test);
 
 // ---- more work takes longer ----
 

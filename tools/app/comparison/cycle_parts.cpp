@@ -47,17 +47,6 @@ constexpr std::array kOfTheTeam{
 
 constexpr std::string_view kOther = "other";
 
-/// Adds to the calls of the same kind.
-void add_calls(std::vector<work::OffloadWork>& sums, const work::OffloadWork& calls) {
-  for (work::OffloadWork& sum : sums) {
-    if (sum.kernel != calls.kernel) continue;
-    sum.calls += calls.calls;
-    sum.items += calls.items;
-    return;
-  }
-  sums.push_back(calls);
-}
-
 template <class Keep>
 StageParts folded_unless(const StageParts& stage, Keep&& keep) {
   StageParts result{stage.stage, stage.on_controller, stage.cycles, {}};
@@ -128,12 +117,9 @@ const sim::Accelerators& CycleParts::accelerators_of(const Stage& stage) const {
 }
 
 void CycleParts::add_segment(const Stage& stage, Place& place, const work::Segment& segment) const {
-  const sim::Accelerators& accelerators = accelerators_of(stage);
-  place.work.add(segment.offload.empty() ? work::Counts(segment)
-                                         : sim::left_to_core(segment, accelerators));
-  for (std::size_t i = 0; i < work::kReuseClasses; ++i) place.code[i] += segment.code[i];
-  for (const work::OffloadWork& calls : segment.offload)
-    if (accelerators[work::index(calls.kernel)].units > 0) add_calls(place.served, calls);
+  place.all += segment;
+  place.left.add(segment.offload.empty() ? work::Counts(segment)
+                                         : sim::left_to_core(segment, accelerators_of(stage)));
 }
 
 void CycleParts::add_steps(Stage& stage, const work::StageRun& run) {
@@ -176,12 +162,14 @@ double CycleParts::add_priced(PartList& list, const Stage& stage, const Place& p
     if (price.total() == 0) list.add(place.name, "issue", operation, 0, count);
   };
   for (const work::OpInfo& op : work::kOps)
-    if (const double count = place.work.count(op.op); count > 0)
-      add(op.name, place.work.price(op.op, core), count);
-  const auto bytes = std::accumulate(place.code.begin(), place.code.end(), 0.0);
+    if (const double count = place.left.count(op.op); count > 0)
+      add(op.name, place.left.price(op.op, core), count);
+  const auto bytes = std::accumulate(place.all.code.begin(), place.all.code.end(), 0.0);
   if (bytes > 0) add("code", UsefulCycles{.fetch = place.fetch}, bytes);
-  for (const work::OffloadWork& calls : place.served) {
-    const sim::Service service = sim::service_of(calls, accelerators_of(stage));
+  const sim::Accelerators& accelerators = accelerators_of(stage);
+  for (const work::OffloadWork& calls : place.all.offload) {
+    if (accelerators[work::index(calls.kernel)].units == 0) continue;
+    const sim::Service service = sim::service_of(calls, accelerators);
     const std::string_view kernel = work::kOffloadKinds[work::index(calls.kernel)].name;
     const auto items = static_cast<double>(calls.items);
     list.add(place.name, "issue", kernel, service.instructions * factor, items);
@@ -196,7 +184,7 @@ double CycleParts::add_priced(PartList& list, const Stage& stage, const Place& p
 void CycleParts::divide_fetches(std::vector<Place>& places, double cycles) const {
   double all = 0;
   for (Place& place : places)
-    if (place.name != kSerialPlace) all += place.fetch = worker_code_.fetch(place.code).stall;
+    if (place.name != kSerialPlace) all += place.fetch = worker_code_.fetch(place.all.code).stall;
   for (Place& place : places)
     if (place.name != kSerialPlace && all > 0) place.fetch *= cycles / all;
 }

@@ -90,10 +90,9 @@ class CycleParts : public RunObserver {
  private:
   struct Place {
     std::string name;
-    sim::WorkSum work;  ///< … without what accelerators serve
-    work::CodeReuse code{};
-    std::vector<work::OffloadWork> served;  ///< by accelerators
-    double fetch = 0;  ///< core-cycles that code took; not the price of the sum
+    work::Segment all;
+    sim::WorkSum left;  ///< … to the cores, without what accelerators serve
+    double fetch = 0;   ///< core-cycles that code took; not the price of the sum
   };
   struct Stage {
     std::string name;

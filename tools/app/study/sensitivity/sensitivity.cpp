@@ -64,9 +64,10 @@ class Average {
     sum_ += value;
     ++n_;
   }
+  double mean() const { return sum_ / static_cast<double>(n_); }
   std::optional<double> ms(Hertz clock) const {
     if (n_ == 0) return std::nullopt;
-    return sum_ / static_cast<double>(n_) * 1e3 / static_cast<double>(clock.count());
+    return mean() * 1e3 / static_cast<double>(clock.count());
   }
 
  private:
@@ -81,26 +82,20 @@ class StageAverages {
     for (const sim::StageTiming& stage : timing.stages) {
       const auto found = std::find_if(stages_.begin(), stages_.end(),
                                       [&](const auto& s) { return s.first == stage.stage; });
-      Sum& sum = found != stages_.end()
-                     ? found->second
-                     : stages_.emplace_back(std::string(stage.stage), Sum{}).second;
-      sum.cycles += static_cast<double>(stage.cycles.count());
-      ++sum.calls;
+      Average& average = found != stages_.end()
+                             ? found->second
+                             : stages_.emplace_back(std::string(stage.stage), Average{}).second;
+      average.add(static_cast<double>(stage.cycles.count()) * 1e-3);
     }
   }
   std::vector<std::pair<std::string, double>> kcycles() const {
     std::vector<std::pair<std::string, double>> result;
-    for (const auto& [name, sum] : stages_)
-      result.emplace_back(name, sum.cycles / 1e3 / static_cast<double>(sum.calls));
+    for (const auto& [name, average] : stages_) result.emplace_back(name, average.mean());
     return result;
   }
 
  private:
-  struct Sum {
-    double cycles = 0;
-    std::int64_t calls = 0;
-  };
-  std::vector<std::pair<std::string, Sum>> stages_;
+  std::vector<std::pair<std::string, Average>> stages_;
 };
 
 /// The root of the sum of the squares of what falls below, or rises above, the value.

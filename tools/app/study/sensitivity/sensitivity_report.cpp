@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "sim/base/csv_table.h"
 #include "tools/app/report/text_table.h"
+#include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
 namespace {
@@ -55,13 +55,6 @@ std::string bands_table(const Sensitivity& sensitivity) {
          "of\n"
          "squares; without numbers that were fitted)\n" +
          table.str();
-}
-
-/// As part of a column's name.
-std::string key_of(std::string stage) {
-  std::replace_if(
-      stage.begin(), stage.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
-  return stage;
 }
 
 }  // namespace
