@@ -5,10 +5,10 @@
 
 #include <Eigen/Geometry>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 
 #include "platform_models/loader/loader.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/support/image_files.h"
 #include "tests/traces/trace_parts.h"
 #include "tests/traces/work_trace_example.h"
 
@@ -62,16 +62,11 @@ void write_images(const fs::path& folder) {
       grey.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(x * y);
   cv::Mat deep;
   grey.convertTo(deep, CV_16UC1);
-  const auto encoded = [](const char* kind, const cv::Mat& image) {
-    std::vector<std::uint8_t> code;
-    cv::imencode(kind, image, code);
-    return std::string(code.begin(), code.end());
-  };
-  write(folder / "image/grey.png", encoded(".png", grey));
-  write(folder / "image/deep.png", encoded(".png", deep));
-  write(folder / "image/small.png", encoded(".png", grey(cv::Rect(0, 0, 8, 8))));
-  write(folder / "image/grey.pgm", encoded(".pgm", grey));
-  write(folder / "image/grey.jpg", encoded(".jpg", grey));
+  write(folder / "image/grey.png", tests::png_of(grey));
+  write(folder / "image/deep.png", tests::png_of(deep));
+  write(folder / "image/small.png", tests::png_of(grey(cv::Rect(0, 0, 8, 8)).clone()));
+  write(folder / "image/grey.pgm", "P5 2 2 255\n1234");
+  write(folder / "image/grey.jpg", tests::jpeg_of(grey));
 }
 
 /// A walk round a circle, in one of the formats.

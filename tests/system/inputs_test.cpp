@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "tests/support/image_files.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tests/traces/work_trace_example.h"
@@ -341,9 +342,7 @@ TEST_F(Inputs, DamagedPicturesAreOneLine) {
   expect(flipped, "damaged PNG");
   expect(png.substr(0, 8) + std::string(100, 'x'), "damaged PNG");
 
-  std::vector<unsigned char> jpeg;
-  ASSERT_TRUE(cv::imencode(".jpg", cv::Mat(24, 32, CV_8UC1, 7.0), jpeg));
-  const std::string bytes(jpeg.begin(), jpeg.end());
+  const std::string bytes = tests::jpeg_of(cv::Mat(24, 32, CV_8UC1, 7.0));
   expect(bytes.substr(0, bytes.size() / 2), "damaged JPEG");
   expect(bytes.substr(0, 4) + std::string(100, 'x'), "damaged JPEG");
   expect("P5 32 24 255\n" + std::string(32 * 24, 'x'), "neither PNG nor JPEG");

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "tests/support/image_files.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/euroc_models.h"
+#include "traces/datasets/image_file.h"
 
 namespace leviosim::traces {
 namespace {
@@ -27,7 +28,8 @@ cv::Mat undistorted(const CameraModel& camera, const fs::path& image) {
   const cv::Mat coefficients =
       (cv::Mat_<double>(4, 1) << camera.k1, camera.k2, camera.p1, camera.p2);
   cv::Mat result;
-  cv::undistort(cv::imread(image.string(), cv::IMREAD_UNCHANGED), result, matrix, coefficients);
+  cv::undistort(decode_gray(base::read_text_file(image), {camera.width, camera.height}), result,
+                matrix, coefficients);
   return result;
 }
 
@@ -124,7 +126,7 @@ TEST(ImageSource, ThreadsReadTheSame) {
 /// Writes something else in place of frame 1 and expects an error that names its row.
 void expect_bad_image(const cv::Mat& image, std::initializer_list<std::string> parts) {
   const AslFolder folder;
-  cv::imwrite(folder.image(1).string(), image);
+  base::write_file_atomically(folder.image(1), tests::png_of(image));
   const ImageSource source(open_asl(folder.root()), {16, 12});
   EXPECT_NO_THROW(source.read(0));
   expect_input_error([&] { source.read(1); }, {"5050000000.png", "cam0/data.csv line 3"});

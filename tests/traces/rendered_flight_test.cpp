@@ -9,6 +9,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
+#include "traces/datasets/image_file.h"
 #include "traces/datasets/image_source.h"
 #include "traces/datasets/imu_batches.h"
 #include "traces/synthesis/hall.h"
@@ -120,8 +121,9 @@ TEST(RenderedFlight, PixelsSeeTheHallFromTheRecordedPose) {
   const World world = make_hall(path, data.camera, {derive_seed(1, 0), 0.8, options.texels, 1});
   int differing = 0;
   for (int frame = 0; frame < AslFolder::kFrames; ++frame) {
-    const cv::Mat image = cv::imread(data.frames[static_cast<std::size_t>(frame)].path.string(),
-                                     cv::IMREAD_UNCHANGED);
+    const cv::Mat image =
+        decode_gray(base::read_text_file(data.frames[static_cast<std::size_t>(frame)].path),
+                    {data.camera.width, data.camera.height});
     const Eigen::Isometry3d& pose =
         data.ground_truth[static_cast<std::size_t>(10 + 10 * frame)].T_world_body;
     ASSERT_EQ(data.ground_truth[static_cast<std::size_t>(10 + 10 * frame)].t_ns,

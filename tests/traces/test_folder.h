@@ -12,7 +12,6 @@
 #include <functional>
 #include <initializer_list>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -22,6 +21,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "traces/datasets/asl_writer.h"
+#include "traces/datasets/image_file.h"
 
 namespace leviosim::traces::testing {
 
@@ -155,7 +155,7 @@ class AslFolder {
       for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x)
           picture.at<uchar>(y, x) = static_cast<uchar>((x * 37 + y * 91 + i * 13) % 251);
-      cv::imwrite(image(i).string(), picture);
+      base::write_file_atomically(image(i), encode_png(picture));
     }
   }
 

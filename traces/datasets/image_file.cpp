@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 #include <spng.h>
 #include <turbojpeg.h>
+#include <zlib.h>
 
+#include <cstdlib>
 #include <memory>
 
+#include "sim/base/check.h"
 #include "sim/base/error.h"
 
 namespace leviosim::traces {
@@ -135,6 +138,33 @@ cv::Mat decode_gray(std::string_view bytes, cv::Size expected) {
   if (begins_with(bytes, kPngSignature)) return decode_as<Png>(bytes, expected);
   if (begins_with(bytes, kJpegSignature)) return decode_as<Jpeg>(bytes, expected);
   throw InputError("cannot be read as an image: it is neither PNG nor JPEG");
+}
+
+std::string encode_png(const cv::Mat& image) {
+  check_equal(image.type(), CV_8UC1, "encode_png");
+  check(image.isContinuous(), "rows of an image to encode follow each other");
+  const std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> context(spng_ctx_new(SPNG_CTX_ENCODER),
+                                                               spng_ctx_free);
+  if (context == nullptr) throw std::bad_alloc();
+  const auto demand = [](int status) { check_equal(status, 0, spng_strerror(status)); };
+  demand(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
+  // Run-length coding suits noise: faster and smaller than the search for longer matches.
+  demand(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, 1));
+  demand(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_STRATEGY, Z_RLE));
+  spng_ihdr header{};
+  header.width = static_cast<std::uint32_t>(image.cols);
+  header.height = static_cast<std::uint32_t>(image.rows);
+  header.bit_depth = 8;
+  header.color_type = SPNG_COLOR_TYPE_GRAYSCALE;
+  demand(spng_set_ihdr(context.get(), &header));
+  demand(spng_encode_image(context.get(), image.data, image.total(), SPNG_FMT_PNG,
+                           SPNG_ENCODE_FINALIZE));
+  std::size_t size = 0;
+  int status = 0;
+  const std::unique_ptr<void, void (*)(void*)> bytes(
+      spng_get_png_buffer(context.get(), &size, &status), std::free);
+  demand(status);
+  return {static_cast<const char*>(bytes.get()), size};
 }
 
 }  // namespace leviosim::traces

@@ -1,9 +1,11 @@
 // Grey pictures from the bytes of a PNG or JPEG file, by libraries that print nothing and say what
-// is wrong. The head of the file is checked before memory is asked for.
-// Left out: colour, more than 8 bits, other formats; all of them are refused.
+// is wrong. The head of the file is checked before memory is asked for. And PNG files of pictures.
+// Left out: colour, more than 8 bits, other formats; all of them are refused. OpenCV's codecs, which
+// load a hundred libraries when a program starts.
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <string>
 #include <string_view>
 
 namespace leviosim::traces {
@@ -12,5 +14,9 @@ namespace leviosim::traces {
 /// InputError, without the file's name, for anything else, another size than `expected`, and files
 /// that are damaged or cut off.
 cv::Mat decode_gray(std::string_view bytes, cv::Size expected);
+
+/// The bytes of a PNG file of a picture, 8-bit grey (CV_8UC1) and of a row at least; the same pixels
+/// give the same bytes. Compressed lightly, for pictures with noise.
+std::string encode_png(const cv::Mat& image);
 
 }  // namespace leviosim::traces
