@@ -1,7 +1,7 @@
 // Small matrices and vectors of the workload as Eigen's, and back.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "sim/work/policy.h"

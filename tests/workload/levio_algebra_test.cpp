@@ -1,8 +1,7 @@
 // The algebra of the released program against Eigen, and what it costs in the operations that no
 // compiler can save. Facts: workload/PARAMETERS.md#linear-algebra, #double-precision.
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
+#include "tests/support/dense_algebra.h"
 #include "tests/workload/math_fixture.h"
 #include "workload/vio/levio/algebra/inverse_power.h"
 #include "workload/vio/levio/algebra/least_squares.h"
@@ -74,7 +73,7 @@ TEST(LevioAlgebra, SingularValuesAreThoseOfEigen) {
   for (int trial = 0; trial < 100; ++trial) {
     work::Arena arena("L1", Bytes(8192));
     const Eigen::MatrixXd a = random.matrix(3, 3);
-    const Eigen::VectorXd expected = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+    const Eigen::VectorXd expected = tests::singular_values(a);
     if (expected(2) < 0.05) continue;
     const MatrixView<P> u = alloc_matrix<P>(arena, "u", 3, 3),
                         v = alloc_matrix<P>(arena, "v", 3, 3);
@@ -97,7 +96,7 @@ TEST(LevioAlgebra, LeastSquaresAreThoseOfEigen) {
     const Eigen::VectorXd b = random.matrix(6, 1);
     const auto x = arena.alloc<P::Span<float>>("x", n);
     least_squares<P>(place<P>(arena, a), place_vector<P>(arena, b), x);
-    EXPECT_LT((to_eigen_vector(x) - a.colPivHouseholderQr().solve(b)).norm(), 1e-4) << n;
+    EXPECT_LT((to_eigen_vector(x) - tests::least_squares(a, b)).norm(), 1e-4) << n;
   }
 }
 
@@ -116,8 +115,7 @@ TEST(LevioAlgebra, AQrOf6By4HasTheDivisionsAndRootsOfTheRelease) {
 
 /// A positive semi-definite matrix with a gap below its second smallest eigenvalue.
 Eigen::MatrixXd with_small_eigenvalue(test::Random& random, int n, double smallest) {
-  const Eigen::MatrixXd q =
-      Eigen::HouseholderQR<Eigen::MatrixXd>(random.matrix(n, n)).householderQ();
+  const Eigen::MatrixXd q = tests::orthonormal_basis(random.matrix(n, n));
   Eigen::VectorXd values(n);
   for (int i = 0; i < n; ++i) values(i) = i == 0 ? smallest : random.uniform(0.2, 2.0);
   return q * values.asDiagonal() * q.transpose();
@@ -131,8 +129,7 @@ TEST(LevioAlgebra, InversePowerFindsTheSmallestEigenvector) {
       const Eigen::MatrixXd a = with_small_eigenvalue(random, n, 1e-3);
       const auto x = arena.alloc<P::Span<float>>("x", n);
       EXPECT_LE(smallest_eigenvector<P>(place<P>(arena, a), x), kMostPowerSteps);
-      const Eigen::VectorXd expected =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a).eigenvectors().col(0);
+      const Eigen::VectorXd expected = tests::symmetric_eigen(a).vectors.col(0);
       EXPECT_GT(std::fabs(to_eigen_vector(x).dot(expected)), 0.99999);
     }
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "optimiser_scene.h"
+#include "tests/support/dense_algebra.h"
 #include "workload/vio/levio/optimiser/cholesky.h"
 
 namespace leviosim::vio::levio {
@@ -109,7 +110,7 @@ TEST(LevioOptimiser, AFactorHasADivisionPerElementBelowTheDiagonal) {
   EXPECT_EQ(counts[Op::F32Div], n * (n - 1) / 2u);
   EXPECT_EQ(counts[Op::F32Sqrt], unsigned{n});
   levio::cholesky_solve<work::Counting>(a, b);
-  const Eigen::VectorXd expected = spd.ldlt().solve(Eigen::VectorXd::LinSpaced(n, 0, n - 1));
+  const Eigen::VectorXd expected = tests::solve(spd, Eigen::VectorXd::LinSpaced(n, 0, n - 1));
   for (int i = 0; i < n; ++i) EXPECT_NEAR(double(work::value(b.data()[i])), expected(i), 1e-3);
 }
 

@@ -1,9 +1,9 @@
 // The pose graph of four degrees of freedom against closed formulas and against Eigen.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <array>
 
+#include "tests/support/dense_algebra.h"
 #include "tests/workload/math_fixture.h"
 #include "workload/loop/loop_graph.h"
 
@@ -129,7 +129,7 @@ void reference_step(Graph& graph, const LoopGraphOptions& options) {
     };
     J.col(c) = (moved(kStep) - moved(-kStep)) / (2 * kStep);
   }
-  const VectorXd step = (J.transpose() * J).ldlt().solve(-J.transpose() * r);
+  const VectorXd step = tests::least_squares(J, -r);
   for (int i = 1; i < n; ++i) {
     graph.places[std::size_t(i)].node += step.segment<3>(4 * (i - 1));
     graph.places[std::size_t(i)].yaw += step[4 * (i - 1) + 3];

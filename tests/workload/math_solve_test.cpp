@@ -1,8 +1,8 @@
 #include "workload/math/solve.h"
 
-#include <Eigen/Dense>
 #include <cmath>
 
+#include "tests/support/dense_algebra.h"
 #include "tests/workload/math_fixture.h"
 #include "workload/math/inverse_power.h"
 
@@ -25,8 +25,8 @@ TEST_F(Solve, GaussAgreesWithEigen) {
       const Eigen::VectorXd b = random.matrix(n, 1);
       const auto x = place_vector<P>(arena_, b);
       ASSERT_TRUE(solve_gauss<P>(place<P>(arena_, m), place_vector<P>(arena_, b), x));
-      const Eigen::VectorXd reference = m.fullPivLu().solve(b);
-      const double condition = m.norm() * m.inverse().norm();
+      const Eigen::VectorXd reference = tests::solve(m, b);
+      const double condition = m.norm() * tests::inverse(m).norm();
       EXPECT_LT((to_eigen_vector(x) - reference).norm(), 1e-6 * condition * reference.norm());
     }
 }
@@ -65,9 +65,9 @@ TEST_F(Solve, HouseholderGivesTheLeastSquaresSolution) {
       const Eigen::VectorXd b = random.matrix(m, 1);
       const auto x = arena_.alloc<P::Span<float>>("x", n);
       ASSERT_TRUE(solve_qr<P>(place<P>(arena_, a), place_vector<P>(arena_, b), x));
-      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
-      const Eigen::VectorXd reference = svd.solve(b);
-      const double condition = svd.singularValues()(0) / svd.singularValues()(n - 1);
+      const Eigen::VectorXd reference = tests::least_squares(a, b);
+      const Eigen::VectorXd sigma = tests::singular_values(a);
+      const double condition = sigma(0) / sigma(n - 1);
       EXPECT_LT((to_eigen_vector(x) - reference).norm(),
                 2e-6 * condition * condition * (1.0 + reference.norm()));
     }
@@ -93,7 +93,7 @@ TEST_F(Solve, CholeskySolvesTheSystemsOfTheOptimiser) {
     const auto x = place_vector<P>(arena_, b);
     ASSERT_TRUE(cholesky_factor<P>(a));
     cholesky_solve<P>(a, x);
-    EXPECT_LT((to_eigen_vector(x) - m.llt().solve(b)).norm(), 2e-5) << "size " << n;
+    EXPECT_LT((to_eigen_vector(x) - tests::solve(m, b)).norm(), 2e-5) << "size " << n;
     if (n > 1) {
       EXPECT_EQ(a(0, n - 1), 12345.0f) << "the upper triangle is not touched";
     }
@@ -124,10 +124,11 @@ TEST_F(Solve, InvertsLandmarkBlocks) {
   Random random(6);
   for (int trial = 0; trial < 200; ++trial) {
     const Eigen::Matrix3d m = random.positive_definite(3, 0.05);
+    const Eigen::Matrix3d reference = tests::inverse(m);
     Mat3<P> inverse;
     ASSERT_TRUE(invert_spd3<P>(to_mat3<P>(m), inverse));
     EXPECT_LT((to_eigen(inverse) * m - Eigen::Matrix3d::Identity()).norm(), 1e-3);
-    EXPECT_LT((to_eigen(inverse) - m.inverse()).norm(), 1e-3 * m.inverse().norm());
+    EXPECT_LT((to_eigen(inverse) - reference).norm(), 1e-3 * reference.norm());
   }
   Mat3<P> inverse = Mat3<P>::identity();
   EXPECT_FALSE(invert_spd3<P>(Mat3<P>::zero(), inverse));
@@ -141,7 +142,7 @@ TEST_F(Solve, InversePowerFindsTheSmallestEigenvector) {
     for (int trial = 0; trial < 50; ++trial) {
       const work::Arena::Frame frame(arena_);
       // Eigenvalues 0.01, 0.5, 1, 1.5 … in a random basis.
-      const Eigen::MatrixXd basis = random.matrix(n, n).householderQr().householderQ();
+      const Eigen::MatrixXd basis = tests::orthonormal_basis(random.matrix(n, n));
       Eigen::VectorXd lambda = Eigen::VectorXd::LinSpaced(n, 0.0, 0.5 * (n - 1));
       lambda(0) = 0.01;
       const auto a = place<P>(arena_, basis * lambda.asDiagonal() * basis.transpose());
@@ -162,11 +163,11 @@ TEST_F(Solve, InversePowerFindsTheNullVectorOfASingularMatrix) {
       for (int trial = 0; trial < 20; ++trial) {
         const work::Arena::Frame frame(arena_);
         const Eigen::MatrixXd rows = random.matrix(n - 1, n);
-        const Eigen::VectorXd null_vector = rows.fullPivLu().kernel().col(0).normalized();
+        const Eigen::VectorXd null_vector = tests::null_vector(rows);
         const auto a = place<P>(arena_, scale * rows.transpose() * rows);
         const auto x = arena_.alloc<P::Span<float>>("x", n);
         smallest_eigenvector<P>(a, x, arena_, 15, 1e-6f);
-        const Eigen::VectorXd sigma = rows.jacobiSvd().singularValues();
+        const Eigen::VectorXd sigma = tests::singular_values(rows);
         const double gap = std::pow(sigma(n - 2) / sigma(0), 2);
         EXPECT_NEAR(std::abs(to_eigen_vector(x).dot(null_vector)), 1.0, 1e-5 + 1e-12 / (gap * gap));
       }

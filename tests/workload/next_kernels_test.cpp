@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/support/dense_algebra.h"
 #include "tests/workload/epnp_scene.h"
 #include "workload/geometry/pose_refinement.h"
 #include "workload/graph/marginalisation.h"
@@ -101,7 +102,7 @@ TEST(Elimination, IsTheSchurComplement) {
   }
   eliminate_first<Native>(system, 9);
   const int m = n - 9;
-  const Eigen::MatrixXd gain = H.bottomLeftCorner(m, 9) * H.topLeftCorner(9, 9).inverse();
+  const Eigen::MatrixXd gain = H.bottomLeftCorner(m, 9) * tests::inverse(H.topLeftCorner(9, 9));
   const Eigen::MatrixXd S = H.bottomRightCorner(m, m) - gain * H.topRightCorner(9, m);
   const Eigen::VectorXd s = b.tail(m) - gain * b.head(9);
   for (int r = 0; r < m; ++r) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "optimiser_scene.h"
+#include "tests/support/dense_algebra.h"
 #include "workload/graph/visual_terms.h"
 
 namespace leviosim::vio::test {
@@ -95,7 +96,7 @@ TEST(NormalEquations, SchurComplementIsThatOfTheDenseMatrix) {
   const Linearised l(scene, lambda, true, {true, false, false});
   const Dense d = dense_visual(scene.window, l.records, 9, lambda);
   const int p = l.system.unknowns(), n = static_cast<int>(d.b.size()) - p;
-  const MatrixXd inverse = d.H.bottomRightCorner(n, n).inverse();
+  const MatrixXd inverse = tests::inverse(d.H.bottomRightCorner(n, n));
   const MatrixXd W = d.H.topRightCorner(p, n);
   const MatrixXd S = d.H.topLeftCorner(p, p) - W * inverse * W.transpose();
   const VectorXd b = d.b.head(p) - W * inverse * d.b.tail(n);
@@ -114,7 +115,7 @@ void expect_steps_of_the_dense_system(bool imu) {
   d.H.topLeftCorner(p, p) += rest.matrix();
   d.b.head(p) += rest.vector();
   for (int i = 0; i < p; ++i) d.H(i, i) += static_cast<double>(lambda * l.system.matrix()(i, i));
-  const VectorXd expected = d.H.ldlt().solve(d.b);
+  const VectorXd expected = tests::solve(d.H, d.b);
 
   l.system.damp(lambda);
   ASSERT_TRUE(l.system.solve());
@@ -137,9 +138,7 @@ TEST(NormalEquations, StepsAreThoseOfTheDenseSystemWithoutImu) {
 double smallest_eigenvalue(const MatrixXd& S) {
   // Scaled to a unit diagonal, in which Cholesky sees the matrix.
   const VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(scale.asDiagonal() * S * scale.asDiagonal())
-      .eigenvalues()
-      .minCoeff();
+  return tests::symmetric_eigen(scale.asDiagonal() * S * scale.asDiagonal()).values(0);
 }
 
 TEST(NormalEquations, ReducedSystemIsPositiveDefinite) {
@@ -158,9 +157,8 @@ TEST(NormalEquations, InertialTermOfTheWrongSignIsNotPositiveDefinite) {
   GraphScene scene;
   const MatrixXd visual = Linearised(scene, 1e-4f, true, {true, false, true}).matrix();
   const MatrixXd inertial = Linearised(scene, 1e-4f, true, {false, true, false}).matrix();
-  EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(visual + inertial).eigenvalues().minCoeff(), 0);
-  EXPECT_LT(Eigen::SelfAdjointEigenSolver<MatrixXd>(visual - inertial).eigenvalues().minCoeff(),
-            -1);
+  EXPECT_GT(tests::symmetric_eigen(visual + inertial).values(0), 0);
+  EXPECT_LT(tests::symmetric_eigen(visual - inertial).values(0), -1);
 }
 
 /// Whitened rows of an interval are JᵀΣ⁻¹J, here by finite differences of the inertial cost along

@@ -1,7 +1,7 @@
 // A smooth motion known in closed form, sampled as an IMU would.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 #include <vector>

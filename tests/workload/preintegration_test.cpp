@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "preintegration_motion.h"
+#include "tests/support/dense_algebra.h"
 #include "workload/math/solve.h"
 
 namespace leviosim::vio::test {
@@ -170,7 +171,7 @@ TEST(Preintegration, CovarianceIsThatOfManyNoisyIntegrations) {
   const Eigen::MatrixXd predicted = full_covariance(clean);
   // In coordinates in which the prediction is the identity, the sample must be near it:
   // the standard error of an entry is 1/√runs = 2.6 % (3.7 % on the diagonal).
-  const Eigen::MatrixXd whiten = Eigen::MatrixXd(predicted.llt().matrixL()).inverse();
+  const Eigen::MatrixXd whiten = tests::inverse(tests::cholesky(predicted));
   const Eigen::MatrixXd ratio = whiten * sampled * whiten.transpose();
   EXPECT_LT((ratio - Eigen::MatrixXd::Identity(9, 9)).cwiseAbs().maxCoeff(), 0.13);
 }

@@ -2,7 +2,7 @@
 // hand them to kernels of either policy.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 #include <vector>
