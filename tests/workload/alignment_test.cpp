@@ -84,6 +84,21 @@ struct MovingScene {
       if (k >= point.first && k <= point.last) observe(k, point, last.T_world_camera);
   }
 
+  /// All keyframes at once, in the window.
+  void take_all() {
+    for (int k = 0; k < options.keyframes; ++k) add_keyframe(k);
+    take_snapshot<Native>(graph, ImuNoise{}, fc.local(), window);
+  }
+  /// @param afresh  the first of the iterations forgets what was found before
+  void iterate(int iterations, bool afresh) {
+    LmState<Native> lm(optimiser);
+    lm.lambda = alignment.initial_lambda;
+    for (int i = 0; i < iterations; ++i) {
+      const auto stage = fc.stage("initialisation");
+      report = align_once<Native>(fc, window, lm, optimiser, alignment, afresh && i == 0);
+    }
+  }
+
   /// Aligns whenever there is a keyframe more, as the back end does.
   /// @return the number of keyframes with which it was determined, or 0
   int align() {
@@ -91,12 +106,7 @@ struct MovingScene {
       add_keyframe(k);
       if (k + 1 < alignment.min_keyframes) continue;
       take_snapshot<Native>(graph, ImuNoise{}, fc.local(), window);
-      LmState<Native> lm(optimiser);
-      lm.lambda = alignment.initial_lambda;
-      for (int i = 0; i < 15; ++i) {
-        const auto stage = fc.stage("initialisation");
-        report = align_once<Native>(fc, window, lm, optimiser, alignment);
-      }
+      iterate(15, !report.converged);
       if (report.determined) return k + 1;
       for (int i = 0; i < window.landmarks; ++i) window.lost[i] = 0;
       publish<Native>(window, graph);
@@ -186,6 +196,38 @@ TEST(Alignment, RefusesBiasesThatCannotBeTrue) {
   MovingScene scene;
   scene.accel_bias = {0.5, -0.4, 0.5};
   EXPECT_EQ(scene.align(), 0);
+}
+
+/// Far from its minimum an alignment is not told apart from a good one by its uncertainty.
+TEST(Alignment, IsNotDeterminedFarFromItsMinimum) {
+  MovingScene scene;
+  scene.take_all();
+  scene.iterate(1, false);
+  EXPECT_GT(scene.report.distance, scene.alignment.max_distance);
+  EXPECT_FALSE(scene.report.converged);
+  EXPECT_FALSE(scene.report.determined);
+  scene.iterate(20, false);
+  EXPECT_LT(scene.report.distance, 0.1f);
+  EXPECT_TRUE(scene.report.converged);
+  EXPECT_TRUE(scene.report.determined);
+}
+
+TEST(Alignment, ForgetsWhatItFoundBefore) {
+  MovingScene scene, other;
+  scene.take_all();
+  other.take_all();
+  other.window.bias.gyro = {-0.4f, 0.2f, 0.3f};
+  KeyframeState<Native> first = other.window.state.keyframe(0);
+  first.velocity = {3, -2, 1};
+  other.window.state.set_keyframe(0, first);
+  for (int i = 0; i < other.window.landmarks; ++i)
+    store_vec3<Native>(other.window.state.points, 3 * i,
+                       load_vec3<Native>(other.window.state.points, 3 * i) * 3.0f);
+  scene.iterate(20, true);
+  other.iterate(20, true);
+  EXPECT_TRUE(other.report.determined);
+  EXPECT_NEAR(other.scale(), scene.scale(), 0.01);
+  EXPECT_NEAR(other.scale(), 1, 0.05);
 }
 
 /// The first keyframe is where the map begins: position and heading are not the alignment's to say.

@@ -20,6 +20,15 @@ CarriedFrom<P> start_of(const Window<P>& window) {
   return {R_camera_world * first.velocity, R_camera_world * window.gravity, window.bias};
 }
 
+/// Nothing is known but the vertical.
+template <class P>
+void forget(Window<P>& window) {
+  KeyframeState<P> first = window.state.keyframe(0);
+  first.velocity = {0.0f, 0.0f, 0.0f};
+  window.state.set_keyframe(0, first);
+  window.bias = window.bias_prior.mean;
+}
+
 /// The keyframes of the window where they were carried to. The first one is turned so that gravity
 /// points down.
 template <class P>
@@ -44,10 +53,12 @@ Vec3<P> mean_force_of(const CarriedPoses<P>& poses, const CarriedFrom<P>& from, 
 }
 
 /// What is known apart from the images, at `from`.
+/// @param first  the gyro's bias is held as for the first window
 template <class P>
 typename P::F32 add_knowledge(const Window<P>& window, const CarriedPoses<P>& poses,
                               const CarriedFrom<P>& from, const OptimiserOptions& optimiser,
-                              const AlignmentOptions& options, const ReducedSystem<P>* system) {
+                              const AlignmentOptions& options, bool first,
+                              const ReducedSystem<P>* system) {
   using F = typename P::F32;
   F cost = 0.0f;
   const auto hold = [&](int at, const Vec3<P>& off, float stddev) {
@@ -63,7 +74,8 @@ typename P::F32 add_knowledge(const Window<P>& window, const CarriedPoses<P>& po
   hold(kVelocity, from.velocity, options.velocity);
   hold(kGravityAt, from.gravity + mean_force_of<P>(poses, from, window.keyframes - 1),
        options.acceleration);
-  hold(kGyro, from.bias.gyro - window.bias_prior.mean.gyro, optimiser.prior.gyro_bias);
+  hold(kGyro, from.bias.gyro - window.bias_prior.mean.gyro,
+       first ? options.first_gyro_bias : optimiser.prior.gyro_bias);
   hold(kAccel, from.bias.accel - window.bias_prior.mean.accel, optimiser.prior.accel_bias);
   return cost;
 }
@@ -91,52 +103,83 @@ CarriedFrom<P> stepped(const CarriedFrom<P>& from, const ReducedSystem<P>& solve
       {from.bias.gyro + load_vec3<P>(step, kGyro), from.bias.accel + load_vec3<P>(step, kAccel)}};
 }
 
-/// How uncertain the way over the window is, as a share of it.
+/// xᵀ C x = |L⁻¹ x|², for the covariance C of the unknowns. Overwrites x.
+/// @param factor  L, of the information of the unknowns
+template <class P>
+typename P::F32 square_by_covariance(MatrixView<P> factor,
+                                     typename P::template Span<typename P::F32> x) {
+  using F = typename P::F32;
+  F square = 0.0f;
+  for (int i : P::range(0, kAlignmentUnknowns)) {
+    F sum = x[i];
+    for (int k : P::range(0, i)) sum -= factor(i, k) * x[k];
+    x[i] = sum * factor(i, i);
+    square += F(x[i]) * F(x[i]);
+  }
+  return square;
+}
+
+/// The variance of a keyframe's position, m².
 /// @param factor  of the information of the unknowns
 template <class P>
-typename P::F32 uncertainty_of_way(const CarriedPose<P>& end, MatrixView<P> factor,
-                                   typename P::template Span<typename P::F32> column) {
+typename P::F32 variance_of_position(const CarriedPose<P>& at, MatrixView<P> factor,
+                                     typename P::template Span<typename P::F32> column) {
   using F = typename P::F32;
-  const F half_square = end.time * end.time * F(0.5f);
+  const F half_square = at.time * at.time * F(0.5f);
   F variance = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     for (int i : P::range(0, kAlignmentUnknowns)) column[i] = 0.0f;
-    column[kVelocity + axis] = end.time;
+    column[kVelocity + axis] = at.time;
     column[kGravityAt + axis] = half_square;
-    store_vec3<P>(column, kGyro, end.p_by_gyro.row(axis));
-    store_vec3<P>(column, kAccel, end.p_by_accel.row(axis));
-    // The variance is |L⁻¹ x|².
-    for (int i : P::range(0, kAlignmentUnknowns)) {
-      F sum = column[i];
-      for (int k : P::range(0, i)) sum -= factor(i, k) * column[k];
-      column[i] = sum * factor(i, i);
-      variance += F(column[i]) * F(column[i]);
-    }
+    store_vec3<P>(column, kGyro, at.p_by_gyro.row(axis));
+    store_vec3<P>(column, kAccel, at.p_by_accel.row(axis));
+    variance += square_by_covariance<P>(factor, column);
   }
-  return work::sqrt(F(variance / work::max(F(dot(end.p, end.p)), F(1e-6f))));
+  return variance;
 }
 
-/// Whether the window has settled, and tells enough that can be true.
+/// How uncertain the keyframes' positions are, as a share of their distances from the first one.
+template <class P>
+typename P::F32 uncertainty_of_positions(const CarriedPoses<P>& poses, int keyframes,
+                                         MatrixView<P> factor,
+                                         typename P::template Span<typename P::F32> column) {
+  using F = typename P::F32;
+  F variance = 0.0f, square = 0.0f;
+  for (int k : P::range(1, keyframes)) {
+    const CarriedPose<P> at = poses[k];
+    variance += variance_of_position<P>(at, factor, column);
+    square += dot(at.p, at.p);
+  }
+  return work::sqrt(F(variance / work::max(F(square), F(1e-6f))));
+}
+
+/// Whether it is near its minimum, and can be true.
 /// @param knowledge  the cost of what is known apart from the images
 template <class P>
-bool is_determined(const Window<P>& window, const AlignmentReport& report, float knowledge,
+bool has_converged(const Window<P>& window, const AlignmentReport& report, float knowledge,
                    const AlignmentOptions& options) {
-  constexpr float kSettled = 0.01f;  // share of the cost that another iteration may gain
-  const bool full = window.keyframes == window.capacity.keyframes;
-  const float limit = options.max_uncertainty * (full ? options.full_uncertainty : 1.0f);
-  return window.keyframes > options.few_keyframes && report.uncertainty < limit &&
-         2 * knowledge < options.max_surprise * options.max_surprise &&
-         report.landmarks >= options.min_landmarks &&
+  return 2 * knowledge < options.max_surprise * options.max_surprise &&
          static_cast<float>(report.explained) >=
              options.min_explained * static_cast<float>(window.landmarks) &&
-         report.cost_before - report.cost_after < kSettled * report.cost_before;
+         report.distance < options.max_distance;
+}
+
+/// Whether the window tells enough.
+template <class P>
+bool is_determined(const Window<P>& window, const AlignmentReport& report,
+                   const AlignmentOptions& options) {
+  const bool full = window.keyframes == window.capacity.keyframes;
+  const float limit = options.max_uncertainty * (full ? options.full_uncertainty : 1.0f);
+  return report.converged && window.keyframes > options.few_keyframes &&
+         report.uncertainty < limit && report.landmarks >= options.min_landmarks;
 }
 
 }  // namespace
 
 template <class P>
 AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
-                           const OptimiserOptions& optimiser, const AlignmentOptions& options) {
+                           const OptimiserOptions& optimiser, const AlignmentOptions& options,
+                           bool afresh) {
   using F = typename P::F32;
   using Span = typename P::template Span<F>;
   const typename P::Function function("align_once");
@@ -149,23 +192,27 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   const ReducedSystem<P> system(arena, 0, false, kAlignmentUnknowns);
   const MatrixView<P> factor = alloc_matrix<P>(arena, "information of the alignment",
                                                kAlignmentUnknowns, kAlignmentUnknowns);
+  const auto slope = arena.alloc<Span>("slope of the alignment", kAlignmentUnknowns);
   const auto column = arena.alloc<Span>("column of the alignment", kAlignmentUnknowns);
+  const bool first = afresh || window.keyframes <= options.few_keyframes;
   const LandmarkPrior prior{
       options.inverse_depth,
-      information(window.keyframes > options.few_keyframes ? options.inverse_depth_stddev
-                                                           : options.first_inverse_depth_stddev)};
+      information(first ? options.first_inverse_depth_stddev : options.inverse_depth_stddev)};
   const AnchoredLandmarks<P> landmarks(arena, window, PixelModel<P>(optimiser.visual), prior);
   const auto trial = arena.alloc<Span>("trial landmarks", 3 * window.landmarks);
 
+  if (afresh) forget<P>(window);
   const CarriedFrom<P> from = start_of<P>(window);
   landmarks.anchor(window);
+  if (afresh) landmarks.forget_distances();
   carry<P>(window, from, poses);
   landmarks.settle(window, poses, landmarks.all());
   system.clear();
   F cost = landmarks.add(window, poses, system);
-  cost += add_knowledge<P>(window, poses, from, optimiser, options, &system);
+  cost += add_knowledge<P>(window, poses, from, optimiser, options, first, &system);
   hold_length<P>(from.gravity, system);
   copy<P>(factor, system.matrix());
+  for (int i : P::range(0, kAlignmentUnknowns)) slope[i] = F(system.vector()[i]);
   system.damp(lm.lambda);
   F trial_cost = cost;
   CarriedFrom<P> to = from;
@@ -175,7 +222,7 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
     carry<P>(window, to, trial_poses);
     for (int i : P::range(0, 3 * window.landmarks)) trial[i] = F(landmarks.all()[i]);
     trial_cost = landmarks.settle(window, trial_poses, trial);
-    trial_cost += add_knowledge<P>(window, trial_poses, to, optimiser, options, nullptr);
+    trial_cost += add_knowledge<P>(window, trial_poses, to, optimiser, options, first, nullptr);
   }
   report.accepted = bool(trial_cost < cost);
   if (report.accepted) {
@@ -194,18 +241,20 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   report.cost_before = work::value(cost);
   report.cost_after = work::value(trial_cost);
   if (!cholesky_factor<P>(factor)) return report;
+  report.distance = work::value(work::sqrt(square_by_covariance<P>(factor, slope)));
   report.uncertainty =
-      work::value(uncertainty_of_way<P>(best[window.keyframes - 1], factor, column));
-  const F knowledge =
-      add_knowledge<P>(window, best, report.accepted ? to : from, optimiser, options, nullptr);
-  report.determined = is_determined<P>(window, report, work::value(knowledge), options);
+      work::value(uncertainty_of_positions<P>(best, window.keyframes, factor, column));
+  const F knowledge = add_knowledge<P>(window, best, report.accepted ? to : from, optimiser,
+                                       options, first, nullptr);
+  report.converged = has_converged<P>(window, report, work::value(knowledge), options);
+  report.determined = is_determined<P>(window, report, options);
   return report;
 }
 
 template AlignmentReport align_once(work::Machine&, Window<work::Native>&, LmState<work::Native>&,
-                                    const OptimiserOptions&, const AlignmentOptions&);
+                                    const OptimiserOptions&, const AlignmentOptions&, bool);
 template AlignmentReport align_once(work::Machine&, Window<work::Counting>&,
                                     LmState<work::Counting>&, const OptimiserOptions&,
-                                    const AlignmentOptions&);
+                                    const AlignmentOptions&, bool);
 
 }  // namespace leviosim::vio

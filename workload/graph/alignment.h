@@ -10,8 +10,9 @@
 // poor start: rotation comes from the gyro but for its bias, and translation is linear in what is
 // looked for. Any landmarks in front of the camera will do to begin with.
 //
-// Observability: the covariance of the unknowns gives that of the way over the window. While it is
-// uncertain beside its length, the window has not seen enough motion, and the map waits.
+// Observability: the covariance of the unknowns gives that of the keyframes' positions. While they
+// are uncertain beside their distances from the first one, the window has not seen enough motion,
+// and the map waits.
 //
 // Left out: the noise of the IMU in the window, which the optimiser takes up afterwards.
 #pragma once
@@ -29,13 +30,15 @@ struct AlignmentOptions {
   /// The same while the window has few keyframes: with all landmarks about equally far away the
   /// problem is nearly linear, and what it finds is near enough to begin with.
   float first_inverse_depth_stddev = 0.05f;
-  float velocity = 3;            ///< m/s
-  float acceleration = 2;        ///< mean over the window, m/s²
-  int min_keyframes = 3;         ///< of a window that says anything
-  int few_keyframes = 4;         ///< that leave landmarks equally far away, and a map not aligned
-  float initial_lambda = 1e-2f;  ///< damping with every new keyframe
+  float velocity = 3;             ///< m/s
+  float acceleration = 2;         ///< mean over the window, m/s²
+  float first_gyro_bias = 0.03f;  ///< likewise, in place of the optimiser's, rad/s
+  int min_keyframes = 3;          ///< of a window that says anything
+  int few_keyframes = 4;          ///< that leave landmarks equally far away, and a map not aligned
+  float initial_lambda = 1e-2f;   ///< damping with every new keyframe
   // A map is aligned when all of these hold.
-  float max_uncertainty = 0.05f;  ///< of the way over the window, as a share of it
+  float max_distance = 3;         ///< from the minimum, in standard deviations of the unknowns
+  float max_uncertainty = 0.05f;  ///< of positions, as a share of their distances
   float full_uncertainty = 4;     ///< times that, where the window has no room for more keyframes
   float max_surprise = 3;         ///< standard deviations of velocity, biases and gravity in all
   float min_explained = 0.7f;     ///< share of the landmarks that agree with the alignment
@@ -43,17 +46,21 @@ struct AlignmentOptions {
 };
 
 struct AlignmentReport : IterationReport {
-  float uncertainty = 0;  ///< of the way over the window, as a share of it
-  int explained = 0;      ///< landmarks that agree with the alignment
-  bool determined = false;
+  float distance = 0;      ///< from the minimum before the iteration, in standard deviations
+  float uncertainty = 0;   ///< of positions, as a share of their distances from the first one (RMS)
+  int explained = 0;       ///< landmarks that agree with the alignment
+  bool converged = false;  ///< it is near its minimum, and can be true
+  bool determined = false;  ///< it has converged, and tells enough
 };
 
 /// One iteration on a snapshot of at least two keyframes; changes poses, velocities and points of
 /// `window.state`, and `window.bias`. Position and heading of the first keyframe stay. Landmarks
 /// that no place explains, or whose distance is not told, are marked as lost.
+/// @param afresh  forgets what has been found: no velocity, no biases, landmarks equally far away
 /// Must run in a stage of `fc`, whose local memory it uses for some tens of kB, freed on return.
 template <class P>
 AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
-                           const OptimiserOptions& optimiser, const AlignmentOptions& options);
+                           const OptimiserOptions& optimiser, const AlignmentOptions& options,
+                           bool afresh);
 
 }  // namespace leviosim::vio

@@ -32,6 +32,11 @@ void AnchoredLandmarks<P>::anchor(const Window<P>& window) const {
 }
 
 template <class P>
+void AnchoredLandmarks<P>::forget_distances() const {
+  for (int i : P::range(0, all_.size() / 3)) all_[3 * i + 2] = F(prior_.inverse_depth);
+}
+
+template <class P>
 void AnchoredLandmarks<P>::release(const Window<P>& window) const {
   const typename P::Function function("release_landmarks");
   for (int i : P::range(0, window.landmarks)) {

@@ -39,6 +39,8 @@ class AnchoredLandmarks {
   /// poses.
   void anchor(const Window<P>& window) const;
   void release(const Window<P>& window) const;
+  /// All are as far away as any may be, in the directions that they have.
+  void forget_distances() const;
 
   /// Moves each landmark one step to where it explains its observations best.
   /// @return the cost then

@@ -100,7 +100,7 @@ void NextFrontEnd<P>::start_anew(TrackedFrame<P>& frame) {
   const Vec3<P>& force = inertial_.recent().accel_mean;
   if (dot(force, force) > F(0.0f)) R = levelled<P>(R, force);
   begin_map<P>(state_, frame, record, ImuBias<P>::zero(), {0.0f, 0.0f, -kGravity});
-  map_.aligned = false;
+  map_.aligned = map_.converged = false;
 }
 
 /// Whether the map waits for its alignment.
@@ -109,15 +109,16 @@ bool NextFrontEnd<P>::initialises() const {
   return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
 }
 
-/// While a map has few keyframes its scale is a guess, and so is how far the camera has gone: it is
-/// told to be where the map began. The map itself keeps the guess. The newest keyframe does not
-/// count, as the alignment has hardly seen it.
+/// While a map has few keyframes, or its alignment has not converged, its scale is a guess, and so is
+/// how far the camera has gone: it is told to be where the map began. The map itself keeps the
+/// guess. The newest keyframe does not count, as the alignment has hardly seen it.
 template <class P>
 void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {
   using I32 = typename P::I32;
   const auto stage = state_.machine.stage(stages::kGuided);
   const auto& graph = state_.graph_in_l2;
-  if (graph.keyframe_count() <= I32(state_.profile.alignment.few_keyframes + 1))
+  if (!map_.converged ||
+      bool(graph.keyframe_count() <= I32(state_.profile.alignment.few_keyframes + 1)))
     frame.T_world_camera.t = graph.keyframe(graph.keyframe_slot(0)).T_world_camera.t;
 }
 

@@ -1,5 +1,7 @@
 #include "workload/vio/odometry/back_end.h"
 
+#include <utility>
+
 #include "workload/vio/levio/optimiser/optimiser.h"
 #include "workload/vio/stages.h"
 
@@ -27,7 +29,7 @@ bool BackEnd<P>::begin() {
   if (work::value(graph_.keyframe_count()) < least) return false;
   if (options_.joint && is_settled()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
-  determined_ = false;
+  converged_ = determined_ = false;
   if (aligns_) {
     prior_.keyframes = 0;
   } else if (options_.joint) {
@@ -38,10 +40,14 @@ bool BackEnd<P>::begin() {
   take_snapshot<P>(graph_, profile_.imu_noise, machine_.local(), window_);
   if (options_.joint && !aligns_ && prior_.keyframes == 0)
     start_prior<P>(window_, options_.prior, prior_);
-  if (!aligns_)
+  if (!aligns_) {
     damping_ = LmState<P>(options_);
-  else if (snapshots_ == 1)
+  } else if (snapshots_ == 1) {
+    // Where no step gained any more, another start may do better.
+    const bool stuck = !map_.converged && bool(damping_.lambda >= F(1.0f));
+    afresh_ = stuck;
     damping_.lambda = profile_.alignment.initial_lambda;
+  }
   solved_ = false;
   return true;
 }
@@ -75,9 +81,10 @@ template <class P>
 OptimiserReport BackEnd<P>::optimise() {
   if (aligns_) {
     const auto stage = machine_.stage(stages::kInitialisation);
-    const AlignmentReport report =
-        align_once<P>(machine_, window_, damping_, options_, profile_.alignment);
+    const AlignmentReport report = align_once<P>(machine_, window_, damping_, options_,
+                                                 profile_.alignment, std::exchange(afresh_, false));
     solved_ = solved_ || report.positive_definite;
+    converged_ = report.converged;
     determined_ = report.determined;
     return {true, report.accepted, report.cost_before, report.cost_after};
   }
@@ -110,6 +117,7 @@ void BackEnd<P>::publish() {
 template <class P>
 void BackEnd<P>::publish_alignment() {
   const int last = window_.keyframes - 1;
+  map_.converged = converged_;
   const I32 newest = graph_.keyframe_ids[graph_.newest_keyframe()];
   const bool aligned = determined_ && bool(newest == I32(window_.keyframe_ids[last]));
   if (!aligned)

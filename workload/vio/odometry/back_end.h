@@ -46,7 +46,9 @@ class BackEnd {
   int snapshots_ = 0;        ///< that were taken of it
   bool solved_ = false;      ///< the system of this snapshot could be solved
   bool aligns_ = false;      ///< this snapshot is of a map that is not aligned yet
-  bool determined_ = false;  ///< its alignment is
+  bool afresh_ = false;      ///< its alignment forgets what it found before
+  bool converged_ = false;   ///< its alignment has
+  bool determined_ = false;  ///< likewise, and tells enough
 };
 
 }  // namespace leviosim::vio
