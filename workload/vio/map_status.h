@@ -7,7 +7,7 @@ struct MapStatus {
   /// Velocity, gravity and scale are known: from rest, or from the initialisation. Until then a map
   /// that has an initialisation has landmarks without a distance.
   bool aligned = false;
-  /// The initialisation has converged to what can be true, though it may be uncertain.
+  /// The initialisation has once converged to what can be true, though it may be uncertain.
   bool converged = false;
 };
 

@@ -29,7 +29,7 @@ bool BackEnd<P>::begin() {
   if (work::value(graph_.keyframe_count()) < least) return false;
   if (options_.joint && is_settled()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
-  converged_ = determined_ = false;
+  determined_ = false;
   if (aligns_) {
     prior_.keyframes = 0;
   } else if (options_.joint) {
@@ -44,8 +44,8 @@ bool BackEnd<P>::begin() {
     damping_ = LmState<P>(options_);
   } else if (snapshots_ == 1) {
     // Where no step gained any more, another start may do better.
-    const bool stuck = !map_.converged && bool(damping_.lambda >= F(1.0f));
-    afresh_ = stuck;
+    afresh_ = !converged_ && bool(damping_.lambda >= F(1.0f));
+    map_.converged = map_.converged && !afresh_;
     damping_.lambda = profile_.alignment.initial_lambda;
   }
   solved_ = false;
@@ -117,7 +117,7 @@ void BackEnd<P>::publish() {
 template <class P>
 void BackEnd<P>::publish_alignment() {
   const int last = window_.keyframes - 1;
-  map_.converged = converged_;
+  map_.converged = map_.converged || converged_;
   const I32 newest = graph_.keyframe_ids[graph_.newest_keyframe()];
   const bool aligned = determined_ && bool(newest == I32(window_.keyframe_ids[last]));
   if (!aligned)
