@@ -26,13 +26,13 @@ namespace leviosim::vio {
 struct AlignmentOptions {
   bool enabled = false;
   float inverse_depth = 0.15f;        ///< of any landmark, 1/m
-  float inverse_depth_stddev = 1.0f;  ///< likewise
-  /// The same while the window has few keyframes: with all landmarks about equally far away the
-  /// problem is nearly linear, and what it finds is near enough to begin with.
+  float inverse_depth_stddev = 1.0f;  ///< of any landmark, 1/m
+  /// In place of inverse_depth_stddev while the window has few keyframes: with all landmarks about
+  /// equally far away the problem is nearly linear, and what it finds is near enough to begin with.
   float first_inverse_depth_stddev = 0.05f;
   float velocity = 3;             ///< m/s
   float acceleration = 2;         ///< mean over the window, m/s²
-  float first_gyro_bias = 0.03f;  ///< likewise, in place of the optimiser's, rad/s
+  float first_gyro_bias = 0.03f;  ///< instead of the optimiser's, with few keyframes, rad/s
   int min_keyframes = 3;          ///< of a window that says anything
   int few_keyframes = 4;          ///< that leave landmarks equally far away, and a map not aligned
   float initial_lambda = 1e-2f;   ///< damping with every new keyframe

@@ -43,8 +43,10 @@ bool BackEnd<P>::begin() {
   if (!aligns_) {
     damping_ = LmState<P>(options_);
   } else if (snapshots_ == 1) {
-    // Where no step gained any more, another start may do better.
-    afresh_ = !converged_ && bool(damping_.lambda >= F(1.0f));
+    // With as much damping as there is curvature no step gains any more: another start may do
+    // better.
+    constexpr float kStuck = 1.0f;
+    afresh_ = !converged_ && bool(damping_.lambda >= F(kStuck));
     map_.converged = map_.converged && !afresh_;
     damping_.lambda = profile_.alignment.initial_lambda;
   }

@@ -47,8 +47,8 @@ class BackEnd {
   bool solved_ = false;      ///< the system of this snapshot could be solved
   bool aligns_ = false;      ///< this snapshot is of a map that is not aligned yet
   bool afresh_ = false;      ///< its alignment forgets what it found before
-  bool converged_ = false;   ///< its alignment has
-  bool determined_ = false;  ///< likewise, and tells enough
+  bool converged_ = false;   ///< its alignment is near its minimum
+  bool determined_ = false;  ///< its alignment has converged, and tells enough
 };
 
 }  // namespace leviosim::vio
