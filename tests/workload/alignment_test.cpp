@@ -198,9 +198,12 @@ TEST(Alignment, RefusesBiasesThatCannotBeTrue) {
   EXPECT_EQ(scene.align(), 0);
 }
 
-/// Far from its minimum an alignment is not told apart from a good one by its uncertainty.
-TEST(Alignment, IsNotDeterminedFarFromItsMinimum) {
+/// Far from its minimum an alignment is not told apart from a good one by its uncertainty: its
+/// distance from the minimum decides, whatever else speaks for it.
+TEST(Alignment, HasNotConvergedFarFromItsMinimum) {
   MovingScene scene;
+  scene.alignment.max_surprise = 1e3f;
+  scene.alignment.min_explained = 0;
   scene.take_all();
   scene.iterate(1, false);
   EXPECT_GT(scene.report.distance, scene.alignment.max_distance);
@@ -212,22 +215,25 @@ TEST(Alignment, IsNotDeterminedFarFromItsMinimum) {
   EXPECT_TRUE(scene.report.determined);
 }
 
+/// Velocity, biases and distances found before change nothing but rounding.
 TEST(Alignment, ForgetsWhatItFoundBefore) {
   MovingScene scene, other;
   scene.take_all();
   other.take_all();
-  other.window.bias.gyro = {-0.4f, 0.2f, 0.3f};
-  KeyframeState<Native> first = other.window.state.keyframe(0);
+  Window<Native>& window = other.window;
+  window.bias.gyro = {-0.4f, 0.2f, 0.3f};
+  KeyframeState<Native> first = window.state.keyframe(0);
   first.velocity = {3, -2, 1};
-  other.window.state.set_keyframe(0, first);
-  for (int i = 0; i < other.window.landmarks; ++i)
-    store_vec3<Native>(other.window.state.points, 3 * i,
-                       load_vec3<Native>(other.window.state.points, 3 * i) * 3.0f);
-  scene.iterate(20, true);
-  other.iterate(20, true);
-  EXPECT_TRUE(other.report.determined);
-  EXPECT_NEAR(other.scale(), scene.scale(), 0.01);
-  EXPECT_NEAR(other.scale(), 1, 0.05);
+  window.state.set_keyframe(0, first);
+  for (int i = 0; i < window.landmarks; ++i)
+    if (window.observation_keyframes[window.first_observations[i]] == 0)
+      store_vec3<Native>(window.state.points, 3 * i,
+                         load_vec3<Native>(window.state.points, 3 * i) * 3.0f);
+  scene.iterate(1, true);
+  other.iterate(1, true);
+  EXPECT_NEAR(other.report.cost_before, scene.report.cost_before, 1e-3 * scene.report.cost_before);
+  EXPECT_NEAR(other.report.distance, scene.report.distance, 1e-3 * scene.report.distance);
+  EXPECT_LT(norm(other.window.bias.gyro - scene.window.bias.gyro), 1e-4f);
 }
 
 /// The first keyframe is where the map begins: position and heading are not the alignment's to say.
