@@ -70,7 +70,9 @@ TEST(WorkloadOverrides, RefuseContradictions) {
   refuse("levio", {"workload.subpixel_steps=4"}, {"workload.subpixel_steps=1"});
   refuse("levio-no-imu", {"workload.joint=on"}, {"without IMU"});
   refuse("levio", {"workload.loop=on"}, {"workload.loop=off", "workload.guided=on"});
-  refuse("next-loop", {"workload.joint=off"}, {"workload.loop is on", "workload.joint=on"});
+  refuse("next", {"workload.joint=off"}, {"workload.subpixel_steps", "workload.joint=on"});
+  refuse("next-loop", {"workload.joint=off", "workload.subpixel_steps=1"},
+         {"workload.loop is on", "workload.joint=on"});
   RunRequest both;
   both.profile = "next";
   both.workload = parse_workload_overrides({"workload.joint=off", "workload.subpixel_steps=1"});

@@ -87,6 +87,35 @@ void add_projected(const Window<P>& window, MatrixView<P> rows, int first, int n
 }  // namespace
 
 template <class P>
+bool departs(const Window<P>& window, int i, int departed, bool tracked) {
+  using I32 = typename P::I32;
+  const I32 first = window.first_observations[i];
+  if (I32(window.observation_keyframes[first]) >= I32(departed)) return false;
+  const I32 last = first + I32(window.observation_numbers[i]) - I32(1);
+  return tracked || bool(I32(window.observation_keyframes[last]) != I32(window.keyframes - 1));
+}
+
+template <class P>
+void forget_departed(const Window<P>& window, int departed, bool tracked,
+                     const PoseGraph<P>& graph) {
+  using I32 = typename P::I32;
+  const typename P::Function function("forget_departed");
+  for (int i : P::range(0, window.landmarks)) {
+    if (!departs<P>(window, i, departed, tracked)) continue;
+    const I32 slot = window.landmark_slots[i];
+    if (I32(graph.generations[slot]) == I32(window.landmark_generations[i]))
+      graph.void_observations(slot);
+  }
+}
+
+template bool departs(const Window<work::Native>&, int, int, bool);
+template bool departs(const Window<work::Counting>&, int, int, bool);
+template void forget_departed(const Window<work::Native>&, int, bool,
+                              const PoseGraph<work::Native>&);
+template void forget_departed(const Window<work::Counting>&, int, bool,
+                              const PoseGraph<work::Counting>&);
+
+template <class P>
 void add_departing_visual_terms(const Window<P>& window, const PixelModel<P>& model, int departed,
                                 bool tracked, const LandmarkRecords<P>& records,
                                 const ProjectionScratch<P>& scratch,
@@ -95,11 +124,9 @@ void add_departing_visual_terms(const Window<P>& window, const PixelModel<P>& mo
   const typename P::Function function("add_departing_visual_terms");
   typename P::F32 cost = 0.0f;
   for (int i : P::range(0, window.landmarks)) {
+    if (!departs<P>(window, i, departed, tracked)) continue;
     const int first = work::value(I32(window.first_observations[i]));
     const int number = work::value(I32(window.observation_numbers[i]));
-    if (I32(window.observation_keyframes[first]) >= I32(departed)) continue;
-    const I32 last = window.observation_keyframes[first + number - 1];
-    if (!tracked && last == I32(window.keyframes - 1)) continue;
     const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
     if (valid < I32(2)) continue;
     const MatrixView<P> rows = gather_landmark<P>(records, i, number, scratch);

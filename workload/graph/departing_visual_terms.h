@@ -25,6 +25,17 @@ struct ProjectionScratch {
   Span rows;
 };
 
+/// Whether landmark i of the window is marginalised with the `departed` oldest keyframes: one of
+/// them saw it, and the newest keyframe does not, unless `tracked`.
+template <class P>
+bool departs(const Window<P>& window, int i, int departed, bool tracked);
+
+/// Voids the observations of the landmarks that have been marginalised: the prior holds what they
+/// said, and the window would count them again.
+template <class P>
+void forget_departed(const Window<P>& window, int departed, bool tracked,
+                     const PoseGraph<P>& graph);
+
 /// Adds, without damping and at `window.state`, the landmarks that the `departed` oldest keyframes
 /// saw; of those that the newest keyframe sees as well only if `tracked`.
 template <class P>

@@ -46,18 +46,26 @@ typename P::F32 gradient(const WindowPrior<P>& prior, int i) {
   return sum;
 }
 
-/// Holds position and heading of the keyframe at unknown 0 … 8 of a matrix of n columns.
+/// How far the oldest keyframe is from where it is held.
 template <class P>
-void hold_gauge(typename P::template Span<typename P::F32> matrix, int n, int at,
-                const Mat3<P>& R_world_camera, const PriorOptions& options) {
+struct GaugeError {
   using F = typename P::F32;
-  const F position = information(options.position), heading = information(options.heading);
-  const F z[3] = {R_world_camera.m[2][0], R_world_camera.m[2][1], R_world_camera.m[2][2]};
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) matrix[(at + r) * n + at + c] += heading * z[r] * z[c];
-    matrix[(at + kPositionColumn + r) * n + at + kPositionColumn + r] += position;
+
+  GaugeError(const WindowPrior<P>& prior, const WindowState<P>& state) {
+    const Pose<P> now = state.pose(0), before = prior.state.pose(0);
+    up = {before.R.m[2][0], before.R.m[2][1], before.R.m[2][2]};
+    heading = dot(up, so3_log<P>(transpose(before.R) * now.R));
+    position = now.t - before.t;
   }
-}
+  F cost(const PriorOptions& options) const {
+    return F(0.5f) * (F(information(options.heading)) * heading * heading +
+                      F(information(options.position)) * dot(position, position));
+  }
+
+  Vec3<P> up;  ///< in the camera frame
+  F heading;   ///< rad
+  Vec3<P> position;
+};
 
 /// The biases have walked for `seconds` since the prior was taken.
 template <class P>
@@ -132,7 +140,6 @@ void start_prior(const Window<P>& window, const PriorOptions& options, WindowPri
     prior.information[(kPerKeyframe + i) * (n + 1)] = gyro_bias;
     prior.information[(kPerKeyframe + 3 + i) * (n + 1)] = F(information(options.accel_bias));
   }
-  hold_gauge<P>(prior.information, n, 0, window.state.pose(0).R, options);
   prior.state.set_keyframe(0, window.state.keyframe(0));
   prior.bias = window.bias;
 }
@@ -181,7 +188,6 @@ void marginalise(work::Arena& arena, const Window<P>& window, int departed,
   for (int k : P::range(1, departed + 1)) seconds += window.interval(k).duration();
   adopt<P>(window, departed, system, prior);
   add_walk<P>(prior, seconds, options);
-  hold_gauge<P>(prior.information, prior.unknowns(), 0, prior.state.pose(0).R, options);
 }
 
 template <class P>
@@ -216,6 +222,42 @@ typename P::F32 prior_cost(const WindowPrior<P>& prior, const WindowState<P>& st
   return cost * F(0.5f);
 }
 
+template <class P>
+typename P::F32 hold_gauge(const WindowPrior<P>& prior, const WindowState<P>& state,
+                           const PriorOptions& options, const ReducedSystem<P>& system) {
+  using F = typename P::F32;
+  const typename P::Function function("hold_gauge");
+  const GaugeError<P> error(prior, state);
+  const F heading = information(options.heading), position = information(options.position);
+  const F up[3] = {error.up.x, error.up.y, error.up.z};
+  const F off[3] = {error.position.x, error.position.y, error.position.z};
+  const MatrixView<P> matrix = system.matrix();
+  const auto b = system.vector();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c <= r; ++c) matrix(r, c) += heading * up[r] * up[c];
+    b[r] -= heading * up[r] * error.heading;
+    matrix(kPositionColumn + r, kPositionColumn + r) += position;
+    b[kPositionColumn + r] -= position * off[r];
+  }
+  return error.cost(options);
+}
+
+template <class P>
+typename P::F32 gauge_cost(const WindowPrior<P>& prior, const WindowState<P>& state,
+                           const PriorOptions& options) {
+  return GaugeError<P>(prior, state).cost(options);
+}
+
+template work::Native::F32 hold_gauge(const WindowPrior<work::Native>&,
+                                      const WindowState<work::Native>&, const PriorOptions&,
+                                      const ReducedSystem<work::Native>&);
+template work::Counting::F32 hold_gauge(const WindowPrior<work::Counting>&,
+                                        const WindowState<work::Counting>&, const PriorOptions&,
+                                        const ReducedSystem<work::Counting>&);
+template work::Native::F32 gauge_cost(const WindowPrior<work::Native>&,
+                                      const WindowState<work::Native>&, const PriorOptions&);
+template work::Counting::F32 gauge_cost(const WindowPrior<work::Counting>&,
+                                        const WindowState<work::Counting>&, const PriorOptions&);
 template struct WindowPrior<work::Native>;
 template struct WindowPrior<work::Counting>;
 template void start_prior(const Window<work::Native>&, const PriorOptions&,

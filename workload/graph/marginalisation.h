@@ -7,15 +7,16 @@
 // up to a constant, so it may be negative.
 //
 // When keyframes leave, the prior takes in what they alone knew: the prior so far, the intervals
-// from them to the next keyframe, and the landmarks that they saw. Then
-//   - position and heading of the oldest keyframe that is left, which no sensor observes, are held
-//     where they are: their information would otherwise fade until single precision cannot tell it
-//     from zero beside that of relative motion;
-//   - the biases have walked: noise q added to an unknown i changes H by −h hᵀ q/(1 + q H_ii) with
-//   h
-//     its column i, and the same for b, which leaves the estimate where it is.
+// from them to the next keyframe, and the landmarks that they saw, whose observations then count no
+// more (forget_departed()). The biases have walked meanwhile: noise q added to an unknown i changes
+// H by −h hᵀ q/(1 + q H_ii) with h its column i, and the same for b, which leaves the estimate
+// where it is.
 //
-// Left out: first-estimate Jacobians.
+// Position and heading of all keyframes together, which no sensor observes, are not in the prior.
+// To hold the oldest keyframe in it would say, when that keyframe departs, that the next one is
+// where it is believed to be: that the distance between them, and so the scale, is known.
+//
+// Left out: first-estimate Jacobians, with which nine flights were no better (ACCURACY.md).
 #pragma once
 
 #include "sim/work/machine.h"
@@ -93,6 +94,17 @@ typename P::F32 add_prior(const WindowPrior<P>& prior, const Window<P>& window,
 template <class P>
 typename P::F32 prior_cost(const WindowPrior<P>& prior, const WindowState<P>& state,
                            const ImuBias<P>& bias);
+
+/// Holds position and heading of the oldest keyframe, which no sensor observes, where the prior has
+/// them. Not part of the prior: it would be taken for knowledge when that keyframe departs.
+/// @return its cost
+template <class P>
+typename P::F32 hold_gauge(const WindowPrior<P>& prior, const WindowState<P>& state,
+                           const PriorOptions& options, const ReducedSystem<P>& system);
+
+template <class P>
+typename P::F32 gauge_cost(const WindowPrior<P>& prior, const WindowState<P>& state,
+                           const PriorOptions& options);
 
 /// Eliminates the first n unknowns of a system: the rest is their Schur complement. An unknown
 /// without information is skipped.

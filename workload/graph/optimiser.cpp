@@ -42,8 +42,8 @@ template <class P>
 struct JointTerms {
   using F = typename P::F32;
 
-  JointTerms(work::Arena& arena, const Window<P>& in, const OptimiserOptions&)
-      : window(in), interval(arena), trial_bias(in.bias) {}
+  JointTerms(work::Arena& arena, const Window<P>& in, const OptimiserOptions& o)
+      : window(in), options(o), interval(arena), trial_bias(in.bias) {}
   static ReducedSystem<P> system(work::Arena& arena, const Window<P>& window,
                                  const OptimiserOptions&) {
     return {arena, window.keyframes, true, kBiasUnknowns};
@@ -52,6 +52,7 @@ struct JointTerms {
   F add(const ReducedSystem<P>& system, F cost) const {
     cost += add_joint_inertial_terms<P>(window, 1, window.keyframes - 1, interval, system);
     cost += add_prior<P>(*prior, window, system);
+    cost += hold_gauge<P>(*prior, window.state, options.prior, system);
     return cost;
   }
   void step(const ReducedSystem<P>& solved) {
@@ -62,6 +63,7 @@ struct JointTerms {
   F add_cost(const WindowState<P>& state, F cost) const {
     cost += joint_inertial_cost<P>(window, state, trial_bias, interval);
     cost += prior_cost<P>(*prior, state, trial_bias);
+    cost += gauge_cost<P>(*prior, state, options.prior);
     return cost;
   }
   void adopt(Window<P>& to) const {
@@ -70,6 +72,7 @@ struct JointTerms {
   }
 
   const Window<P>& window;
+  const OptimiserOptions& options;
   const WindowPrior<P>* prior = nullptr;
   JointScratch<P> interval;
   ImuBias<P> trial_bias;

@@ -75,6 +75,11 @@ class PoseGraph : public GraphMemory<P, Where> {
   /// Gives a landmark up: it counts as the oldest, and its observations no longer mean it.
   void retire_landmark(I32 landmark) const {
     this->ages[landmark] = work::narrow<Byte>(I32(kOldestAge));
+    void_observations(landmark);
+  }
+
+  /// The landmark stays where it is and can be recognised, but nothing that was seen of it counts.
+  void void_observations(I32 landmark) const {
     this->generations[landmark] = work::narrow<Byte>(I32(this->generations[landmark]) + I32(1));
   }
 

@@ -23,7 +23,7 @@ FrontEndState<P>::FrontEndState(const Profile& parameters, const Rig& camera_rig
       camera(rig.camera, profile.extractor.subpixel_steps),
       strips(needs_strips<P>(profile.extractor, rig, cluster)),
       keyframe(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
-               rig.height, strips, profile.stillness),
+               rig.height, strips, profile.patches.enabled && !strips, profile.stillness),
       graph(in_l2),
       graph_in_l2(seen_from_cluster<P>(in_l2)) {}
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "workload/geometry/triangulate.h"
 #include "workload/vio/stages.h"
@@ -163,6 +164,8 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
   machine.copy_out(to.list.descriptors, from.descriptors.subspan(0, kDescriptorWords * n));
   machine.copy_out(to.landmarks, frame.features.landmarks.subspan(0, n));
   to.list.count = n;
+  // The camera writes the next image to where the one of the keyframe before was.
+  if (state.keyframe.seen.width > 0) std::swap(state.keyframe.image, state.keyframe.seen);
   state.time_since_keyframe = 0;
 }
 

@@ -40,10 +40,11 @@ template <class P>
 struct KeyframeRecord {
   using F = typename P::F32;
 
-  /// @param strips  whether features are extracted from strips of the image, which takes a blurred
-  ///                copy in L2
+  /// @param strips       whether features are extracted from strips of the image, which takes a
+  ///                     blurred copy in L2
+  /// @param keeps_image  whether the keyframe's image stays
   KeyframeRecord(work::Arena& arena, int capacity, int width, int height, bool strips,
-                 const StillnessOptions& standstill)
+                 bool keeps_image, const StillnessOptions& standstill)
       : features(alloc_observed_features<P>(arena, capacity)),
         interval(
             arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
@@ -53,6 +54,10 @@ struct KeyframeRecord {
         image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
                                                                        width * height),
               width, height} {
+    if (keeps_image)
+      seen = {arena.alloc<typename P::template Span<typename P::Byte>>("image of the keyframe",
+                                                                       width * height),
+              width, height};
     if (strips) {
       using Pixels = typename P::template Span<typename P::Byte>;
       blurred = {arena.alloc<Pixels>("blurred image", width * height), width, height};
@@ -64,6 +69,7 @@ struct KeyframeRecord {
   typename P::template Span<F> last_sample;  ///< where the next step of it begins
   typename P::template Span<F> stillness;    ///< of the StillnessDetector
   ImageView<P> image;
+  ImageView<P> seen;     ///< that of the keyframe; empty where patches are not aligned
   ImageView<P> blurred;  ///< only where features are extracted from strips
 };
 

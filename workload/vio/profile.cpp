@@ -34,12 +34,19 @@ void make_levio(Profile& p) {
 
 /// What improves on the paper's pipeline and fits GAP9. Random walks are those of EuRoC's
 /// sensor.yaml, noise densities twice (gyro) and ten times (accelerometer) those: white noise is
-/// not all that is wrong with a sample (scale factors, vibration, the trapezoidal rule). Whole
-/// pixels have an error of 0.3 px, the descriptors' choice of corners adds to it. A low resolution
-/// needs a long base line: more keyframes, farther apart. The rest are the defaults of the options.
+/// not all that is wrong with a sample (scale factors, vibration, the trapezoidal rule). A detector
+/// finds a corner again within half a pixel only, patches agree better. A low resolution needs a
+/// long base line: more keyframes, farther apart. The rest are the defaults of the options.
 /// workload/ACCURACY.md says how these were found.
 void make_next(Profile& p) {
   p.guided.enabled = true;
+  p.patches.enabled = true;
+  p.extractor.subpixel_steps = 16;
+  p.extractor.max_corner_shift = 0;  // only patches move a feature
+  p.refinement.rotation = 0.01f;     // the IMU predicts a frame better than one image tells it
+  p.refinement.position = 0.03f;
+  p.recovery.min_tracked = 150;
+  p.max_observations = 4000;
   p.alignment.enabled = true;
   p.keyframe_parallax = 0.06f;
   p.optimiser_keyframes = 12;
@@ -49,7 +56,7 @@ void make_next(Profile& p) {
   p.imu_noise = {
       .gyro = 3e-4f, .accel = 2e-2f, .gyro_bias = 1.9393e-5f, .accel_bias = 3e-3f, .gravity = 0.0f};
   p.imu_doubt.enabled = true;
-  p.optimiser.visual.sigma_px = 0.7f;
+  p.optimiser.visual.sigma_px = 0.5f;
   p.optimiser.prior.velocity = 0.3f;  // as levio's anchor, and for the same reason
 }
 

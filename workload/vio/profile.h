@@ -19,6 +19,7 @@
 #include "workload/vision/extractor.h"
 #include "workload/vision/guided_matcher.h"
 #include "workload/vision/matcher.h"
+#include "workload/vision/patch_alignment.h"
 
 namespace leviosim::vio {
 
@@ -74,6 +75,7 @@ struct Profile {
   // What `next` adds to it (next/). Not enabled: `levio`.
   GuidedOptions guided;
   RefinementOptions refinement;
+  PatchAlignmentOptions patches;  ///< of features with those of the last keyframe
   RecoveryOptions recovery;
   RestOptions rest;
   AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser

@@ -12,6 +12,7 @@ inline constexpr std::string_view kGuided = "guided matching";
 inline constexpr std::string_view kRefinement = "pose refinement";
 inline constexpr std::string_view kEpnp = "EPnP RANSAC";
 inline constexpr std::string_view kFrameMatching = "frame matching";
+inline constexpr std::string_view kPatches = "patch alignment";
 inline constexpr std::string_view kEightPoint = "8-point RANSAC";
 inline constexpr std::string_view kKeyframeSelection = "keyframe selection";
 inline constexpr std::string_view kTriangulation = "triangulation";

@@ -29,7 +29,7 @@ struct ExtractorOptions {
   int subpixel_steps = 1;
   /// Of a refined keypoint, in each direction, px: one whose corner is farther stays in its pixel.
   /// Detected corners of one structure lie side by side (there is no non-maximum suppression), so
-  /// the true one may be a pixel away.
+  /// the true one may be a pixel away. 0: all stay in the middle of their pixels.
   float max_corner_shift = 1.5f;
 
   static constexpr int kMostPerCell = 16;

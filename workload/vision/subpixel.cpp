@@ -70,8 +70,10 @@ void refine_keypoints(work::Machine& machine, ConstImageView<P> image,
     for (int i : P::range(which.begin + begin, which.begin + end)) {
       const I x = features.x[i], y = features.y[i];
       // The window around it is a stream from a computed place.
-      const Vec2<P> offset = corner_offset<P>(image.pixels, image.width, work::value(x),
-                                              work::value(y) - image.top, options.max_corner_shift);
+      Vec2<P> offset{0.0f, 0.0f};
+      if (options.max_corner_shift > 0)
+        offset = corner_offset<P>(image.pixels, image.width, work::value(x),
+                                  work::value(y) - image.top, options.max_corner_shift);
       // To the nearest step; coordinates are positive.
       const F u = (work::to_f32(x) + offset.x) * unit + F(0.5f);
       const F v = (work::to_f32(y) + offset.y) * unit + F(0.5f);

@@ -130,15 +130,8 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
 
 template <class P>
 std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
-                                       const InertialPart<P>& inertial,
-                                       const Prediction<P>& prediction, TrackedFrame<P>& frame,
-                                       FrameReport& report) {
-  Pose<P> T_predicted = Pose<P>::identity();
-  {
-    const auto stage = state.machine.stage(stages::kGuided);
-    frame.T_world_last = prediction.last_pose();
-    T_predicted = prediction.of(frame);
-  }
+                                       const InertialPart<P>& inertial, const Pose<P>& T_predicted,
+                                       TrackedFrame<P>& frame, FrameReport& report) {
   if (work::value(state.graph.landmark_count()) == 0) return std::nullopt;
   const RefinementOptions& refinement = state.profile.refinement;
   const RecoveryOptions& recovery = state.profile.recovery;
@@ -161,12 +154,12 @@ std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
 
 template std::optional<Pose<work::Native>> track_landmarks(const FrontEndState<work::Native>&,
                                                            const InertialPart<work::Native>&,
-                                                           const Prediction<work::Native>&,
+                                                           const Pose<work::Native>&,
                                                            TrackedFrame<work::Native>&,
                                                            FrameReport&);
 template std::optional<Pose<work::Counting>> track_landmarks(const FrontEndState<work::Counting>&,
                                                              const InertialPart<work::Counting>&,
-                                                             const Prediction<work::Counting>&,
+                                                             const Pose<work::Counting>&,
                                                              TrackedFrame<work::Counting>&,
                                                              FrameReport&);
 

@@ -4,17 +4,18 @@
 
 #include <optional>
 
+#include "workload/vio/inertial_part.h"
 #include "workload/vio/next/prediction.h"
 
 namespace leviosim::vio {
 
 /// Finds the pose among the landmarks: near the prediction, then in a wider search, then, lost, by
-/// pose_from_landmarks(). The features then know their landmarks. Sets frame.T_world_last.
+/// pose_from_landmarks(). The features then know their landmarks.
+/// @param T_predicted  T_world_camera
 /// @return T_world_camera, if enough landmarks agree with one
 template <class P>
 std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
-                                       const InertialPart<P>& inertial,
-                                       const Prediction<P>& prediction, TrackedFrame<P>& frame,
-                                       FrameReport& report);
+                                       const InertialPart<P>& inertial, const Pose<P>& T_predicted,
+                                       TrackedFrame<P>& frame, FrameReport& report);
 
 }  // namespace leviosim::vio

@@ -3,6 +3,7 @@
 #include "workload/vio/keyframe_insertion.h"
 #include "workload/vio/keyframe_matching.h"
 #include "workload/vio/map_start.h"
+#include "workload/vio/next/feature_alignment.h"
 #include "workload/vio/next/guided_tracking.h"
 #include "workload/vio/next/plausibility.h"
 #include "workload/vio/parallax.h"
@@ -109,8 +110,8 @@ bool NextFrontEnd<P>::initialises() const {
   return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
 }
 
-/// While a map has few keyframes, or its alignment has not converged, its scale is a guess, and so is
-/// how far the camera has gone: it is told to be where the map began. The map itself keeps the
+/// While a map has few keyframes, or its alignment has not converged, its scale is a guess, and so
+/// is how far the camera has gone: it is told to be where the map began. The map itself keeps the
 /// guess. The newest keyframe does not count, as the alignment has hardly seen it.
 template <class P>
 void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {
@@ -132,6 +133,7 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
     const work::Arena::Frame descriptors(state_.machine.local());
     match_keyframe<P>(state_, frame);
   }
+  align_features<P>(state_, frame, std::nullopt);
   report.source = PoseSource::Initialising;
   {
     const auto stage = state_.machine.stage(stages::kGuided);
@@ -144,16 +146,23 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
 /// From landmarks; without enough of them, by prediction; without one, from the last keyframe.
 template <class P>
 void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
-  std::optional<Pose<P>> pose = track_landmarks(state_, inertial_, prediction_, frame, report);
   alloc_keyframe_matches<P>(state_, frame);
   {
     const work::Arena::Frame descriptors(state_.machine.local());
     match_keyframe<P>(state_, frame);
-    if (!pose) pose = pose_by_prediction(frame, report);
-    if (!pose) {
-      const auto by_gyro = [&](const Mat3<P>& R) { return agrees_with_gyro(state_, inertial_, R); };
-      pose = pose_from_keyframe<P>(state_, frame, by_gyro, report);
-    }
+  }
+  Pose<P> T_predicted = Pose<P>::identity();
+  {
+    const auto stage = state_.machine.stage(stages::kGuided);
+    frame.T_world_last = prediction_.last_pose();
+    T_predicted = prediction_.of(frame);
+  }
+  align_features<P>(state_, frame, T_predicted);
+  std::optional<Pose<P>> pose = track_landmarks(state_, inertial_, T_predicted, frame, report);
+  if (!pose) pose = pose_by_prediction(frame, report);
+  if (!pose) {
+    const auto by_gyro = [&](const Mat3<P>& R) { return agrees_with_gyro(state_, inertial_, R); };
+    pose = pose_from_keyframe<P>(state_, frame, by_gyro, report);
   }
   if (!pose_is_plausible(state_, prediction_, *pose, frame.dt)) {
     report.source = PoseSource::Kept;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "workload/graph/departing_visual_terms.h"
 #include "workload/vio/levio/optimiser/optimiser.h"
 #include "workload/vio/stages.h"
 
@@ -76,6 +77,7 @@ void BackEnd<P>::update_prior() {
     prior_.keyframes = 0;
   } else if (departed > 0) {
     marginalise<P>(machine_.local(), window_, departed, options_.visual, options_.prior, prior_);
+    forget_departed<P>(window_, departed, options_.prior.tracked_landmarks, graph_);
   }
 }
 

@@ -111,6 +111,7 @@ std::vector<StageName> stage_names(const Profile& profile) {
                                   {stages::kOptimiserUpdate, "update", true},
                                   {stages::kOptimiser, "iteration", true}};
   if (!profile.guided.enabled) return names;
+  if (profile.patches.enabled) names.insert(names.begin() + 5, {stages::kPatches, "frame", false});
   if (profile.alignment.enabled)
     names.insert(names.end() - 2, {stages::kInitialisation, "iteration", true});
   const auto epnp = names.begin() + 3;

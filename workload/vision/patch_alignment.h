@@ -1,0 +1,53 @@
+// Where a feature of one image lies in another, to a fraction of a pixel: the patch around it is
+// moved over the other image until the grey levels agree best (Lucas and Kanade 1981), by steps
+// whose derivatives are those of the patch (inverse compositional: Baker and Matthews 2004).
+//
+// A detector finds a corner again within a pixel; patches agree within a tenth of one. Unknown are
+// the two coordinates and the difference of brightness; the patch is not turned or scaled, so the
+// images must be near each other.
+#pragma once
+
+#include "sim/work/machine.h"
+#include "workload/math/vec.h"
+#include "workload/vision/features.h"
+#include "workload/vision/matcher.h"
+
+namespace leviosim::vio {
+
+struct PatchAlignmentOptions {
+  static constexpr int kMostRadius = 8;
+
+  bool enabled = false;
+  int radius = 3;           ///< the patch has 2·radius + 1 pixels a side, at most kMostRadius
+  int iterations = 6;       ///< at most
+  float last_step = 0.03f;  ///< px; a step this short is the last one
+  float max_shift = 1.5f;   ///< px from where the detector found the feature, in each direction
+  /// Of the grey levels of two patches that agree, in squares about their means, as a share of
+  /// those of the patch.
+  float max_difference = 0.3f;
+  float reach = 3.0f;  ///< as max_shift, from where a landmark is predicted, px
+};
+
+/// An image and the features in it that are matched, in local memory. Coordinates are in units of
+/// 1/steps px.
+template <class P>
+struct PatchView {
+  template <class T>
+  using Span = typename P::template Span<T>;
+
+  ConstImageView<P> image;
+  Span<typename P::U16> x, y;
+};
+
+/// Moves the features of `now` that `matches` (query) pairs with features of `before` (reference)
+/// to where their patches agree. Features that do not agree within max_shift (px) stay.
+/// One team fork, "align". The caller opens the stage.
+/// Local memory while it runs: 12 bytes per pixel of a patch and core.
+/// @param aligned  for each match, 1 if its patches agree, else 0
+template <class P>
+void align_patches(work::Machine& machine, const PatchView<P>& before, const PatchView<P>& now,
+                   int steps, float max_shift, const PatchAlignmentOptions& options,
+                   const MatchList<P>& matches,
+                   typename P::template Span<typename P::Byte> aligned);
+
+}  // namespace leviosim::vio
