@@ -124,7 +124,7 @@ cut 'sed "/^  /d" | table profile profile set motion pieces "ATE %" "of pieces" 
 
 figure flights-whole
 needs motions slow
-shows 'leviosim benchmark-flights whole-flights --motions euroc_motion --profile next --out whole'
+shows 'leviosim benchmark-flights whole-flights --motions euroc_motion --out whole'
 cut 'sed "/^  /d" | table profile profile set motion pieces "ATE m" "worst m" "ATE %" scale "σ %" diverged restarts'
 
 # platform_models/CHIPS.md
