@@ -19,6 +19,9 @@ if [[ -e $out ]]; then
   exit 2
 fi
 
+whole=$out
+out=$(mktemp -d "$whole.XXXXXX")
+trap 'rm -rf "$out"' EXIT
 mkdir -p "$out/mav0/cam0" "$out/mav0/imu0" "$out/mav0/state_groundtruth_estimate0"
 for sensor in cam0 imu0; do cp "$motion/mav0/$sensor/sensor.yaml" "$out/mav0/$sensor/"; done
 
@@ -54,3 +57,5 @@ BEGIN {
     angle += on * 0.8 * dt / sqrt(a * a * sin(angle) ^ 2 + b * b * cos(angle) ^ 2)
   }
 }' >"$out/mav0/state_groundtruth_estimate0/data.csv"
+chmod 755 "$out"
+mv -T "$out" "$whole"

@@ -102,6 +102,7 @@ template <class P>
 typename P::F32 hold_gauge(const WindowPrior<P>& prior, const WindowState<P>& state,
                            const PriorOptions& options, const ReducedSystem<P>& system);
 
+/// The cost that hold_gauge() would return at `state`.
 template <class P>
 typename P::F32 gauge_cost(const WindowPrior<P>& prior, const WindowState<P>& state,
                            const PriorOptions& options);
