@@ -107,7 +107,7 @@ TEST(FlightPlans, AreReadWithTheirDefaults) {
 }
 
 TEST(FlightPlans, ThatHaveNamesAreWhole) {
-  EXPECT_GE(builtin_flight_plans().size(), 4u);
+  EXPECT_GE(builtin_flight_plans().size(), 5u);
   for (const base::BuiltinFile& file : builtin_flight_plans()) {
     const FlightPlan plan = flight_plan_named(std::string(file.name));
     EXPECT_EQ(plan.name, file.name);
@@ -251,6 +251,7 @@ class FlightBenchmark : public ::testing::Test {
       outcome.path_m = i < 12 ? 2 : 4;
       outcome.scale = {1, 0.9, std::nullopt};
       outcome.map_restarts = 1;
+      if (i > 0) outcome.end_drift_m = 0.1 * static_cast<double>(i);
     }
   }
   BenchmarkResult result() const { return condense(benchmark_, runs_, outcomes_); }
@@ -290,6 +291,7 @@ TEST_F(FlightBenchmark, APieceCountsOnceWithTheMedianOfItsSeeds) {
   EXPECT_EQ(row.map_restarts, 6u);
   EXPECT_EQ(row.scale.median, 0.9);
   EXPECT_FALSE(row.scale_sigma.median);
+  EXPECT_NEAR(row.end_drift.median.value(), 0.3, 1e-12) << "of the five runs that have one";
   const BenchmarkRow& every_motion = all.rows[2];
   EXPECT_FALSE(every_motion.motion);
   EXPECT_EQ(every_motion.pieces, 4u);

@@ -9,7 +9,7 @@ struct PlaceOptions {
   int places = 120;           ///< kept at most
   int features = 48;          ///< of each, at most
   int min_features = 20;      ///< with fewer a view is no place
-  int min_observations = 3;   ///< of a feature's landmark; by two its depth is not sure yet
+  int min_observations = 2;   ///< of a feature's landmark, in the window of keyframes
   float min_distance = 0.3f;  ///< to the place before, m …
   float min_turn = 0.3f;      ///< … or angle between the optical axes, rad
   float metres_per_rad = 1;   ///< of a turn, where places are told near or far
@@ -19,8 +19,8 @@ struct PlaceOptions {
 struct SearchOptions {
   float view_distance = 0.15f;  ///< from one view that is looked at to the next, m …
   float view_turn = 0.15f;      ///< … or angle between the optical axes, rad
-  int candidates = 3;
-  float candidate_distance = 0.8f;  ///< between those of one visit, m: near ones say the same
+  int candidates = 4;
+  float candidate_distance = 0.5f;  ///< between those of one visit, m: near ones say the same
   float min_travelled = 6;          ///< since the place was visited, m
   float max_angle = 0.7f;           ///< between the optical axes, rad
   // The position gate: the estimate's drift at most.
@@ -69,14 +69,14 @@ struct ConfirmationOptions {
 
 /// Standard deviations in the pose graph, and its solution.
 struct LoopGraphOptions {
-  int closures = 32;             ///< kept at most
-  float drift_position = 0.05f;  ///< m after 1 m, and with the root of the path
-  float drift_yaw = 0.003f;      ///< rad, likewise
-  float loop_position = 0.07f;   ///< of a closure, m
-  float loop_yaw = 0.02f;        ///< of a closure, rad
-  int steps = 4;                 ///< Gauss–Newton, one in a frame
-  int iterations = 24;           ///< of conjugate gradients in a step, at most
-  float converged = 1e-3f;       ///< change of a position below which no step follows, m
+  int closures = 32;              ///< kept at most
+  float drift_position = 0.035f;  ///< m after 1 m, and with the root of the path
+  float drift_yaw = 0.003f;       ///< rad, likewise
+  float loop_position = 0.07f;    ///< of a closure, m
+  float loop_yaw = 0.02f;         ///< of a closure, rad
+  int steps = 4;                  ///< Gauss–Newton, one in a frame
+  int iterations = 24;            ///< of conjugate gradients in a step, at most
+  float converged = 1e-3f;        ///< change of a position below which no step follows, m
 };
 
 struct LoopOptions {

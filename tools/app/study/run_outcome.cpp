@@ -54,6 +54,7 @@ class Numbers {
     take("scale.windows", outcome.scale.windows);
     take("scale.mean", outcome.scale.mean);
     take("scale.sigma", outcome.scale.sigma);
+    take("end_drift_m", outcome.end_drift_m);
     take("path_m", outcome.path_m);
     if (read_.count(kArrived) > 0) outcome.loop.emplace();
     if (outcome.loop) all_of(*outcome.loop);
@@ -138,6 +139,7 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
     outcome.path_m = evaluation.path_length_m;
     outcome.protocol = evaluation.protocol;
     outcome.scale = traces::summarize_scales(traces::scales_in_windows(evaluation));
+    outcome.end_drift_m = traces::end_drift(evaluation);
   } catch (const InputError& failure) {
     outcome.failure = failure.what();
   }
@@ -182,7 +184,7 @@ RunOutcome run_outcome_of(const Outcome& figures) {
 }
 
 std::string run_key(const Point& point, const Measure& how, const platform::Schema& schema) {
-  return point_key(fmt::format("errors {} {}", name_of(how.alignment), how.length_m),
+  return point_key(fmt::format("errors, drift {} {}", name_of(how.alignment), how.length_m),
                    text_of(identity_of(point, schema)));
 }
 

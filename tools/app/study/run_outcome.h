@@ -11,6 +11,7 @@
 #include "tools/app/study/point.h"
 #include "tools/app/study/runner.h"
 #include "traces/trajectories/alignment.h"
+#include "traces/trajectories/end_drift.h"
 #include "traces/trajectories/scale_windows.h"
 #include "traces/trajectories/trajectory.h"
 
@@ -46,9 +47,10 @@ struct RunOutcome {
   std::size_t matched = 0;
   double completion = 0;
   std::size_t map_restarts = 0;
-  traces::ScaleSummary scale;  ///< of the estimate over the truth
-  double path_m = 0;           ///< of the truth
-  std::string protocol;        ///< traces::Evaluation::protocol
+  traces::ScaleSummary scale;         ///< of the estimate over the truth
+  std::optional<double> end_drift_m;  ///< traces::end_drift(); none if the path is too short
+  double path_m = 0;                  ///< of the truth
+  std::string protocol;               ///< traces::Evaluation::protocol
   std::optional<LoopOutcome> loop;
 };
 

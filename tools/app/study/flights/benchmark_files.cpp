@@ -28,6 +28,7 @@ std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Poi
   columns.add("ate_percent", [](Run r) { return base::fixed(error_percent(r.outcome), 6); });
   columns.add("scale_mean", [](Run r) { return base::fixed(r.outcome.scale.mean, 6); });
   columns.add("scale_sigma", [](Run r) { return base::fixed(r.outcome.scale.sigma, 6); });
+  columns.add("end_drift_m", [](Run r) { return base::fixed(r.outcome.end_drift_m, 6); });
   columns.add("map_restarts", [](Run r) { return r.outcome.map_restarts; });
   return runs_csv(runs, outcomes, how, std::move(columns));
 }
@@ -60,6 +61,7 @@ std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result
   add_spread("ate_m", &PieceRow::metres);
   add_spread("scale", &PieceRow::scale);
   add("scale_sigma", [](R r) { return r.scale_sigma.median; });
+  add("end_drift_m", [](R r) { return r.end_drift.median; });
   table.add("diverged", [](R r) { return r.diverged; });
   table.add("map_restarts", [](R r) { return r.map_restarts; });
   return table.text(result.pieces);
@@ -102,6 +104,7 @@ Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
                   {"ate_rmse_m", "error (ATE)", "m"},
                   {"scale_mean", "scale", "1"},
                   {"scale_sigma", "wander of the scale", "%", false, false, 100},
+                  {"end_drift_m", "drift at the end", "m"},
                   {"map_restarts", "restarts of the map", ""},
                   {"completion", "completion", "%", false, true, 100},
                   {"failure", "failure", ""}};

@@ -45,6 +45,7 @@ TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
                    {"worst %"},
                    {"ATE m"},
                    {"worst m", kRight, 1},
+                   {"end m", kRight, 1},
                    {"scale", kRight, 4},
                    {"σ %", kRight, 3},
                    {"diverged"},
@@ -55,7 +56,7 @@ TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
                error_text(row.percent.median, 2), interval_text(row.percent.over_pieces, 2),
                interval_text(row.percent.over_seeds, 2), error_text(row.percent.worst, 2),
                error_text(row.metres.median, 3), error_text(row.metres.worst, 3),
-               figure_text(row.scale.median, 3),
+               figure_text(row.end_drift.median, 3), figure_text(row.scale.median, 3),
                figure_text(row.scale_sigma.median ? std::optional(100 * *row.scale_sigma.median)
                                                   : std::nullopt,
                            1),
@@ -90,6 +91,8 @@ std::string notes(const Benchmark& benchmark, const BenchmarkResult& result,
       "seeds {1}; worst of all runs\n"
       "{0}of pieces, of seeds: where the median lies if these are draws of many; confidence of "
       "pieces {2}; of seeds {3}\n"
+      "{0}end: error of the last second after an alignment of the first 5 % of the path, median of "
+      "runs\n"
       "{0}scale of the estimate in windows of 5 s, and its standard deviation in a flight: medians "
       "of runs; diverged: an error above the path\n",
       bullet, fmt::join(plan.seeds, ", "), confidences(of_pieces), confidences(of_seeds));
@@ -140,7 +143,8 @@ Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
           {"ate_percent", error_json(row.percent, "%")},
           {"ate", error_json(row.metres, "m")},
           {"scale", spread_json(row.scale)},
-          {"scale_sigma", spread_json(row.scale_sigma)}};
+          {"scale_sigma", spread_json(row.scale_sigma)},
+          {"end_drift", spread_json(row.end_drift)}};
 }
 
 }  // namespace

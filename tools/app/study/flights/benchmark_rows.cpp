@@ -45,6 +45,7 @@ RowError error_over(const std::vector<const Seeds*>& pieces, const Figure& of) {
 
 std::optional<double> scale_mean(const RunOutcome& o) { return o.scale.mean; }
 std::optional<double> scale_sigma(const RunOutcome& o) { return o.scale.sigma; }
+std::optional<double> end_drift(const RunOutcome& o) { return o.end_drift_m; }
 
 PieceRow piece_row(std::size_t variant, std::size_t piece, const Seeds& seeds) {
   PieceRow row;
@@ -54,6 +55,7 @@ PieceRow piece_row(std::size_t variant, std::size_t piece, const Seeds& seeds) {
   row.metres = spread_of(values_of(seeds, error_of));
   row.scale = spread_of_known({&seeds}, scale_mean);
   row.scale_sigma = spread_of_known({&seeds}, scale_sigma);
+  row.end_drift = spread_of_known({&seeds}, end_drift);
   row.diverged = row.percent.failed;
   for (const RunOutcome& outcome : seeds) row.map_restarts += outcome.map_restarts;
   return row;
@@ -85,6 +87,7 @@ class RowMaker {
     row.metres = error_over(mine, error_of);
     row.scale = spread_of_known(mine, scale_mean);
     row.scale_sigma = spread_of_known(mine, scale_sigma);
+    row.end_drift = spread_of_known(mine, end_drift);
     return row;
   }
 

@@ -23,6 +23,7 @@ struct PieceRow {
   Spread metres;            ///< ATE
   Spread scale;             ///< means over windows, of runs that have one
   Spread scale_sigma;       ///< of runs with two windows or more
+  Spread end_drift;         ///< of runs whose path is long enough
   std::size_t diverged = 0;
   std::size_t map_restarts = 0;  ///< of all runs
 };
@@ -49,6 +50,7 @@ struct BenchmarkRow {
   RowError metres;
   Spread scale;        ///< of the runs that have one
   Spread scale_sigma;  ///< likewise
+  Spread end_drift;    ///< likewise
 };
 
 struct BenchmarkResult {
