@@ -25,9 +25,4 @@ inline std::set<std::string> named_functions() {
   return names;
 }
 
-/// Those that the scenes of tools/rv32 do not come to: there, no map of `next` is tracked that
-/// began in motion. The model takes such code to be of no size.
-inline const std::set<std::string> kFunctionsWithoutSize = {"adopt_found", "forget_departed",
-                                                            "hold_gauge", "predict_landmarks"};
-
 }  // namespace leviosim::tests
