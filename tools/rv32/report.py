@@ -130,8 +130,8 @@ lines      distinct 16-byte lines fetched per visit, mean
 visits     how often the piece was executed
 refetches  lines per visit that a 512-byte cache (fully associative, LRU, empty at the begin)
            loses and fetches again, mean: large where a loop of the piece does not fit
-executed   instructions per visit of the whole function, routines of the library left out; rows with
-           an empty `after` only, as what follows
+executed   instructions per visit of the whole function, routines of the library left out, on the
+           way through the program that was counted; rows with an empty `after` only, as what follows
 priced     operations counted in a visit, at the prices of tools/rv32/rv32imfc_costs.csv
 loads, used_at_once   loads per visit; those of which the next instruction needs the value
 Rows f64_*, popcount, memset are routines of the library; calls of these do not end a piece.
@@ -172,14 +172,32 @@ def by_function(accounts):
     return total
 
 
-def compiled_work(trace, counts, costs):
+def in_counted_flow(contracted, uncontracted):
+    """What the contracted code would execute on the way of the uncontracted one, which is the way
+    that was counted. Contraction changes bits, so the programs part where a comparison turns out
+    otherwise, and would be compared over different work. A function takes the same branches for the
+    same work, so its instructions are taken per branch, scene by scene."""
+    kinds = {}
+    for key, counted in uncontracted.kinds.items():
+        executed = contracted.kinds.get(key)
+        if not executed:
+            continue
+        per = "branch" if counted["branch"] and executed["branch"] else "visits"
+        share = counted[per] / executed[per]
+        kinds[key] = {kind: n * share for kind, n in executed.items()}
+        kinds[key]["visits"] = counted["visits"]
+    return kinds
+
+
+def compiled_work(executed_kinds, counts, costs):
     """(executed, priced, loads, loads used at once) per visit of each function itself. A population
-    count is one instruction, as it was compiled; a routine of the library is nobody's own."""
+    count is one instruction, as it was compiled; a routine of the library is nobody's own.
+    @param executed_kinds  in_counted_flow()"""
     prices = {op: 0.0 if op.startswith("f64") else 1.0 if op == "popcount" else cost
               for op, cost in costs.items()}
     counted = by_function(counts)
     work = {}
-    for function, kinds in by_function(trace.kinds).items():
+    for function, kinds in by_function(executed_kinds).items():
         visits, counted_visits = kinds["visits"], counted[function]["visits"]
         if not visits or not counted_visits:
             continue
@@ -405,7 +423,7 @@ def main():
     hard = Trace(work / "library_hard.tsv")
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
     costs = read_costs(here / "rv32imfc_costs.csv")
-    compiled = compiled_work(contracted, read_counts(work / "counted.tsv"), costs)
+    compiled = compiled_work(in_counted_flow(contracted, uncontracted), read_counts(work / "counted.tsv"), costs)
     write_footprints(contracted, hard, compiled, arguments.code, here)
     write_units(contracted, uncontracted, read_counts(work / "counted.tsv", "inclusive"), costs, here)
     write_cross_check(uncontracted, contracted, read_counts(work / "counted.tsv"), costs, here)
