@@ -16,29 +16,21 @@ constexpr double kSettled = 1e-9;
 
 constexpr std::size_t index(Unit unit) { return static_cast<std::size_t>(unit); }
 
-/// Requests of one runner to a unit: per lone cycle, and per cycle at its present rate.
-struct Request {
-  std::size_t runner;
-  double per_lone_cycle;
-  double per_cycle;
-  double busy;  ///< cycles that one of them occupies the unit, on average
-};
-
 /// The request rate to which units of the given number hold their requesters back: infinite if they
 /// serve everybody. Water filling from the smallest demand upwards.
-double fair_rate(std::vector<Request>& requests, double units) {
+double fair_rate(std::vector<UnitRequest>& requests, double units) {
   double demand = 0;
   double busy = 0;  // of one request of everybody who is not served yet
-  for (const Request& r : requests) {
+  for (const UnitRequest& r : requests) {
     demand += r.per_cycle * r.busy;
     busy += r.busy;
   }
   if (demand <= units) return kUnlimited;
-  std::sort(requests.begin(), requests.end(), [](const Request& a, const Request& b) {
+  std::sort(requests.begin(), requests.end(), [](const UnitRequest& a, const UnitRequest& b) {
     return a.per_cycle != b.per_cycle ? a.per_cycle < b.per_cycle : a.runner < b.runner;
   });
   double left = units;
-  for (const Request& r : requests) {
+  for (const UnitRequest& r : requests) {
     const double share = left / busy;
     if (r.per_cycle > share) return share;
     left -= r.per_cycle * r.busy;
@@ -47,9 +39,9 @@ double fair_rate(std::vector<Request>& requests, double units) {
   return kUnlimited;
 }
 
-void apply(const std::vector<Request>& requests, double fair, std::vector<double>& limits) {
+void apply(const std::vector<UnitRequest>& requests, double fair, std::vector<double>& limits) {
   if (fair == kUnlimited) return;
-  for (const Request& r : requests)
+  for (const UnitRequest& r : requests)
     limits[r.runner] = std::min(limits[r.runner], fair / r.per_lone_cycle);
 }
 
@@ -97,17 +89,31 @@ void Contention::limit(std::size_t unit, const std::vector<Runner>& runners) {
   std::vector<double>& limits = limits_[unit];
   limits.assign(runners.size(), kUnlimited);
   const Pools& kind = pools_[unit];
-  std::vector<Request> requests;
   for (int pool = 0; pool < kind.pools; ++pool) {
-    requests.clear();
+    requests_.clear();
     for (std::size_t i = 0; i < runners.size(); ++i) {
       const UnitDemand& demand = runners[i].units[unit];
-      if (demand.requests > 0 && runners[i].core % kind.pools == pool)
-        requests.push_back(
+      if (demand.requests > 0 && pool_of_[unit][i] == pool)
+        requests_.push_back(
             {i, demand.requests, demand.requests * rate_[i], demand.cycles / demand.requests});
     }
-    apply(requests, fair_rate(requests, kind.capacity), limits);
+    apply(requests_, fair_rate(requests_, kind.capacity), limits);
   }
+}
+
+/// Whether the units serve all requests at the highest rates, which are 1.
+bool Contention::serves_everybody(Unit unit, const std::vector<Runner>& runners) {
+  const Pools& kind = pools_[index(unit)];
+  if (kind.pools == 0) return true;
+  demand_.assign(static_cast<std::size_t>(kind.pools), 0.0);
+  for (std::size_t i = 0; i < runners.size(); ++i) {
+    const UnitDemand& asked = runners[i].units[index(unit)];
+    if (asked.requests > 0)
+      demand_[static_cast<std::size_t>(pool_of_[index(unit)][i])] +=
+          asked.requests * (asked.cycles / asked.requests);
+  }
+  return std::none_of(demand_.begin(), demand_.end(),
+                      [&](double demand) { return demand > kind.capacity; });
 }
 
 /// The rate that all kinds of units but one allow a runner.
@@ -152,13 +158,18 @@ void Contention::meet() {
   for (const Unit unit : {Unit::Fpu, Unit::Int64}) {
     const Pools& kind = pools_[index(unit)];
     if (kind.pools == 0 || kind.capacity != 1) continue;
-    const auto asked = [&](std::size_t i) {
-      return std::min(1.0, runners[i].units[index(unit)].cycles * pace_[i]);
-    };
+    const std::vector<int>& pool_of = pool_of_[index(unit)];
+    asked_.resize(n);
     for (std::size_t i = 0; i < n; ++i)
+      asked_[i] = std::min(1.0, runners[i].units[index(unit)].cycles * pace_[i]);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (asked_[i] == 0) continue;
+      double met = met_[i];
       for (std::size_t j = 0; j < n; ++j)
-        if (i != j && runners[i].core % kind.pools == runners[j].core % kind.pools)
-          met_[i] += collisions_ * met_by_chance(asked(i), asked(j)) / pace_[i];
+        if (pool_of[j] == pool_of[i] && j != i)
+          met += collisions_ * met_by_chance(asked_[i], asked_[j]) / pace_[i];
+      met_[i] = met;
+    }
   }
 }
 
@@ -203,41 +214,34 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
 
   // What the DMA moves, up to half of what there is.
   pools_[index(Unit::L1)] = {1, std::max(banks_ - dma_words, 0.5 * banks_)};
-  // Rates are 1 at most: units that serve everybody at 1 never hold anybody back.
-  const auto serves_everybody = [&](Unit unit) {
-    const Pools& kind = pools_[index(unit)];
-    for (int pool = 0; pool < kind.pools; ++pool) {
-      double demand = 0;
-      for (const Runner& runner : runners) {
-        const UnitDemand& asked = runner.units[index(unit)];
-        if (asked.requests > 0 && runner.core % kind.pools == pool)
-          demand += asked.requests * (asked.cycles / asked.requests);
-      }
-      if (demand > kind.capacity) return false;
-    }
-    return true;
-  };
+  for (const Unit unit : shared_) {
+    std::vector<int>& pool_of = pool_of_[index(unit)];
+    const int pools = pools_[index(unit)].pools;
+    pool_of.resize(n);
+    for (std::size_t i = 0; i < n; ++i) pool_of[i] = pools > 1 ? runners[i].core % pools : 0;
+  }
   std::array<Unit, kUnitCount> scarce{};
   std::size_t scarce_units = 0;
   for (const Unit unit : shared_)
-    if (!serves_everybody(unit)) scarce[scarce_units++] = unit;
+    if (!serves_everybody(unit, runners)) scarce[scarce_units++] = unit;
 
-  std::vector<double> free_rate(n);  // without units that serve in turn
+  free_rate_.resize(n);
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0;
     sum_up(runners, dma_words);
     meet();
     for (std::size_t i = 0; i < n; ++i)
-      free_rate[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + met_[i]);
+      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + met_[i]);
     // Each unit's limit is found with what the *other* limits leave of the demand.
     for (std::size_t k = 0; k < scarce_units; ++k) {
       const std::size_t unit = index(scarce[k]);
-      for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate[i], allowed(i, unit));
+      for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate_[i], allowed(i, unit));
       limit(unit, runners);
     }
     for (std::size_t i = 0; i < n; ++i) {
-      const double rate =
-          scarce_units == 0 ? free_rate[i] : std::min(free_rate[i], allowed(i, index(Unit::Core)));
+      const double rate = scarce_units == 0
+                              ? free_rate_[i]
+                              : std::min(free_rate_[i], allowed(i, index(Unit::Core)));
       change = std::max(change, std::abs(rate - progress[i].rate));
       rate_[i] = progress[i].rate = rate;
     }

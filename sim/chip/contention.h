@@ -68,6 +68,14 @@ constexpr double met_by_chance(double mine, double other) {
                          ((1 - both) * (mine + other) + other * both * (1 + mine));
 }
 
+/// Requests of one runner to a unit: per lone cycle, and per cycle at its present rate.
+struct UnitRequest {
+  std::size_t runner;
+  double per_lone_cycle;
+  double per_cycle;
+  double busy;  ///< cycles that one of them occupies the unit, on average
+};
+
 /// Solves the rates of all runners at once. Results are in the order of the runners.
 class Contention {
  public:
@@ -84,6 +92,7 @@ class Contention {
     double capacity = 0;
   };
 
+  bool serves_everybody(Unit unit, const std::vector<Runner>& runners);
   void limit(std::size_t unit, const std::vector<Runner>& runners);
   double allowed(std::size_t runner, std::size_t except) const;
   /// Cycles per lone cycle that a runner waits for L1 banks, and for those of the instruction
@@ -109,7 +118,13 @@ class Contention {
   std::vector<double> rate_;                            ///< current estimate
   std::vector<double> met_;                             ///< lost by chance per lone cycle
   std::vector<double> pace_;                            ///< rate but for what is lost so
+  std::vector<double> free_rate_;                       ///< rate without units that serve in turn
   std::array<std::vector<double>, kUnitCount> limits_;  ///< highest rate that each unit allows
+  std::array<std::vector<int>, kUnitCount> pool_of_;    ///< which group of units each runner uses
+  // Scratch, kept for its memory.
+  std::vector<double> asked_;
+  std::vector<double> demand_;
+  std::vector<UnitRequest> requests_;
 };
 
 }  // namespace leviosim::sim
