@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kLineBytes = 16;
 constexpr std::string_view kHeader =
-    "function,after,lines,visits,refetches,executed,priced,loads,used_at_once";
+    "function,after,lines,visits,refetches,executed,priced,loads,used_at_once,"
+    "executed_loops,priced_loops";
 constexpr std::size_t kFirstCompiled = 5;
 constexpr std::size_t kColumns = kFirstCompiled + work::kCompiledCount;
 

@@ -58,14 +58,42 @@ OperationsOfKind& OperationsOfKind::operator+=(const OperationsOfKind& o) {
   return *this;
 }
 
+namespace {
+
+double part_of(const work::CompiledWork& work, Compiled part) {
+  return static_cast<double>(work[static_cast<std::size_t>(part)]);
+}
+
+double ratio_of_all(const work::CompiledWork& work) {
+  return work::compiled_ratio(work, Compiled::Executed, Compiled::Priced, 1);
+}
+
+double ratio_of_loops(const work::CompiledWork& work) {
+  return work::compiled_ratio(work, Compiled::ExecutedLoops, Compiled::PricedLoops,
+                              ratio_of_all(work));
+}
+
+/// Of what does not repeat loops.
+double ratio_of_others(const work::CompiledWork& work) {
+  const double priced = part_of(work, Compiled::Priced) - part_of(work, Compiled::PricedLoops);
+  const double executed =
+      part_of(work, Compiled::Executed) - part_of(work, Compiled::ExecutedLoops);
+  return priced > 0 && executed > 0 ? executed / priced : ratio_of_all(work);
+}
+
+}  // namespace
+
 CompiledRatios::CompiledRatios(const work::Counts& segment)
-    : emitted_(work::compiled_ratio(segment.compiled, Compiled::Executed, Compiled::Priced, 1)),
+    : emitted_loops_(ratio_of_loops(segment.compiled)),
+      emitted_(ratio_of_others(segment.compiled)),
       loads_measured_(segment.compiled[static_cast<std::size_t>(Compiled::Loads)] > 0),
       used_at_once_(
           work::compiled_ratio(segment.compiled, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
 
-OperationsOfKind CompiledRatios::apply(double count) const {
-  return {count, count * emitted_, count * used_at_once_, loads_measured_ ? 0 : count};
+OperationsOfKind CompiledRatios::apply(Op op, double count) const {
+  const bool repeats = op == Op::LoopIteration || op == Op::LoopJump;
+  return {count, count * (repeats ? emitted_loops_ : emitted_), count * used_at_once_,
+          loads_measured_ ? 0 : count};
 }
 
 void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKind& operations,
@@ -86,7 +114,7 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
   for (const work::OpInfo& info : work::kOps) {
     if (counts[info.op] == 0) continue;  // as most are in a short segment
     const auto n = static_cast<double>(counts[info.op]);
-    add_price(demand.alone, info, ratios.apply(n), core);
+    add_price(demand.alone, info, ratios.apply(info.op, n), core);
     const OpCost& cost = core[info.op];
     if (cost.unit == Unit::Core) continue;
     UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];

@@ -59,10 +59,11 @@ struct OperationsOfKind {
 class CompiledRatios {
  public:
   explicit CompiledRatios(const work::Counts& segment);
-  OperationsOfKind apply(double count) const;
+  OperationsOfKind apply(work::Op op, double count) const;
 
  private:
-  double emitted_;
+  double emitted_loops_;  ///< of what repeats loops
+  double emitted_;        ///< of all else
   bool loads_measured_;
   double used_at_once_;
 };

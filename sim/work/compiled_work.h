@@ -1,8 +1,9 @@
 // What the compiled form of functions executes beside what was counted in them. A function's visit
 // has means that were measured once (platform_models/code/); the sums of these means over the
 // visits of a work segment give its *ratios*: executed instructions to counted ones at the prices
-// of a plain instruction set, and loads whose value the next instruction needs to all loads. The
-// counts of the segment themselves stay what they are.
+// of a plain instruction set, and loads whose value the next instruction needs to all loads. What
+// repeats loops has a ratio of its own, for a compiler that writes a loop out spares just that, and
+// a core with hardware loops does not pay it. The counts of the segment stay what they are.
 //
 // Left out: how both change with the data inside one function.
 #pragma once
@@ -19,8 +20,10 @@ enum class Compiled : std::uint8_t {
   Priced,           ///< what was counted in the same visits, as instructions
   Loads,            ///< load instructions
   LoadsUsedAtOnce,  ///< … of which the next instruction needs the value
+  ExecutedLoops,    ///< of Executed, counters and branches that repeat loops
+  PricedLoops,      ///< of Priced, iterations of loops
 };
-inline constexpr std::size_t kCompiledCount = 4;
+inline constexpr std::size_t kCompiledCount = 6;
 
 /// Sums over visits of functions, in units of 1 / kCompiledUnit so that they are whole.
 using CompiledWork = std::array<std::uint64_t, kCompiledCount>;

@@ -52,7 +52,8 @@ class LoopScope<true> {
 };
 
 /// Integers begin, begin + Step, … as long as they are on this side of the end.
-template <bool Counted, int Step>
+/// @tparam Counter  what the program for the target counts in; it must hold begin and end
+template <bool Counted, int Step, class Counter = int>
 class SteppedRange {
  public:
   class Iterator {
@@ -61,33 +62,38 @@ class SteppedRange {
     int operator*() const { return range_->i_; }
     Iterator& operator++() {
       if constexpr (Counted) count(Op::LoopIteration);
-      range_->i_ += Step;
+      range_->i_ = static_cast<Counter>(range_->i_ + Step);
       return *this;
     }
-    bool operator!=(int end) const { return Step > 0 ? range_->i_ < end : range_->i_ > end; }
+    bool operator!=(Counter end) const { return Step > 0 ? range_->i_ < end : range_->i_ > end; }
 
    private:
     SteppedRange* range_;
   };
 
-  SteppedRange(int begin, int end) : i_(begin), begin_(begin), end_(end) {}
+  SteppedRange(int begin, int end)
+      : i_(static_cast<Counter>(begin)), begin_(i_), end_(static_cast<Counter>(end)) {}
   ~SteppedRange() { scope_.end((i_ - begin_) / Step); }
   SteppedRange(const SteppedRange&) = delete;
   SteppedRange& operator=(const SteppedRange&) = delete;
 
   Iterator begin() { return Iterator(this); }
-  int end() const { return end_; }
+  Counter end() const { return end_; }
 
  private:
-  int i_;
-  int begin_;
-  int end_;
+  Counter i_;
+  Counter begin_;
+  Counter end_;
   [[no_unique_address]] LoopScope<Counted> scope_;
 };
 
 /// begin, begin + 1, … below end.
 template <bool Counted>
 using Range = SteppedRange<Counted, 1>;
+/// The same, counted in a byte. The compiler does not know that the count stays below 256, so it
+/// computes addresses from it in every step.
+template <bool Counted>
+using ByteRange = SteppedRange<Counted, 1, std::uint8_t>;
 /// begin, begin - 1, … down to and including last: the end is one below it.
 template <bool Counted>
 using DownRange = SteppedRange<Counted, -1>;

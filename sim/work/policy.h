@@ -71,6 +71,7 @@ struct Native {
   /// A jump through a table: of a state machine, an interpreter.
   static void jump_to_computed() {}
   static Range<false> range(int begin, int end) { return {begin, end}; }
+  static ByteRange<false> byte_range(int begin, int end) { return {begin, end}; }
   static DownRange<false> down_range(int begin, int last) { return {begin, last - 1}; }
 };
 
@@ -96,6 +97,7 @@ struct Counting {
   using OffloadRegion = OffloadScope<true>;
   static void jump_to_computed() { count(Op::JumpRegister); }
   static Range<true> range(int begin, int end) { return {begin, end}; }
+  static ByteRange<true> byte_range(int begin, int end) { return {begin, end}; }
   static DownRange<true> down_range(int begin, int last) { return {begin, last - 1}; }
   static Range<true> range(I32 begin, I32 end) { return {begin.v, end.v}; }
 };

@@ -129,12 +129,13 @@ void add_full_graph(Blocks& blocks) {
   add_graph(blocks, options);
 }
 
-/// As many landmarks and observations as the released program's windows have on average
-/// (workload/PARAMETERS.md#optimiser).
+/// As many landmarks, and pairs of observations of one landmark, as the released program's windows
+/// have on average (workload/PARAMETERS.md#optimiser).
 void add_usual_graph(Blocks& blocks) {
   vio::test::OptimiserSceneOptions options;
   options.landmarks = 318;
   options.shortest_track = options.longest_track = 2;
+  options.longer_tracks = 0.164;
   add_graph(blocks, options);
 }
 

@@ -17,7 +17,7 @@ using work::Op;
 /// Of a visit, in whole instructions.
 work::CompiledWork of_visit(std::uint64_t executed, std::uint64_t priced, std::uint64_t loads,
                             std::uint64_t used_at_once) {
-  work::CompiledWork work{executed, priced, loads, used_at_once};
+  work::CompiledWork work{executed, priced, loads, used_at_once, 0, 0};
   for (std::uint64_t& part : work) part *= static_cast<std::uint64_t>(work::kCompiledUnit);
   return work;
 }
@@ -73,6 +73,24 @@ TEST(CompiledWork, ScalesInstructionsAndLoadStallsButNoRoutines) {
   const UsefulCycles alone = price(counts, core()).alone;
   EXPECT_DOUBLE_EQ(alone.issue, 1000 * 1.5 * 1.2 + 3 * 200);
   EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.6 * 2);
+}
+
+/// Half of the repetitions are left of loops that the compiler writes out, and all of the rest.
+TEST(CompiledWork, LoopsHaveARatioOfTheirOwn) {
+  Counts counts;
+  counts[Op::IntAlu] = 600;
+  counts[Op::LoopIteration] = 400;
+  counts[Op::LoopJump] = 10;
+  counts.compiled = of_visit(100, 120, 50, 0);
+  counts.compiled[static_cast<std::size_t>(work::Compiled::ExecutedLoops)] = 20 * 16;
+  counts.compiled[static_cast<std::size_t>(work::Compiled::PricedLoops)] = 40 * 16;
+  CoreConfig with_hardware_loops = core();
+  with_hardware_loops.ops[work::index(Op::LoopJump)] = {.issue = 2};
+  EXPECT_DOUBLE_EQ(price(counts, with_hardware_loops).alone.issue,
+                   (600 * 1.0 + 10 * 2 * 0.5) * 1.5);
+  CoreConfig without = core();
+  without.ops[work::index(Op::LoopIteration)] = {.issue = 2};
+  EXPECT_DOUBLE_EQ(price(counts, without).alone.issue, (600 * 1.0 + 400 * 2 * 0.5) * 1.5);
 }
 
 TEST(CompiledWork, OfCodeThatWasNotMeasuredIsWhatThePlatformSays) {

@@ -106,6 +106,21 @@ TEST(Loops, GoUpAndDownUnderBothPolicies) {
   EXPECT_EQ(down[Op::LoopJump], 0u);
 }
 
+TEST(Loops, OfByteCountersCountAsOthers) {
+  const auto counted = [](auto range) {
+    return counts_of_body([&] {
+      for ([[maybe_unused]] const int i : range()) nothing();
+    });
+  };
+  EXPECT_EQ(counted([] { return P::byte_range(3, 255); }),
+            counted([] { return P::range(3, 255); }));
+  std::vector<int> all;
+  for (const int i : Native::byte_range(253, 255)) all.push_back(i);
+  EXPECT_EQ(all, (std::vector<int>{253, 254}));
+  for (const int i : Native::byte_range(7, 7)) all.push_back(i);
+  EXPECT_EQ(all.size(), 2u);
+}
+
 TEST(Loops, ACopyInARegisterIsOneInstructionOfCountedScalars) {
   const Counts counts = counts_of_body([] {
     [[maybe_unused]] const F32 x = copied(F32(2.0F));

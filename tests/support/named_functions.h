@@ -13,7 +13,8 @@ namespace leviosim::tests {
 
 /// The names in `typename P::Function function("name")` and `typename P::Code code("name")`.
 inline std::set<std::string> named_functions() {
-  static const std::regex scope("P::(?:Function|Code)\\s+\\w+\\(\"([^\"]+)\"\\)");
+  static const std::regex scope(
+      R"re((?:P::(?:Function|Code)\s+\w+\(|work::CodeName\s+\w+\{)"([^"]+)"[)}])re");
   std::set<std::string> names;
   const std::filesystem::path workload = source_folder() / "workload";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(workload)) {

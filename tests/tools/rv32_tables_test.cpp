@@ -27,7 +27,7 @@ struct Segment {
 std::vector<Segment> segments() {
   base::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", base::Separator::comma,
                       {"function", "after", "lines", "visits", "refetches", "executed", "priced",
-                       "loads", "used_at_once"});
+                       "loads", "used_at_once", "executed_loops", "priced_loops"});
   const base::CsvRow* row = csv.next();
   EXPECT_EQ(row->text(0), "function");
   std::vector<Segment> result;
@@ -77,6 +77,16 @@ TEST(Rv32Code, IsSortedWithoutRepetitionAndPlausible) {
                 std::pair(segment.function, segment.after));
     }
   }
+}
+
+/// What tools/rv32/units.md says: executed instructions of a unit beside those of the release.
+TEST(Rv32Units, AreThoseOfTheReleasedProgramWithinATenth) {
+  const std::string text = base::read_text_file(kSource / "tools/rv32/units.md");
+  static const std::regex row(R"(\n\| ([^|]+) \| ([0-9,]+) \| ([0-9,]+) \| ([0-9.]+) \|)");
+  int units = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it, ++units)
+    EXPECT_NEAR(std::stod((*it)[4]), 1, 0.1) << (*it)[1];
+  EXPECT_EQ(units, 12);
 }
 
 /// Operations of the vocabulary that the compiled workload does not use have no row.

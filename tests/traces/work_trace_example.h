@@ -15,7 +15,7 @@ inline work::Counts counts(std::uint64_t loops) {
   c[work::Op::BranchTaken] = loops / 3;
   c.code[5] = 16 * (loops % 7);
   c.code[work::kNeverFetched] = 480;
-  c.compiled = {9 * loops, 8 * loops, loops, loops / 4};
+  c.compiled = {9 * loops, 8 * loops, loops, loops / 4, 2 * loops, 3 * loops};
   return c;
 }
 

@@ -15,7 +15,7 @@ using testing::expect_input_error;
 using testing::read_all;
 
 constexpr int kHeadBytes = 16;
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 
 /// The container around other contents, with checksums that are right.
 std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = kVersion) {
@@ -94,23 +94,27 @@ TEST(WorkTrace, ReadersOfOneTraceDoNotMeet) {
   testing::expect_equal(frame, example_frame(35));
 }
 
-/// What older files say: of code that is reused at a class of distances, half is of the next nearer
-/// class, and nothing is known of compiled work.
-WorkFrame of_older_file(WorkFrame frame) {
-  const auto divide = [](work::Segment& segment) {
-    segment.code[4] = segment.code[5] / 2;
-    segment.code[5] -= segment.code[4];
-    segment.compiled = {};
-  };
+template <class Change>
+void for_each_segment(WorkFrame& frame, Change change) {
   std::vector<work::Job*> jobs = {&frame.front_end};
   for (work::Job& iteration : frame.iterations) jobs.push_back(&iteration);
   for (work::Job* job : jobs)
     for (work::StageRun& stage : job->stages)
       for (work::Step& step : stage.steps) {
-        if (auto* serial = std::get_if<work::Serial>(&step)) divide(serial->counts);
+        if (auto* serial = std::get_if<work::Serial>(&step)) change(serial->counts);
         if (auto* fork = std::get_if<work::Fork>(&step))
-          for (work::Segment& share : fork->shares) divide(share);
+          for (work::Segment& share : fork->shares) change(share);
       }
+}
+
+/// What older files say: of code that is reused at a class of distances, half is of the next nearer
+/// class, and nothing is known of compiled work.
+WorkFrame of_older_file(WorkFrame frame) {
+  for_each_segment(frame, [](work::Segment& segment) {
+    segment.code[4] = segment.code[5] / 2;
+    segment.code[5] -= segment.code[4];
+    segment.compiled = {};
+  });
   return frame;
 }
 
@@ -214,13 +218,30 @@ TEST(WorkTrace, ReadsTheFirstVersionWithMoreOperations) {
   }
 }
 
+/// Made by writing example_trace_with_offload(5) to that file. Nothing is known of loops.
+TEST(WorkTrace, ReadsTheFourthVersion) {
+  const WorkTrace fourth(golden_file("version_4.trace"));
+  WorkFrames reader(fourth, true);
+  WorkFrame frame;
+  int frames = 0;
+  for (; reader.next(frame); ++frames) {
+    WorkFrame expected = testing::example_frame_with_offload(frames);
+    for_each_segment(expected, [](work::Segment& segment) {
+      for (const auto part : {work::Compiled::ExecutedLoops, work::Compiled::PricedLoops})
+        segment.compiled[static_cast<std::size_t>(part)] = 0;
+    });
+    testing::expect_equal(frame, expected);
+  }
+  EXPECT_EQ(frames, 5);
+}
+
 /// Not the compressed bytes are compared, which another version of zstd may choose otherwise. With
 /// LEVIOSIM_RENEW_GOLDEN the file is written anew: for a version that no release has written yet.
 TEST(WorkTrace, WritesTheContentOfItsVersion) {
   if (std::getenv("LEVIOSIM_RENEW_GOLDEN") != nullptr)
-    std::ofstream(golden_file("version_4.trace"), std::ios::binary)
+    std::ofstream(golden_file("version_5.trace"), std::ios::binary)
         << testing::example_trace_with_offload(5);
-  const std::string golden = base::read_text_file(golden_file("version_4.trace"));
+  const std::string golden = base::read_text_file(golden_file("version_5.trace"));
   EXPECT_EQ(contents_of(golden), contents_of(testing::example_trace_with_offload(5)));
 }
 
@@ -285,7 +306,7 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   std::string damaged = whole;
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
-  refuse(trace_of(contents_of(whole), 5), {"version 5", "up to 4", "newer"});
+  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 6", "up to 5", "newer"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});

@@ -5,6 +5,7 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/run/workload_overrides.h"
 #include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {
@@ -21,9 +22,9 @@ TEST(ValidationPaper, NoFigureIsWorseThanItsToleranceOrItsGuard) {
   request.data = folder;
   request.platform = platform::resolve_platform("gap9");
   request.observer = &log;
+  request.workload = parse_workload_overrides({"workload.released_rounding=on"});
   const RunResult run = simulate(request, [](const Progress&) {});
-  const Validation validation =
-      validate(run, log, vio::profile_named(request.profile, request.seed), paper_references());
+  const Validation validation = validate(run, log, profile_of(request), paper_references());
   for (const Comparison& c : validation.comparisons) {
     const Reference& r = c.reference;
     EXPECT_TRUE(c.verdict == Verdict::Met || c.verdict == Verdict::Missed)

@@ -31,6 +31,20 @@ TEST(LevioAlgebra, ProductsTransposeAsTheyAreTold) {
   EXPECT_LT((to_eigen(d) - b.transpose() * a).norm(), 1e-5);
 }
 
+TEST(LevioAlgebra, AVectorIsMultipliedAsAMatrixOfOneColumn) {
+  test::Random random(4);
+  work::Arena arena("L1", Bytes(8192));
+  const Eigen::MatrixXd a = random.matrix(4, 3), v = random.matrix(3, 1), w = random.matrix(4, 1);
+  const MatrixView<P> a_view = place<P>(arena, a);
+  const auto x = place_vector<P>(arena, v), y = place_vector<P>(arena, Eigen::VectorXd::Zero(4));
+  product_with_vector<P>(y, plain<P>(a_view), x);
+  EXPECT_LT((to_eigen_vector(y) - a * v).norm(), 1e-5);
+  const auto from = place_vector<P>(arena, w),
+             to = place_vector<P>(arena, Eigen::VectorXd::Zero(3));
+  product_with_vector<P>(to, transposed<P>(a_view), from);
+  EXPECT_LT((to_eigen_vector(to) - a.transpose() * w).norm(), 1e-5);
+}
+
 TEST(LevioAlgebra, JacobiFindsEigenvectors) {
   test::Random random(2);
   for (const int n : {3, 9, 12}) {

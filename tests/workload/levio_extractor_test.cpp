@@ -96,6 +96,22 @@ TEST(LevioExtractor, TheBlurIsThatOfTheSharedExtraction) {
   EXPECT_EQ(a, b);
 }
 
+/// By the words of PARAMETERS.md#defects-of-the-release.
+TEST(LevioExtractor, TheSlipChangesNegativeCoordinatesOnly) {
+  using N = work::Native;
+  for (int first = -4000; first <= 4000; first += 37)
+    for (int second = -4000; second <= 4000; second += 41) {
+      const int sum = first + second;
+      const int pixel = ReleasedRounding::whole<N>(first, sum);
+      if (sum >= 0) {
+        EXPECT_EQ(pixel, ExactRounding::whole<N>(first, sum));
+      } else {
+        EXPECT_EQ(pixel, -((-first + second + 128) / 256)) << first << ' ' << second;
+        EXPECT_EQ(ExactRounding::whole<N>(first, sum), -((-first - second + 128) / 256));
+      }
+    }
+}
+
 TEST(LevioExtractor, ADescriptorHasTheProductsOfTheRelease) {
   PolicyImage<C> copy(picture());
   const C::Span<const work::U32> pattern(kPairPattern<C>.data(), kPairs);
@@ -104,8 +120,9 @@ TEST(LevioExtractor, ADescriptorHasTheProductsOfTheRelease) {
   const Moments<C> moments = levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
   EXPECT_EQ(work::take_tally()[Op::LoadStream], 697u);
   levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
-  levio::describe<C>(copy.view().pixels, 160, 60 * 160 + 80, direction_of<C>(moments), pattern,
-                     {words.data(), kDescriptorWords});
+  levio::describe<C, levio::ExactRounding>(copy.view().pixels, 160, 60 * 160 + 80,
+                                           direction_of<C>(moments), pattern,
+                                           {words.data(), kDescriptorWords});
   const work::Counts counts = work::take_tally();
   // About 4 800, without those of an address of a pixel.
   const double products = static_cast<double>(counts[Op::IntMul] + counts[Op::IntMac]) - 512;

@@ -15,6 +15,7 @@ struct OptimiserSceneOptions {
   int keyframes = 8;
   int landmarks = 200;
   int shortest_track = 3, longest_track = 8;  ///< keyframes that see a landmark
+  double longer_tracks = 0;                   ///< share of landmarks that one more sees
   double interval_s = 0.2;
   double rotation_noise = 0.02;  ///< rad, of all keyframes but the oldest
   double position_noise = 0.05;  ///< m
@@ -81,9 +82,10 @@ struct OptimiserScene {
 
   void make_landmarks() {
     while (static_cast<int>(points.size()) < scene.landmarks) {
-      const int length = std::min(
-          scene.keyframes,
-          static_cast<int>(random.uniform(scene.shortest_track, scene.longest_track + 0.999)));
+      const int drawn =
+          static_cast<int>(random.uniform(scene.shortest_track, scene.longest_track + 0.999));
+      const bool longer = scene.longer_tracks > 0 && random.uniform(0, 1) < scene.longer_tracks;
+      const int length = std::min(scene.keyframes, drawn + (longer ? 1 : 0));
       const int first = static_cast<int>(random.uniform(0, scene.keyframes - length + 0.999));
       const double depth = random.uniform(1.5, 6.0);
       const double x = random.uniform(-0.65, 0.65), y = random.uniform(-0.5, 0.5);

@@ -41,18 +41,21 @@ const work::CodeMap& scaled_code(double factor) {
   static std::map<double, work::CodeMap> maps;
   const auto [found, is_new] = maps.try_emplace(factor);
   if (!is_new) return found->second;
-  std::string scaled = "function,after,lines,visits,refetches,executed,priced,loads,used_at_once\n";
+  std::string scaled =
+      "function,after,lines,visits,refetches,executed,priced,loads,used_at_once,"
+      "executed_loops,priced_loops\n";
   for (const base::BuiltinFile& file : platform::builtin_code()) {
     if (file.name != platform::kCompiledCode) continue;
     base::CsvReader csv(file.name, base::Separator::comma,
                         {"function", "after", "lines", "visits", "refetches", "executed", "priced",
-                         "loads", "used_at_once"},
+                         "loads", "used_at_once", "executed_loops", "priced_loops"},
                         std::string(file.text));
     csv.next();  // titles
     while (const base::CsvRow* row = csv.next())
-      scaled += fmt::format("{},{},{},{},{},{},{},{},{}\n", row->text(0), row->text(1),
-                            factor * row->number(2), row->text(3), factor * row->number(4),
-                            row->text(5), row->text(6), row->text(7), row->text(8));
+      scaled +=
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row->text(0), row->text(1),
+                      factor * row->number(2), row->text(3), factor * row->number(4), row->text(5),
+                      row->text(6), row->text(7), row->text(8), row->text(9), row->text(10));
   }
   return found->second = platform::code_map_from("scaled", scaled);
 }

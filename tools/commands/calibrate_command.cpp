@@ -9,6 +9,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/validation/calibration/calibration_report.h"
+#include "tools/app/validation/released_work.h"
 
 namespace leviosim::tools {
 namespace {
@@ -27,7 +28,9 @@ std::optional<base::OutputFile> claimed_platform_file(const RunOptions& options)
   return claimed_file(out_request(options, "--yaml"));
 }
 
-void run(const CalibrateOptions& options) {
+void run(const CalibrateOptions& given) {
+  CalibrateOptions options = given;
+  options.run = as_released(given.run);
   RunRequest request = make_chip_request(options.run);
   const std::vector<std::string> constants = parse_constants("--constants", options.constants);
   const platform::Variants platform(request.platform);

@@ -10,6 +10,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/validation/released_work.h"
 #include "tools/app/validation/validation_report.h"
 
 namespace leviosim::tools {
@@ -35,7 +36,8 @@ bool is_worse(const Validation& validation) {
                      [](const Comparison& c) { return c.verdict == Verdict::Worse; });
 }
 
-void run(const RunOptions& options, const Words& words) {
+void run(const RunOptions& given, const Words& words) {
+  const RunOptions options = as_released(given);
   RunRequest request = make_chip_request(options);
   const std::vector<Reference> references = paper_references();
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);

@@ -55,12 +55,14 @@ cut 'table "input, mean"'
 
 figure breakdown
 needs data
-shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --tables all --out tables'
+shows 'leviosim run --platform gap9 -p workload.released_rounding=on --data euroc/MH_01_easy_t05_t20 \
+      --tables all --out released'
 cut 'sed "1,/^where the core-cycles go/d" | table stage stage useful I-cache FPU divider banks imbalance transfer serial'
 
 figure latency
 needs data
-shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --tables all --out tables'
+shows 'leviosim run --platform gap9 -p workload.released_rounding=on --data euroc/MH_01_easy_t05_t20 \
+      --tables all --out released'
 cut 'table "pose from"'
 
 figure sensitivity

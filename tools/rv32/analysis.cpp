@@ -75,6 +75,7 @@ void Analysis::finish_transfer(const Block& next) {
   switch (last_.kind) {
     case Kind::Branch:
       if (pc != last_end_) count_kind(Kind::BranchTaken);
+      if (pc < last_.pc) count_kind(Kind::BranchBack);
       break;
     case Kind::Call:
       if (next.symbol != nullptr && next.symbol->role != Role::Kernel)

@@ -38,13 +38,14 @@ enum class Kind : std::uint8_t {
   FloatMove,
   Other,
   BranchTaken,  ///< only as an account: of Branch, those that were taken
+  BranchBack,   ///< … of them, those to an earlier place: they repeat loops
 };
 inline constexpr std::array kKindNames = {
-    "alu",         "move",     "mul",        "mul_high",      "div",
-    "load",        "store",    "float_load", "float_store",   "branch",
-    "jump",        "call",     "return",     "indirect_jump", "f32_add",
-    "f32_mul",     "f32_fma",  "f32_div",    "f32_sqrt",      "f32_compare",
-    "f32_convert", "f32_sign", "f32_move",   "other",         "branch_taken"};
+    "alu",          "move",          "mul",         "mul_high", "div",      "load",
+    "store",        "float_load",    "float_store", "branch",   "jump",     "call",
+    "return",       "indirect_jump", "f32_add",     "f32_mul",  "f32_fma",  "f32_div",
+    "f32_sqrt",     "f32_compare",   "f32_convert", "f32_sign", "f32_move", "other",
+    "branch_taken", "branch_back"};
 inline constexpr std::size_t kKinds = kKindNames.size();
 
 struct Instruction {
@@ -82,8 +83,8 @@ inline Kind kind_of(const std::string& m) {
       for (const char* name : names) map[name] = kind;
     };
     add(Kind::Alu,
-        {"add",   "addi", "sub",  "neg",  "and",  "andi", "or",    "ori",   "xor",  "xori",
-         "not",   "sll",  "slli", "srl",  "srli", "sra",  "srai",  "slt",   "slti", "sltu",
+        {"add",   "addi", "sub",  "neg",  "and",  "andi", "or",    "ori",    "xor",  "xori",
+         "not",   "sll",  "slli", "srl",  "srli", "sra",  "srai",  "slt",    "slti", "sltu",
          "sltiu", "seqz", "snez", "sltz", "sgtz", "lui",  "auipc", "zext.b", "cpop"});
     add(Kind::Move, {"mv", "li", "nop"});
     add(Kind::Mul, {"mul"});

@@ -41,6 +41,16 @@ class LevioScenes {
     vio::levio::extract_features<P>(machine_, image, options, features);
   }
 
+  void vision_as_released(const Inputs::Block& pixels) {
+    const vio::ImageView<P> image{load<Byte>(pixels), kWidth, kHeight};
+    vio::ExtractorOptions options;
+    options.released_rounding = true;
+    auto features = vio::alloc_features<P>(data_, options.max_features(kWidth, kHeight));
+    const auto stage = machine_.stage("extraction");
+    const Function scene("scene: levio feature extraction as released");
+    vio::levio::extract_features<P>(machine_, image, options, features);
+  }
+
   /// @param inputs  at the matches of landmarks and pixels
   void two_views(Inputs inputs) {
     const Span<F> points = load<F>(inputs.next()), pixels = load<F>(inputs.next());
@@ -68,7 +78,7 @@ class LevioScenes {
       vio::levio::recover_pose<P>(machine_, essential, {pixels_a, pixels_b, matches.n}, camera_);
     }
     inputs.next();  // which matches are no outliers
-    inputs.next();  // the true essential matrix
+    sampson_scoring(inputs.next(), matches);
     triangulation(inputs.next(), pixels_a, pixels_b);
   }
 
@@ -103,6 +113,20 @@ class LevioScenes {
       pixels.data()[i + 1] = F(work::value(normalised.data()[i + 1]) * fy_ + cy_);
     }
     return pixels;
+  }
+
+  /// Scores a hypothesis that most matches support, as the best one of the released program.
+  /// @param true_essential  nine elements, row by row
+  void sampson_scoring(const Inputs::Block& true_essential, const vio::TwoViewMatches<P>& matches) {
+    const Span<F> E = load<F>(true_essential);
+    const Span<Byte> mask = data_.alloc<Span<Byte>>("scored mask", matches.n);
+    const auto inliers = data_.alloc<Span<typename P::I32>>("scored inliers", 1);
+    const Span<F> error = data_.alloc<Span<F>>("scored errors", 1);
+    const float threshold = 0.7f / fx_;
+    const auto stage = machine_.stage("scoring");
+    const Function scene("scene: levio Sampson scoring");
+    vio::levio::score_essential<P>({E, 3, 3}, matches, F(threshold * threshold), mask,
+                                   {inliers, error});
   }
 
   /// @param pose  of the second view: a rotation, row by row, and a translation

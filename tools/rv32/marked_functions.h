@@ -12,8 +12,8 @@
 
 #define LEVIOSIM_HOST_INLINE
 #define LEVIOSIM_TARGET_CALL [[gnu::noipa]]
-#define LEVIOSIM_TARGET_LOOP \
-  [[gnu::noinline, gnu::optimize("no-tree-loop-distribute-patterns", "no-tree-vectorize")]]
+extern "C" void* byte_memset(void* to, int value, std::size_t n);
+#define LEVIOSIM_TARGET_CLEAR byte_memset
 #define LEVIOSIM_TARGET_ROLLED _Pragma("GCC unroll 1")
 
 namespace leviosim::work {

@@ -114,7 +114,7 @@ class Program {
     static const std::regex library(
         "__(add|sub|mul|div|neg)[sd]f3|__(eq|ne|lt|le|gt|ge|unord)[sd]f2|__extendsfdf2|"
         "__truncdfsf2|__float(un)?s[id][sd]f|__fix(uns)?[sd]fsi|__popcountsi2|__clzsi2|"
-        "_?sinf|_?cosf|atan2f|memset|memcpy|memmove|.*digit_by_digit_sqrtf.*");
+        "_?sinf|_?cosf|atan2f|memset|byte_memset|memcpy|memmove|.*digit_by_digit_sqrtf.*");
     static const std::regex host(
         "leviosim::work::Arena::(Arena|lend|place|host|alloc|reset_peak|~Arena)|"
         "leviosim::work::Machine::(begin_|end_|note_|flush_|Machine)|operator (new|delete)|"

@@ -19,7 +19,7 @@ LIBRARY = {
     "f32_compare": ["__ltsf2", "__lesf2", "__gtsf2", "__gesf2", "__eqsf2", "__nesf2"],
     "f32_convert": ["__floatsisf", "__fixsfsi"],
     "popcount": ["__popcountsi2"],
-    "memset": ["memset"],
+    "memset": ["memset", "byte_memset"],
 }
 ROUTINES = {
     **{op: LIBRARY[op] for op in ("f64_mul", "f64_div", "f64_compare", "popcount", "memset")},
@@ -51,7 +51,8 @@ CLASSES = [
     ("double calls", ["f64"], ["f64_add", "f64_mul", "f64_div", "f64_compare", "f64_convert"]),
     ("popcount calls", ["popcount"], ["popcount"]),
 ]
-NO_INSTRUCTION = {"visits", "branch_taken", "load_use", "host", "inclusive"}
+NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "host", "inclusive"}
+INSTRUCTIONS_OF_A_REPETITION = 2  # as loop_iteration in rv32imfc_costs.csv
 SCENE = "scene: "
 GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
 
@@ -130,10 +131,12 @@ lines      distinct 16-byte lines fetched per visit, mean
 visits     how often the piece was executed
 refetches  lines per visit that a 512-byte cache (fully associative, LRU, empty at the begin)
            loses and fetches again, mean: large where a loop of the piece does not fit
-executed   instructions per visit of the whole function, routines of the library left out, on the
-           way through the program that was counted; rows with an empty `after` only, as what follows
+executed   instructions per visit of the whole function, with copying and clearing by the library,
+           without emulated arithmetic, on the way through the program that was counted; rows with an
+           empty `after` only, as what follows
 priced     operations counted in a visit, at the prices of tools/rv32/rv32imfc_costs.csv
 loads, used_at_once   loads per visit; those of which the next instruction needs the value
+executed_loops, priced_loops   of executed and priced, what repeats loops: a counter and a branch each
 Rows f64_*, popcount, memset are routines of the library; calls of these do not end a piece.
 Rows library_* are routines of a public C library, called by the names that they have here.
 """ % GENERATED
@@ -172,11 +175,16 @@ def by_function(accounts):
     return total
 
 
+def instructions(kinds):
+    return sum(n for kind, n in kinds.items() if kind not in NO_INSTRUCTION)
+
+
 def in_counted_flow(contracted, uncontracted):
     """What the contracted code would execute on the way of the uncontracted one, which is the way
     that was counted. Contraction changes bits, so the programs part where a comparison turns out
     otherwise, and would be compared over different work. A function takes the same branches for the
-    same work, so its instructions are taken per branch, scene by scene."""
+    same work, so its instructions are taken per branch, scene by scene. They are no more than the
+    uncontracted code takes: contraction only takes instructions away."""
     kinds = {}
     for key, counted in uncontracted.kinds.items():
         executed = contracted.kinds.get(key)
@@ -184,28 +192,48 @@ def in_counted_flow(contracted, uncontracted):
             continue
         per = "branch" if counted["branch"] and executed["branch"] else "visits"
         share = counted[per] / executed[per]
+        if share * instructions(executed) > instructions(counted):
+            share = instructions(counted) / instructions(executed)
         kinds[key] = {kind: n * share for kind, n in executed.items()}
         kinds[key]["visits"] = counted["visits"]
     return kinds
 
 
-def compiled_work(executed_kinds, counts, costs):
-    """(executed, priced, loads, loads used at once) per visit of each function itself. A population
-    count is one instruction, as it was compiled; a routine of the library is nobody's own.
-    @param executed_kinds  in_counted_flow()"""
+def copied_and_cleared(trace):
+    """Instructions of memcpy and its kin by scene and function. A compiler calls them in the place
+    of loops that were counted."""
+    return {key: sum(n for (symbol, what), n in calls.items()
+                     if what == "instructions" and symbol in ("memcpy", "memmove", "memset", "byte_memset"))
+            for key, calls in trace.calls.items()}
+
+
+def compiled_work(executed_kinds, memory, counts, costs):
+    """(executed, priced, loads, loads used at once, executed and priced of what repeats loops) per
+    visit of each function itself. A loop is repeated by a counter and a branch; those of a library
+    routine have the share that they have in the price. A population count is one instruction, as it was compiled; emulated arithmetic is nobody's own.
+    @param executed_kinds  in_counted_flow()
+    @param memory          copied_and_cleared()"""
     prices = {op: 0.0 if op.startswith("f64") else 1.0 if op == "popcount" else cost
               for op, cost in costs.items()}
-    counted = by_function(counts)
+    counted = by_function({key: n for key, n in counts.items() if key in executed_kinds})
+    by_library = collections.Counter()
+    for (scene, function), n in memory.items():
+        if (scene, function) in executed_kinds:
+            by_library[function] += n
     work = {}
     for function, kinds in by_function(executed_kinds).items():
         visits, counted_visits = kinds["visits"], counted[function]["visits"]
         if not visits or not counted_visits:
             continue
-        executed = sum(n for kind, n in kinds.items() if kind not in NO_INSTRUCTION)
+        executed = instructions(kinds) + by_library[function]
         priced = sum(n * prices[op] for op, n in counted[function].items() if op != "visits")
+        priced_loops = counted[function]["loop_iteration"] * prices["loop_iteration"]
+        in_library = by_library[function] * priced_loops / priced if priced else 0
+        executed_loops = min(INSTRUCTIONS_OF_A_REPETITION * kinds["branch_back"], priced_loops)
         loads = kinds["load"] + kinds["float_load"]
         work[function] = (executed / visits, priced / counted_visits, loads / visits,
-                          kinds["load_use"] / visits)
+                          kinds["load_use"] / visits, (executed_loops + in_library) / visits,
+                          priced_loops / counted_visits)
     return work
 
 
@@ -213,7 +241,7 @@ def write_footprints(trace, library, compiled, code, here):
     """@param library   trace of the routines alone, for those that the workload does not call
     @param compiled  compiled_work()"""
     columns = ["function", "after", "lines", "visits", "refetches"]
-    nothing = ("",) * 4
+    nothing = ("",) * 6
     rows = [row + (nothing if row[1] else compiled.get(row[0], nothing))
             for row in piece_rows(trace, False) if row[0] not in ROUTINES]
     for routine in ROUTINES:
@@ -222,7 +250,8 @@ def write_footprints(trace, library, compiled, code, here):
             lines, calls = library.lines_of(routine)
         if calls:
             rows.append((routine, "", lines, calls, 0.0) + nothing)
-    write_csv(code, FOOTPRINT_HEADER, columns + ["executed", "priced", "loads", "used_at_once"],
+    write_csv(code, FOOTPRINT_HEADER, columns + ["executed", "priced", "loads", "used_at_once", "executed_loops",
+                                                   "priced_loops"],
               sorted(rows))
     write_csv(here / "stage_code.csv", STAGE_HEADER, ["stage"] + columns[1:],
               sorted(piece_rows(trace, True)))
@@ -243,8 +272,7 @@ def class_totals(kinds, calls):
             amounts["f64" if operation.startswith("f64") else operation] += n
         else:
             library += n
-    own = sum(n for kind, n in kinds.items() if kind not in NO_INSTRUCTION)
-    return amounts, own, library
+    return amounts, instructions(kinds), library
 
 
 def check_same_control_flow(trace, counts):
@@ -423,7 +451,9 @@ def main():
     hard = Trace(work / "library_hard.tsv")
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
     costs = read_costs(here / "rv32imfc_costs.csv")
-    compiled = compiled_work(in_counted_flow(contracted, uncontracted), read_counts(work / "counted.tsv"), costs)
+    compiled = compiled_work(in_counted_flow(contracted, uncontracted),
+                             copied_and_cleared(uncontracted), read_counts(work / "counted.tsv"),
+                             costs)
     write_footprints(contracted, hard, compiled, arguments.code, here)
     write_units(contracted, uncontracted, read_counts(work / "counted.tsv", "inclusive"), costs, here)
     write_cross_check(uncontracted, contracted, read_counts(work / "counted.tsv"), costs, here)

@@ -45,6 +45,7 @@ class Scenes {
     vision();
     LevioScenes<P> levio(data_, camera());
     levio.vision(flight_[0].pixels);
+    levio.vision_as_released(flight_[0].pixels);
     levio.two_views(inputs_);
     two_views();
     optimiser();

@@ -132,9 +132,10 @@ std::vector<std::size_t> read_fields(ByteReader& in, bool with_compiled_work) {
       in.fail(fmt::format("a class of code reuse ends at {} bytes; expected {}", found, end));
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) fields.push_back(work::kOpCount + k);
   if (with_compiled_work)
-    for (std::size_t k = in.whole_below(work::kCompiledCount + 1, "kinds of compiled work"); k > 0;
-         --k)
-      fields.push_back(kCounters - k);
+    for (std::size_t k = 0,
+                     kinds = in.whole_below(work::kCompiledCount + 1, "kinds of compiled work");
+         k < kinds; ++k)
+      fields.push_back(kFirstCompiled + k);
   std::vector<std::size_t> sorted = fields;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())

@@ -2,15 +2,16 @@
 // they lie in another source file, and nothing optimises across files
 // (PARAMETERS.md#build-and-timers). So sizes that a caller knows are variables in them. The host's
 // compiler is free, for it does not change what is counted.
-//
-// And functions whose loops over bytes stay such, where a compiler would take words.
 #pragma once
+
+#include <cstring>
 
 #ifndef LEVIOSIM_TARGET_CALL
 #define LEVIOSIM_TARGET_CALL
 #endif
-#ifndef LEVIOSIM_TARGET_LOOP
-#define LEVIOSIM_TARGET_LOOP
+/// Clears as memset does, with the target's C library, whose memset goes byte by byte.
+#ifndef LEVIOSIM_TARGET_CLEAR
+#define LEVIOSIM_TARGET_CLEAR std::memset
 #endif
 /// Before a loop whose steps are not written out one after the other.
 #ifndef LEVIOSIM_TARGET_ROLLED

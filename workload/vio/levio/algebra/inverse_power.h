@@ -28,7 +28,7 @@ void swap_rows(Matrix& a, Vector& b, int n, int k, typename P::I32 other) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const I32 row = other * I32(n);
-  for (int c : P::range(0, n)) {
+  for (int c : P::byte_range(0, n)) {
     const I32 at = row + I32(c);
     const F moved = a[I32(k * n + c)];
     a[I32(k * n + c)] = F(a[at]);
@@ -47,7 +47,7 @@ typename P::F32 bring_pivot(Matrix& a, Vector& b, int n, int k) {
   using I32 = typename P::I32;
   I32 row = k;
   F largest = work::abs(F(a[I32(k * n + k)]));
-  for (int r : P::range(k + 1, n)) {
+  for (int r : P::byte_range(k + 1, n)) {
     const F magnitude = work::abs(F(a[I32(r * n + k)]));
     if (magnitude > largest) {
       largest = magnitude;
@@ -68,17 +68,17 @@ LEVIOSIM_TARGET_CALL void solve_in_place(typename P::template Span<typename P::F
                                          typename P::template Span<typename P::F32> x, int n) {
   using F = typename P::F32;
   using I32 = typename P::I32;
-  for (int k : P::range(0, n)) {
+  for (int k : P::byte_range(0, n)) {
     if (bring_pivot<P>(m, rhs, n, k) < F(kSmallestPivot)) return;
-    for (int r : P::range(k + 1, n)) {
+    for (int r : P::byte_range(k + 1, n)) {
       const F factor = F(m[I32(r * n + k)]) / F(m[I32(k * n + k)]);
-      for (int c : P::range(k, n)) m[I32(r * n + c)] -= factor * F(m[I32(k * n + c)]);
+      for (int c : P::byte_range(k, n)) m[I32(r * n + c)] -= factor * F(m[I32(k * n + c)]);
       rhs[r] -= factor * F(rhs[k]);
     }
   }
   for (int r : P::down_range(n - 1, 0)) {
     F sum = rhs[r];
-    for (int c : P::range(r + 1, n)) sum -= F(m[I32(r * n + c)]) * F(x[c]);
+    for (int c : P::byte_range(r + 1, n)) sum -= F(m[I32(r * n + c)]) * F(x[c]);
     x[r] = sum / F(m[I32(r * n + r)]);
   }
 }
@@ -102,48 +102,46 @@ LEVIOSIM_TARGET_CALL void solve_gauss(ConstMatrixView<P> a,
                                          factor_items(n, n) + substitution_items(n, n));
   typename P::template Array<F, kMostUnknowns * kMostUnknowns> m;
   typename P::template Array<F, kMostUnknowns> rhs;
-  for (int i : P::range(0, n * n)) m[i] = F(a.data()[i]);
-  for (int i : P::range(0, n)) {
+  for (int i : P::byte_range(0, n * n)) m[i] = F(a.data()[i]);
+  for (int i : P::byte_range(0, n)) {
     rhs[i] = F(b[i]);
     x[i] = 0.0f;
   }
   gauss::solve_in_place<P>(Span(m), Span(rhs), x, n);
 }
 
+namespace power {
+
 /// Divides every element by the norm: a root and n divisions.
-template <class P, class Vector>
-void normalise(Vector& x, int n) {
+template <class P>
+void normalise(typename P::template Span<typename P::F32> x, int n) {
   using F = typename P::F32;
   F length2 = 0.0f;
-  for (int i : P::range(0, n)) {
+  for (int i : P::byte_range(0, n)) {
     const F xi = x[i];
     length2 += xi * xi;
   }
   const F length = work::sqrt(length2);
-  for (int i : P::range(0, n)) x[i] = F(x[i]) / length;
+  for (int i : P::byte_range(0, n)) x[i] = F(x[i]) / length;
 }
 
-/// @param a  n×n, symmetric positive semi-definite, n ≤ kMostUnknowns
-/// @param x  n; becomes the eigenvector with unit norm, of either sign; NaN if a pivot vanished
-/// @return the number of steps taken
+/// smallest_eigenvector() with its work vectors, whose bounds the compiler does not know either.
 template <class P>
-LEVIOSIM_TARGET_CALL int smallest_eigenvector(ConstMatrixView<P> a,
-                                              typename P::template Span<typename P::F32> x) {
+LEVIOSIM_TARGET_CALL int iterate(ConstMatrixView<P> a,
+                                 typename P::template Span<typename P::F32> last,
+                                 typename P::template Span<typename P::F32> next,
+                                 typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
-  using Span = typename P::template Span<F>;
-  const typename P::Function function("levio_smallest_eigenvector");
   const int n = a.rows();
-  const typename P::OffloadRegion kernel(eigen_of_size(n), 1);
-  typename P::template Array<F, kMostUnknowns> last, next;
-  for (int i : P::range(0, n)) last[i] = 1.0f;
+  for (int i : P::byte_range(0, n)) last[i] = 1.0f;
   normalise<P>(last, n);
   F last_cosine = 0.0f;
   int steps = 0;
   for (int step : P::range(0, kMostPowerSteps)) {
-    solve_gauss<P>(a, Span(last), Span(next));
+    solve_gauss<P>(a, last, next);
     normalise<P>(next, n);
     F cosine = 0.0f;
-    for (int i : P::range(0, n)) {
+    for (int i : P::byte_range(0, n)) {
       cosine += next[i] * last[i];
       last[i] = F(next[i]);
     }
@@ -152,8 +150,23 @@ LEVIOSIM_TARGET_CALL int smallest_eigenvector(ConstMatrixView<P> a,
     if (!(change >= F(kPowerTolerance))) break;
     last_cosine = cosine;
   }
-  for (int i : P::range(0, n)) x[i] = F(last[i]);
+  for (int i : P::byte_range(0, n)) x[i] = F(last[i]);
   return steps;
+}
+
+}  // namespace power
+
+/// @param a  n×n, symmetric positive semi-definite, n ≤ kMostUnknowns
+/// @param x  n; becomes the eigenvector with unit norm, of either sign; NaN if a pivot vanished
+/// @return the number of steps taken
+template <class P>
+LEVIOSIM_TARGET_CALL int smallest_eigenvector(ConstMatrixView<P> a,
+                                              typename P::template Span<typename P::F32> x) {
+  using Span = typename P::template Span<typename P::F32>;
+  const typename P::Function function("levio_smallest_eigenvector");
+  const typename P::OffloadRegion kernel(eigen_of_size(a.rows()), 1);
+  typename P::template Array<typename P::F32, kMostUnknowns> last, next;
+  return power::iterate<P>(a, Span(last), Span(next), x);
 }
 
 }  // namespace leviosim::vio::levio

@@ -21,8 +21,8 @@ LEVIOSIM_HOST_INLINE vio::jacobi::Element<P> largest_off_diagonal(MatrixView<P> 
   using F = typename P::F32;
   const int n = a.rows();
   vio::jacobi::Element<P> largest{work::abs(F(a(0, 1))), 0, 1};
-  for (int i : P::range(0, n - 1))
-    for (int j : P::range(i + 1, n)) {
+  for (int i : P::byte_range(0, n - 1))
+    for (int j : P::byte_range(i + 1, n)) {
       const F magnitude = work::abs(F(a(i, j)));
       if (work::unlikely(magnitude > largest.magnitude)) largest = {magnitude, i, j};
     }
@@ -116,11 +116,11 @@ void sort_descending(typename P::template Span<typename P::F32> values, Order or
   using U16 = typename P::U16;
   const typename P::Function function("levio_sort_descending");
   const int n = values.size();
-  for (int i : P::range(0, n)) order[i] = work::narrow<U16>(I32(i));
-  for (int i : P::range(0, n - 1)) {
+  for (int i : P::byte_range(0, n)) order[i] = work::narrow<U16>(I32(i));
+  for (int i : P::byte_range(0, n - 1)) {
     I32 best = i;
     F largest = values[i];
-    for (int j : P::range(i + 1, n)) {
+    for (int j : P::byte_range(i + 1, n)) {
       const F candidate = values[j];
       if (candidate > largest) {
         largest = candidate;

@@ -20,7 +20,7 @@ template <class P, class Vector>
 typename P::F32 norm_from(Vector v, int first, int size) {
   using F = typename P::F32;
   F sum = 0.0f;
-  for (int i : P::range(first, size)) {
+  for (int i : P::byte_range(first, size)) {
     const F x = v(i);
     sum += x * x;
   }
@@ -38,30 +38,30 @@ LEVIOSIM_TARGET_CALL void solve_in_place(MatrixView<P> a,
                                          typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
   const int m = a.rows(), n = a.cols();
-  for (int k : P::range(0, n)) {
+  for (int k : P::byte_range(0, n)) {
     const F length = norm_from<P>([&](int r) { return F(a(r, k)); }, k, m);
     const F head = a(k, k);
-    for (int r : P::range(k, m)) reflector[r] = F(a(r, k));
+    for (int r : P::byte_range(k, m)) reflector[r] = F(a(r, k));
     if (head > 0.0f)
       reflector[k] = head + length;
     else
       reflector[k] = head - length;
     const F size = norm_from<P>([&](int r) { return F(reflector[r]); }, k, m);
-    for (int r : P::range(k, m)) reflector[r] = F(reflector[r]) / size;
-    for (int c : P::range(k, n)) {
+    for (int r : P::byte_range(k, m)) reflector[r] = F(reflector[r]) / size;
+    for (int c : P::byte_range(k, n)) {
       F along = 0.0f;
-      for (int r : P::range(k, m)) along += reflector[r] * a(r, c);
+      for (int r : P::byte_range(k, m)) along += reflector[r] * a(r, c);
       const F twice = 2.0f * along;
-      for (int r : P::range(k, m)) a(r, c) -= twice * reflector[r];
+      for (int r : P::byte_range(k, m)) a(r, c) -= twice * reflector[r];
     }
     F along = 0.0f;
-    for (int r : P::range(k, m)) along += reflector[r] * b[r];
+    for (int r : P::byte_range(k, m)) along += reflector[r] * b[r];
     const F twice = 2.0f * along;
-    for (int r : P::range(k, m)) b[r] -= twice * reflector[r];
+    for (int r : P::byte_range(k, m)) b[r] -= twice * reflector[r];
   }
   for (int r : P::down_range(n - 1, 0)) {
     F sum = b[r];
-    for (int c : P::range(r + 1, n)) sum -= a(r, c) * x[c];
+    for (int c : P::byte_range(r + 1, n)) sum -= a(r, c) * x[c];
     x[r] = sum / a(r, r);
   }
 }

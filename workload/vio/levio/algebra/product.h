@@ -55,12 +55,28 @@ LEVIOSIM_TARGET_CALL void product(const MatrixView<P>& c, const Operand<P>& a,
   const typename P::Function function("levio_product");
   const Operand<P> left = a, right = b;
   const auto to = c.data();
-  for (int i : P::range(0, left.rows()))
-    for (int j : P::range(0, right.cols())) {
+  for (int i : P::byte_range(0, left.rows()))
+    for (int j : P::byte_range(0, right.cols())) {
       F sum = 0.0f;
-      for (int k : P::range(0, left.cols())) sum += left.at(i, k) * right.at(k, j);
+      for (int k : P::byte_range(0, left.cols())) sum += left.at(i, k) * right.at(k, j);
       to[I32(i * c.cols() + j)] = sum;
     }
+}
+
+/// y = A x, which must fit: a function of its own beside product(), as in the released program.
+/// y must not overlap A or x.
+template <class P>
+LEVIOSIM_TARGET_CALL void product_with_vector(typename P::template Span<typename P::F32> y,
+                                              const Operand<P>& a,
+                                              typename P::template Span<const typename P::F32> x) {
+  using F = typename P::F32;
+  const typename P::Function function("levio_product_with_vector");
+  const Operand<P> left = a;
+  for (int i : P::byte_range(0, left.rows())) {
+    F sum = 0.0f;
+    for (int k : P::byte_range(0, left.cols())) sum += left.at(i, k) * x[k];
+    y[i] = sum;
+  }
 }
 
 }  // namespace leviosim::vio::levio

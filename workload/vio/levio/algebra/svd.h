@@ -22,18 +22,18 @@ LEVIOSIM_TARGET_CALL void orthonormalise_columns(MatrixView<P> u) {
   using F = typename P::F32;
   const typename P::Function function("levio_orthonormalise_columns");
   const int n = u.rows();
-  for (int i : P::range(0, n)) {
+  for (int i : P::byte_range(0, n)) {
     F length2 = 0.0f;
-    for (int k : P::range(0, n)) {
+    for (int k : P::byte_range(0, n)) {
       const F x = u(k, i);
       length2 += x * x;
     }
     const F length = work::sqrt(length2);
-    for (int k : P::range(0, n)) u(k, i) /= length;
-    for (int j : P::range(i + 1, n)) {
+    for (int k : P::byte_range(0, n)) u(k, i) /= length;
+    for (int j : P::byte_range(i + 1, n)) {
       F along = 0.0f;
-      for (int k : P::range(0, n)) along += u(k, i) * u(k, j);
-      for (int k : P::range(0, n)) u(k, j) -= along * u(k, i);
+      for (int k : P::byte_range(0, n)) along += u(k, i) * u(k, j);
+      for (int k : P::byte_range(0, n)) u(k, j) -= along * u(k, i);
     }
   }
 }
@@ -61,14 +61,14 @@ LEVIOSIM_TARGET_CALL void svd(ConstMatrixView<P> a, MatrixView<P> u,
   const Indices order = scratch.alloc<Indices>("order of eigenvalues", n);
   product<P>(ata, transposed<P>(a), plain<P>(a));
   jacobi_eigen<P>(ata, vectors, kMostSvdRotations, F(kSvdTolerance));
-  for (int i : P::range(0, n)) s[i] = F(ata(i, i));
+  for (int i : P::byte_range(0, n)) s[i] = F(ata(i, i));
   sort_descending<P>(s, order);
-  for (int i : P::range(0, n)) {
+  for (int i : P::byte_range(0, n)) {
     const MatrixView<P> column = vectors.from_column(I32(order[i]));
-    for (int k : P::range(0, n)) v(k, i) = F(column(k, 0));
+    for (int k : P::byte_range(0, n)) v(k, i) = F(column(k, 0));
   }
   fill<P>(inverse, 0.0f);
-  for (int i : P::range(0, n)) {
+  for (int i : P::byte_range(0, n)) {
     const F singular = work::sqrt(F(s[i]));
     s[i] = singular;
     inverse(i, i) = F(1.0f) / singular;

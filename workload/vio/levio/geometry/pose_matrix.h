@@ -28,14 +28,13 @@ Pose<P> load_pose(ConstMatrixView<P> from) {
   return pose;
 }
 
-/// Moves points by one pose. The operands of its products stay where they are from point to point.
+/// Moves points by one pose, whose operand is made once for all of them.
 template <class P>
 class PointMover {
   using F = typename P::F32;
 
  public:
-  explicit PointMover(ConstMatrixView<P> T)
-      : T_(plain<P>(T)), point_(plain<P>(MatrixView<P>(x_, 4, 1))), result_(y_, 4, 1) {}
+  explicit PointMover(ConstMatrixView<P> T) : T_(plain<P>(T)) {}
   PointMover(const PointMover&) = delete;
   PointMover& operator=(const PointMover&) = delete;
 
@@ -45,14 +44,13 @@ class PointMover {
     x_[1] = point.y;
     x_[2] = point.z;
     x_[3] = 1.0f;
-    product<P>(result_, T_, point_);
+    product_with_vector<P>(y_, T_, x_);
     return {F(y_[0]), F(y_[1]), F(y_[2])};
   }
 
  private:
   typename P::template Array<F, 4> x_, y_;
-  Operand<P> T_, point_;
-  MatrixView<P> result_;
+  Operand<P> T_;
 };
 
 }  // namespace leviosim::vio::levio

@@ -1,7 +1,6 @@
 #include "workload/vio/levio/optimiser/visual_terms.h"
 
 #include <cstring>
-#include <type_traits>
 
 #include "workload/graph/linearise_landmark.h"
 #include "workload/math/target_call.h"
@@ -43,21 +42,20 @@ typename P::F32 cost_of(const PixelModel<P>& model, const Sight<P>& sight) {
   return model.information * (half * sight.at.error_sq);
 }
 
-/// Zeros, byte by byte. Counted bytes are no part of floats for the host's compiler, so they are
-/// cleared elsewhere and copied.
+/// Zeros, byte by byte, as the C library of the released program clears memory. Counted bytes are
+/// no part of floats for the host's compiler, so they are cleared elsewhere and copied.
 /// @param counted  as many bytes as the record has
 template <class P>
-LEVIOSIM_TARGET_LOOP void clear_record(typename P::template Span<typename P::Byte> counted,
-                                       const Floats<P>& record) {
+void clear_record(typename P::template Span<typename P::Byte> counted, const Floats<P>& record) {
   using Byte = typename P::Byte;
-  constexpr bool kInPlace = std::is_same_v<Byte, unsigned char>;
   const typename P::Code code("levio_clear_record");
-  auto bytes = counted;
-  if constexpr (kInPlace) bytes = {reinterpret_cast<Byte*>(record.data()), counted.size()};
-  for (int i : P::range(0, bytes.size())) bytes[i] = work::narrow<Byte>(typename P::I32(0));
-  if constexpr (!kInPlace)
-    std::memcpy(static_cast<void*>(record.data()), bytes.data(),
-                static_cast<std::size_t>(bytes.size()));
+  const auto size = static_cast<std::size_t>(counted.size());
+  if constexpr (P::kCounting) {
+    for (int i : P::range(0, counted.size())) counted[i] = work::narrow<Byte>(typename P::I32(0));
+    std::memcpy(static_cast<void*>(record.data()), counted.data(), size);
+  } else {
+    LEVIOSIM_TARGET_CLEAR(record.data(), 0, size);
+  }
 }
 
 /// Fills the slots of landmark i. Lost observations keep their zeros.

@@ -62,7 +62,7 @@ void detect_all(work::Machine& machine, ConstImageView<P> image, const OffsetTab
 }
 
 /// The fork "describe", in slices of ceil(n / cores).
-template <class P>
+template <class P, class Rounding>
 void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList<P>& out) {
   using I = typename P::I32;
   using U = typename P::U32;
@@ -75,8 +75,9 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList
       // The windows around it are streams from a computed place.
       const int centre = work::value(at);
       const Moments<P> moments = levio::disc_moments<P>(blurred.pixels, blurred.width, centre);
-      levio::describe<P>(blurred.pixels, blurred.width, centre, direction_of<P>(moments), pattern,
-                         out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
+      levio::describe<P, Rounding>(blurred.pixels, blurred.width, centre, direction_of<P>(moments),
+                                   pattern,
+                                   out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
     }
   });
 }
@@ -104,7 +105,10 @@ void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
     const auto [begin, end] = core.share(height);
     levio::blur_rows<P>(image, blurred, begin, end);
   });
-  describe_all<P>(machine, blurred, out);
+  if (options.released_rounding)
+    describe_all<P, ReleasedRounding>(machine, blurred, out);
+  else
+    describe_all<P, ExactRounding>(machine, blurred, out);
   // Last, because descriptors are of whole pixels.
   if (options.subpixel_steps > 1) refine_keypoints<P>(machine, image, options, {0, out.count}, out);
 }

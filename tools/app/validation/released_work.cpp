@@ -1,0 +1,15 @@
+#include "tools/app/validation/released_work.h"
+
+#include <algorithm>
+
+namespace leviosim::tools {
+
+RunOptions as_released(RunOptions options) {
+  const std::string parameter = "workload.released_rounding";
+  const bool said = std::any_of(options.overrides.begin(), options.overrides.end(),
+                                [&](const std::string& set) { return set.starts_with(parameter); });
+  if (options.profile == "levio" && !said) options.overrides.push_back(parameter + "=on");
+  return options;
+}
+
+}  // namespace leviosim::tools
