@@ -350,7 +350,8 @@ TEST(InstructionCache, StepsAtEachCapacity) {
     return (many.stall - few.stall) / (100.0 * bytes / 16);
   };
   EXPECT_LT(stall_per_line(512), 0.1);
-  EXPECT_NEAR(stall_per_line(2048), 2, 0.12) << "private misses, shared hits";
+  EXPECT_NEAR(stall_per_line(2048), 2, 0.2)
+      << "private misses, shared hits but for one in a hundred";
   EXPECT_NEAR(stall_per_line(16384), 20, 0.6) << "L2";
 }
 

@@ -212,7 +212,8 @@ SegmentTime fetching(int cores, std::size_t reuse_class) {
 TEST(Team, CodeThatTheSharedCacheHoldsCostsEachCoreItsPrivateMisses) {
   const std::size_t class_of_2k = work::reuse_class(2048);
   const SegmentTime alone = fetching(1, class_of_2k);
-  EXPECT_NEAR(alone.alone.fetch, 2.0 * kN, 0.1 * kN);
+  // One line in a hundred misses there, too, as lines collide by chance.
+  EXPECT_NEAR(alone.alone.fetch, 2.0 * kN, 0.2 * kN);
   EXPECT_EQ(alone.fetch, 0);
   // Seven others with a line per 12 cycles on two banks: 7/12/(2·2) cycles a line, or a little
   // less.

@@ -30,7 +30,8 @@ trace() {  # NAME: runs the program NAME of $out and leaves $out/NAME.tsv
 }
 trace library_soft
 trace library_hard
-trace scenes &
+# One core is busy with the layouts while the other does the rest.
+(for layout in 0 4 8 12; do trace "scenes_at_$layout"; done) &
 contracted=$!
 trace scenes_uncontracted
 "$out/counts" "$out/inputs.bin" >"$out/counted.tsv" 2>"$out/counted.log"

@@ -52,6 +52,7 @@ CLASSES = [
     ("popcount calls", ["popcount"], ["popcount"]),
 ]
 NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "host", "inclusive"}
+LAYOUTS = (0, 4, 8, 12)  # bytes in front of all code, as in the Makefile
 INSTRUCTIONS_OF_A_REPETITION = 2  # as loop_iteration in rv32imfc_costs.csv
 SCENE = "scene: "
 GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
@@ -83,6 +84,29 @@ class Trace:
                 self.function_lines[row[0]] = int(row[1])
             elif kind == "scene":
                 self.scene_lines[row[0]] = int(row[1])
+
+    @staticmethod
+    def of_layouts(paths):
+        """The trace of the first path, with the lines of code as they are in the mean of all. The
+        programs execute the same instructions at other places."""
+        traces = [Trace(path) for path in paths]
+        first = traces[0]
+        mean = lambda numbers: sum(numbers) / len(traces)
+        for symbol, rows in first.library.items():
+            lines = [mean(of_call) for of_call in
+                     zip(*([row[-1] for row in trace.library[symbol]] for trace in traces), strict=True)]
+            first.library[symbol] = [row[:-1] + [n] for row, n in zip(rows, lines)]
+        pieces = []
+        for same in zip(*(trace.pieces for trace in traces), strict=True):
+            function, after, visits = same[0][:3]
+            if any(piece[:3] != (function, after, visits) for piece in same):
+                raise SystemExit(f"{function} after \"{after}\": the layouts differ in what they execute")
+            pieces.append((function, after, visits, mean([p[3] for p in same]), mean([p[4] for p in same])))
+        first.pieces = pieces
+        for kind in ("function_lines", "scene_lines"):
+            setattr(first, kind, {name: round(mean([getattr(trace, kind)[name] for trace in traces]))
+                                  for name in getattr(first, kind)})
+        return first
 
     def routine(self, symbol):
         """(calls, mean, least, most of instructions, the same of stalls, mean lines)"""
@@ -447,7 +471,7 @@ def main():
     parser.add_argument("--here", type=pathlib.Path, required=True, help="folder of the other tables")
     arguments = parser.parse_args()
     work, here = arguments.work, arguments.here
-    contracted = Trace(work / "scenes.tsv")
+    contracted = Trace.of_layouts([work / f"scenes_at_{layout}.tsv" for layout in LAYOUTS])
     hard = Trace(work / "library_hard.tsv")
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
     costs = read_costs(here / "rv32imfc_costs.csv")
