@@ -23,7 +23,9 @@ fi
 "$root"/build/release/tests/leviosim_rv32_inputs "$flight" "$out/inputs.new"
 # Only a change of the inputs makes the programs out of date.
 cmp -s "$out/inputs.new" "$out/inputs.bin" || cp "$out/inputs.new" "$out/inputs.bin"
-make --no-print-directory -j"$(nproc)" OUT="$out"
+# Bytes in front of all code: where a function lies changes which lines of 16 bytes it covers.
+layouts=(0 4 8 12)
+make --no-print-directory -j"$(nproc)" OUT="$out" LAYOUTS="${layouts[*]}"
 
 trace() {  # NAME: runs the program NAME of $out and leaves $out/NAME.tsv
   qemu-riscv32 -plugin "$out/trace.so,program=$out/$1,out=$out/$1.tsv" "$out/$1" 2>"$out/$1.log"
@@ -31,7 +33,7 @@ trace() {  # NAME: runs the program NAME of $out and leaves $out/NAME.tsv
 trace library_soft
 trace library_hard
 # One core is busy with the layouts while the other does the rest.
-(for layout in 0 4 8 12; do trace "scenes_at_$layout"; done) &
+(for layout in "${layouts[@]}"; do trace "scenes_at_$layout"; done) &
 contracted=$!
 trace scenes_uncontracted
 "$out/counts" "$out/inputs.bin" >"$out/counted.tsv" 2>"$out/counted.log"
@@ -39,4 +41,4 @@ wait "$contracted"
 # Without contraction RV32 computes the bits that the host computes.
 cmp "$out/counted.log" "$out/scenes_uncontracted.log"
 
-python3 report.py --work "$out" --code "$root/platform_models/code/rv32imfc.csv" --here .
+python3 report.py --work "$out" --code "$root/platform_models/code/rv32imfc.csv" --here . --layouts "${layouts[@]}"

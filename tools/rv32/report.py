@@ -52,7 +52,6 @@ CLASSES = [
     ("popcount calls", ["popcount"], ["popcount"]),
 ]
 NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "host", "inclusive"}
-LAYOUTS = (0, 4, 8, 12)  # bytes in front of all code, as in the Makefile
 INSTRUCTIONS_OF_A_REPETITION = 2  # as loop_iteration in rv32imfc_costs.csv
 SCENE = "scene: "
 GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
@@ -469,9 +468,10 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the raw results")
     parser.add_argument("--code", type=pathlib.Path, required=True, help="table of footprints to write")
     parser.add_argument("--here", type=pathlib.Path, required=True, help="folder of the other tables")
+    parser.add_argument("--layouts", nargs="+", required=True, help="names of the linked programs")
     arguments = parser.parse_args()
     work, here = arguments.work, arguments.here
-    contracted = Trace.of_layouts([work / f"scenes_at_{layout}.tsv" for layout in LAYOUTS])
+    contracted = Trace.of_layouts([work / f"scenes_at_{layout}.tsv" for layout in arguments.layouts])
     hard = Trace(work / "library_hard.tsv")
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
     costs = read_costs(here / "rv32imfc_costs.csv")
