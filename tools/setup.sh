@@ -7,13 +7,13 @@ packages=(
   g++ clang cmake ninja-build git          # compilers (Clang for tools/check_reproducible.sh), build
   libclang-rt-14-dev                       # libFuzzer and its sanitizers (tools/fuzz.sh)
   libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
-  libspng-dev libturbojpeg0-dev            # PNG and JPEG files
+  libpng-dev libturbojpeg0-dev             # PNG and JPEG files
   libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
   libsqlite3-dev                                              # results of sweeps
   parallel                                                    # an example of sweeps, tested
   libjs-chart.js                                              # charts of reports, embedded
-  libgtest-dev libexpat1-dev libxml2-utils                    # tests
+  libgtest-dev libexpat1-dev libxml2-utils libspng-dev        # tests
   chromium                                                    # tests of pages (120 MB, half a minute)
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
 )

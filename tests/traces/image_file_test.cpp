@@ -49,7 +49,7 @@ TEST(ImageFile, WhatIsNotGreyIsRefused) {
   expect_refused("", "neither PNG nor JPEG");
 }
 
-/// 4 GiB of pixels are announced by 33 bytes.
+/// 4 GiB of pixels are announced by 45 bytes.
 TEST(ImageFile, TheSizeIsCheckedBeforeThePixels) {
   expect_input_error(
       [] {
@@ -63,7 +63,9 @@ TEST(ImageFile, TheSizeIsCheckedBeforeThePixels) {
       {"is 33x24; sensor.yaml says 33x25"});
   const std::string head("\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x08\0\0\0\0", 21);
   const std::string crc("\x93\x6e\x86\x8c", 4);
-  expect_refused("\x89PNG\r\n\x1a\n" + head + crc, "is 65535x65535; sensor.yaml says 33x24");
+  const std::string pixels("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
+  expect_refused("\x89PNG\r\n\x1a\n" + head + crc + pixels,
+                 "is 65535x65535; sensor.yaml says 33x24");
 }
 
 TEST(ImageFile, EveryCutAndFlippedByteIsRefusedOrRead) {

@@ -1,15 +1,14 @@
 #include "traces/datasets/image_file.h"
 
 #include <fmt/core.h>
-#include <spng.h>
 #include <turbojpeg.h>
-#include <zlib.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <memory>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "traces/datasets/png_calls.h"
 
 namespace leviosim::traces {
 namespace {
@@ -41,43 +40,50 @@ void require_gray(const Header& header, cv::Size expected) {
 
 class Png {
  public:
-  explicit Png(std::string_view bytes) : context_(spng_ctx_new(0), spng_ctx_free) {
-    if (context_ == nullptr) throw std::bad_alloc();
-    demand(spng_set_crc_action(context_.get(), SPNG_CRC_ERROR, SPNG_CRC_DISCARD));
-    demand(spng_set_chunk_limits(context_.get(), kMostChunkBytes, kMostChunkBytes));
-    demand(spng_set_png_buffer(context_.get(), bytes.data(), bytes.size()));
+  explicit Png(std::string_view bytes) : calls_(PngCalls::Kind::Read), rest_(bytes) {
+    demand([&] {
+      png_set_read_fn(calls_.png(), &rest_, read);
+      png_set_crc_action(calls_.png(), PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
+      png_set_chunk_malloc_max(calls_.png(), kMostChunkBytes);
+      png_read_info(calls_.png(), calls_.info());
+    });
   }
 
   Header header() {
-    spng_ihdr head{};
-    demand(spng_get_ihdr(context_.get(), &head));
-    const int bits = head.bit_depth == 16 ? 16 : 8;
-    return {head.width, head.height, channels_of(head.color_type), bits};
+    const int bits = png_get_bit_depth(calls_.png(), calls_.info());
+    const int color = png_get_color_type(calls_.png(), calls_.info());
+    return {png_get_image_width(calls_.png(), calls_.info()),
+            png_get_image_height(calls_.png(), calls_.info()),
+            color == PNG_COLOR_TYPE_PALETTE ? 3 : png_get_channels(calls_.png(), calls_.info()),
+            bits == 16 ? 16 : 8};
   }
 
+  /// To the end of the file.
   void decode(cv::Mat& image) {
-    demand(spng_decode_image(context_.get(), image.data, image.total(), SPNG_FMT_G8, 0));
-    demand(spng_decode_chunks(context_.get()));  // to the end of the file
+    const auto rows = std::make_unique<png_bytep[]>(static_cast<std::size_t>(image.rows));
+    for (int y = 0; y < image.rows; ++y) rows[static_cast<std::size_t>(y)] = image.ptr(y);
+    demand([&] {
+      png_set_expand_gray_1_2_4_to_8(calls_.png());
+      png_set_interlace_handling(calls_.png());
+      png_read_image(calls_.png(), rows.get());
+      png_read_end(calls_.png(), nullptr);
+    });
   }
 
  private:
-  static int channels_of(int color_type) {
-    switch (color_type) {
-      case SPNG_COLOR_TYPE_GRAYSCALE:
-        return 1;
-      case SPNG_COLOR_TYPE_GRAYSCALE_ALPHA:
-        return 2;
-      case SPNG_COLOR_TYPE_TRUECOLOR_ALPHA:
-        return 4;
-      default:
-        return 3;
-    }
+  static void read(png_structp png, png_bytep to, std::size_t size) {
+    auto& rest = *static_cast<std::string_view*>(png_get_io_ptr(png));
+    if (size > rest.size()) png_error(png, "the file ends early");
+    std::copy_n(rest.data(), size, to);
+    rest.remove_prefix(size);
   }
-  static void demand(int status) {
-    if (status != 0) refuse_damaged("PNG", spng_strerror(status));
+  template <class Body>
+  void demand(const Body& body) {
+    if (!calls_.succeed(body)) refuse_damaged("PNG", calls_.reason().c_str());
   }
 
-  std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> context_;
+  PngCalls calls_;
+  std::string_view rest_;
 };
 
 class Jpeg {
@@ -142,29 +148,26 @@ cv::Mat decode_gray(std::string_view bytes, cv::Size expected) {
 
 std::string encode_png(const cv::Mat& image) {
   check_equal(image.type(), CV_8UC1, "encode_png");
-  check(image.isContinuous(), "rows of an image to encode follow each other");
-  const std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> context(spng_ctx_new(SPNG_CTX_ENCODER),
-                                                               spng_ctx_free);
-  if (context == nullptr) throw std::bad_alloc();
-  const auto demand = [](int status) { check_equal(status, 0, spng_strerror(status)); };
-  demand(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
-  // Run-length coding suits noise: faster and smaller than the search for longer matches.
-  demand(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, 1));
-  demand(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_STRATEGY, Z_RLE));
-  spng_ihdr header{};
-  header.width = static_cast<std::uint32_t>(image.cols);
-  header.height = static_cast<std::uint32_t>(image.rows);
-  header.bit_depth = 8;
-  header.color_type = SPNG_COLOR_TYPE_GRAYSCALE;
-  demand(spng_set_ihdr(context.get(), &header));
-  demand(spng_encode_image(context.get(), image.data, image.total(), SPNG_FMT_PNG,
-                           SPNG_ENCODE_FINALIZE));
-  std::size_t size = 0;
-  int status = 0;
-  const std::unique_ptr<void, void (*)(void*)> bytes(
-      spng_get_png_buffer(context.get(), &size, &status), std::free);
-  demand(status);
-  return {static_cast<const char*>(bytes.get()), size};
+  PngCalls calls(PngCalls::Kind::Write);
+  std::string bytes;
+  const bool written = calls.succeed([&] {
+    const auto append = [](png_structp png, png_bytep from, std::size_t size) {
+      static_cast<std::string*>(png_get_io_ptr(png))
+          ->append(reinterpret_cast<const char*>(from), size);
+    };
+    png_set_write_fn(calls.png(), &bytes, append, nullptr);
+    // Run-length coding suits noise: faster and smaller than the search for longer matches.
+    png_set_compression_level(calls.png(), 1);
+    png_set_compression_strategy(calls.png(), Z_RLE);
+    png_set_IHDR(calls.png(), calls.info(), static_cast<png_uint_32>(image.cols),
+                 static_cast<png_uint_32>(image.rows), 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(calls.png(), calls.info());
+    for (int y = 0; y < image.rows; ++y) png_write_row(calls.png(), image.ptr(y));
+    png_write_end(calls.png(), nullptr);
+  });
+  check(written, calls.reason());
+  return bytes;
 }
 
 }  // namespace leviosim::traces
