@@ -50,14 +50,6 @@ UsefulCycles operator*(const UsefulCycles& b, double k) {
           b.arithmetic * k, b.fetch * k,    b.accelerator * k};
 }
 
-OperationsOfKind& OperationsOfKind::operator+=(const OperationsOfKind& o) {
-  count += o.count;
-  emitted += o.emitted;
-  used_at_once += o.used_at_once;
-  unmeasured += o.unmeasured;
-  return *this;
-}
-
 namespace {
 
 double part_of(const work::CompiledWork& work, Compiled part) {
@@ -89,12 +81,6 @@ CompiledRatios::CompiledRatios(const work::Counts& segment)
       loads_measured_(segment.compiled[static_cast<std::size_t>(Compiled::Loads)] > 0),
       used_at_once_(
           work::compiled_ratio(segment.compiled, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
-
-OperationsOfKind CompiledRatios::apply(Op op, double count) const {
-  const bool repeats = op == Op::LoopIteration || op == Op::LoopJump;
-  return {count, count * (repeats ? emitted_loops_ : emitted_), count * used_at_once_,
-          loads_measured_ ? 0 : count};
-}
 
 void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKind& operations,
                const CoreConfig& core) {

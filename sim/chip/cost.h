@@ -52,14 +52,24 @@ struct OperationsOfKind {
   double used_at_once = 0;  ///< of loads: those whose value the next instruction needs
   double unmeasured = 0;    ///< … of loads: those of which nobody knows
 
-  OperationsOfKind& operator+=(const OperationsOfKind& o);
+  OperationsOfKind& operator+=(const OperationsOfKind& o) {
+    count += o.count;
+    emitted += o.emitted;
+    used_at_once += o.used_at_once;
+    unmeasured += o.unmeasured;
+    return *this;
+  }
 };
 
 /// The ratios of one segment's compiled code.
 class CompiledRatios {
  public:
   explicit CompiledRatios(const work::Counts& segment);
-  OperationsOfKind apply(work::Op op, double count) const;
+  OperationsOfKind apply(work::Op op, double count) const {
+    const bool repeats = op == work::Op::LoopIteration || op == work::Op::LoopJump;
+    return {count, count * (repeats ? emitted_loops_ : emitted_), count * used_at_once_,
+            loads_measured_ ? 0 : count};
+  }
 
  private:
   double emitted_loops_;  ///< of what repeats loops

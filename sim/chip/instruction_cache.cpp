@@ -114,8 +114,7 @@ work::CodeReuse resized(const work::CodeReuse& code, double ratio) {
 double survival(double x) { return 1 / (1 + x * (1 + x * (0.5 + x / 6))); }
 
 /// Misses of one cache per fetch of a walk.
-/// @param missing  in: probability that a fetch of the class asks this cache; out: that it then
-/// lacks
+/// @param missing  in: probability that a fetch of the class asks this cache; out: that it lacks
 ///                 the line, too
 double misses_of(const Walk& walk, const CodeFetcher::Level& cache, OfClasses& missing) {
   constexpr int kMostRounds = 30;
@@ -182,8 +181,20 @@ double CodeFetcher::lines_executed(double instructions) const {
   return instructions * kInstructionBytes * code_size_ / line_;
 }
 
+std::size_t CodeFetcher::HashOfReuse::operator()(const work::CodeReuse& code) const {
+  std::uint64_t hash = 0;
+  for (const std::uint64_t bytes : code) hash = (hash ^ bytes) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 32);
+}
+
 CodeFetch CodeFetcher::fetch(const work::CodeReuse& code) const {
   if (line_ == 0) return {};
+  if (const auto found = known_.find(code); found != known_.end()) return found->second;
+  if (known_.size() == kMostKnown) known_.clear();
+  return known_[code] = solve(code);
+}
+
+CodeFetch CodeFetcher::solve(const work::CodeReuse& code) const {
   const Walk walk = walk_of(code_size_ == 1 ? code : resized(code, code_size_), line_);
   if (walk.lines == 0) return {};
   const bool is_private = own_.bytes > 0;

@@ -9,9 +9,8 @@
 //   k up to w. Functions lie in memory one behind the other, in an order by chance, so k varies
 //   from set to set.
 // * Other misses of the same work, of code that is new or in larger loops, hit these lines, too.
-// They
-//   come in bursts, when the core goes on to other code, and while a burst is worked off, half of
-//   what the cache holds is of use, on average: of M misses per fetch, a line is hit by
+//   They come in bursts, when the core goes on to other code, and while a burst is worked off, half
+//   of what the cache holds is of use, on average: of M misses per fetch, a line is hit by
 //   M d / 2 / size while it is not used.
 // * The shared cache is asked for what the private one lacks.
 //
@@ -26,6 +25,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <unordered_map>
 
 #include "sim/chip/config.h"
 #include "sim/work/counts.h"
@@ -45,7 +46,8 @@ struct CodeFetch {
   double refill_cycles = 0;  ///< for which it awaits them
 };
 
-/// The caches as one core sees them.
+/// The caches as one core sees them. Programs go round in loops, so the same code comes again and
+/// again; what it takes is remembered. Not for several host threads at once.
 class CodeFetcher {
  public:
   /// Caches of unlimited size.
@@ -68,6 +70,14 @@ class CodeFetcher {
   };
 
  private:
+  struct HashOfReuse {
+    std::size_t operator()(const work::CodeReuse& code) const;
+  };
+  /// Kept at most; then all are forgotten.
+  static constexpr std::size_t kMostKnown = 1 << 14;
+
+  CodeFetch solve(const work::CodeReuse& code) const;
+
   double line_ = 0;  ///< bytes; 0: fetching costs nothing
   double shared_hit_ = 0;
   double shared_miss_ = 0;
@@ -75,6 +85,7 @@ class CodeFetcher {
   double code_size_ = 1;
   Level own_;
   Level shared_;
+  mutable std::unordered_map<work::CodeReuse, CodeFetch, HashOfReuse> known_;
 };
 
 }  // namespace leviosim::sim
