@@ -143,6 +143,11 @@ void add_core(Table& table, const CoreSection& section) {
       [](auto& core) -> auto& { return core.instruction_overhead; });
   table.add_of_cores(
       section,
+      quantity(key("unmeasured_instructions"), kRatio, 0.1, 10,
+               "instructions executed per one accounted for by ops, in code that was not measured"),
+      [](auto& core) -> auto& { return core.unmeasured_instructions; });
+  table.add_of_cores(
+      section,
       quantity(key("load_use_fraction"), kRatio, 0, 1,
                "share of loads whose result the next instruction uses"),
       [](auto& core) -> auto& { return core.load_use_fraction; });

@@ -48,6 +48,8 @@ struct CoreConfig {
   /// Instructions emitted per one that ops account for, routines left out. Where functions were
   /// measured, their ratio (work::CompiledWork) comes on top.
   double instruction_overhead = 1;
+  /// Instructions executed per one that ops account for, in code that was not measured.
+  double unmeasured_instructions = 1;
   /// Share of loads whose result the next instruction uses, in code that was not measured.
   double load_use_fraction = 0;
   double load_use_stall = 0;  ///< cycles such a load waits

@@ -76,7 +76,8 @@ double ratio_of_others(const work::CompiledWork& work) {
 }  // namespace
 
 CompiledRatios::CompiledRatios(const work::Counts& segment)
-    : emitted_loops_(ratio_of_loops(segment.compiled)),
+    : measured_(is_measured(segment)),
+      emitted_loops_(ratio_of_loops(segment.compiled)),
       emitted_(ratio_of_others(segment.compiled)),
       loads_measured_(segment.compiled[static_cast<std::size_t>(Compiled::Loads)] > 0),
       used_at_once_(
@@ -86,12 +87,15 @@ void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKin
                const CoreConfig& core) {
   const OpCost& cost = core[info.op];
   // A routine was counted with its moves and spills.
-  to.issue += cost.issue *
-              (cost.routine ? operations.count : operations.emitted * core.instruction_overhead);
+  to.issue +=
+      cost.issue *
+      (cost.routine ? operations.count
+                    : (operations.emitted + operations.unmeasured * core.unmeasured_instructions) *
+                          core.instruction_overhead);
   to.*stall_breakdown(info.op) += operations.count * cost.stall;
   if (info.op == Op::LoadStream || info.op == Op::LoadIndexed)
     to.load_use += core.load_use_stall *
-                   (operations.used_at_once + operations.unmeasured * core.load_use_fraction);
+                   (operations.used_at_once + operations.unmeasured_loads * core.load_use_fraction);
 }
 
 Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {

@@ -48,18 +48,25 @@ struct Demand {
 /// Operations of one kind, with what their segments' compiled code makes of them.
 struct OperationsOfKind {
   double count = 0;
-  double emitted = 0;       ///< … each multiplied by executed to counted instructions
-  double used_at_once = 0;  ///< of loads: those whose value the next instruction needs
-  double unmeasured = 0;    ///< … of loads: those of which nobody knows
+  double emitted = 0;           ///< of measured code, times executed to counted instructions
+  double unmeasured = 0;        ///< of code that was not measured
+  double used_at_once = 0;      ///< of loads: those whose value the next instruction needs
+  double unmeasured_loads = 0;  ///< … of loads: those of which nobody knows
 
   OperationsOfKind& operator+=(const OperationsOfKind& o) {
     count += o.count;
     emitted += o.emitted;
-    used_at_once += o.used_at_once;
     unmeasured += o.unmeasured;
+    used_at_once += o.used_at_once;
+    unmeasured_loads += o.unmeasured_loads;
     return *this;
   }
 };
+
+/// Whether any function that a segment visits was measured as compiled code.
+inline bool is_measured(const work::Counts& segment) {
+  return segment.compiled[static_cast<std::size_t>(work::Compiled::Priced)] > 0;
+}
 
 /// The ratios of one segment's compiled code.
 class CompiledRatios {
@@ -67,11 +74,12 @@ class CompiledRatios {
   explicit CompiledRatios(const work::Counts& segment);
   OperationsOfKind apply(work::Op op, double count) const {
     const bool repeats = op == work::Op::LoopIteration || op == work::Op::LoopJump;
-    return {count, count * (repeats ? emitted_loops_ : emitted_), count * used_at_once_,
-            loads_measured_ ? 0 : count};
+    return {count, measured_ ? count * (repeats ? emitted_loops_ : emitted_) : 0,
+            measured_ ? 0 : count, count * used_at_once_, loads_measured_ ? 0 : count};
   }
 
  private:
+  bool measured_;
   double emitted_loops_;  ///< of what repeats loops
   double emitted_;        ///< of all else
   bool loads_measured_;

@@ -20,12 +20,30 @@ void StageBook::add_work(const work::Job& job) {
     StageResult& stage = find(run.stage);
     ++stage.calls;
     add_segments(run, stage);
+    add_unmeasured(run, stage);
     stage.transfers += work::transferred_by(run);
     stage.memory.single = std::max(stage.memory.single, run.memory.single);
     if (run.memory.parallel > stage.memory.parallel) {
       stage.memory.parallel = run.memory.parallel;
       stage.memory.blocks = run.memory.blocks;
     }
+  }
+}
+
+/// Its price for a core that runs alone, if no function that it visits was measured.
+double StageBook::unmeasured_cycles(const work::Segment& segment, bool on_controller) const {
+  if (sim::is_measured(segment)) return 0;
+  return on_controller ? sim::price(segment, controller_core_, controller_).cycles()
+                       : sim::price(segment, cluster_core_, cluster_).cycles();
+}
+
+void StageBook::add_unmeasured(const work::StageRun& run, StageResult& stage) const {
+  for (const work::Step& step : run.steps) {
+    if (const auto* serial = std::get_if<work::Serial>(&step))
+      stage.unmeasured += unmeasured_cycles(serial->counts, stage.on_controller);
+    if (const auto* fork = std::get_if<work::Fork>(&step))
+      for (const work::Segment& share : fork->shares)
+        stage.unmeasured += unmeasured_cycles(share, stage.on_controller);
   }
 }
 

@@ -17,7 +17,9 @@ class StageBook {
   StageBook(std::vector<StageResult> stages, const sim::ChipConfig& chip)
       : stages_(std::move(stages)),
         cluster_(chip.cluster.accelerators),
-        controller_(chip.controller.accelerators) {}
+        controller_(chip.controller.accelerators),
+        cluster_core_(chip.cluster.core),
+        controller_core_(chip.controller.core) {}
 
   /// What a job executed and occupied.
   void add_work(const work::Job& job);
@@ -30,10 +32,14 @@ class StageBook {
  private:
   StageResult& find(std::string_view name);
   void add_segments(const work::StageRun& run, StageResult& stage) const;
+  void add_unmeasured(const work::StageRun& run, StageResult& stage) const;
+  double unmeasured_cycles(const work::Segment& segment, bool on_controller) const;
 
   std::vector<StageResult> stages_;
   sim::Accelerators cluster_;
   sim::Accelerators controller_;
+  sim::CoreConfig cluster_core_;
+  sim::CoreConfig controller_core_;
 };
 
 }  // namespace leviosim::soc

@@ -74,6 +74,38 @@ TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
   EXPECT_EQ(stage.breakdown.serial, 1000);
 }
 
+TEST(RunFigures, TheBookSaysWhatRestsOnCodeThatWasNotMeasured) {
+  const sim::ChipConfig chip = platform::load_platform("gap9");
+  soc::StageBook book({}, chip);
+  work::Segment measured, unmeasured;
+  measured[work::Op::IntAlu] = unmeasured[work::Op::IntAlu] = 1000;
+  measured.compiled[static_cast<std::size_t>(work::Compiled::Executed)] = 900;
+  measured.compiled[static_cast<std::size_t>(work::Compiled::Priced)] = 900;
+  const work::Fork fork{"share", {measured, unmeasured}};
+  book.add_work({{{"matching", {work::Serial{measured}, fork, work::Serial{unmeasured}}, {}}}});
+  StageResult stage = book.stages().front();
+  const double cycles =
+      1000 * chip.cluster.core.instruction_overhead * chip.cluster.core.unmeasured_instructions;
+  EXPECT_DOUBLE_EQ(stage.unmeasured, 2 * cycles);
+  stage.single = Cycles(static_cast<std::int64_t>(4 * cycles));
+  EXPECT_NEAR(*unmeasured_share(stage), 0.5, 1e-3);
+  stage.single = Cycles(1);
+  EXPECT_EQ(unmeasured_share(stage), 1.0);
+  stage.single = Cycles(0);
+  EXPECT_EQ(unmeasured_share(stage), std::nullopt);
+}
+
+TEST(RunFigures, TheStageTableNamesStagesThatWereNotMeasured) {
+  RunResult run = testing::example_run();
+  EXPECT_EQ(stage_table(run, 200).find("not measured"), std::string::npos);
+  StageResult& stage = run.stages.front();
+  stage.unmeasured = 0.25 * static_cast<double>(stage.single.count());
+  EXPECT_NE(stage_table(run, 200).find("unmeasured_instructions): 25 % of " + stage.name),
+            std::string::npos);
+  stage.unmeasured = 0.002 * static_cast<double>(stage.single.count());
+  EXPECT_EQ(stage_table(run, 200).find("not measured"), std::string::npos);
+}
+
 TEST(RunFigures, TheBookAddsUpTransfers) {
   soc::StageBook book({}, platform::load_platform("gap9"));
   const work::Transfer in{work::Direction::L2ToL1, Bytes(100)};

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "platform_models/loader/loader.h"
 #include "sim/base/csv.h"
 #include "sim/work/op.h"
 #include "tests/support/named_functions.h"
@@ -22,6 +23,7 @@ const std::filesystem::path kSource = leviosim::tests::source_folder();
 struct Segment {
   std::string function, after;
   double lines, visits, refetches;
+  double executed = 0, priced = 0;  ///< of a visit; 0 where it was not measured
 };
 
 std::vector<Segment> segments() {
@@ -31,9 +33,13 @@ std::vector<Segment> segments() {
   const base::CsvRow* row = csv.next();
   EXPECT_EQ(row->text(0), "function");
   std::vector<Segment> result;
-  while ((row = csv.next()) != nullptr)
+  while ((row = csv.next()) != nullptr) {
     result.push_back({std::string(row->text(0)), std::string(row->text(1)), row->number(2),
                       row->number(3), row->number(4)});
+    if (row->text(5).empty()) continue;
+    result.back().executed = row->number(5);
+    result.back().priced = row->number(6);
+  }
   return result;
 }
 
@@ -49,6 +55,33 @@ TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   EXPECT_GT(names.size(), 50u);
   for (const std::string& name : names)
     EXPECT_TRUE(measured.contains(name)) << name << " has no footprint: run tools/rv32/measure.sh";
+}
+
+/// The range that code gets which was not measured: the middle four fifths of the work of code that
+/// was, by its ratio of executed to counted instructions.
+TEST(Rv32Code, TheRangeOfUnmeasuredCodeIsThatOfMeasuredCode) {
+  std::vector<std::pair<double, double>> works_of_ratios;
+  double all = 0;
+  for (const Segment& segment : segments()) {
+    if (!(segment.priced > 0)) continue;
+    const double work = segment.priced * segment.visits;
+    works_of_ratios.emplace_back(segment.executed / segment.priced, work);
+    all += work;
+  }
+  std::sort(works_of_ratios.begin(), works_of_ratios.end());
+  const auto quantile = [&](double share) {
+    double sum = 0;
+    for (const auto& [ratio, work] : works_of_ratios)
+      if ((sum += work) >= share * all) return ratio;
+    return works_of_ratios.back().first;
+  };
+  const platform::ResolvedPlatform gap9 = platform::resolve_platform("gap9");
+  const auto parameter =
+      std::find_if(gap9.parameters.begin(), gap9.parameters.end(),
+                   [](const auto& p) { return p.path == "isa.unmeasured_instructions"; });
+  ASSERT_NE(parameter, gap9.parameters.end());
+  EXPECT_NEAR(quantile(0.1), parameter->range->low, 0.05);
+  EXPECT_NEAR(quantile(0.9), parameter->range->high, 0.05);
 }
 
 TEST(Rv32Code, NamesNoFunctionThatTheWorkloadDoesNotHave) {

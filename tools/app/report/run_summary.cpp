@@ -149,7 +149,7 @@ std::string stage_lines(const RunResult& run, int rows, int width) {
     std::erase_if(stages, [&](const auto* stage) { return stage->parallel < least; });
     left_out = fmt::format("… {} more with fewer cycles\n", all - static_cast<int>(stages.size()));
   }
-  return stages_of(run, stages, "").str(width) + left_out;
+  return stages_of(run, stages, "").str(width) + left_out + unmeasured_note(run);
 }
 
 }  // namespace

@@ -42,6 +42,9 @@ void add_cycles(StatisticList& list, const std::string& path, const RunResult& r
   list.add(path + "cycles.parallel.worst", "cycles", "longest call on N cores",
            stage.worst_parallel.count());
   list.add(path + "speedup", "1", "one core over N cores", value_of(speedup(stage)));
+  list.add(path + "unmeasured", "1",
+           "share of the cycles on one core of code that was not measured as compiled code",
+           value_of(unmeasured_share(stage)));
   list.add(path + "time.parallel.mean", "ms", "of a call on N cores",
            parallel ? Json(milliseconds(*parallel, clock)) : Json(nullptr));
 }

@@ -1,6 +1,7 @@
 #include "tools/app/report/tables.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -171,6 +172,18 @@ TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>&
   return table;
 }
 
+std::string unmeasured_note(const RunResult& run) {
+  constexpr double kWorthMentioning = 0.01;
+  std::vector<std::string> shares;
+  for (const StageResult& stage : run.stages)
+    if (const auto share = unmeasured_share(stage); share && *share >= kWorthMentioning)
+      shares.push_back(fmt::format("{:.0f} % of {}", 100 * *share, stage.name));
+  if (shares.empty()) return "";
+  return fmt::format(
+      "not measured as compiled code, priced as counted (isa.unmeasured_instructions): {}\n",
+      fmt::join(shares, ", "));
+}
+
 std::string stage_table(const RunResult& run, int width) {
   std::vector<const StageResult*> all;
   for (const StageResult& stage : run.stages) all.push_back(&stage);
@@ -178,7 +191,8 @@ std::string stage_table(const RunResult& run, int width) {
                                              [](const StageResult& s) { return s.on_controller; });
   return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) +
          stages_of(run, all, " ¹").str(width) +
-         (any_on_controller ? "¹ on the fabric controller, which is one core\n" : "");
+         (any_on_controller ? "¹ on the fabric controller, which is one core\n" : "") +
+         unmeasured_note(run);
 }
 
 std::string breakdown_table(const RunResult& run, int width) {

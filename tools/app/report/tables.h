@@ -17,6 +17,10 @@ std::string stage_table(const RunResult& run, int width = table_width());
 
 /// The same for these stages, without a title. @param mark_of_controller  behind names of stages
 /// there
+/// A line that says of which stages a share worth mentioning has no measured code; empty if of
+/// none.
+std::string unmeasured_note(const RunResult& run);
+
 TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
                     std::string_view mark_of_controller);
 

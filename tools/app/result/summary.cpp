@@ -75,6 +75,12 @@ std::optional<double> speedup(const StageResult& stage) {
   return static_cast<double>(stage.single.count()) / static_cast<double>(stage.parallel.count());
 }
 
+std::optional<double> unmeasured_share(const StageResult& stage) {
+  if (stage.single.count() == 0) return std::nullopt;
+  // As one core runs them, words of some shares straddle less.
+  return std::min(1.0, stage.unmeasured / static_cast<double>(stage.single.count()));
+}
+
 Hertz clock_of(const RunResult& run, const StageResult& stage) {
   return stage.on_controller ? run.controller_clock : run.cluster_clock;
 }

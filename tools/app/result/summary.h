@@ -19,6 +19,9 @@ std::string key_of(std::string_view name);
 std::optional<double> mean(Cycles sum, std::int64_t calls);
 /// One core over N cores; absent if there were no calls.
 std::optional<double> speedup(const StageResult& stage);
+/// Of its cycles on one core, the share of work segments none of whose functions was measured as
+/// compiled code; absent if there were no calls.
+std::optional<double> unmeasured_share(const StageResult& stage);
 /// Of the domain that the stage runs in.
 Hertz clock_of(const RunResult& run, const StageResult& stage);
 double milliseconds(double cycles, Hertz clock);
