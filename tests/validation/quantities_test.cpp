@@ -166,12 +166,20 @@ TEST(ValidationNormalised, DividesSumsByUnitsAndTellsWhatWouldExplainThePaper) {
   }
 }
 
+std::size_t simulated_cells(const std::vector<InputDistribution>& distributions) {
+  std::size_t cells = 0;
+  for (const InputDistribution& distribution : distributions)
+    for (const std::optional<double>& cell : distribution.simulated) cells += cell ? 1 : 0;
+  return cells;
+}
+
 TEST(ValidationReport, FilesAndTablesHaveARowForEverything) {
   const Validation v =
       validate(example_run(), example_log(), vio::profile_named("levio", 1), paper_references());
   const std::string csv = validation_csv(v);
   const auto rows = static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n'));
-  EXPECT_EQ(rows, 1 + v.comparisons.size() + v.inputs.size() + 2 * v.normalised.size());
+  EXPECT_EQ(rows, 1 + v.comparisons.size() + v.inputs.size() + 2 * v.normalised.size() +
+                      simulated_cells(v.distributions));
   EXPECT_NE(csv.find("reference,compute.epnp_ransac.multi,kcycles,10899,40,"), std::string::npos);
   const Json json = validation_json(v);
   EXPECT_EQ(json.at("comparisons").size(), v.comparisons.size());
@@ -180,6 +188,9 @@ TEST(ValidationReport, FilesAndTablesHaveARowForEverything) {
   for (const PaperStage& s : kPaperStages)
     EXPECT_NE(text.find(std::string(s.title)), std::string::npos);
   EXPECT_NE(text.find("not covered"), std::string::npos);
+  EXPECT_EQ(json.at("distributions").size(), v.distributions.size());
+  for (const InputDistribution& distribution : v.distributions)
+    EXPECT_NE(text.find(distribution.quantity), std::string::npos);
 }
 
 }  // namespace

@@ -53,6 +53,11 @@ needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
 cut 'table "input, mean"'
 
+figure input-distributions
+needs data
+shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
+cut 'table input'
+
 figure breakdown
 needs data
 shows 'leviosim run --platform gap9 -p workload.released_rounding=on --data euroc/MH_01_easy_t05_t20 \

@@ -45,6 +45,7 @@ void FrameLog::on_front_end(const FrontEndJob& event) {
         stage.work.add(work::shares_on_one_core(*fork));
     }
   }
+  ransac_.add(event.job);
   if (event.result.keyframe) keyframe_features_ = event.result.features;
   frames_.push_back(std::move(frame));
 }

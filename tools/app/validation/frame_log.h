@@ -8,6 +8,7 @@
 
 #include "sim/chip/work_sum.h"
 #include "tools/app/run/run_observer.h"
+#include "tools/app/validation/ransac_samples.h"
 
 namespace leviosim::tools {
 
@@ -43,10 +44,12 @@ class FrameLog : public RunObserver {
   const std::vector<LoggedFrame>& frames() const { return frames_; }
   /// Of the optimiser, without the jobs that only bring in new keyframes.
   const std::vector<LoggedIteration>& iterations() const { return iterations_; }
+  const RansacSamples& ransac() const { return ransac_; }
 
  private:
   std::vector<LoggedFrame> frames_;
   std::vector<LoggedIteration> iterations_;
+  RansacSamples ransac_;
   int keyframe_features_ = 0;
 };
 

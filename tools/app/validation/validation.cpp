@@ -124,6 +124,7 @@ std::vector<Comparison> compare(const std::vector<Reference>& references,
 Validation validate(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
                     const std::vector<Reference>& references) {
   return {compare(references, quantities_of(run, log)), inputs_of(run, log, profile),
+          profile.name == "levio" ? input_distributions(log) : std::vector<InputDistribution>{},
           normalised(run, log, profile)};
 }
 
@@ -133,6 +134,11 @@ std::string validation_csv(const Validation& validation) {
   for (const InputFigure& input : validation.inputs)
     text += fmt::format("input,{},{},{},{},,,,,,{}\n", input.key, input.unit, cell(input.paper),
                         cell(input.value), input.source);
+  for (const InputDistribution& d : validation.distributions)
+    for (std::size_t i = 0; i < kDistributionColumns.size(); ++i)
+      if (d.simulated[i])
+        text += fmt::format("distribution,{}: {},,{},{},,,,,,\n", d.quantity,
+                            kDistributionColumns[i], cell(d.released[i]), cell(d.simulated[i]));
   for (const NormalisedFigure& n : validation.normalised) {
     const Value paper =
         n.paper_units && n.paper_single ? Value(*n.paper_single / *n.paper_units) : std::nullopt;
@@ -161,6 +167,15 @@ Json validation_json(const Validation& validation) {
     entry["paper"] = json(input.paper);
     entry["source"] = input.source;
     document["inputs"].push_back(std::move(entry));
+  }
+  document["distributions"] = Json::array();
+  for (const InputDistribution& d : validation.distributions) {
+    Json entry;
+    entry["quantity"] = d.quantity;
+    for (std::size_t i = 0; i < kDistributionColumns.size(); ++i)
+      entry[std::string(kDistributionColumns[i])] = {{"release", json(d.released[i])},
+                                                     {"value", json(d.simulated[i])}};
+    document["distributions"].push_back(std::move(entry));
   }
   document["normalised"] = Json::array();
   for (const NormalisedFigure& figure : validation.normalised)

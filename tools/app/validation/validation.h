@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/app/report/statistics.h"
+#include "tools/app/validation/input_distributions.h"
 #include "tools/app/validation/normalised.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
@@ -24,6 +25,7 @@ struct Comparison {
 struct Validation {
   std::vector<Comparison> comparisons;  ///< in the order of the references
   std::vector<InputFigure> inputs;
+  std::vector<InputDistribution> distributions;  ///< of `levio` only
   std::vector<NormalisedFigure> normalised;
 };
 

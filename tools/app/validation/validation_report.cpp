@@ -115,6 +115,27 @@ std::string input_table(const Validation& validation) {
   return "what the figures depend on\n" + table.str();
 }
 
+std::string distribution_table(const Validation& validation) {
+  if (validation.distributions.empty()) return "";
+  std::vector<TextTable::Column> columns{{"input", kLeft}, {"of", kLeft}};
+  for (const std::string_view column : kDistributionColumns)
+    columns.push_back({std::string(column)});
+  TextTable table(std::move(columns));
+  for (const InputDistribution& d : validation.distributions) {
+    const auto add = [&](std::string name, std::string program,
+                         const InputDistribution::Cells& values) {
+      std::vector<std::string> cells{std::move(name), std::move(program)};
+      for (const std::optional<double>& value : values) cells.push_back(readable(value));
+      table.add(std::move(cells));
+    };
+    add(d.quantity, "release", d.released);
+    add("", "this run", d.simulated);
+  }
+  return "inputs of the stages on these frames, and of the released program on the 300 of MH_01\n"
+         "(percentiles are linear between order statistics; shares are of frames, in per cent)\n" +
+         table.str() + "\n";
+}
+
 std::string normalised_table(const Validation& validation, int cores) {
   TextTable table({{"cycles of", kLeft},
                    {"for a", kLeft},
@@ -140,10 +161,10 @@ std::string validation_report(const Validation& validation, int cores) {
       validation.comparisons.begin(), validation.comparisons.end(), [](const Comparison& c) {
         return c.value && std::abs(*c.error()) <= c.reference.tolerance.value;
       });
-  return fmt::format("{}\n{}\n{}\n{}\n{} of {} references within their tolerance\n",
+  return fmt::format("{}\n{}\n{}\n{}{}\n{} of {} references within their tolerance\n",
                      compute_table(validation, cores), reference_table(validation),
-                     input_table(validation), normalised_table(validation, cores), within,
-                     validation.comparisons.size());
+                     input_table(validation), distribution_table(validation),
+                     normalised_table(validation, cores), within, validation.comparisons.size());
 }
 
 }  // namespace leviosim::tools
