@@ -20,9 +20,11 @@ extern "C" void* byte_memset(void* to, int value, std::size_t n);
 #ifdef __arm__
 #define LEVIOSIM_MARK_BEGIN "nop\n"
 #define LEVIOSIM_MARK_END "nop\n"
+#define LEVIOSIM_MARK_NAMES "%c0, %c1"
 #else
 #define LEVIOSIM_MARK_BEGIN ".half 0x4005\n"
 #define LEVIOSIM_MARK_END ".half 0x4009\n"
+#define LEVIOSIM_MARK_NAMES "%0, %1"
 #endif
 
 namespace leviosim::work {
@@ -33,7 +35,8 @@ struct CodeScope<false> {
   [[gnu::always_inline]] explicit CodeScope(CodeName name, const char* source = "") {
     asm volatile inline("7: " LEVIOSIM_MARK_BEGIN
                         ".pushsection .leviosim_marks,\"?\",%%progbits\n"
-                        ".word 7b, %c0, %c1\n"
+                        ".word 7b, " LEVIOSIM_MARK_NAMES
+                        "\n"
                         ".popsection"
                         :
                         : "i"(name.text), "i"(source)

@@ -339,6 +339,34 @@ def write_stages(trace, here):
     write_csv(here / "static_lines.csv", STATIC_HEADER, ["what", "name", "lines"], sorted(static))
 
 
+FUNCTIONS_PAGE = """\
+# Executed against counted on %s
+
+Per visit of a named function itself, all scenes, without routines of the library. *Executed*: slots that the trace issues
+(`slots` in report.py). *Counted*: operations at the prices of `%s`. *At once*: loads whose value the next instruction needs.
+
+| function | visits | counted | executed | ratio | loads | at once |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: |
+"""
+
+
+def write_functions_page(compiled, visits, isa, path):
+    """@param compiled  compiled_work()
+    @param visits    by function"""
+    def row(name, n, executed, priced, loads, at_once):
+        ratio = f"{executed / priced:.2f}" if priced else "–"
+        part = f"{100 * at_once / loads:.0f} %" if loads else "–"
+        return f"| {name} | {n:,} | {priced:,.0f} | {executed:,.0f} | {ratio} | {loads:,.0f} | {part} |\n"
+
+    with open(path, "w") as out:
+        out.write(f"<!-- {GENERATED} -->\n" + FUNCTIONS_PAGE % (isa.title, isa.price_file))
+        total = [sum(visits[f] * work[i] for f, work in compiled.items()) for i in range(4)]
+        out.write(row("all, in total", sum(visits[f] for f in compiled), *total))
+        for function in sorted(compiled, key=lambda f: -visits[f] * compiled[f][1]):
+            if not function.startswith(SCENE):
+                out.write(row(f"`{function}`", visits[function], *compiled[function][:4]))
+
+
 # ---- counted against executed ----
 
 def class_totals(kinds, calls):
@@ -536,9 +564,11 @@ def main():
     compiled = compiled_work(in_counted_flow(contracted, uncontracted),
                              copied_and_cleared(uncontracted), counts, isa)
     write_footprints(contracted, hard, compiled, isa, root / f"platform_models/code/{arguments.isa}.csv")
-    if arguments.isa != "rv32imfc":
-        return
     here = root / "tools/rv32"
+    if arguments.isa != "rv32imfc":
+        visits = {function: n["visits"] for function, n in by_function(counts).items()}
+        write_functions_page(compiled, visits, isa, here / f"{arguments.isa}.md")
+        return
     costs = read_costs(here / "rv32imfc_costs.csv")
     write_stages(contracted, here)
     write_units(contracted, uncontracted, read_counts(arguments.counts, "inclusive"), costs, here)
