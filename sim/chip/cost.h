@@ -64,7 +64,7 @@ struct OperationsOfKind {
 /// The ratios of one segment's compiled code.
 class CompiledRatios {
  public:
-  explicit CompiledRatios(const work::Counts& segment);
+  CompiledRatios(const work::Counts& segment, work::CompiledFor code);
   OperationsOfKind apply(work::Op op, double count) const {
     const bool repeats = op == work::Op::LoopIteration || op == work::Op::LoopJump;
     return {count, count * (repeats ? emitted_loops_ : emitted_), count * used_at_once_,
@@ -72,6 +72,8 @@ class CompiledRatios {
   }
 
  private:
+  explicit CompiledRatios(const work::CompiledWork& work);
+
   double emitted_loops_;  ///< of what repeats loops
   double emitted_;        ///< of all else
   bool loads_measured_;

@@ -1,5 +1,6 @@
 // The tables that tools/rv32/measure.sh leaves in the repository fit the sources they were made
 // from. Nothing is compiled or traced here.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +8,11 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/base/csv.h"
+#include "sim/work/compiled_work.h"
 #include "sim/work/op.h"
 #include "tests/support/named_functions.h"
 #include "tests/support/paths.h"
@@ -24,8 +27,14 @@ struct Segment {
   double lines, visits, refetches;
 };
 
-std::vector<Segment> segments() {
-  base::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", base::Separator::comma,
+/// The tables of all instruction sets have the same functions.
+class CompiledTables : public ::testing::TestWithParam<std::string_view> {};
+INSTANTIATE_TEST_SUITE_P(All, CompiledTables, ::testing::ValuesIn(work::kCompiledFor),
+                         [](const auto& set) { return std::string(set.param); });
+
+std::vector<Segment> segments(std::string_view table) {
+  base::CsvReader csv(kSource / fmt::format("platform_models/code/{}.csv", table),
+                      base::Separator::comma,
                       {"function", "after", "lines", "visits", "refetches", "executed", "priced",
                        "loads", "used_at_once", "executed_loops", "priced_loops"});
   const base::CsvRow* row = csv.next();
@@ -41,9 +50,9 @@ const std::set<std::string> kLibrary = {"f64_add",    "f64_sub",     "f64_mul",
                                         "f64_div",    "f64_compare", "f64_widen",
                                         "f64_narrow", "popcount",    "memset"};
 
-TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
+TEST_P(CompiledTables, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   std::set<std::string> measured;
-  for (const Segment& segment : segments())
+  for (const Segment& segment : segments(GetParam()))
     if (segment.after.empty()) measured.insert(segment.function);
   const std::set<std::string> names = leviosim::tests::named_functions();
   EXPECT_GT(names.size(), 50u);
@@ -51,17 +60,17 @@ TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
     EXPECT_TRUE(measured.contains(name)) << name << " has no footprint: run tools/rv32/measure.sh";
 }
 
-TEST(Rv32Code, NamesNoFunctionThatTheWorkloadDoesNotHave) {
+TEST_P(CompiledTables, NamesNoFunctionThatTheWorkloadDoesNotHave) {
   const std::set<std::string> names = leviosim::tests::named_functions();
-  for (const Segment& segment : segments()) {
+  for (const Segment& segment : segments(GetParam())) {
     EXPECT_TRUE(names.contains(segment.function) || kLibrary.contains(segment.function))
         << segment.function << " is gone: run tools/rv32/measure.sh";
     EXPECT_TRUE(segment.after.empty() || names.contains(segment.after)) << segment.after;
   }
 }
 
-TEST(Rv32Code, IsSortedWithoutRepetitionAndPlausible) {
-  const std::vector<Segment> table = segments();
+TEST_P(CompiledTables, IsSortedWithoutRepetitionAndPlausible) {
+  const std::vector<Segment> table = segments(GetParam());
   for (std::size_t i = 0; i < table.size(); ++i) {
     const Segment& segment = table[i];
     EXPECT_GE(segment.lines, 0) << segment.function;

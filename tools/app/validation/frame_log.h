@@ -37,6 +37,10 @@ struct LoggedIteration {
 
 class FrameLog : public RunObserver {
  public:
+  /// @param code  of the cores that the work is priced for
+  explicit FrameLog(work::CompiledFor code) : code_(code) {}
+  FrameLog() = default;
+
   void on_front_end(const FrontEndJob& event) override;
   void on_optimiser(const OptimiserJob& event) override;
 
@@ -45,6 +49,7 @@ class FrameLog : public RunObserver {
   const std::vector<LoggedIteration>& iterations() const { return iterations_; }
 
  private:
+  work::CompiledFor code_ = work::CompiledFor::Rv32imfc;
   std::vector<LoggedFrame> frames_;
   std::vector<LoggedIteration> iterations_;
   int keyframe_features_ = 0;
