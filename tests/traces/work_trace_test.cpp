@@ -352,7 +352,7 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   std::string damaged = whole;
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
-  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 6", "up to 5", "newer"});
+  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 7", "up to 6", "newer"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});
@@ -368,6 +368,14 @@ TEST(WorkTrace, RefusesOperationsItDoesNotKnow) {
   ASSERT_NE(at, std::string::npos);
   contents[0].replace(at, 7, "f32_fmx");
   expect_input_error([&] { WorkTrace("t", trace_of(contents)); }, {"operation 'f32_fmx'"});
+}
+
+TEST(WorkTrace, RefusesInstructionSetsItDoesNotKnow) {
+  std::vector<std::string> contents = contents_of(example_trace(2));
+  const std::size_t at = contents[0].find("thumb2");
+  ASSERT_NE(at, std::string::npos);
+  contents[0].replace(at, 6, "thumb3");
+  expect_input_error([&] { WorkTrace("t", trace_of(contents)); }, {"instruction set 'thumb3'"});
 }
 
 }  // namespace
