@@ -43,8 +43,8 @@ std::uint32_t bytes_in(std::string_view cell, const std::string& where) {
 }
 
 /// The last columns of a row; none if they are empty.
-work::CompiledWork compiled_in(const std::vector<std::string>& cells, const std::string& where) {
-  work::CompiledWork compiled{};
+work::CompiledSets compiled_in(const std::vector<std::string>& cells, const std::string& where) {
+  work::CompiledSets compiled{};
   if (cells[kFirstCompiled].empty()) return compiled;
   for (std::size_t i = 0; i < work::kCompiledCount; ++i)
     compiled[i] = static_cast<std::uint64_t>(std::llround(
@@ -109,9 +109,59 @@ work::CodeMap code_map_named(std::string_view name) {
                   name, fmt::join(names, ", ")));
 }
 
+namespace {
+
+/// The tables of all instruction sets, by work::CompiledFor.
+const std::vector<work::CodeMap>& tables() {
+  static const std::vector<work::CodeMap> all = [] {
+    std::vector<work::CodeMap> read;
+    for (const std::string_view name : work::kCompiledFor) read.push_back(code_map_named(name));
+    return read;
+  }();
+  return all;
+}
+
+const work::CodeMap& table_of(work::CompiledFor set) {
+  return tables()[static_cast<std::size_t>(set)];
+}
+
+/// In the table of `set`, or else in that of kCompiledCode.
+work::CompiledWork executed_by(const work::CodeMap::Piece& piece, work::CompiledFor set) {
+  const work::CompiledWork own = work::compiled_of(piece.compiled, work::CompiledFor::Rv32imfc);
+  const work::CodeMap& table = table_of(set);
+  const int there = table.find(piece.key);
+  if (there == work::CodeMap::kUnknown) return own;
+  const work::CompiledWork measured = work::compiled_of(
+      table.pieces()[static_cast<std::size_t>(there)].compiled, work::CompiledFor::Rv32imfc);
+  return measured == work::CompiledWork{} ? own : measured;
+}
+
+}  // namespace
+
 const work::CodeMap& compiled_code() {
-  static const work::CodeMap map = code_map_named(kCompiledCode);
-  return map;
+  static const work::CodeMap all = [] {
+    work::CodeMap map = code_map_named(kCompiledCode);
+    for (std::size_t i = 0; i < map.pieces().size(); ++i)
+      for (std::size_t k = 1; k < work::kCompiledFor.size(); ++k) {
+        const auto set = static_cast<work::CompiledFor>(k);
+        map.set_compiled(static_cast<int>(i), set, executed_by(map.pieces()[i], set));
+      }
+    return map;
+  }();
+  return all;
+}
+
+double size_of_code(work::CompiledFor set) {
+  if (set == work::CompiledFor::Rv32imfc) return 1;
+  const work::CodeMap& table = table_of(set);
+  double bytes = 0, bytes_rv32 = 0;
+  for (const work::CodeMap::Piece& piece : table_of(work::CompiledFor::Rv32imfc).pieces()) {
+    const int there = table.find(piece.key);
+    if (there == work::CodeMap::kUnknown) continue;
+    bytes += table.pieces()[static_cast<std::size_t>(there)].bytes;
+    bytes_rv32 += piece.bytes;
+  }
+  return bytes / bytes_rv32;
 }
 
 }  // namespace leviosim::platform

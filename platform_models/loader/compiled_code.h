@@ -9,13 +9,19 @@
 
 namespace leviosim::platform {
 
-/// The table that all chips take the workload's code from: as compiled for RV32IMFC.
+/// The table that sizes of the workload's code are taken from: as compiled for RV32IMFC.
 inline constexpr std::string_view kCompiledCode = "rv32imfc";
 
-/// The pieces of all named functions of the workload, of the table kCompiledCode.
+/// The pieces of all named functions of the workload, of the table kCompiledCode, with what they
+/// execute as compiled for each of work::kCompiledFor. What was not measured there is that of
+/// kCompiledCode.
 const work::CodeMap& compiled_code();
 
-/// Of the table code/NAME.csv.
+/// Bytes of code as compiled for that instruction set for each one of the table kCompiledCode: of
+/// the pieces that are in both.
+double size_of_code(work::CompiledFor set);
+
+/// Of the table code/NAME.csv; what it executes is told as that of kCompiledCode.
 /// @throws InputError with the tables that there are if there is none of this name
 work::CodeMap code_map_named(std::string_view name);
 

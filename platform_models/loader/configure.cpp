@@ -1,5 +1,7 @@
 #include "platform_models/loader/configure.h"
 
+#include "platform_models/loader/compiled_code.h"
+
 namespace leviosim::platform {
 
 sim::ChipConfig configure(const Schema& schema, const std::string& name, const Settings& settings) {
@@ -15,6 +17,8 @@ sim::ChipConfig configure(const Schema& schema, const std::string& name, const S
     const double factor = field.dimension->find(setting->parameter.unit)->factor;
     field.set_band(config, range->low * factor, range->high * factor);
   }
+  config.cluster.icache.measured_size = size_of_code(config.cluster.core.code);
+  config.controller.icache.measured_size = size_of_code(config.controller.core.code);
   return config;
 }
 

@@ -155,6 +155,11 @@ void add_core(Table& table, const CoreSection& section) {
       section,
       quantity(key("load_use_stall"), kCycles, 0, kMaxCost, "cycles that such a load waits"),
       [](auto& core) -> auto& { return core.load_use_stall; });
+  table.add_of_cores(
+      section,
+      optional(choice(key("code"), {work::kCompiledFor.begin(), work::kCompiledFor.end()},
+                      "table of compiled code that the cores execute: platform_models/code/")),
+      [](auto& core) -> auto& { return core.code; });
   for (const work::OpInfo& info : work::kOps) add_operation(table, section, info);
 }
 

@@ -7,10 +7,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "sim/base/units.h"
 #include "sim/chip/energy_config.h"
+#include "sim/work/compiled_work.h"
 #include "sim/work/offload_regions.h"
 #include "sim/work/op.h"
 
@@ -52,7 +54,8 @@ struct CoreConfig {
   double unmeasured_instructions = 1;
   /// Share of loads whose result the next instruction uses, in code that was not measured.
   double load_use_fraction = 0;
-  double load_use_stall = 0;  ///< cycles such a load waits
+  double load_use_stall = 0;                             ///< cycles such a load waits
+  work::CompiledFor code = work::CompiledFor::Rv32imfc;  ///< whose measured code it executes
 
   const OpCost& operator[](work::Op op) const { return ops[work::index(op)]; }
 };
@@ -85,6 +88,9 @@ struct InstructionCacheConfig {
   double refills = 1;      ///< lines that the shared cache can await from L2 at once
   int ways = 4;            ///< lines of a set, in all caches
   double code_size = 1;    ///< bytes of code for each one that was measured
+  /// Measured bytes of the cores' code for each byte of work::Counts::code. Follows from
+  /// CoreConfig::code.
+  double measured_size = 1;
 };
 
 struct L1Config {
@@ -164,5 +170,11 @@ struct ChipConfig {
   SupplyConfig supply{};
   EnergyRange energy{};
 };
+
+/// The compiled code that all cores execute; none if they differ.
+inline std::optional<work::CompiledFor> code_of(const ChipConfig& chip) {
+  if (chip.cluster.core.code != chip.controller.core.code) return {};
+  return chip.cluster.core.code;
+}
 
 }  // namespace leviosim::sim

@@ -75,13 +75,15 @@ double ratio_of_others(const work::CompiledWork& work) {
 
 }  // namespace
 
-CompiledRatios::CompiledRatios(const work::Counts& segment)
-    : measured_(is_measured(segment)),
-      emitted_loops_(ratio_of_loops(segment.compiled)),
-      emitted_(ratio_of_others(segment.compiled)),
-      loads_measured_(segment.compiled[static_cast<std::size_t>(Compiled::Loads)] > 0),
-      used_at_once_(
-          work::compiled_ratio(segment.compiled, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
+CompiledRatios::CompiledRatios(const work::Counts& segment, work::CompiledFor code)
+    : CompiledRatios(work::compiled_of(segment.compiled, code)) {}
+
+CompiledRatios::CompiledRatios(const work::CompiledWork& work)
+    : measured_(is_measured(work)),
+      emitted_loops_(ratio_of_loops(work)),
+      emitted_(ratio_of_others(work)),
+      loads_measured_(work[static_cast<std::size_t>(Compiled::Loads)] > 0),
+      used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
 
 void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKind& operations,
                const CoreConfig& core) {
@@ -100,7 +102,7 @@ void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKin
 
 Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {
   Demand demand;
-  const CompiledRatios ratios(counts);
+  const CompiledRatios ratios(counts, core.code);
   for (const work::OpInfo& info : work::kOps) {
     if (counts[info.op] == 0) continue;  // as most are in a short segment
     const auto n = static_cast<double>(counts[info.op]);

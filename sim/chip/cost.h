@@ -63,15 +63,15 @@ struct OperationsOfKind {
   }
 };
 
-/// Whether any function that a segment visits was measured as compiled code.
-inline bool is_measured(const work::Counts& segment) {
-  return segment.compiled[static_cast<std::size_t>(work::Compiled::Priced)] > 0;
+/// Whether any of the functions that work visits was measured as compiled code.
+inline bool is_measured(const work::CompiledWork& work) {
+  return work[static_cast<std::size_t>(work::Compiled::Priced)] > 0;
 }
 
 /// The ratios of one segment's compiled code.
 class CompiledRatios {
  public:
-  explicit CompiledRatios(const work::Counts& segment);
+  CompiledRatios(const work::Counts& segment, work::CompiledFor code);
   OperationsOfKind apply(work::Op op, double count) const {
     const bool repeats = op == work::Op::LoopIteration || op == work::Op::LoopJump;
     return {count, measured_ ? count * (repeats ? emitted_loops_ : emitted_) : 0,
@@ -79,6 +79,8 @@ class CompiledRatios {
   }
 
  private:
+  explicit CompiledRatios(const work::CompiledWork& work);
+
   bool measured_;
   double emitted_loops_;  ///< of what repeats loops
   double emitted_;        ///< of all else

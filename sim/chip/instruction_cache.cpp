@@ -172,7 +172,7 @@ CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sh
       shared_hit_(config.shared_hit),
       shared_miss_(config.shared_miss),
       sharers_(sharers),
-      code_size_(config.code_size),
+      code_size_(config.code_size * config.measured_size),
       own_(level_of(own, config.line, config.ways)),
       shared_(level_of(config.shared, config.line, config.ways)) {}
 

@@ -2,8 +2,8 @@
 
 namespace leviosim::sim {
 
-void WorkSum::add(const work::Counts& segment) {
-  const CompiledRatios ratios(segment);
+void WorkSum::add(const work::Counts& segment, work::CompiledFor code) {
+  const CompiledRatios ratios(segment, code);
   for (std::size_t i = 0; i < work::kOpCount; ++i)
     if (segment.n[i] > 0)
       kinds_[i] += ratios.apply(work::kOps[i].op, static_cast<double>(segment.n[i]));

@@ -12,9 +12,10 @@ namespace leviosim::sim {
 class WorkSum {
  public:
   WorkSum() = default;
-  explicit WorkSum(const work::Counts& segment) { add(segment); }
+  WorkSum(const work::Counts& segment, work::CompiledFor code) { add(segment, code); }
 
-  void add(const work::Counts& segment);
+  /// @param code  of the cores that it will be priced for
+  void add(const work::Counts& segment, work::CompiledFor code);
   WorkSum& operator+=(const WorkSum& other);
 
   double count(work::Op op) const { return kinds_[work::index(op)].count; }

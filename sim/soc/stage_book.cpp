@@ -32,9 +32,9 @@ void StageBook::add_work(const work::Job& job) {
 
 /// Its price for a core that runs alone, if no function that it visits was measured.
 double StageBook::unmeasured_cycles(const work::Segment& segment, bool on_controller) const {
-  if (sim::is_measured(segment)) return 0;
-  return on_controller ? sim::price(segment, controller_core_, controller_).cycles()
-                       : sim::price(segment, cluster_core_, cluster_).cycles();
+  const sim::CoreConfig& core = on_controller ? controller_core_ : cluster_core_;
+  if (sim::is_measured(work::compiled_of(segment.compiled, core.code))) return 0;
+  return sim::price(segment, core, on_controller ? controller_ : cluster_).cycles();
 }
 
 void StageBook::add_unmeasured(const work::StageRun& run, StageResult& stage) const {

@@ -9,7 +9,7 @@
 namespace leviosim::work {
 
 void CodeMap::add(std::string_view function, std::string_view after, std::uint32_t bytes,
-                  std::uint32_t again_bytes, const CompiledWork& compiled) {
+                  std::uint32_t again_bytes, const CompiledSets& compiled) {
   const std::uint32_t then = after.empty() ? kEntry : CodeName(after).key;
   const std::uint64_t key = piece_key(CodeName(function).key, then);
   check(find(key) == kUnknown,

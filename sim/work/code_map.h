@@ -37,13 +37,18 @@ class CodeMap {
     std::uint64_t key;
     std::uint32_t bytes;        ///< distinct ones, fetched in a visit
     std::uint32_t again_bytes;  ///< fetched again in the same visit, by a loop about as large
-    CompiledWork compiled{};    ///< of a visit of the whole function; of pieces after entry only
+    CompiledSets compiled{};    ///< of a visit of the whole function; of pieces after entry only
   };
 
   /// Adds the piece of `function` that runs after `after` has returned; after entry if that is
   /// empty. Each piece once; two names with the same hash are an internal fault.
   void add(std::string_view function, std::string_view after, std::uint32_t bytes,
-           std::uint32_t again_bytes = 0, const CompiledWork& compiled = {});
+           std::uint32_t again_bytes = 0, const CompiledSets& compiled = {});
+
+  /// What a piece that is there executes as compiled for another instruction set.
+  void set_compiled(int piece, CompiledFor set, const CompiledWork& compiled) {
+    work::set_compiled(pieces_[static_cast<std::size_t>(piece)].compiled, set, compiled);
+  }
 
   static constexpr std::uint64_t piece_key(std::uint32_t function, std::uint32_t after) {
     return (std::uint64_t{function} << 32) | after;

@@ -53,7 +53,7 @@ void CodeTracker::settle() {
     Step& step = steps_[index(number)];
     for (std::uint32_t i = step.fetches.begin; i != step.fetches.end; ++i)
       tally.code[fetches_[i].reuse] += std::uint64_t{step.uses} * fetches_[i].bytes;
-    for (std::size_t i = 0; i < kCompiledCount; ++i)
+    for (std::size_t i = 0; i < step.compiled.size(); ++i)
       tally.compiled[i] += std::uint64_t{step.uses} * step.compiled[i];
     step.uses = 0;
   }
@@ -131,7 +131,7 @@ void CodeTracker::visit(Place& place, std::uint64_t piece_key) {
   else
     add(kNeverFetched, code.bytes);
   if (code.again_bytes > 0) for_reuse_classes(code.bytes, code.again_bytes, add);
-  for (std::size_t i = 0; i < kCompiledCount; ++i) entered_[i] += code.compiled[i];
+  for (std::size_t i = 0; i < entered_.size(); ++i) entered_[i] += code.compiled[i];
 }
 
 void CodeTracker::merge_fetches(std::size_t first) {

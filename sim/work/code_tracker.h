@@ -64,7 +64,7 @@ class CodeTracker {
     Range fetches;
     std::uint32_t next_state;
     std::int32_t sibling;    ///< another step out of the same state
-    CompiledWork compiled;   ///< of the functions entered
+    CompiledSets compiled;   ///< of the functions entered
     std::uint32_t uses = 0;  ///< not settled yet
   };
   struct Fetch {
@@ -91,7 +91,7 @@ class CodeTracker {
   std::vector<Fetch> fetches_;           ///< of all steps
   std::vector<std::int32_t> unsettled_;  ///< steps in use
   std::unordered_multimap<std::uint64_t, std::uint32_t> state_of_hash_;
-  CompiledWork entered_{};  ///< of the step that is being added
+  CompiledSets entered_{};  ///< of the step that is being added
   std::set<std::uint64_t> without_size_;
   std::vector<EventsOfSegments>* kept_ = nullptr;
   std::size_t core_ = 0;                        ///< the one selected

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace leviosim::work {
 
@@ -28,6 +29,24 @@ inline constexpr std::size_t kCompiledCount = 6;
 /// Sums over visits of functions, in units of 1 / kCompiledUnit so that they are whole.
 using CompiledWork = std::array<std::uint64_t, kCompiledCount>;
 inline constexpr double kCompiledUnit = 16;
+
+/// What the workload was compiled for and measured on, by the names of platform_models/code/*.csv.
+enum class CompiledFor : std::uint8_t { Rv32imfc, Thumb2, Armv6 };
+inline constexpr std::array<std::string_view, 3> kCompiledFor = {"rv32imfc", "thumb2", "armv6"};
+
+/// The sums of all of these, one after the other: work is counted once for all chips.
+using CompiledSets = std::array<std::uint64_t, kCompiledFor.size() * kCompiledCount>;
+
+inline CompiledWork compiled_of(const CompiledSets& sets, CompiledFor set) {
+  CompiledWork work;
+  for (std::size_t i = 0; i < kCompiledCount; ++i)
+    work[i] = sets[static_cast<std::size_t>(set) * kCompiledCount + i];
+  return work;
+}
+inline void set_compiled(CompiledSets& sets, CompiledFor set, const CompiledWork& work) {
+  for (std::size_t i = 0; i < kCompiledCount; ++i)
+    sets[static_cast<std::size_t>(set) * kCompiledCount + i] = work[i];
+}
 
 /// The ratio of two sums.
 /// @return `otherwise` if no function was measured

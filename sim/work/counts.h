@@ -14,7 +14,7 @@ namespace leviosim::work {
 struct Counts {
   std::array<std::uint64_t, kOpCount> n{};
   CodeReuse code{};         ///< bytes of code fetched, by reuse distance
-  CompiledWork compiled{};  ///< of the functions visited
+  CompiledSets compiled{};  ///< of the functions visited
 
   constexpr std::uint64_t operator[](Op op) const { return n[index(op)]; }
   constexpr std::uint64_t& operator[](Op op) { return n[index(op)]; }
@@ -22,7 +22,7 @@ struct Counts {
   constexpr Counts& operator+=(const Counts& other) {
     for (std::size_t i = 0; i < kOpCount; ++i) n[i] += other.n[i];
     for (std::size_t i = 0; i < kReuseClasses; ++i) code[i] += other.code[i];
-    for (std::size_t i = 0; i < kCompiledCount; ++i) compiled[i] += other.compiled[i];
+    for (std::size_t i = 0; i < compiled.size(); ++i) compiled[i] += other.compiled[i];
     return *this;
   }
   friend constexpr Counts operator+(Counts a, const Counts& b) { return a += b; }

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
 
 namespace leviosim::platform {
@@ -16,6 +19,50 @@ TEST(CompiledCode, IsTheTableOfItsName) {
     EXPECT_EQ(compiled_code().pieces()[i].key, named.pieces()[i].key);
 }
 
+work::CompiledWork executed(const work::CodeMap& map, std::string_view function,
+                            work::CompiledFor set) {
+  const int piece =
+      map.find(work::CodeMap::piece_key(work::CodeName(function).key, work::CodeMap::kEntry));
+  EXPECT_NE(piece, work::CodeMap::kUnknown) << function;
+  return work::compiled_of(map.pieces().at(static_cast<std::size_t>(piece)).compiled, set);
+}
+
+/// A table by itself says what it says as that of the first instruction set.
+TEST(CompiledCode, HasWhatEachInstructionSetExecutes) {
+  for (std::size_t k = 0; k < work::kCompiledFor.size(); ++k) {
+    const auto set = static_cast<work::CompiledFor>(k);
+    const work::CodeMap table = code_map_named(work::kCompiledFor[k]);
+    for (const char* function : {"harris_response", "solve_gauss", "is_fast_corner"})
+      EXPECT_EQ(executed(compiled_code(), function, set),
+                executed(table, function, work::CompiledFor::Rv32imfc))
+          << function;
+  }
+}
+
+TEST(CompiledCode, HasSizesByInstructionSet) {
+  EXPECT_EQ(size_of_code(work::CompiledFor::Rv32imfc), 1);
+  const double thumb2 = size_of_code(work::CompiledFor::Thumb2);
+  EXPECT_GT(thumb2, 0.6);
+  EXPECT_LT(thumb2, 1.4);
+  EXPECT_GT(size_of_code(work::CompiledFor::Armv6), thumb2);
+}
+
+TEST(CompiledCode, IsChosenByTheInstructionSetOfTheChip) {
+  const std::map<std::string, work::CompiledFor> expected = {
+      {"gap9", work::CompiledFor::Rv32imfc},
+      {"gap8", work::CompiledFor::Rv32imfc},
+      {"cortex-m4f", work::CompiledFor::Thumb2},
+      {"cortex-m7", work::CompiledFor::Thumb2},
+      {"arm1176", work::CompiledFor::Armv6}};
+  for (const auto& [name, set] : expected) {
+    const sim::ChipConfig chip = resolve_platform(name).config;
+    EXPECT_EQ(chip.cluster.core.code, set) << name;
+    EXPECT_EQ(chip.controller.core.code, set) << name;
+    EXPECT_EQ(chip.cluster.icache.measured_size, size_of_code(set)) << name;
+    EXPECT_EQ(chip.controller.icache.measured_size, size_of_code(set)) << name;
+  }
+}
+
 TEST(CompiledCode, OfAnotherNameIsRefusedWithThoseThatThereAre) {
   try {
     code_map_named("rv32imac");
@@ -23,7 +70,7 @@ TEST(CompiledCode, OfAnotherNameIsRefusedWithThoseThatThereAre) {
   } catch (const InputError& error) {
     const std::string text = error.what();
     EXPECT_NE(text.find("'rv32imac'"), std::string::npos) << text;
-    EXPECT_NE(text.find("there is rv32imfc"), std::string::npos) << text;
+    EXPECT_NE(text.find("there is armv6, rv32imfc, thumb2"), std::string::npos) << text;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/chip/cost.h"
+#include "sim/chip/work_sum.h"
 #include "sim/work/code_tracker.h"
 
 namespace leviosim::sim {
@@ -15,11 +16,14 @@ using work::Counts;
 using work::Op;
 
 /// Of a visit, in whole instructions.
-work::CompiledWork of_visit(std::uint64_t executed, std::uint64_t priced, std::uint64_t loads,
-                            std::uint64_t used_at_once) {
+work::CompiledSets of_visit(std::uint64_t executed, std::uint64_t priced, std::uint64_t loads,
+                            std::uint64_t used_at_once,
+                            work::CompiledFor set = work::CompiledFor::Rv32imfc) {
   work::CompiledWork work{executed, priced, loads, used_at_once, 0, 0};
   for (std::uint64_t& part : work) part *= static_cast<std::uint64_t>(work::kCompiledUnit);
-  return work;
+  work::CompiledSets sets{};
+  work::set_compiled(sets, set, work);
+  return sets;
 }
 
 TEST(CompiledWork, IsTheSumOverVisitsOfFunctionsWhateverTheOrder) {
@@ -74,6 +78,18 @@ TEST(CompiledWork, ScalesInstructionsAndLoadStallsButNoRoutines) {
   const UsefulCycles alone = price(counts, core()).alone;
   EXPECT_DOUBLE_EQ(alone.issue, 1000 * 1.5 * 1.2 + 3 * 200);
   EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.6 * 2);
+}
+
+TEST(CompiledWork, OfAnotherInstructionSetChangesItsCoresOnly) {
+  Counts counts = counted();
+  counts.compiled = of_visit(120, 100, 50, 30, work::CompiledFor::Thumb2);
+  CoreConfig arm = core();
+  arm.code = work::CompiledFor::Thumb2;
+  const UsefulCycles alone = price(counts, arm).alone;
+  EXPECT_DOUBLE_EQ(alone.issue, 1000 * 1.5 * 1.2 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.6 * 2);
+  EXPECT_DOUBLE_EQ(price(counts, core()).alone.issue, price(counted(), core()).alone.issue);
+  EXPECT_DOUBLE_EQ(WorkSum(counts, arm.code).price(arm).issue, alone.issue);
 }
 
 /// Half of the repetitions are left of loops that the compiler writes out, and all of the rest.

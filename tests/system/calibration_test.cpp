@@ -30,7 +30,7 @@ StageModel stage(const std::string& name, std::uint64_t alu, std::uint64_t loads
   counts[Op::IntAlu] = alu;
   counts[Op::LoadStream] = loads;
   counts[Op::LoopIteration] = iterations;
-  model.work.add(counts);
+  model.work.add(counts, work::CompiledFor::Rv32imfc);
   model.fixed = fixed;
   return model;
 }

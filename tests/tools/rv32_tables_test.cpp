@@ -1,16 +1,20 @@
 // The tables that tools/rv32/measure.sh leaves in the repository fit the sources they were made
 // from. Nothing is compiled or traced here.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/csv.h"
+#include "sim/work/compiled_work.h"
 #include "sim/work/op.h"
 #include "tests/support/named_functions.h"
 #include "tests/support/paths.h"
@@ -26,8 +30,14 @@ struct Segment {
   double executed = 0, priced = 0;  ///< of a visit; 0 where it was not measured
 };
 
-std::vector<Segment> segments() {
-  base::CsvReader csv(kSource / "platform_models/code/rv32imfc.csv", base::Separator::comma,
+/// The tables of all instruction sets have the same functions.
+class CompiledTables : public ::testing::TestWithParam<std::string_view> {};
+INSTANTIATE_TEST_SUITE_P(All, CompiledTables, ::testing::ValuesIn(work::kCompiledFor),
+                         [](const auto& set) { return std::string(set.param); });
+
+std::vector<Segment> segments(std::string_view table) {
+  base::CsvReader csv(kSource / fmt::format("platform_models/code/{}.csv", table),
+                      base::Separator::comma,
                       {"function", "after", "lines", "visits", "refetches", "executed", "priced",
                        "loads", "used_at_once", "executed_loops", "priced_loops"});
   const base::CsvRow* row = csv.next();
@@ -47,9 +57,9 @@ const std::set<std::string> kLibrary = {"f64_add",    "f64_sub",     "f64_mul",
                                         "f64_div",    "f64_compare", "f64_widen",
                                         "f64_narrow", "popcount",    "memset"};
 
-TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
+TEST_P(CompiledTables, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   std::set<std::string> measured;
-  for (const Segment& segment : segments())
+  for (const Segment& segment : segments(GetParam()))
     if (segment.after.empty()) measured.insert(segment.function);
   const std::set<std::string> names = leviosim::tests::named_functions();
   EXPECT_GT(names.size(), 50u);
@@ -57,12 +67,16 @@ TEST(Rv32Code, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
     EXPECT_TRUE(measured.contains(name)) << name << " has no footprint: run tools/rv32/measure.sh";
 }
 
+/// A chip that executes the code of each table.
+const std::map<std::string_view, std::string> kChips{
+    {"rv32imfc", "gap9"}, {"thumb2", "cortex-m4f"}, {"armv6", "arm1176"}};
+
 /// The range that code gets which was not measured: the middle four fifths of the work of code that
 /// was, by its ratio of executed to counted instructions.
-TEST(Rv32Code, TheRangeOfUnmeasuredCodeIsThatOfMeasuredCode) {
+TEST_P(CompiledTables, TheRangeOfUnmeasuredCodeIsThatOfMeasuredCode) {
   std::vector<std::pair<double, double>> works_of_ratios;
   double all = 0;
-  for (const Segment& segment : segments()) {
+  for (const Segment& segment : segments(GetParam())) {
     if (!(segment.priced > 0)) continue;
     const double work = segment.priced * segment.visits;
     works_of_ratios.emplace_back(segment.executed / segment.priced, work);
@@ -75,26 +89,26 @@ TEST(Rv32Code, TheRangeOfUnmeasuredCodeIsThatOfMeasuredCode) {
       if ((sum += work) >= share * all) return ratio;
     return works_of_ratios.back().first;
   };
-  const platform::ResolvedPlatform gap9 = platform::resolve_platform("gap9");
+  const platform::ResolvedPlatform chip = platform::resolve_platform(kChips.at(GetParam()));
   const auto parameter =
-      std::find_if(gap9.parameters.begin(), gap9.parameters.end(),
+      std::find_if(chip.parameters.begin(), chip.parameters.end(),
                    [](const auto& p) { return p.path == "isa.unmeasured_instructions"; });
-  ASSERT_NE(parameter, gap9.parameters.end());
+  ASSERT_NE(parameter, chip.parameters.end());
   EXPECT_NEAR(quantile(0.1), parameter->range->low, 0.05);
   EXPECT_NEAR(quantile(0.9), parameter->range->high, 0.05);
 }
 
-TEST(Rv32Code, NamesNoFunctionThatTheWorkloadDoesNotHave) {
+TEST_P(CompiledTables, NamesNoFunctionThatTheWorkloadDoesNotHave) {
   const std::set<std::string> names = leviosim::tests::named_functions();
-  for (const Segment& segment : segments()) {
+  for (const Segment& segment : segments(GetParam())) {
     EXPECT_TRUE(names.contains(segment.function) || kLibrary.contains(segment.function))
         << segment.function << " is gone: run tools/rv32/measure.sh";
     EXPECT_TRUE(segment.after.empty() || names.contains(segment.after)) << segment.after;
   }
 }
 
-TEST(Rv32Code, IsSortedWithoutRepetitionAndPlausible) {
-  const std::vector<Segment> table = segments();
+TEST_P(CompiledTables, IsSortedWithoutRepetitionAndPlausible) {
+  const std::vector<Segment> table = segments(GetParam());
   for (std::size_t i = 0; i < table.size(); ++i) {
     const Segment& segment = table[i];
     EXPECT_GE(segment.lines, 0) << segment.function;

@@ -13,9 +13,9 @@ namespace {
 
 using work::Op;
 
-std::vector<std::size_t> all_fields() {
-  std::vector<std::size_t> fields(kCounters);
-  std::iota(fields.begin(), fields.end(), 0);
+FileFields all_fields() {
+  FileFields fields{std::vector<std::size_t>(kCounters)};
+  std::iota(fields.counters.begin(), fields.counters.end(), 0);
   return fields;
 }
 
@@ -36,7 +36,7 @@ void expect_round_trip(const std::vector<work::Counts>& series) {
   const std::string place = "test";
   ByteReader head(text.head, place);
   ByteReader columns(text.columns, place);
-  const std::vector<std::size_t> fields = all_fields();
+  const FileFields fields = all_fields();
   SeriesReader reader(head, columns, fields);
   head.expect_end();
   columns.expect_end();

@@ -15,7 +15,12 @@ inline work::Counts counts(std::uint64_t loops) {
   c[work::Op::BranchTaken] = loops / 3;
   c.code[5] = 16 * (loops % 7);
   c.code[work::kNeverFetched] = 480;
-  c.compiled = {9 * loops, 8 * loops, loops, loops / 4, 2 * loops, 3 * loops};
+  const work::CompiledWork compiled{9 * loops, 8 * loops, loops, loops / 4, 2 * loops, 3 * loops};
+  for (std::size_t set = 0; set < work::kCompiledFor.size(); ++set) {
+    work::CompiledWork of_set = compiled;
+    of_set[0] += set * loops;
+    work::set_compiled(c.compiled, static_cast<work::CompiledFor>(set), of_set);
+  }
   return c;
 }
 

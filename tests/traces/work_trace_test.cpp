@@ -15,7 +15,7 @@ using testing::expect_input_error;
 using testing::read_all;
 
 constexpr int kHeadBytes = 16;
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 
 /// The container around other contents, with checksums that are right.
 std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = kVersion) {
@@ -105,6 +105,13 @@ void for_each_segment(WorkFrame& frame, Change change) {
         if (auto* fork = std::get_if<work::Fork>(&step))
           for (work::Segment& share : fork->shares) change(share);
       }
+}
+
+/// Compiled work of the first instruction set stands for all in files of version 5 and older.
+void take_first_set_for_all(work::Segment& segment) {
+  const auto first = work::compiled_of(segment.compiled, work::CompiledFor::Rv32imfc);
+  for (std::size_t set = 1; set < work::kCompiledFor.size(); ++set)
+    work::set_compiled(segment.compiled, static_cast<work::CompiledFor>(set), first);
 }
 
 /// What older files say: of code that is reused at a class of distances, half is of the next nearer
@@ -229,19 +236,58 @@ TEST(WorkTrace, ReadsTheFourthVersion) {
     for_each_segment(expected, [](work::Segment& segment) {
       for (const auto part : {work::Compiled::ExecutedLoops, work::Compiled::PricedLoops})
         segment.compiled[static_cast<std::size_t>(part)] = 0;
+      take_first_set_for_all(segment);
     });
     testing::expect_equal(frame, expected);
   }
   EXPECT_EQ(frames, 5);
 }
 
+/// Made by writing example_trace_with_offload(5) to that file. It knows of one instruction set.
+TEST(WorkTrace, ReadsTheFifthVersion) {
+  const WorkTrace fifth(golden_file("version_5.trace"));
+  for (const std::optional<work::CompiledFor> code :
+       {std::optional<work::CompiledFor>(), std::optional(work::CompiledFor::Armv6)}) {
+    WorkFrames reader(fifth, true, code);
+    WorkFrame frame;
+    int frames = 0;
+    for (; reader.next(frame); ++frames) {
+      WorkFrame expected = testing::example_frame_with_offload(frames);
+      for_each_segment(expected, take_first_set_for_all);
+      testing::expect_equal(frame, expected);
+    }
+    EXPECT_EQ(frames, 5);
+  }
+}
+
+TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
+  const WorkTrace trace("example", testing::example_trace_with_offload(40));
+  for (const auto code : {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6}) {
+    WorkFrames all(trace, true);
+    WorkFrames one(trace, true, code);
+    WorkFrame a, b;
+    const auto keep_only = [code](work::Segment& segment) {
+      const auto own = work::compiled_of(segment.compiled, code);
+      segment.compiled = {};
+      work::set_compiled(segment.compiled, code, own);
+    };
+    while (all.next(a)) {
+      ASSERT_TRUE(one.next(b));
+      for_each_segment(a, keep_only);
+      for_each_segment(b, keep_only);
+      testing::expect_equal(a, b);
+    }
+    EXPECT_FALSE(one.next(b));
+  }
+}
+
 /// Not the compressed bytes are compared, which another version of zstd may choose otherwise. With
 /// LEVIOSIM_RENEW_GOLDEN the file is written anew: for a version that no release has written yet.
 TEST(WorkTrace, WritesTheContentOfItsVersion) {
   if (std::getenv("LEVIOSIM_RENEW_GOLDEN") != nullptr)
-    std::ofstream(golden_file("version_5.trace"), std::ios::binary)
+    std::ofstream(golden_file("version_6.trace"), std::ios::binary)
         << testing::example_trace_with_offload(5);
-  const std::string golden = base::read_text_file(golden_file("version_5.trace"));
+  const std::string golden = base::read_text_file(golden_file("version_6.trace"));
   EXPECT_EQ(contents_of(golden), contents_of(testing::example_trace_with_offload(5)));
 }
 
@@ -306,7 +352,7 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   std::string damaged = whole;
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
-  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 6", "up to 5", "newer"});
+  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 7", "up to 6", "newer"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});
@@ -322,6 +368,14 @@ TEST(WorkTrace, RefusesOperationsItDoesNotKnow) {
   ASSERT_NE(at, std::string::npos);
   contents[0].replace(at, 7, "f32_fmx");
   expect_input_error([&] { WorkTrace("t", trace_of(contents)); }, {"operation 'f32_fmx'"});
+}
+
+TEST(WorkTrace, RefusesInstructionSetsItDoesNotKnow) {
+  std::vector<std::string> contents = contents_of(example_trace(2));
+  const std::size_t at = contents[0].find("thumb2");
+  ASSERT_NE(at, std::string::npos);
+  contents[0].replace(at, 6, "thumb3");
+  expect_input_error([&] { WorkTrace("t", trace_of(contents)); }, {"instruction set 'thumb3'"});
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ void run(const CalibrateOptions& given) {
   std::optional<base::OutputFile> out = claimed_platform_file(options.run);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.run.quiet);
   request.data = data_folder(options.run, style);
-  FrameLog log;
+  FrameLog log(request.platform.config.cluster.core.code);
   request.observer = &log;
   const RunResult result = simulate_with_progress(request, style);
   const Calibration calibration =

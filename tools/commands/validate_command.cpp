@@ -44,7 +44,7 @@ void run(const RunOptions& given, const Words& words) {
   std::optional<base::OutputFolder> out;
   if (!options.out.empty()) out.emplace(out_request(options));
   request.data = data_folder(options, style);
-  FrameLog log;
+  FrameLog log(request.platform.config.cluster.core.code);
   request.observer = &log;
   const RunResult result = simulate_with_progress(request, style);
   const Validation validation = validate(result, log, profile_of(request), references);

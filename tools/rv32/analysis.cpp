@@ -28,10 +28,13 @@ std::uint64_t stall_of(const Instruction& in) {
 }
 
 bool uses_loaded(const Instruction& load, const Instruction& next) {
-  if (!load.loads() || load.destination <= 0) return false;
-  for (const int source : next.sources)
-    if (source == load.destination) return true;
-  return false;
+  return (load.loaded & next.reads) != 0;
+}
+
+Kind account_of_more_words(const Instruction& in) {
+  const bool stores = in.kind == Kind::Store || in.kind == Kind::FloatStore;
+  if (in.on_stack) return stores ? Kind::MoreSaved : Kind::MoreRestored;
+  return stores ? Kind::MoreStored : Kind::MoreLoaded;
 }
 
 std::uint32_t first_line(const Instruction& in) { return in.pc / kLineBytes; }
@@ -72,10 +75,12 @@ void Analysis::finish_transfer(const Block& next) {
     if (leaf_is_tail_) return_to(pc);
     return;
   }
+  if (last_.conditional && last_.kind != Kind::Branch && pc == last_end_) return;  // skipped
   switch (last_.kind) {
     case Kind::Branch:
       if (pc != last_end_) count_kind(Kind::BranchTaken);
       if (pc < last_.pc) count_kind(Kind::BranchBack);
+      if (last_.conditional && pc != last_end_) jump_to(next);
       break;
     case Kind::Call:
       if (next.symbol != nullptr && next.symbol->role != Role::Kernel)
@@ -85,17 +90,7 @@ void Analysis::finish_transfer(const Block& next) {
       break;
     case Kind::Jump:
     case Kind::IndirectJump:
-      if (next.starts_symbol && !frames_.empty() && next.symbol != frames_.back().symbol) {
-        settle_prologue();
-        if (next.symbol->role != Role::Kernel)
-          return begin_library(*next.symbol, true, frames_.back().back);
-        // A call in the place of the return.
-        while (measuring() && named_.back().own_frame && named_.back().leaving &&
-               named_.back().depth == frames_.size())
-          leave_named();
-        frames_.back().symbol = next.symbol;
-        in_prologue_ = true;
-      }
+      jump_to(next);
       break;
     case Kind::Return:
       return_to(pc);
@@ -103,6 +98,20 @@ void Analysis::finish_transfer(const Block& next) {
     default:
       break;
   }
+}
+
+/// A jump to another function is a call in the place of the return.
+void Analysis::jump_to(const Block& next) {
+  if (!next.starts_symbol || frames_.empty() || next.symbol == frames_.back().symbol) return;
+  settle_prologue();
+  if (next.symbol->role != Role::Kernel)
+    return begin_library(*next.symbol, true, frames_.back().back);
+  // A call in the place of the return.
+  while (measuring() && named_.back().own_frame && named_.back().leaving &&
+         named_.back().depth == frames_.size())
+    leave_named();
+  frames_.back().symbol = next.symbol;
+  in_prologue_ = true;
 }
 
 void Analysis::return_to(std::uint32_t pc) {
@@ -171,6 +180,8 @@ void Analysis::count_kind(Kind kind) {
 void Analysis::count(const Instruction& in) {
   Named& top = named_.back();
   ++top.account->of_kind[static_cast<std::size_t>(in.kind)];
+  if (in.more_words > 0)
+    top.account->of_kind[static_cast<std::size_t>(account_of_more_words(in))] += in.more_words;
   ++executed_;
   if (uses_loaded(last_, in)) ++top.account->load_use;
   last_account_ = top.account;

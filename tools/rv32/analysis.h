@@ -89,6 +89,7 @@ class Analysis {
   bool measuring() const { return !named_.empty(); }
   void finish_transfer(const Block& next);
   void enter_function(const Block& block);
+  void jump_to(const Block& next);
   void return_to(std::uint32_t pc);
   void begin_library(const Symbol& symbol, bool tail, std::uint32_t back);
   void end_library();

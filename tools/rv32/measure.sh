@@ -1,16 +1,22 @@
 #!/usr/bin/env bash
-# Compiles the workload for RV32, traces it under QEMU, and writes the tables that the repository
-# keeps: platform_models/code/rv32imfc.csv and the tables of this folder. See README.md.
-# usage: tools/rv32/measure.sh [ASL folder to take frames from; the synthetic flight by default]
+# Compiles the workload for RV32, Thumb-2 and ARMv6, traces it under QEMU, and writes the tables that
+# the repository keeps: platform_models/code/*.csv and the tables of this folder. See README.md.
+# usage: tools/rv32/measure.sh [--only rv32imfc|thumb2|armv6] [ASL folder to take frames from]
+# Without a folder, frames come from the synthetic flight.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 root=$(cd ../.. && pwd)
 out=$root/build/rv32
 mkdir -p "$out"
 
-for tool in riscv64-unknown-elf-g++ qemu-riscv32 python3; do
+instruction_sets=(rv32imfc thumb2 armv6)
+if [[ ${1:-} == --only ]]; then
+  instruction_sets=("${2:?measure.sh: --only takes rv32imfc, thumb2 or armv6}")
+  shift 2
+fi
+for tool in riscv64-unknown-elf-g++ arm-none-eabi-g++ qemu-riscv32 qemu-arm python3; do
   command -v "$tool" >/dev/null || {
-    echo "measure.sh: $tool is missing; apt-get install gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf qemu-user python3" >&2
+    echo "measure.sh: $tool is missing; README.md says what to install" >&2
     exit 1
   }
 done
@@ -25,20 +31,34 @@ fi
 cmp -s "$out/inputs.new" "$out/inputs.bin" || cp "$out/inputs.new" "$out/inputs.bin"
 # Bytes in front of all code: where a function lies changes which lines of 16 bytes it covers.
 layouts=(0 4 8 12)
-make --no-print-directory -j"$(nproc)" OUT="$out" LAYOUTS="${layouts[*]}"
-
-trace() {  # NAME: runs the program NAME of $out and leaves $out/NAME.tsv
-  qemu-riscv32 -plugin "$out/trace.so,program=$out/$1,out=$out/$1.tsv" "$out/$1" 2>"$out/$1.log"
-}
-trace library_soft
-trace library_hard
-# One core is busy with the layouts while the other does the rest.
-(for layout in "${layouts[@]}"; do trace "scenes_at_$layout"; done) &
-contracted=$!
-trace scenes_uncontracted
+make --no-print-directory -j"$(nproc)" OUT="$out" "$out/counts"
 "$out/counts" "$out/inputs.bin" >"$out/counted.tsv" 2>"$out/counted.log"
-wait "$contracted"
-# Without contraction RV32 computes the bits that the host computes.
-cmp "$out/counted.log" "$out/scenes_uncontracted.log"
 
-python3 report.py --work "$out" --code "$root/platform_models/code/rv32imfc.csv" --here . --layouts "${layouts[@]}"
+trace() {  # ISA WORK NAME: runs the program NAME of WORK and leaves WORK/NAME.tsv
+  local qemu=(qemu-riscv32) plugin=$2/trace.so
+  # QEMU 7.2 does not start Linux programs on its Cortex-M; a Cortex-A15 executes the same Thumb-2.
+  [[ $1 == thumb2 ]] && qemu=(qemu-arm -cpu cortex-a15) plugin=$2/trace_arm.so
+  [[ $1 == armv6 ]] && qemu=(qemu-arm -cpu arm1176) plugin=$2/trace_arm.so
+  "${qemu[@]}" -plugin "$plugin,program=$2/$3,out=$2/$3.tsv" "$2/$3" 2>"$2/$3.log"
+}
+
+measure() {  # ISA
+  local work=$out
+  [[ $1 == rv32imfc ]] || work=$out/$1
+  mkdir -p "$work"
+  make --no-print-directory -j"$(nproc)" ISA="$1" OUT="$work" INPUTS="$out/inputs.bin" \
+    LAYOUTS="${layouts[*]}"
+  [[ $1 == rv32imfc ]] && trace "$1" "$work" library_soft
+  trace "$1" "$work" library_hard
+  # One core is busy with the layouts while the other does the rest.
+  (for layout in "${layouts[@]}"; do trace "$1" "$work" "scenes_at_$layout"; done) &
+  local contracted=$!
+  trace "$1" "$work" scenes_uncontracted
+  wait "$contracted"
+  # Without contraction the target computes the bits that the host computes.
+  cmp "$out/counted.log" "$work/scenes_uncontracted.log"
+  python3 report.py --isa "$1" --work "$work" --counts "$out/counted.tsv" --root "$root" \
+    --layouts "${layouts[@]}"
+}
+
+for isa in "${instruction_sets[@]}"; do measure "$isa"; done

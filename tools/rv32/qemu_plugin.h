@@ -23,6 +23,7 @@ std::size_t qemu_plugin_tb_n_insns(const qemu_plugin_tb* block);
 qemu_plugin_insn* qemu_plugin_tb_get_insn(const qemu_plugin_tb* block, std::size_t i);
 std::uint64_t qemu_plugin_insn_vaddr(const qemu_plugin_insn* insn);
 std::size_t qemu_plugin_insn_size(const qemu_plugin_insn* insn);
+const void* qemu_plugin_insn_data(const qemu_plugin_insn* insn);
 char* qemu_plugin_insn_disas(const qemu_plugin_insn* insn);  // to be freed by the caller
 
 }  // extern "C"

@@ -4,13 +4,15 @@ import argparse
 import collections
 import csv
 import pathlib
+import re
 
 # Routines by the operation that they stand for, and those of which the code is told apart.
 LIBRARY = {
     "f64_add": ["__adddf3", "__subdf3"],
     "f64_mul": ["__muldf3"],
     "f64_div": ["__divdf3"],
-    "f64_compare": ["__ltdf2", "__ledf2", "__gtdf2", "__gedf2", "__eqdf2", "__nedf2"],
+    "f64_compare": ["__ltdf2", "__ledf2", "__gtdf2", "__gedf2", "__eqdf2", "__nedf2", "__aeabi_dcmplt",
+                    "__aeabi_dcmple", "__aeabi_dcmpgt", "__aeabi_dcmpge", "__aeabi_dcmpeq"],
     "f64_convert": ["__extendsfdf2", "__truncdfsf2"],
     "f32_add": ["__addsf3", "__subsf3"],
     "f32_mul": ["__mulsf3"],
@@ -51,10 +53,51 @@ CLASSES = [
     ("double calls", ["f64"], ["f64_add", "f64_mul", "f64_div", "f64_compare", "f64_convert"]),
     ("popcount calls", ["popcount"], ["popcount"]),
 ]
-NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "host", "inclusive"}
-INSTRUCTIONS_OF_A_REPETITION = 2  # as loop_iteration in rv32imfc_costs.csv
+NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "host", "inclusive",
+                  "more_loaded", "more_stored", "more_restored", "more_saved"}
 SCENE = "scene: "
 GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
+
+
+class InstructionSet:
+    """What code of an instruction set is compared with: the slots that operations issue, and the
+    slots that executed instructions issue."""
+
+    def __init__(self, title, prices, price_file, slots):
+        """@param slots  beyond 1, of kinds of instructions; of accounts that are no kinds, in all"""
+        self.title, self.prices, self.price_file, self.slots = title, prices, price_file, slots
+
+    def executed(self, kinds):
+        return instructions(kinds) + sum(n * kinds.get(kind, 0) for kind, n in self.slots.items())
+
+
+# A word that an instruction moves beyond the first takes a slot, as its load or store was counted.
+WORDS = {"more_loaded": 1, "more_stored": 1}
+
+
+def rv32imfc(root):
+    prices = read_costs(root / "tools/rv32/rv32imfc_costs.csv")
+    # A population count is one instruction, as it was compiled; emulated arithmetic is nobody's own.
+    own = {op: 0.0 if op.startswith("f64") else 1.0 if op == "popcount" else cost
+           for op, cost in prices.items()}
+    return InstructionSet("RV32IMFC", own, "tools/rv32/rv32imfc_costs.csv", {})
+
+
+def thumb2(root):
+    """Registers that a push saves are stalls of `call` in the prices."""
+    name = "platform_models/isa/thumb2_fp.yaml"
+    return InstructionSet("Thumb-2 with single precision", read_issue(root / name), name, WORDS)
+
+
+def armv6(root):
+    """Prices have the words of push and pop in `call`, two and three slots of multiplications, and
+    half a slot of a branch that repeats a loop, since it is often folded away."""
+    name = "platform_models/isa/armv6_vfp.yaml"
+    slots = {**WORDS, "more_restored": 1, "more_saved": 1, "mul": 1, "mul_high": 2, "branch_back": -0.5}
+    return InstructionSet("ARMv6 with VFP", read_issue(root / name), name, slots)
+
+
+INSTRUCTION_SETS = {"rv32imfc": rv32imfc, "thumb2": thumb2, "armv6": armv6}
 
 
 class Trace:
@@ -136,6 +179,17 @@ def read_costs(path):
     return {row["op"]: float(row["issue"]) for row in csv.DictReader(lines)}
 
 
+def read_issue(path):
+    """Slots that operations issue, from an instruction set of the platforms. Routines of the library
+    are nobody's own: they have accounts of their own in the trace."""
+    text = re.sub(r"#.*", "", path.read_text())
+    prices = collections.defaultdict(float)
+    for op, price in re.findall(r"^    (\w+): \{([^}]*)\}", text, re.MULTILINE):
+        prices[op] = 0.0 if "routine: true" in price else float(re.search(r"\bissue: ([0-9.]+)", price)[1])
+    # What reaching a second memory costs is a property of the chip; the instruction is the same.
+    return {"load_l2": prices["load_stream"], "store_l2": prices["store_stream"], **prices}
+
+
 def by_scene(accounts):
     total = collections.defaultdict(collections.Counter)
     for (scene, _), account in accounts.items():
@@ -146,7 +200,7 @@ def by_scene(accounts):
 # ---- footprints ----
 
 FOOTPRINT_HEADER = """\
-Compiled code of the workload's named functions on RV32IMFC,
+Compiled code of the workload's named functions on %s,
 %s.
 A row is a piece of a function: from its entry (`after` empty), or from the return of the named
 function `after`, to its next call of a named function or its end.
@@ -157,12 +211,12 @@ refetches  lines per visit that a 512-byte cache (fully associative, LRU, empty 
 executed   instructions per visit of the whole function, with copying and clearing by the library,
            without emulated arithmetic, on the way through the program that was counted; rows with an
            empty `after` only, as what follows
-priced     operations counted in a visit, at the prices of tools/rv32/rv32imfc_costs.csv
+priced     operations counted in a visit, at the prices of %s
 loads, used_at_once   loads per visit; those of which the next instruction needs the value
 executed_loops, priced_loops   of executed and priced, what repeats loops: a counter and a branch each
 Rows f64_*, popcount, memset are routines of the library; calls of these do not end a piece.
 Rows library_* are routines of a public C library, called by the names that they have here.
-""" % GENERATED
+"""
 
 STAGE_HEADER = """\
 Code of the stages that belongs to no named function, on RV32IMFC: columns as in
@@ -230,14 +284,12 @@ def copied_and_cleared(trace):
             for key, calls in trace.calls.items()}
 
 
-def compiled_work(executed_kinds, memory, counts, costs):
+def compiled_work(executed_kinds, memory, counts, isa):
     """(executed, priced, loads, loads used at once, executed and priced of what repeats loops) per
     visit of each function itself. A loop is repeated by a counter and a branch; those of a library
-    routine have the share that they have in the price. A population count is one instruction, as it was compiled; emulated arithmetic is nobody's own.
+    routine have the share that they have in the price.
     @param executed_kinds  in_counted_flow()
     @param memory          copied_and_cleared()"""
-    prices = {op: 0.0 if op.startswith("f64") else 1.0 if op == "popcount" else cost
-              for op, cost in costs.items()}
     counted = by_function({key: n for key, n in counts.items() if key in executed_kinds})
     by_library = collections.Counter()
     for (scene, function), n in memory.items():
@@ -248,19 +300,20 @@ def compiled_work(executed_kinds, memory, counts, costs):
         visits, counted_visits = kinds["visits"], counted[function]["visits"]
         if not visits or not counted_visits:
             continue
-        executed = instructions(kinds) + by_library[function]
-        priced = sum(n * prices[op] for op, n in counted[function].items() if op != "visits")
-        priced_loops = counted[function]["loop_iteration"] * prices["loop_iteration"]
+        executed = isa.executed(kinds) + by_library[function]
+        priced = sum(n * isa.prices.get(op, 0.0) for op, n in counted[function].items() if op != "visits")
+        repetition = isa.prices["loop_iteration"]
+        priced_loops = counted[function]["loop_iteration"] * repetition
         in_library = by_library[function] * priced_loops / priced if priced else 0
-        executed_loops = min(INSTRUCTIONS_OF_A_REPETITION * kinds["branch_back"], priced_loops)
-        loads = kinds["load"] + kinds["float_load"]
+        executed_loops = min(repetition * kinds["branch_back"], priced_loops)
+        loads = kinds["load"] + kinds["float_load"] + kinds["more_loaded"] + kinds["more_restored"]
         work[function] = (executed / visits, priced / counted_visits, loads / visits,
                           kinds["load_use"] / visits, (executed_loops + in_library) / visits,
                           priced_loops / counted_visits)
     return work
 
 
-def write_footprints(trace, library, compiled, code, here):
+def write_footprints(trace, library, compiled, isa, code):
     """@param library   trace of the routines alone, for those that the workload does not call
     @param compiled  compiled_work()"""
     columns = ["function", "after", "lines", "visits", "refetches"]
@@ -273,14 +326,45 @@ def write_footprints(trace, library, compiled, code, here):
             lines, calls = library.lines_of(routine)
         if calls:
             rows.append((routine, "", lines, calls, 0.0) + nothing)
-    write_csv(code, FOOTPRINT_HEADER, columns + ["executed", "priced", "loads", "used_at_once", "executed_loops",
-                                                   "priced_loops"],
+    write_csv(code, FOOTPRINT_HEADER % (isa.title, GENERATED, isa.price_file),
+              columns + ["executed", "priced", "loads", "used_at_once", "executed_loops", "priced_loops"],
               sorted(rows))
-    write_csv(here / "stage_code.csv", STAGE_HEADER, ["stage"] + columns[1:],
-              sorted(piece_rows(trace, True)))
+
+
+def write_stages(trace, here):
+    write_csv(here / "stage_code.csv", STAGE_HEADER,
+              ["stage", "after", "lines", "visits", "refetches"], sorted(piece_rows(trace, True)))
     static = [("stage", s.removeprefix(SCENE), n) for s, n in trace.scene_lines.items()]
     static += [("function", f, n) for f, n in trace.function_lines.items() if not f.startswith(SCENE)]
     write_csv(here / "static_lines.csv", STATIC_HEADER, ["what", "name", "lines"], sorted(static))
+
+
+FUNCTIONS_PAGE = """\
+# Executed against counted on %s
+
+Per visit of a named function itself, all scenes, without routines of the library. *Executed*: slots that the trace issues
+(`slots` in report.py). *Counted*: operations at the prices of `%s`. *At once*: loads whose value the next instruction needs.
+
+| function | visits | counted | executed | ratio | loads | at once |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: |
+"""
+
+
+def write_functions_page(compiled, visits, isa, path):
+    """@param compiled  compiled_work()
+    @param visits    by function"""
+    def row(name, n, executed, priced, loads, at_once):
+        ratio = f"{executed / priced:.2f}" if priced else "–"
+        part = f"{100 * at_once / loads:.0f} %" if loads else "–"
+        return f"| {name} | {n:,} | {priced:,.0f} | {executed:,.0f} | {ratio} | {loads:,.0f} | {part} |\n"
+
+    with open(path, "w") as out:
+        out.write(f"<!-- {GENERATED} -->\n" + FUNCTIONS_PAGE % (isa.title, isa.price_file))
+        total = [sum(visits[f] * work[i] for f, work in compiled.items()) for i in range(4)]
+        out.write(row("all, in total", sum(visits[f] for f in compiled), *total))
+        for function in sorted(compiled, key=lambda f: -visits[f] * compiled[f][1]):
+            if not function.startswith(SCENE):
+                out.write(row(f"`{function}`", visits[function], *compiled[function][:4]))
 
 
 # ---- counted against executed ----
@@ -306,7 +390,6 @@ def check_same_control_flow(trace, counts):
 
 
 def write_cross_check(trace, contracted, counts, costs, here):
-    check_same_control_flow(trace, counts)
     counted, kinds, calls = by_scene(counts), by_scene(trace.kinds), by_scene(trace.calls)
     kinds_fused, calls_fused = by_scene(contracted.kinds), by_scene(contracted.calls)
     scenes = list(dict.fromkeys(s for s, _ in counts))
@@ -465,22 +548,31 @@ def write_library(soft, hard, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--isa", choices=INSTRUCTION_SETS, required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the raw results")
-    parser.add_argument("--code", type=pathlib.Path, required=True, help="table of footprints to write")
-    parser.add_argument("--here", type=pathlib.Path, required=True, help="folder of the other tables")
+    parser.add_argument("--counts", type=pathlib.Path, required=True, help="counted operations")
+    parser.add_argument("--root", type=pathlib.Path, required=True, help="of the repository, to write to")
     parser.add_argument("--layouts", nargs="+", required=True, help="names of the linked programs")
     arguments = parser.parse_args()
-    work, here = arguments.work, arguments.here
+    work, root = arguments.work, arguments.root
     contracted = Trace.of_layouts([work / f"scenes_at_{layout}.tsv" for layout in arguments.layouts])
     hard = Trace(work / "library_hard.tsv")
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
-    costs = read_costs(here / "rv32imfc_costs.csv")
+    counts = read_counts(arguments.counts)
+    check_same_control_flow(uncontracted, counts)
+    isa = INSTRUCTION_SETS[arguments.isa](root)
     compiled = compiled_work(in_counted_flow(contracted, uncontracted),
-                             copied_and_cleared(uncontracted), read_counts(work / "counted.tsv"),
-                             costs)
-    write_footprints(contracted, hard, compiled, arguments.code, here)
-    write_units(contracted, uncontracted, read_counts(work / "counted.tsv", "inclusive"), costs, here)
-    write_cross_check(uncontracted, contracted, read_counts(work / "counted.tsv"), costs, here)
+                             copied_and_cleared(uncontracted), counts, isa)
+    write_footprints(contracted, hard, compiled, isa, root / f"platform_models/code/{arguments.isa}.csv")
+    here = root / "tools/rv32"
+    if arguments.isa != "rv32imfc":
+        visits = {function: n["visits"] for function, n in by_function(counts).items()}
+        write_functions_page(compiled, visits, isa, here / f"{arguments.isa}.md")
+        return
+    costs = read_costs(here / "rv32imfc_costs.csv")
+    write_stages(contracted, here)
+    write_units(contracted, uncontracted, read_counts(arguments.counts, "inclusive"), costs, here)
+    write_cross_check(uncontracted, contracted, counts, costs, here)
     write_library(Trace(work / "library_soft.tsv"), hard, here / "library.md")
 
 

@@ -1,28 +1,26 @@
-// What a C++ program needs to run under qemu-riscv32 without an operating system's libraries: an
+// What a C++ program needs to run under QEMU without an operating system's libraries: an
 // entry, memory, and output. Debian has no C++ library for this target; what only error paths need
 // (exceptions, fmt) stays unresolved and is address 0.
 #include <cstddef>
 #include <cstdint>
 
+#ifdef __arm__
+#include "tools/rv32/target/arm.h"
+#else
+#include "tools/rv32/target/riscv.h"
+#endif
 #include "tools/rv32/runtime.h"
 
 namespace {
 
+using leviosim::rv32::begin_thread;
+using leviosim::rv32::kExit;
+using leviosim::rv32::kWrite;
+using leviosim::rv32::system_call;
+
 constexpr std::size_t kHeapBytes = std::size_t{256} << 20;
 alignas(16) unsigned char heap[kHeapBytes];
-alignas(16) unsigned char thread_storage[4096];
 std::size_t heap_used = 0;
-
-std::int32_t system_call(std::int32_t number, std::int32_t a, std::int32_t b, std::int32_t c) {
-  register std::int32_t a0 asm("a0") = a;
-  register std::int32_t a1 asm("a1") = b;
-  register std::int32_t a2 asm("a2") = c;
-  register std::int32_t a7 asm("a7") = number;
-  asm volatile("ecall" : "+r"(a0) : "r"(a1), "r"(a2), "r"(a7) : "memory");
-  return a0;
-}
-
-constexpr std::int32_t kWrite = 64, kExit = 93;
 
 }  // namespace
 
@@ -32,23 +30,17 @@ extern "C" Initialiser __init_array_start[], __init_array_end[];
 
 extern "C" {
 
+alignas(16) unsigned char thread_storage[4096];
+
 [[noreturn]] void exit_program(std::int32_t status) {
   for (;;) system_call(kExit, status, 0, 0);
 }
 
 [[gnu::used]] void start_program() {
-  asm volatile("mv tp, %0" : : "r"(thread_storage));
+  begin_thread(thread_storage);
   for (Initialiser* i = __init_array_start; i != __init_array_end; ++i) (*i)();
   exit_program(main());
 }
-
-asm(".globl _start\n"
-    "_start:\n"
-    ".option push\n.option norelax\n"
-    "la gp, __global_pointer$\n"
-    ".option pop\n"
-    "andi sp, sp, -16\n"
-    "call start_program\n");
 
 [[noreturn]] void abort() noexcept { exit_program(3); }
 [[noreturn]] void __cxa_pure_virtual() { exit_program(4); }
@@ -56,7 +48,7 @@ int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }
 void* __dso_handle = nullptr;
 
 // Word by word where both sides allow it, as embedded C libraries do. (What clears byte by byte
-// calls byte_memset, which the Makefile takes from picolibc.)
+// calls byte_memset, which the Makefile takes from the C library.)
 void* memcpy(void* to, const void* from, std::size_t n) noexcept {
   auto* d = static_cast<unsigned char*>(to);
   auto* s = static_cast<const unsigned char*>(from);

@@ -1,5 +1,5 @@
-// Plugin for qemu-riscv32: hands every executed block of the program to the analysis, in order and
-// without sampling. Arguments: program=ELF file,out=file for the results.
+// Plugin for qemu-riscv32 and qemu-arm: hands every executed block of the program to the analysis,
+// in order and without sampling. Arguments: program=ELF file,out=file for the results.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis.h"
+#include "decoder.h"
 #include "qemu_plugin.h"
 
 extern "C" {
@@ -30,17 +31,6 @@ struct Session {
 /// QEMU's callbacks carry no data of ours when a block is translated.
 Session* session = nullptr;
 
-/// Without the column of code in hexadecimal digits that comes first.
-std::string disassembly(const qemu_plugin_insn* insn) {
-  char* text = qemu_plugin_insn_disas(insn);
-  std::string result = text;
-  std::free(text);
-  const std::size_t digits = result.find_first_not_of("0123456789abcdef");
-  if (digits != std::string::npos && digits >= 4 && result[digits] == ' ')
-    result = result.substr(result.find_first_not_of(' ', digits));
-  return result;
-}
-
 void execute(unsigned, void* data) { session->analysis.execute(*static_cast<Block*>(data)); }
 
 void translate(qemu_plugin_id_t, qemu_plugin_tb* translated) {
@@ -51,9 +41,9 @@ void translate(qemu_plugin_id_t, qemu_plugin_tb* translated) {
     const Mark* mark = session->program.mark_at(pc);
     Instruction decoded;
     decoded.pc = pc;
-    decoded.size = 2;
+    decoded.size = static_cast<std::uint8_t>(qemu_plugin_insn_size(insn));
     try {
-      if (mark == nullptr) decoded = decode(pc, qemu_plugin_insn_size(insn), disassembly(insn));
+      if (mark == nullptr) decoded = decode(insn, session->program.thumb_at(pc));
     } catch (const std::exception& error) {
       std::fprintf(stderr, "trace_plugin: %s at %x\n", error.what(), pc);
       std::exit(1);

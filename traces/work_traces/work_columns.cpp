@@ -14,7 +14,8 @@ namespace {
 constexpr std::uint64_t kPrime = (std::uint64_t{1} << 31) - 1;
 /// Segments from which dependences are guessed; they are then compared with all.
 constexpr std::size_t kSample = 256;
-constexpr std::int64_t kLargestFactor = 4096;
+/// Compiled work of a visit is a large multiple of what counts visits.
+constexpr std::int64_t kLargestFactor = std::int64_t{1} << 24;
 
 using Vector = std::vector<std::uint64_t>;  ///< modulo kPrime
 
@@ -109,8 +110,14 @@ class Dependences {
   std::vector<Row> reduced_;
 };
 
+bool is_of_another_set(std::size_t counter, work::CompiledFor code) {
+  return counter >= kFirstCompiled &&
+         (counter - kFirstCompiled) / work::kCompiledCount != static_cast<std::size_t>(code);
+}
+
 /// Counters that change within the series, those that change least first: what counts visits of a
-/// basic block makes a better basis than sums over several.
+/// basic block makes a better basis than sums over several. Those of other instruction sets come
+/// last, so that nothing is a sum of them that is read without.
 std::vector<std::size_t> changing(std::span<const work::Counts> series) {
   std::array<std::uint64_t, kCounters> range{};
   std::vector<std::size_t> found;
@@ -126,6 +133,9 @@ std::vector<std::size_t> changing(std::span<const work::Counts> series) {
   }
   std::stable_sort(found.begin(), found.end(),
                    [&](std::size_t a, std::size_t b) { return range[a] < range[b]; });
+  std::stable_partition(found.begin(), found.end(), [](std::size_t k) {
+    return !is_of_another_set(k, work::CompiledFor::Rv32imfc);
+  });
   return found;
 }
 
@@ -176,11 +186,12 @@ void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWr
   }
 }
 
-SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns,
-                           const std::vector<std::size_t>& fields)
-    : place_(&head.place()) {
+SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns, const FileFields& fields,
+                           std::optional<work::CompiledFor> code)
+    : place_(&head.place()), one_set_(fields.one_set) {
   const auto field = [&](const char* what) {
-    return fields[static_cast<std::size_t>(head.whole_below(fields.size(), what))];
+    return fields
+        .counters[static_cast<std::size_t>(head.whole_below(fields.counters.size(), what))];
   };
   // Each counter has one column or sum at most, and a sum has each counter once: what a work
   // segment costs to read is bounded.
@@ -212,6 +223,18 @@ SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns,
     sum.end_term = terms_.size();
     sums_.push_back(sum);
   }
+  if (code && !one_set_) leave_out_others(*code);
+}
+
+/// Drops columns and sums of other instruction sets that nothing else is a sum of.
+void SeriesReader::leave_out_others(work::CompiledFor code) {
+  std::erase_if(sums_, [&](const Sum& sum) { return is_of_another_set(sum.counter, code); });
+  std::array<bool, kCounters> used{};
+  for (const Sum& sum : sums_)
+    for (std::size_t t = sum.first_term; t < sum.end_term; ++t) used[terms_[t].counter] = true;
+  std::erase_if(columns_, [&](const Column& column) {
+    return is_of_another_set(column.counter, code) && !used[column.counter];
+  });
 }
 
 void SeriesReader::next(work::Counts& counts) {
@@ -234,6 +257,10 @@ void SeriesReader::next(work::Counts& counts) {
   }
   first_ = false;
   counts = present_;
+  if (!one_set_) return;
+  const auto own = work::compiled_of(present_.compiled, work::CompiledFor::Rv32imfc);
+  for (std::size_t set = 1; set < work::kCompiledFor.size(); ++set)
+    work::set_compiled(counts.compiled, static_cast<work::CompiledFor>(set), own);
 }
 
 void SeriesReader::expect_end() {

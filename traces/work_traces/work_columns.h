@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace leviosim::traces {
 
 /// All counters of work::Counts as one list: operations, classes of code reuse, compiled work.
 inline constexpr std::size_t kFirstCompiled = work::kOpCount + work::kReuseClasses;
-inline constexpr std::size_t kCounters = kFirstCompiled + work::kCompiledCount;
+inline constexpr std::size_t kCounters = kFirstCompiled + work::CompiledSets{}.size();
 /// No work segment counts as much; keeps what is derived from counts from overflowing.
 inline constexpr int kCounterBits = 40;
 
@@ -29,15 +30,23 @@ inline std::uint64_t counter(const work::Counts& counts, std::size_t k) {
   return k < kFirstCompiled ? counts.code[k - work::kOpCount] : counts.compiled[k - kFirstCompiled];
 }
 
+/// What the counters of a file are in this program.
+struct FileFields {
+  std::vector<std::size_t> counters;
+  bool one_set = false;  ///< compiled work of the first instruction set stands for all
+};
+
 /// Appends the description of a series to `head`, its differences to `columns`.
 void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWriter& columns);
 
 /// Gives the segments of a series back, one after the other.
 class SeriesReader {
  public:
-  /// @param fields  the counter of each field of the file
+  /// @param code  the instruction set whose compiled work is asked for; that of others is then
+  ///              anything
   /// @throws InputError for what write_series() would not write
-  SeriesReader(ByteReader& head, ByteReader& columns, const std::vector<std::size_t>& fields);
+  SeriesReader(ByteReader& head, ByteReader& columns, const FileFields& fields,
+               std::optional<work::CompiledFor> code = {});
 
   void next(work::Counts& counts);
   /// @throws InputError if segments are left
@@ -45,6 +54,7 @@ class SeriesReader {
 
  private:
   [[noreturn]] void fail_count() const;
+  void leave_out_others(work::CompiledFor code);
 
   struct Column {
     std::size_t counter;
@@ -62,6 +72,7 @@ class SeriesReader {
 
   const std::string* place_;
   bool first_ = true;
+  bool one_set_;
   work::Counts present_;
   std::vector<Column> columns_;
   std::vector<Term> terms_;

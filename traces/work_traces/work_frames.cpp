@@ -26,9 +26,10 @@ void divide(work::CodeReuse& code) {
 
 }  // namespace
 
-WorkFrames::WorkFrames(const WorkTrace& trace, bool offload)
+WorkFrames::WorkFrames(const WorkTrace& trace, bool offload, std::optional<work::CompiledFor> code)
     : trace_(&trace),
       with_offload_(offload),
+      code_(code),
       budget_(trace.budget()),
       stage_names_(trace.names().size()) {
   if (offload && !trace.has_offload())
@@ -111,7 +112,8 @@ void WorkFrames::open_series(ByteReader& in, std::vector<SeriesReader>& series) 
   series = std::vector<SeriesReader>();
   const std::size_t number = heads.count("series", sizeof(SeriesReader));
   series.reserve(number);
-  for (std::size_t i = 0; i < number; ++i) series.emplace_back(heads, columns, trace_->fields());
+  for (std::size_t i = 0; i < number; ++i)
+    series.emplace_back(heads, columns, trace_->fields(), code_);
   heads.expect_end();
   columns.expect_end();
 }

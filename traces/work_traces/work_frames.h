@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -72,9 +73,12 @@ class WorkFrames {
  public:
   /// @param trace  outlives the reader and the names in what it gives
   /// @param offload  whether the offload regions are read, too
+  /// @param code  the instruction set whose compiled work is needed, which spares reading that of
+  ///              others; all by default
   /// @throws InputError if they are asked for, and the trace has none
   /// Memory: what trace.budget() has left, at any time.
-  explicit WorkFrames(const WorkTrace& trace, bool offload = false);
+  explicit WorkFrames(const WorkTrace& trace, bool offload = false,
+                      std::optional<work::CompiledFor> code = {});
 
   /// The next frame; storage of `frame` is used again. False at the end.
   /// @throws InputError for what cannot have been recorded
@@ -102,6 +106,7 @@ class WorkFrames {
 
   const WorkTrace* trace_;
   bool with_offload_;
+  std::optional<work::CompiledFor> code_;
   MemoryBudget budget_;
   std::uint64_t of_chunk_ =
       0;  ///< used of it at the first frame of the chunk, with peaks since then

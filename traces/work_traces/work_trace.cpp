@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::uint32_t kWithOffload = 2;
 constexpr std::uint32_t kWithNamesOfFacts = 3;
-constexpr std::uint32_t kWithDividedReuse = 4;  ///< and with compiled work
+constexpr std::uint32_t kWithDividedReuse = 4;     ///< and with compiled work
+constexpr std::uint32_t kWithInstructionSets = 6;  ///< of compiled work
 /// Of frames in files of older versions.
 constexpr std::array kOldFacts{"features", "world_matches", "frame_matches", "inliers",
                                "landmarks"};
@@ -41,6 +42,8 @@ void write_fields(ByteWriter& out) {
   for (const work::OpInfo& op : work::kOps) out.text(op.name);
   out.whole(work::kReuseDistances.size());
   for (const std::uint32_t end : work::kReuseDistances) out.whole(end);
+  out.whole(work::kCompiledFor.size());
+  for (const std::string_view set : work::kCompiledFor) out.text(set);
   out.whole(work::kCompiledCount);
 }
 
@@ -111,11 +114,37 @@ std::int64_t read_number(ByteReader& in, std::uint64_t limit, const char* what) 
   return static_cast<std::int64_t>(in.whole_below(limit, what));
 }
 
+/// The number that a name has among those that are known.
+template <class Names>
+std::size_t number_of(ByteReader& in, const Names& known, std::string_view what) {
+  const std::string name(in.text("a name"));
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end())
+    in.fail(fmt::format("has {} '{}', which this leviosim does not know", what, name));
+  return static_cast<std::size_t>(found - known.begin());
+}
+
+/// Appends the fields of compiled work. Files of older versions have that of one instruction set.
+void read_compiled_fields(ByteReader& in, std::uint32_t version, FileFields& fields) {
+  std::vector<std::size_t> sets{0};
+  fields.one_set = version < kWithInstructionSets;
+  if (!fields.one_set) {
+    sets.resize(in.whole_below(work::kCompiledFor.size() + 1, "instruction sets"));
+    for (std::size_t& set : sets)
+      set = number_of(in, work::kCompiledFor, "work as compiled for instruction set");
+  }
+  const std::size_t kinds = in.whole_below(work::kCompiledCount + 1, "kinds of compiled work");
+  for (const std::size_t set : sets)
+    for (std::size_t k = 0; k < kinds; ++k)
+      fields.counters.push_back(kFirstCompiled + set * work::kCompiledCount + k);
+}
+
 /// Which counter each field of the file is.
-std::vector<std::size_t> read_fields(ByteReader& in, bool with_compiled_work) {
+FileFields read_fields(ByteReader& in, std::uint32_t version) {
   std::vector<std::string> known;
   for (const work::OpInfo& op : work::kOps) known.emplace_back(op.name);
-  std::vector<std::size_t> fields;
+  FileFields result;
+  std::vector<std::size_t>& fields = result.counters;
   for (std::uint64_t i = in.whole_below(work::kOpCount + 1, "operations"); i > 0; --i) {
     const std::string name(in.text("the name of an operation"));
     const auto found = std::find(known.begin(), known.end(), name);
@@ -131,16 +160,12 @@ std::vector<std::size_t> read_fields(ByteReader& in, bool with_compiled_work) {
     if (const std::uint64_t found = in.whole("the end of a class of code reuse"); found != end)
       in.fail(fmt::format("a class of code reuse ends at {} bytes; expected {}", found, end));
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) fields.push_back(work::kOpCount + k);
-  if (with_compiled_work)
-    for (std::size_t k = 0,
-                     kinds = in.whole_below(work::kCompiledCount + 1, "kinds of compiled work");
-         k < kinds; ++k)
-      fields.push_back(kFirstCompiled + k);
+  if (version >= kWithDividedReuse) read_compiled_fields(in, version, result);
   std::vector<std::size_t> sorted = fields;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
     in.fail("names an operation twice");
-  return fields;
+  return result;
 }
 
 Evaluation read_ate(ByteReader& in) {
@@ -237,7 +262,7 @@ void WorkTrace::read_summary(ByteReader& in) {
   info_.image_width = static_cast<int>(read_number(in, kLargestSide, "the width of an image"));
   info_.image_height = static_cast<int>(read_number(in, kLargestSide, "the height of an image"));
   info_.frame_period_ns = read_number(in, kLongestPeriod, "the frame period");
-  fields_ = read_fields(in, has_divided_reuse_);
+  fields_ = read_fields(in, version_of(bytes_));
   info_.stages.resize(in.whole_below(kMostStages + 1, "stages"));
   for (WorkTraceInfo::Stage& stage : info_.stages) {
     stage.name = in.text("the name of a stage");

@@ -22,12 +22,13 @@
 #include "traces/trajectories/evaluation.h"
 #include "traces/work_traces/memory_budget.h"
 #include "traces/work_traces/section_file.h"
+#include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_memory.h"
 
 namespace leviosim::traces {
 
 /// Work traces as files.
-inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 5};
+inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 6};
 
 class ByteReader;
 
@@ -118,7 +119,7 @@ class WorkTrace {
   };
   const std::vector<Chunk>& chunks() const { return chunks_; }
   /// Which counter of work::Counts (operations, then classes of reuse) a field of the file is.
-  const std::vector<std::size_t>& fields() const { return fields_; }
+  const FileFields& fields() const { return fields_; }
 
  private:
   void read_summary(ByteReader& in);
@@ -130,7 +131,7 @@ class WorkTrace {
   MemoryBudget budget_;
   WorkTraceInfo info_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> fields_;
+  FileFields fields_;
   std::vector<Chunk> chunks_;
   bool has_offload_ = false;
   bool has_divided_reuse_ = false;

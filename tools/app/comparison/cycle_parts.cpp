@@ -116,10 +116,15 @@ const sim::Accelerators& CycleParts::accelerators_of(const Stage& stage) const {
   return stage.on_controller ? chip_.controller.accelerators : chip_.cluster.accelerators;
 }
 
+const sim::CoreConfig& CycleParts::core_of(const Stage& stage) const {
+  return stage.on_controller ? chip_.controller.core : chip_.cluster.core;
+}
+
 void CycleParts::add_segment(const Stage& stage, Place& place, const work::Segment& segment) const {
   place.all += segment;
   place.left.add(segment.offload.empty() ? work::Counts(segment)
-                                         : sim::left_to_core(segment, accelerators_of(stage)));
+                                         : sim::left_to_core(segment, accelerators_of(stage)),
+                 core_of(stage).code);
 }
 
 void CycleParts::add_steps(Stage& stage, const work::StageRun& run) {
@@ -153,7 +158,7 @@ void CycleParts::add_fork(Stage& stage, const work::Fork& fork) {
 /// @returns its price in core-cycles
 double CycleParts::add_priced(PartList& list, const Stage& stage, const Place& place,
                               double factor) const {
-  const sim::CoreConfig& core = stage.on_controller ? chip_.controller.core : chip_.cluster.core;
+  const sim::CoreConfig& core = core_of(stage);
   double total = 0;
   const auto add = [&](std::string_view operation, const UsefulCycles& price, double count) {
     total += price.total() * factor;

@@ -106,6 +106,7 @@ class CycleParts : public RunObserver {
   static Place& place(Stage& stage, std::string_view name);
   void add_segment(const Stage& stage, Place& place, const work::Segment& segment) const;
   const sim::Accelerators& accelerators_of(const Stage& stage) const;
+  const sim::CoreConfig& core_of(const Stage& stage) const;
   void add(const work::Job& job, const sim::JobTiming& timing, bool on_controller);
   void add_steps(Stage& stage, const work::StageRun& run);
   void add_fork(Stage& stage, const work::Fork& fork);

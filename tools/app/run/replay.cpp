@@ -33,7 +33,8 @@ Replay replay(const traces::WorkTrace& trace, const RunRequest& request,
   check_cores(trace, request);
   const auto begin = std::chrono::steady_clock::now();
   const sim::ChipConfig& chip = request.platform.config;
-  TraceSource source(trace, chip.cluster.l1.size, chip.l2.size, sim::has_accelerators(chip));
+  TraceSource source(trace, chip.cluster.l1.size, chip.l2.size, sim::has_accelerators(chip),
+                     sim::code_of(chip));
   Replay result;
   result.run = simulate_source(request, source, progress);
   result.run.host_seconds =

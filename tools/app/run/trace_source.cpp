@@ -31,8 +31,13 @@ std::vector<const vio::FrameFact*> known_facts(const traces::WorkTraceInfo& info
 
 }  // namespace
 
-TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool offload)
-    : trace_(trace), l1_(l1), l2_(l2), reader_(trace, offload), facts_(known_facts(trace.info())) {}
+TraceSource::TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool offload,
+                         std::optional<work::CompiledFor> code)
+    : trace_(trace),
+      l1_(l1),
+      l2_(l2),
+      reader_(trace, offload, code),
+      facts_(known_facts(trace.info())) {}
 
 bool TraceSource::begin_frame(const soc::FrameStart& start) {
   for (; number_ < start.frame; ++number_)

@@ -37,7 +37,9 @@ class TraceSource : public RunSource {
   /// @param trace  outlives the source and all names in what it gives
   /// @param l1,l2    sizes of the memories that the work has to fit in
   /// @param offload  whether offload regions are needed: by chips with accelerators
-  TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool offload = false);
+  /// @param code     whose compiled work is needed; all by default
+  TraceSource(const traces::WorkTrace& trace, Bytes l1, Bytes l2, bool offload = false,
+              std::optional<work::CompiledFor> code = {});
 
   int frames() const override { return trace_.frames(); }
   std::int64_t time_ns(int frame) const override {

@@ -40,9 +40,10 @@ void FrameLog::on_front_end(const FrontEndJob& event) {
     stage.parallel += event.parallel.stages[i].cycles;
     stage.single += event.single.stages[i].cycles;
     for (const work::Step& step : event.job.stages[i].steps) {
-      if (const auto* serial = std::get_if<work::Serial>(&step)) stage.work.add(serial->counts);
+      if (const auto* serial = std::get_if<work::Serial>(&step))
+        stage.work.add(serial->counts, code_);
       if (const auto* fork = std::get_if<work::Fork>(&step))
-        stage.work.add(work::shares_on_one_core(*fork));
+        stage.work.add(work::shares_on_one_core(*fork), code_);
     }
   }
   ransac_.add(event.job);

@@ -38,6 +38,10 @@ struct LoggedIteration {
 
 class FrameLog : public RunObserver {
  public:
+  /// @param code  of the cores that the work is priced for
+  explicit FrameLog(work::CompiledFor code) : code_(code) {}
+  FrameLog() = default;
+
   void on_front_end(const FrontEndJob& event) override;
   void on_optimiser(const OptimiserJob& event) override;
 
@@ -47,6 +51,7 @@ class FrameLog : public RunObserver {
   const RansacSamples& ransac() const { return ransac_; }
 
  private:
+  work::CompiledFor code_ = work::CompiledFor::Rv32imfc;
   std::vector<LoggedFrame> frames_;
   std::vector<LoggedIteration> iterations_;
   RansacSamples ransac_;

@@ -141,7 +141,7 @@ MeanTimes time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTr
   Average eight_point;
   Average iteration;
   StageAverages stages;
-  traces::WorkFrames reader(trace, sim::has_accelerators(chip));
+  traces::WorkFrames reader(trace, sim::has_accelerators(chip), sim::code_of(chip));
   for (traces::WorkFrame recorded; reader.next(recorded);) {
     for (const work::Job& job : recorded.iterations) {
       Cycles cycles;
