@@ -221,13 +221,22 @@ class Jobs : public RunObserver {
   work::Counts sum_;
 };
 
+/// Without the compiled work of instruction sets that are not the chip's, which replays do not
+/// read.
+work::Counts as_on_gap9(work::Counts counts) {
+  const auto own = work::compiled_of(counts.compiled, work::CompiledFor::Rv32imfc);
+  counts.compiled = {};
+  work::set_compiled(counts.compiled, work::CompiledFor::Rv32imfc, own);
+  return counts;
+}
+
 /// With the code that it fetches, which no file of a run shows.
 TEST_F(Replayed, ObserversSeeTheSameWork) {
   Jobs in_run;
   Jobs in_replay;
   live(request_on({}), &in_run);
   replayed(*on_gap9().trace, {}, &in_replay);
-  EXPECT_EQ(in_run.sum(), in_replay.sum());
+  EXPECT_EQ(as_on_gap9(in_run.sum()), as_on_gap9(in_replay.sum()));
   EXPECT_GT(in_run.sum()[work::Op::F32Fma], 0u);
 }
 

@@ -126,7 +126,7 @@ inline const TraceBomb kTraceBombs[] = {
          whole.names += text(work::kOffloadKinds[k].name);
          calls += bytes({k, 0, 0, 0});
        }
-       whole.offload = {text(kOneSeries) + text("") + times(300'000, calls)};
+       whole.offload = {text(kOneSeries) + text("") + times(301'000, calls)};
        return trace_of_frame(whole, kOneSeries,
                              frame(list(1, stage(list(30'000, bytes({1, 0, 0}))))));
      }},
