@@ -1,5 +1,5 @@
-// The 256 pairs of points whose grey levels a descriptor compares, in the frame of the feature
-// (x along its orientation).
+// The 256 pairs of points of the shared extraction's descriptor; `levio` has others
+// (workload/vio/levio/vision/learned_pairs.h).
 //
 // The pattern is our own, drawn at compile time by a fixed rule (no learned table): every
 // coordinate is a sum of four uniform 16-bit numbers, which is nearly normal, scaled to the
@@ -14,21 +14,9 @@
 // Generator: SplitMix64 (Steele et al. 2014).
 #pragma once
 
-#include <array>
-#include <cstdint>
-
-#include "sim/work/policy.h"
+#include "workload/vision/point_pairs.h"
 
 namespace leviosim::vio {
-
-inline constexpr int kPairs = 256;
-/// No point is farther from the feature than this, before rotation.
-inline constexpr int kPatternRadius = 15;
-inline constexpr int kMinPairDistance = 5;
-
-struct PointPair {
-  int x1, y1, x2, y2;
-};
 
 class PairGenerator {
  public:
@@ -36,20 +24,17 @@ class PairGenerator {
   constexpr PointPair next() {
     for (;;) {
       const PointPair pair = {coordinate(), coordinate(), coordinate(), coordinate()};
-      if (inside(pair.x1, pair.y1) && inside(pair.x2, pair.y2) && apart(pair)) return pair;
+      if (is_in_disc(pair.x1, pair.y1) && is_in_disc(pair.x2, pair.y2) && is_far_apart(pair) &&
+          lies_across(pair))
+        return pair;
     }
   }
 
  private:
-  static constexpr bool inside(int x, int y) {
-    return x * x + y * y <= kPatternRadius * kPatternRadius;
-  }
-
-  static constexpr bool apart(const PointPair& pair) {
+  static constexpr bool lies_across(const PointPair& pair) {
     const int along = pair.x2 - pair.x1;
     const int across = pair.y2 - pair.y1;
-    return along * along + across * across >= kMinPairDistance * kMinPairDistance &&
-           along * along <= across * across;
+    return along * along <= across * across;
   }
 
   /// The standard deviation of a sum of four uniform 16-bit numbers is 2^16 / sqrt(3) = 37 837;
@@ -77,15 +62,8 @@ class PairGenerator {
   std::uint64_t state_ = 0;
 };
 
-/// The pattern packed for the core: one word per pair holds x1, y1, x2, y2 as signed bytes from the
-/// top byte down. One load fetches a pair.
-constexpr std::uint32_t pack_pair(const PointPair& p) {
-  constexpr auto byte = [](int v) { return static_cast<std::uint32_t>(v) & 0xffu; };
-  return byte(p.x1) << 24 | byte(p.y1) << 16 | byte(p.x2) << 8 | byte(p.y2);
-}
-
-constexpr std::array<std::uint32_t, kPairs> make_pair_words() {
-  std::array<std::uint32_t, kPairs> words{};
+constexpr PairWords make_pair_words() {
+  PairWords words{};
   PairGenerator generator;
   for (int n = 0; n < kPairs;) {
     const PointPair pair = generator.next();
@@ -97,16 +75,9 @@ constexpr std::array<std::uint32_t, kPairs> make_pair_words() {
   }
   return words;
 }
-inline constexpr std::array<std::uint32_t, kPairs> kPairWords = make_pair_words();
+inline constexpr PairWords kPairWords = make_pair_words();
 
-/// The packed pattern in the scalars of the policy: a constant of the program image.
 template <class P>
-constexpr std::array<typename P::U32, kPairs> make_pair_pattern() {
-  std::array<typename P::U32, kPairs> pattern{};
-  for (int k = 0; k < kPairs; ++k) pattern[k] = typename P::U32(kPairWords[k]);
-  return pattern;
-}
-template <class P>
-inline constexpr auto kPairPattern = make_pair_pattern<P>();
+inline constexpr auto kPairPattern = make_pair_pattern<P>(kPairWords);
 
 }  // namespace leviosim::vio
