@@ -46,7 +46,7 @@ struct FrontEndAlone {
   /// or, if scrambled, somewhere else.
   int add_landmarks(const cv::Mat& image, bool scrambled) {
     const vision_test::Features features =
-        vision_test::extract<Native>(image, 8, profile.extractor);
+        vision_test::extract_as_levio<Native>(image, 8, profile.extractor);
     const std::size_t n = features.size();
     graph.age_landmarks();
     for (std::size_t i = 0; i < n; ++i) {

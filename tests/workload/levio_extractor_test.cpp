@@ -1,6 +1,7 @@
 // Extraction with the released program's work: the corners of the shared extraction, which is
-// tested against OpenCV, and descriptors that hardly differ; its work beside that of the release.
-// Facts: workload/PARAMETERS.md#feature-extraction.
+// tested against OpenCV, and descriptors that hardly differ from those of the shared extraction
+// with the same pattern of pairs; its work beside that of the release. Facts:
+// workload/PARAMETERS.md#feature-extraction.
 #include "workload/vio/levio/vision/extractor.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "workload/vio/levio/vision/blur.h"
 #include "workload/vio/levio/vision/corner_tests.h"
 #include "workload/vio/levio/vision/descriptor.h"
+#include "workload/vio/levio/vision/learned_pairs.h"
 #include "workload/vision/extraction_steps.h"
 
 namespace leviosim::vio::levio {
@@ -27,18 +29,29 @@ const cv::Mat& picture() {
 
 template <class P>
 Features extract_as_released(int cores) {
-  work::Machine machine = vision_test::make_machine<P>(cores);
-  const ExtractorOptions options;
-  PolicyImage<P> copy(picture());
-  const auto stage = machine.stage("feature extraction");
-  const work::Arena::Frame frame(machine.local());
-  FeatureList<P> list = alloc_features<P>(machine.local(), options.max_features(160, 120));
-  levio::extract_features<P>(machine, copy.view(), options, list);
-  return vision_test::plain<P>(list);
+  return vision_test::extract_as_levio<P>(picture(), cores);
+}
+
+/// The shared extraction with the pattern of `levio`.
+Features extract_shared_with_learned_pairs() {
+  using N = work::Native;
+  const auto extract = [](work::Machine& machine, ImageView<N> image,
+                          const ExtractorOptions& options, FeatureList<N>& list) {
+    vio::extract_features<N>(machine, image, options, list);
+    ExtractionTables<N> tables(machine.local(), machine.cores());
+    load_tables<N>(machine, image.width, tables);
+    std::vector<std::uint8_t> pixels(160 * 120);
+    const ImageView<N> blurred{{pixels.data(), 160 * 120}, 160, 120};
+    vio::blur_rows<N>(image, blurred, 0, 120, tables.blur_kernel);
+    vio::describe_all<N>(machine, blurred, tables, in_l2<N>(levio::kLearnedPattern<N>),
+                         {0, list.count}, list);
+  };
+  work::Machine machine = vision_test::make_machine<N>(8);
+  return vision_test::extract_by<N>(extract, machine, picture(), {});
 }
 
 TEST(LevioExtractor, FindsTheFeaturesOfTheSharedExtraction) {
-  const Features shared = vision_test::extract<work::Native>(picture());
+  const Features shared = extract_shared_with_learned_pairs();
   const Features released = extract_as_released<work::Native>(8);
   ASSERT_GT(released.size(), 100u);
   ASSERT_EQ(released.size(), shared.size());
@@ -49,6 +62,17 @@ TEST(LevioExtractor, FindsTheFeaturesOfTheSharedExtraction) {
     bits += vision_test::distance_between(released[i], shared[i]);
   }
   EXPECT_LT(bits / static_cast<double>(shared.size()), 8);
+}
+
+TEST(LevioExtractor, HasAPatternOfItsOwn) {
+  const Features shared = vision_test::extract<work::Native>(picture());
+  const Features released = extract_as_released<work::Native>(8);
+  ASSERT_EQ(released.size(), shared.size());
+  double bits = 0;
+  for (std::size_t i = 0; i < shared.size(); ++i)
+    bits += vision_test::distance_between(released[i], shared[i]);
+  // Bits of unrelated pairs agree half of the time.
+  EXPECT_NEAR(bits / static_cast<double>(shared.size()), 128, 16);
 }
 
 TEST(LevioExtractor, DoesNotDependOnTheNumberOfCoresOrThePolicy) {
@@ -114,7 +138,7 @@ TEST(LevioExtractor, TheSlipChangesNegativeCoordinatesOnly) {
 
 TEST(LevioExtractor, ADescriptorHasTheProductsOfTheRelease) {
   PolicyImage<C> copy(picture());
-  const C::Span<const work::U32> pattern(kPairPattern<C>.data(), kPairs);
+  const C::Span<const work::U32> pattern(kLearnedPattern<C>.data(), kPairs);
   std::vector<work::U32> words(kDescriptorWords);
   work::take_tally();
   const Moments<C> moments = levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "tests/support/pair_learner.h"
 #include "tests/workload/vision_runs.h"
 
 namespace leviosim::vio::vision_test {
@@ -15,12 +16,7 @@ namespace {
 
 std::vector<PointPair> unpacked_pattern() {
   std::vector<PointPair> pairs;
-  for (const std::uint32_t word : kPairWords) {
-    const auto coordinate = [&](int byte) {
-      return static_cast<int>(static_cast<std::int8_t>(word >> (8 * byte) & 0xffu));
-    };
-    pairs.push_back({coordinate(3), coordinate(2), coordinate(1), coordinate(0)});
-  }
+  for (const std::uint32_t word : kPairWords) pairs.push_back(tests::unpack_pair(word));
   return pairs;
 }
 

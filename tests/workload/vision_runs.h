@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/workload/vision_test_images.h"
+#include "workload/vio/levio/vision/extractor.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/matcher.h"
 
@@ -34,21 +35,35 @@ Features plain(const FeatureList<P>& list) {
   return features;
 }
 
-template <class P>
-Features extract(work::Machine& machine, const cv::Mat& image,
-                 const ExtractorOptions& options = {}) {
+/// @param extract  extract_features(), shared or of levio
+template <class P, class Extract>
+Features extract_by(Extract&& extract, work::Machine& machine, const cv::Mat& image,
+                    const ExtractorOptions& options) {
   PolicyImage<P> copy(image);
   const auto stage = machine.stage("feature extraction");
   const work::Arena::Frame frame(machine.local());
   FeatureList<P> list =
       alloc_features<P>(machine.local(), options.max_features(image.cols, image.rows));
-  extract_features<P>(machine, copy.view(), options, list);
+  extract(machine, copy.view(), options, list);
   return plain<P>(list);
+}
+template <class P>
+Features extract(work::Machine& machine, const cv::Mat& image,
+                 const ExtractorOptions& options = {}) {
+  return extract_by<P>(vio::extract_features<P>, machine, image, options);
 }
 template <class P>
 Features extract(const cv::Mat& image, int cores = 8, const ExtractorOptions& options = {}) {
   work::Machine machine = make_machine<P>(cores);
   return extract<P>(machine, image, options);
+}
+
+/// As the front end of `levio` does it.
+template <class P>
+Features extract_as_levio(const cv::Mat& image, int cores = 8,
+                          const ExtractorOptions& options = {}) {
+  work::Machine machine = make_machine<P>(cores);
+  return extract_by<P>(levio::extract_features<P>, machine, image, options);
 }
 
 struct PlainMatch {

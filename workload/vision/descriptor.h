@@ -3,7 +3,7 @@
 //
 // As in the released embedded code (PARAMETERS.md#feature-extraction): each point is rotated with
 // sine and cosine in 8-bit fixed point, its coordinates are scaled back and clipped to ±15. The
-// pattern itself is ours (pair_pattern.h).
+// pattern itself is ours (pair_pattern.h), and that of `levio` another one.
 #pragma once
 
 #include "workload/vision/features.h"
@@ -35,7 +35,7 @@ typename P::I32 rotated_sample(typename P::template Span<const typename P::Byte>
 
 /// Computes the descriptor of the feature at index `centre` of the blurred `image`. Bit k of the
 /// descriptor, the highest of a word first, says whether the first point of pair k is darker than
-/// the second. `Pattern`: a span of kPairs words (kPairPattern) in whichever memory they lie.
+/// the second. `Pattern`: a span of kPairs words (point_pairs.h) in whichever memory they lie.
 template <class P, class Pattern>
 void describe(typename P::template Span<const typename P::Byte> image, int width, int centre,
               const Direction<P>& direction, Pattern pattern,

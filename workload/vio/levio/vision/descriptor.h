@@ -1,7 +1,7 @@
 // Orientation and descriptor as the released program computes them
 // (PARAMETERS.md#feature-extraction): all positions of a 29×29 window are tested for the disc, and
 // every coordinate of a pair is divided by 256 with a rounding that looks at its sign. The pattern
-// of pairs is that of workload/vision/pair_pattern.h.
+// of pairs is learned (learned_pairs.h).
 //
 // The release's rounding has a slip (PARAMETERS.md#defects-of-the-release), so its pattern is not
 // rotated exactly and finds fewer matches. ExactRounding is the one that was meant.

@@ -6,6 +6,7 @@
 #include "workload/vio/levio/vision/blur.h"
 #include "workload/vio/levio/vision/corner_tests.h"
 #include "workload/vio/levio/vision/descriptor.h"
+#include "workload/vio/levio/vision/learned_pairs.h"
 #include "workload/vision/extraction_steps.h"
 
 namespace leviosim::vio::levio {
@@ -66,7 +67,7 @@ template <class P, class Rounding>
 void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList<P>& out) {
   using I = typename P::I32;
   using U = typename P::U32;
-  const typename P::template Span<const U> pattern(kPairPattern<P>.data(), kPairs);
+  const typename P::template Span<const U> pattern(kLearnedPattern<P>.data(), kPairs);
   machine.fork("describe", [&](work::Core& core) {
     const int each = (out.count + core.cores - 1) / core.cores;
     for (int i :

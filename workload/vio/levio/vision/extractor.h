@@ -1,8 +1,10 @@
 // Feature extraction with the released program's work (PARAMETERS.md#feature-extraction): the same
-// three forks as workload/vision/extractor.h, and features that differ from those in what the disc
-// and the rounding of the release change.
+// three forks as workload/vision/extractor.h, and features at the same places. Their descriptors
+// differ from those in the pattern of pairs (learned_pairs.h), and in what the disc and the
+// rounding of the release change.
 //
-// Left out: images that do not fit in local memory; the shared extraction has strips for them.
+// Left out: images that do not fit in local memory; the shared extraction has strips for them, with
+// its own pattern.
 #pragma once
 
 #include "sim/work/machine.h"
