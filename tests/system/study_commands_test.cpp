@@ -92,7 +92,7 @@ TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
 /// One flight for everything that runs to its end.
 TEST_F(StudyCommands, RunOnASyntheticFlight) {
   const TempFolder& work = folder_;
-  traces::write_synthetic_flight(work / "flight", {.duration_s = 5, .texel_m = 0.01});
+  traces::write_synthetic_flight(work / "flight", {.duration_s = 8, .texel_m = 0.01});
   const std::vector<std::string> data{"--data", path("flight"), "--quiet"};
   const auto words = [&](std::vector<std::string> all) {
     all.insert(all.end(), data.begin(), data.end());

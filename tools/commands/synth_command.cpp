@@ -119,7 +119,7 @@ Command add_synth_command(CLI::App& app) {
   add_motion_options(*command, *options);
   command->add_flag("--force", options->overwrite, "replace a flight that was written before");
   command->add_flag("--quiet", options->quiet, "no progress");
-  add_examples(*command, {"leviosim synth --duration 5 --out flight",
+  add_examples(*command, {"leviosim synth --duration 6 --out flight",
                           "leviosim synth --motion flight --frames 0:20 --out rendered"});
   return {command, [=] { run(*command, *options); }, {{"--overwrite", "--force"}}};
 }
