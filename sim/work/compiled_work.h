@@ -31,8 +31,9 @@ using CompiledWork = std::array<std::uint64_t, kCompiledCount>;
 inline constexpr double kCompiledUnit = 16;
 
 /// What the workload was compiled for and measured on, by the names of platform_models/code/*.csv.
-enum class CompiledFor : std::uint8_t { Rv32imfc, Thumb2, Armv6 };
-inline constexpr std::array<std::string_view, 3> kCompiledFor = {"rv32imfc", "thumb2", "armv6"};
+enum class CompiledFor : std::uint8_t { Rv32imfc, Thumb2, Armv6, Rv32imfcXpulp };
+inline constexpr std::array<std::string_view, 4> kCompiledFor = {"rv32imfc", "thumb2", "armv6",
+                                                                 "rv32imfc_xpulp"};
 
 /// The sums of all of these, one after the other: work is counted once for all chips.
 using CompiledSets = std::array<std::uint64_t, kCompiledFor.size() * kCompiledCount>;

@@ -49,8 +49,8 @@ TEST(CompiledCode, HasSizesByInstructionSet) {
 
 TEST(CompiledCode, IsChosenByTheInstructionSetOfTheChip) {
   const std::map<std::string, work::CompiledFor> expected = {
-      {"gap9", work::CompiledFor::Rv32imfc},
-      {"gap8", work::CompiledFor::Rv32imfc},
+      {"gap9", work::CompiledFor::Rv32imfcXpulp},
+      {"gap8", work::CompiledFor::Rv32imfcXpulp},
       {"cortex-m4f", work::CompiledFor::Thumb2},
       {"cortex-m7", work::CompiledFor::Thumb2},
       {"arm1176", work::CompiledFor::Armv6}};

@@ -15,7 +15,7 @@ using testing::expect_input_error;
 using testing::read_all;
 
 constexpr int kHeadBytes = 16;
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 
 /// The container around other contents, with checksums that are right.
 std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = kVersion) {
@@ -260,9 +260,38 @@ TEST(WorkTrace, ReadsTheFifthVersion) {
   }
 }
 
+/// Likewise. It has no compiled work of RV32 with Xpulp.
+TEST(WorkTrace, ReadsTheSixthVersion) {
+  const WorkTrace sixth(golden_file("version_6.trace"));
+  constexpr auto kSet = work::CompiledFor::Rv32imfcXpulp;
+  for (const std::optional<work::CompiledFor> code :
+       {std::optional<work::CompiledFor>(), std::optional(kSet)}) {
+    WorkFrames reader(sixth, true, code);
+    WorkFrame frame;
+    int frames = 0;
+    for (; reader.next(frame); ++frames) {
+      WorkFrame expected = testing::example_frame_with_offload(frames);
+      for_each_segment(expected, [](work::Segment& segment) {
+        work::set_compiled(segment.compiled, kSet,
+                           work::compiled_of(segment.compiled, work::CompiledFor::Rv32imfc));
+      });
+      const auto keep_asked = [&](work::Segment& segment) {
+        const auto own = work::compiled_of(segment.compiled, kSet);
+        if (code) segment.compiled = {};
+        work::set_compiled(segment.compiled, kSet, own);
+      };
+      for_each_segment(expected, keep_asked);
+      for_each_segment(frame, keep_asked);
+      testing::expect_equal(frame, expected);
+    }
+    EXPECT_EQ(frames, 5);
+  }
+}
+
 TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
   const WorkTrace trace("example", testing::example_trace_with_offload(40));
-  for (const auto code : {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6}) {
+  for (const auto code : {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6,
+                          work::CompiledFor::Rv32imfcXpulp}) {
     WorkFrames all(trace, true);
     WorkFrames one(trace, true, code);
     WorkFrame a, b;
@@ -285,9 +314,9 @@ TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
 /// LEVIOSIM_RENEW_GOLDEN the file is written anew: for a version that no release has written yet.
 TEST(WorkTrace, WritesTheContentOfItsVersion) {
   if (std::getenv("LEVIOSIM_RENEW_GOLDEN") != nullptr)
-    std::ofstream(golden_file("version_6.trace"), std::ios::binary)
+    std::ofstream(golden_file("version_7.trace"), std::ios::binary)
         << testing::example_trace_with_offload(5);
-  const std::string golden = base::read_text_file(golden_file("version_6.trace"));
+  const std::string golden = base::read_text_file(golden_file("version_7.trace"));
   EXPECT_EQ(contents_of(golden), contents_of(testing::example_trace_with_offload(5)));
 }
 
@@ -352,7 +381,7 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   std::string damaged = whole;
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
-  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 7", "up to 6", "newer"});
+  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 8", "up to 7", "newer"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});

@@ -63,6 +63,7 @@ void Analysis::execute(const Block& block) {
   }
   last_ = block.instructions.back();
   last_end_ = last_.pc + last_.size;
+  last_counts_ = block.counts_loop;
 }
 
 /// What the last instruction of the block before did, now that its target is known.
@@ -79,7 +80,10 @@ void Analysis::finish_transfer(const Block& next) {
   switch (last_.kind) {
     case Kind::Branch:
       if (pc != last_end_) count_kind(Kind::BranchTaken);
-      if (pc < last_.pc) count_kind(Kind::BranchBack);
+      if (pc < last_.pc) {
+        count_kind(Kind::BranchBack);
+        if (last_counts_) count_kind(Kind::LoopCounter);
+      }
       if (last_.conditional && pc != last_end_) jump_to(next);
       break;
     case Kind::Call:
@@ -182,8 +186,14 @@ void Analysis::count(const Instruction& in) {
   ++top.account->of_kind[static_cast<std::size_t>(in.kind)];
   if (in.more_words > 0)
     top.account->of_kind[static_cast<std::size_t>(account_of_more_words(in))] += in.more_words;
+  if (in.spared != Kind::Other && in.spared != Kind::LoopCounter)
+    ++top.account->of_kind[static_cast<std::size_t>(in.spared)];
   ++executed_;
   if (uses_loaded(last_, in)) ++top.account->load_use;
+  if (in.spared == Kind::Other) {
+    if (uses_loaded(last_kept_, in)) ++top.account->load_use_xpulp;
+    last_kept_ = in;
+  }
   last_account_ = top.account;
   last_ = in;
   ++piece_instructions_;
@@ -279,6 +289,7 @@ void Analysis::write(std::FILE* out) const {
     };
     for (std::size_t k = 0; k < kKinds; ++k) put(kKindNames[k], a.of_kind[k]);
     put("load_use", a.load_use);
+    put("load_use_xpulp", a.load_use_xpulp);
     put("host", a.host);
     put("inclusive", a.inclusive);
     for (const auto& [name, use] : a.library)

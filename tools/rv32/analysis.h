@@ -28,6 +28,7 @@ struct Block {
   bool marked = false;
   const Symbol* symbol = nullptr;
   bool starts_symbol = false;
+  bool counts_loop = false;  ///< has a LoopCounter
 };
 
 struct LibraryUse {
@@ -54,6 +55,7 @@ struct Account {
   std::uint64_t visits = 0;
   std::array<std::uint64_t, kKinds> of_kind{};
   std::uint64_t load_use = 0;
+  std::uint64_t load_use_xpulp = 0;  ///< if what Xpulp spares does not stand in between
   std::uint64_t host = 0;       ///< instructions of the simulator's book-keeping
   std::uint64_t inclusive = 0;  ///< instructions from entry to end, with what it called
   std::map<std::string, LibraryUse> library;
@@ -110,8 +112,10 @@ class Analysis {
   LineSet* scene_lines_ = nullptr;
   std::uint64_t executed_ = 0;  ///< instructions of kernels and library routines in scenes
 
-  Instruction last_;  ///< executed
+  Instruction last_;       ///< executed
+  Instruction last_kept_;  ///< … that Xpulp would have, too
   std::uint32_t last_end_ = 0;
+  bool last_counts_ = false;  ///< the block before had a LoopCounter
   Account* last_account_ = nullptr;
 
   /// Instructions since a call, which may turn out to be the first of a named function.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Compiles the workload for RV32, Thumb-2 and ARMv6, traces it under QEMU, and writes the tables that
+# Compiles the workload for RV32, RV32 with Xpulp, Thumb-2 and ARMv6, traces it under QEMU, and writes the tables that
 # the repository keeps: platform_models/code/*.csv and the tables of this folder. See README.md.
-# usage: tools/rv32/measure.sh [--only rv32imfc|thumb2|armv6] [ASL folder to take frames from]
+# usage: tools/rv32/measure.sh [--only rv32imfc|rv32imfc_xpulp|thumb2|armv6] [ASL folder to take frames from]
 # Without a folder, frames come from the synthetic flight.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -9,9 +9,9 @@ root=$(cd ../.. && pwd)
 out=$root/build/rv32
 mkdir -p "$out"
 
-instruction_sets=(rv32imfc thumb2 armv6)
+instruction_sets=(rv32imfc rv32imfc_xpulp thumb2 armv6)
 if [[ ${1:-} == --only ]]; then
-  instruction_sets=("${2:?measure.sh: --only takes rv32imfc, thumb2 or armv6}")
+  instruction_sets=("${2:?measure.sh: --only takes rv32imfc, rv32imfc_xpulp, thumb2 or armv6}")
   shift 2
 fi
 for tool in riscv64-unknown-elf-g++ arm-none-eabi-g++ qemu-riscv32 qemu-arm python3; do

@@ -53,8 +53,9 @@ CLASSES = [
     ("double calls", ["f64"], ["f64_add", "f64_mul", "f64_div", "f64_compare", "f64_convert"]),
     ("popcount calls", ["popcount"], ["popcount"]),
 ]
-NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "host", "inclusive",
-                  "more_loaded", "more_stored", "more_restored", "more_saved"}
+NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "load_use_xpulp", "host", "inclusive",
+                  "more_loaded", "more_stored", "more_restored", "more_saved", "spared_move",
+                  "spared_index", "spared_sum", "spared_shift", "loop_counter"}
 SCENE = "scene: "
 GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
 
@@ -63,9 +64,12 @@ class InstructionSet:
     """What code of an instruction set is compared with: the slots that operations issue, and the
     slots that executed instructions issue."""
 
-    def __init__(self, title, prices, price_file, slots):
-        """@param slots  beyond 1, of kinds of instructions; of accounts that are no kinds, in all"""
+    def __init__(self, title, prices, price_file, slots, in_hardware=(), load_use="load_use"):
+        """@param slots  beyond 1, of kinds of instructions; of accounts that are no kinds, in all
+        @param in_hardware  accounts of what repeats loops, where the hardware does that
+        @param load_use  account of loads whose value the next instruction needs"""
         self.title, self.prices, self.price_file, self.slots = title, prices, price_file, slots
+        self.in_hardware, self.load_use = in_hardware, load_use
 
     def executed(self, kinds):
         return instructions(kinds) + sum(n * kinds.get(kind, 0) for kind, n in self.slots.items())
@@ -83,6 +87,18 @@ def rv32imfc(root):
     return InstructionSet("RV32IMFC", own, "tools/rv32/rv32imfc_costs.csv", {})
 
 
+def rv32imfc_xpulp(root):
+    """What Xpulp spares is no slot (xpulp.h). Its hardware loops take what repeats a loop: the branch,
+    and the counter if it serves nothing else. Loops that none holds are counted besides, so they have
+    no part in the prices here."""
+    name = "platform_models/isa/rv32imfc_xpulp.yaml"
+    base = read_issue(root / "platform_models/isa/rv32imfc.yaml")
+    prices = {**base, **read_issue(root / name), "loop_jump": 0.0}
+    spared = ("spared_move", "spared_index", "spared_sum", "spared_shift")
+    return InstructionSet("RV32IMFC with Xpulp", prices, name, {kind: -1 for kind in spared},
+                          ("branch_back", "loop_counter"), "load_use_xpulp")
+
+
 def thumb2(root):
     """Registers that a push saves are stalls of `call` in the prices."""
     name = "platform_models/isa/thumb2_fp.yaml"
@@ -97,7 +113,7 @@ def armv6(root):
     return InstructionSet("ARMv6 with VFP", read_issue(root / name), name, slots)
 
 
-INSTRUCTION_SETS = {"rv32imfc": rv32imfc, "thumb2": thumb2, "armv6": armv6}
+INSTRUCTION_SETS = {"rv32imfc": rv32imfc, "rv32imfc_xpulp": rv32imfc_xpulp, "thumb2": thumb2, "armv6": armv6}
 
 
 class Trace:
@@ -301,6 +317,10 @@ def compiled_work(executed_kinds, memory, counts, isa):
         if not visits or not counted_visits:
             continue
         executed = isa.executed(kinds) + by_library[function]
+        # A backward branch may also repeat what was not counted as a loop.
+        in_hardware = min(sum(kinds.get(kind, 0) for kind in isa.in_hardware),
+                          len(isa.in_hardware) * counted[function]["loop_iteration"])
+        executed -= in_hardware
         priced = sum(n * isa.prices.get(op, 0.0) for op, n in counted[function].items() if op != "visits")
         repetition = isa.prices["loop_iteration"]
         priced_loops = counted[function]["loop_iteration"] * repetition
@@ -308,7 +328,7 @@ def compiled_work(executed_kinds, memory, counts, isa):
         executed_loops = min(repetition * kinds["branch_back"], priced_loops)
         loads = kinds["load"] + kinds["float_load"] + kinds["more_loaded"] + kinds["more_restored"]
         work[function] = (executed / visits, priced / counted_visits, loads / visits,
-                          kinds["load_use"] / visits, (executed_loops + in_library) / visits,
+                          kinds[isa.load_use] / visits, (executed_loops + in_library) / visits,
                           priced_loops / counted_visits)
     return work
 
@@ -365,6 +385,34 @@ def write_functions_page(compiled, visits, isa, path):
         for function in sorted(compiled, key=lambda f: -visits[f] * compiled[f][1]):
             if not function.startswith(SCENE):
                 out.write(row(f"`{function}`", visits[function], *compiled[function][:4]))
+
+
+SPARED_PAGE = """
+## What Xpulp spares
+
+In per cent of the instructions that all functions execute on RV32IMFC with Zbb ([`xpulp.h`](xpulp.h)).
+
+| instruction | part of | % |
+| --- | --- | ---: |
+"""
+SPARED = [("a pointer that moves besides an access", "the access, with post-increment", ["spared_move"]),
+          ("branch and counter of a loop", "a hardware loop, if one holds it", ["branch_back", "loop_counter"]),
+          ("a shift of a shifted value or of a sum", "a bit field, `addN`, `addRN`", ["spared_shift"]),
+          ("a sum with a product", "`mac`, `msu`", ["spared_sum"]),
+          ("the sum of an address", "the access, with two registers", ["spared_index"])]
+
+
+def write_spared(executed_kinds, path):
+    """Appends to the page of functions.
+    @param executed_kinds  in_counted_flow()"""
+    total = collections.Counter()
+    for kinds in executed_kinds.values():
+        total.update(kinds)
+    with open(path, "a") as out:
+        out.write(SPARED_PAGE)
+        for what, part, kinds in SPARED:
+            share = sum(total[kind] for kind in kinds) / instructions(total)
+            out.write(f"| {what} | {part} | {100 * share:.1f} |\n")
 
 
 # ---- counted against executed ----
@@ -561,13 +609,16 @@ def main():
     counts = read_counts(arguments.counts)
     check_same_control_flow(uncontracted, counts)
     isa = INSTRUCTION_SETS[arguments.isa](root)
-    compiled = compiled_work(in_counted_flow(contracted, uncontracted),
-                             copied_and_cleared(uncontracted), counts, isa)
+    executed = in_counted_flow(contracted, uncontracted)
+    compiled = compiled_work(executed, copied_and_cleared(uncontracted), counts, isa)
     write_footprints(contracted, hard, compiled, isa, root / f"platform_models/code/{arguments.isa}.csv")
     here = root / "tools/rv32"
     if arguments.isa != "rv32imfc":
         visits = {function: n["visits"] for function, n in by_function(counts).items()}
-        write_functions_page(compiled, visits, isa, here / f"{arguments.isa}.md")
+        page = here / f"{arguments.isa}.md"
+        write_functions_page(compiled, visits, isa, page)
+        if isa.in_hardware:
+            write_spared(executed, page)
         return
     costs = read_costs(here / "rv32imfc_costs.csv")
     write_stages(contracted, here)

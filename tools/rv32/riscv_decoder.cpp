@@ -39,7 +39,9 @@ Kind kind_of(const std::string& m) {
     add(Kind::Alu,
         {"add",   "addi", "sub",  "neg",  "and",  "andi", "or",    "ori",    "xor",  "xori",
          "not",   "sll",  "slli", "srl",  "srli", "sra",  "srai",  "slt",    "slti", "sltu",
-         "sltiu", "seqz", "snez", "sltz", "sgtz", "lui",  "auipc", "zext.b", "cpop"});
+         "sltiu", "seqz", "snez", "sltz", "sgtz", "lui",  "auipc", "zext.b", "cpop", "min",
+         "max",   "minu", "maxu", "sext.b", "sext.h", "zext.h", "andn", "orn", "xnor", "rol",
+         "ror", "rori", "clz", "ctz", "rev8", "orc.b"});
     add(Kind::Move, {"mv", "li", "nop"});
     add(Kind::Mul, {"mul"});
     add(Kind::MulHigh, {"mulh", "mulhu", "mulhsu"});
@@ -71,6 +73,42 @@ Kind kind_of(const std::string& m) {
   return it->second;
 }
 
+Instruction::Form form_of(const std::string& mnemonic) {
+  using Form = Instruction::Form;
+  static const std::map<std::string_view, Form> forms = {
+      {"add", Form::Add},        {"addi", Form::AddConstant}, {"sub", Form::Subtract},
+      {"mul", Form::Multiply},   {"slli", Form::ShiftLeft},   {"srli", Form::ShiftRight},
+      {"srai", Form::ShiftRight}};
+  const auto it = forms.find(mnemonic);
+  return it == forms.end() ? Form::Other : it->second;
+}
+
+/// @param registers  in the order of the text
+/// @param numbers    likewise
+void set_operands(Instruction& in, const std::string& mnemonic, const std::vector<int>& registers,
+                  const std::vector<int>& numbers) {
+  const auto reg = [&](std::size_t i) {
+    return static_cast<std::int8_t>(i < registers.size() && registers[i] > 0 ? registers[i] : -1);
+  };
+  const bool stores = in.kind == Kind::Store || in.kind == Kind::FloatStore;
+  if (stores || in.loads()) {
+    (stores ? in.stored : in.written) = reg(0);
+    in.base = reg(1);
+    in.offset = numbers.empty() ? 0 : numbers[0];
+    return;
+  }
+  if (in.ends_block()) return;
+  in.written = reg(0);
+  in.first = reg(1);
+  in.second = reg(2);
+  in.form = form_of(mnemonic);
+  const bool constant = in.form == Instruction::Form::AddConstant ||
+                        in.form == Instruction::Form::ShiftLeft ||
+                        in.form == Instruction::Form::ShiftRight;
+  if (constant && (numbers.empty() || in.first < 0)) in.form = Instruction::Form::Other;
+  if (constant && !numbers.empty()) in.constant = numbers[0];
+}
+
 /// @param text  "lw a0,12(sp)", after any column of hexadecimal digits
 Instruction decoded(std::uint32_t pc, std::size_t size, const std::string& text) {
   Instruction in;
@@ -78,7 +116,7 @@ Instruction decoded(std::uint32_t pc, std::size_t size, const std::string& text)
   in.size = static_cast<std::uint8_t>(size);
   const std::size_t gap = std::min(text.find_first_of(" \t"), text.size());
   const std::string mnemonic = text.substr(0, gap);
-  std::vector<int> registers;
+  std::vector<int> registers, numbers;
   std::string token;
   std::string rest = text.substr(gap);
   rest = rest.substr(0, rest.find('#')) + ",";
@@ -87,7 +125,10 @@ Instruction decoded(std::uint32_t pc, std::size_t size, const std::string& text)
       token += c;
       continue;
     }
-    if (const int r = register_number(token); r >= 0) registers.push_back(r);
+    if (const int r = register_number(token); r >= 0)
+      registers.push_back(r);
+    else if (!token.empty())
+      numbers.push_back(static_cast<int>(std::strtol(token.c_str(), nullptr, 0)));
     token.clear();
   }
   const bool links = !registers.empty() && registers[0] == 1;
@@ -103,6 +144,7 @@ Instruction decoded(std::uint32_t pc, std::size_t size, const std::string& text)
     in.kind = registers.size() < 2 || links ? Kind::Call : Kind::IndirectJump;
   else
     in.kind = kind_of(mnemonic);
+  set_operands(in, mnemonic, registers, numbers);
   const bool writes = in.kind != Kind::Store && in.kind != Kind::FloatStore && !in.ends_block();
   if (writes && !registers.empty()) {
     if (in.loads() && registers[0] > 0) in.loaded = std::uint64_t{1} << registers[0];

@@ -1,5 +1,6 @@
 // Plugin for qemu-riscv32 and qemu-arm: hands every executed block of the program to the analysis,
 // in order and without sampling. Arguments: program=ELF file,out=file for the results.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -10,6 +11,7 @@
 #include "analysis.h"
 #include "decoder.h"
 #include "qemu_plugin.h"
+#include "xpulp.h"
 
 extern "C" {
 __attribute__((visibility("default"))) int qemu_plugin_version = 1;
@@ -51,6 +53,9 @@ void translate(qemu_plugin_id_t, qemu_plugin_tb* translated) {
     block->instructions.push_back(decoded);
     block->marks.push_back(mark);
   }
+  find_spared(block->instructions);
+  block->counts_loop = std::any_of(block->instructions.begin(), block->instructions.end(),
+                                   [](const auto& in) { return in.spared == Kind::LoopCounter; });
   const std::uint32_t begin = block->instructions.front().pc;
   block->symbol = session->program.symbol_at(begin);
   block->starts_symbol = block->symbol != nullptr && block->symbol->begin == begin;

@@ -110,14 +110,19 @@ class Dependences {
   std::vector<Row> reduced_;
 };
 
+/// In files of all versions.
+constexpr work::CompiledFor kFirstSet = work::CompiledFor::Rv32imfc;
+/// Of the chips that are asked for most.
+constexpr work::CompiledFor kMostReadSet = work::CompiledFor::Rv32imfcXpulp;
+
 bool is_of_another_set(std::size_t counter, work::CompiledFor code) {
   return counter >= kFirstCompiled &&
          (counter - kFirstCompiled) / work::kCompiledCount != static_cast<std::size_t>(code);
 }
 
 /// Counters that change within the series, those that change least first: what counts visits of a
-/// basic block makes a better basis than sums over several. Those of other instruction sets come
-/// last, so that nothing is a sum of them that is read without.
+/// basic block makes a better basis than sums over several. Those of instruction sets that are
+/// read less come last, so that nothing of the other is a sum of them.
 std::vector<std::size_t> changing(std::span<const work::Counts> series) {
   std::array<std::uint64_t, kCounters> range{};
   std::vector<std::size_t> found;
@@ -134,7 +139,7 @@ std::vector<std::size_t> changing(std::span<const work::Counts> series) {
   std::stable_sort(found.begin(), found.end(),
                    [&](std::size_t a, std::size_t b) { return range[a] < range[b]; });
   std::stable_partition(found.begin(), found.end(), [](std::size_t k) {
-    return !is_of_another_set(k, work::CompiledFor::Rv32imfc);
+    return !is_of_another_set(k, kMostReadSet);
   });
   return found;
 }
@@ -188,7 +193,7 @@ void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWr
 
 SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns, const FileFields& fields,
                            std::optional<work::CompiledFor> code)
-    : place_(&head.place()), one_set_(fields.one_set) {
+    : place_(&head.place()), not_measured_(fields.not_measured) {
   const auto field = [&](const char* what) {
     return fields
         .counters[static_cast<std::size_t>(head.whole_below(fields.counters.size(), what))];
@@ -223,7 +228,7 @@ SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns, const FileFiel
     sum.end_term = terms_.size();
     sums_.push_back(sum);
   }
-  if (code && !one_set_) leave_out_others(*code);
+  if (code) leave_out_others(std::ranges::count(not_measured_, *code) ? kFirstSet : *code);
 }
 
 /// Drops columns and sums of other instruction sets that nothing else is a sum of.
@@ -257,10 +262,9 @@ void SeriesReader::next(work::Counts& counts) {
   }
   first_ = false;
   counts = present_;
-  if (!one_set_) return;
-  const auto own = work::compiled_of(present_.compiled, work::CompiledFor::Rv32imfc);
-  for (std::size_t set = 1; set < work::kCompiledFor.size(); ++set)
-    work::set_compiled(counts.compiled, static_cast<work::CompiledFor>(set), own);
+  if (not_measured_.empty()) return;
+  const auto first = work::compiled_of(present_.compiled, kFirstSet);
+  for (const work::CompiledFor set : not_measured_) work::set_compiled(counts.compiled, set, first);
 }
 
 void SeriesReader::expect_end() {

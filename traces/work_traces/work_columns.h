@@ -33,7 +33,8 @@ inline std::uint64_t counter(const work::Counts& counts, std::size_t k) {
 /// What the counters of a file are in this program.
 struct FileFields {
   std::vector<std::size_t> counters;
-  bool one_set = false;  ///< compiled work of the first instruction set stands for all
+  /// Instruction sets without compiled work in the file: that of the first one stands for theirs.
+  std::vector<work::CompiledFor> not_measured;
 };
 
 /// Appends the description of a series to `head`, its differences to `columns`.
@@ -72,7 +73,7 @@ class SeriesReader {
 
   const std::string* place_;
   bool first_ = true;
-  bool one_set_;
+  std::vector<work::CompiledFor> not_measured_;
   work::Counts present_;
   std::vector<Column> columns_;
   std::vector<Term> terms_;

@@ -124,15 +124,18 @@ std::size_t number_of(ByteReader& in, const Names& known, std::string_view what)
   return static_cast<std::size_t>(found - known.begin());
 }
 
-/// Appends the fields of compiled work. Files of older versions have that of one instruction set.
+/// Appends the fields of compiled work. Files of older versions have that of one instruction set,
+/// others that of the instruction sets that were measured when they were written.
 void read_compiled_fields(ByteReader& in, std::uint32_t version, FileFields& fields) {
   std::vector<std::size_t> sets{0};
-  fields.one_set = version < kWithInstructionSets;
-  if (!fields.one_set) {
+  if (version >= kWithInstructionSets) {
     sets.resize(in.whole_below(work::kCompiledFor.size() + 1, "instruction sets"));
     for (std::size_t& set : sets)
       set = number_of(in, work::kCompiledFor, "work as compiled for instruction set");
   }
+  for (std::size_t set = 0; set < work::kCompiledFor.size(); ++set)
+    if (std::find(sets.begin(), sets.end(), set) == sets.end())
+      fields.not_measured.push_back(static_cast<work::CompiledFor>(set));
   const std::size_t kinds = in.whole_below(work::kCompiledCount + 1, "kinds of compiled work");
   for (const std::size_t set : sets)
     for (std::size_t k = 0; k < kinds; ++k)

@@ -28,7 +28,7 @@
 namespace leviosim::traces {
 
 /// Work traces as files.
-inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 6};
+inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 7};
 
 class ByteReader;
 
