@@ -87,13 +87,16 @@ class Machine {
   template <class Body>
   void fork(std::string_view name, Body&& body) {
     begin_fork(name);
-    for (int id = 0; id < config_.cores; ++id) {
-      Arena scratch = local_.lend("scratch", config_.cores, id);
-      Core core{id, config_.cores, scratch};
-      follow_code_of(id);
-      body(core);
-      end_share(scratch.peak());
-    }
+    run_shares(config_.cores, body);
+    end_fork();
+  }
+
+  /// The same; the program of one core has another order of allocations, in which no word straddles.
+  template <class Body>
+  void fork_aligned_on_one_core(std::string_view name, Body&& body) {
+    begin_fork(name);
+    fork_.aligned_on_one_core = true;
+    run_shares(config_.cores, body);
     end_fork();
   }
 
@@ -102,14 +105,7 @@ class Machine {
   void fork_with_master(std::string_view name, Body&& body) {
     begin_fork(name);
     fork_.master_takes_part = true;
-    const int cores = config_.cores + 1;
-    for (int id = 0; id < cores; ++id) {
-      Arena scratch = local_.lend("scratch", cores, id);
-      Core core{id, cores, scratch};
-      follow_code_of(id);
-      body(core);
-      end_share(scratch.peak());
-    }
+    run_shares(config_.cores + 1, body);
     end_fork();
   }
 
@@ -178,6 +174,16 @@ class Machine {
   void begin_stage(std::string_view name);
   void end_stage();
   void begin_fork(std::string_view name);
+  template <class Body>
+  void run_shares(int cores, Body&& body) {
+    for (int id = 0; id < cores; ++id) {
+      Arena scratch = local_.lend("scratch", cores, id);
+      Core core{id, cores, scratch};
+      follow_code_of(id);
+      body(core);
+      end_share(scratch.peak());
+    }
+  }
   void end_share(Bytes scratch_peak);
   void end_fork();
   void note_transfer(const Transfer& transfer);

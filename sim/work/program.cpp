@@ -24,7 +24,8 @@ Segment shares_on_one_core(const Fork& fork) {
   const Counts& first = fork.shares.front();
   const double accesses = local_accesses(first);
   if (accesses == 0 || sum[Op::Straddle] == 0) return sum;
-  const double wanted = static_cast<double>(first[Op::Straddle]) * local_accesses(sum) / accesses;
+  const double in_first = fork.aligned_on_one_core ? 0 : static_cast<double>(first[Op::Straddle]);
+  const double wanted = in_first * local_accesses(sum) / accesses;
   const double factor = wanted / static_cast<double>(sum[Op::Straddle]);
   for (OffloadWork& calls : sum.offload) scale_straddles(calls.counts, factor);
   sum[Op::Straddle] = static_cast<std::uint64_t>(std::llround(wanted));

@@ -27,10 +27,13 @@ struct Fork {
   std::string_view name;
   std::vector<Segment> shares;     ///< one per worker, in the order of their ids
   bool master_takes_part = false;  ///< then the last share is the master's own
+  /// The program of one core has another order of allocations, in which no word straddles.
+  bool aligned_on_one_core = false;
 };
 
 /// The shares of a fork together, as one core executes them alone. Its scratch begins where that of
-/// the first core of a team does, so words straddle as often as in the first share.
+/// the first core of a team does, so words straddle as often as in the first share, unless the
+/// program of one core aligns them.
 Segment shares_on_one_core(const Fork& fork);
 
 /// External memory is reached from L2 only, by the controller.

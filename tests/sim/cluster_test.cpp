@@ -167,6 +167,12 @@ TEST(Cluster, WordsOfAMasterAloneStraddleAsInTheFirstShare) {
     const work::Fork fork{"fork", {share(100, first), share(300, 200)}, false};
     const JobTiming t = run(one_stage({fork}), Cluster::kMasterAlone, config);
     EXPECT_EQ(t.stages[0].cycles.count(), 400 + 4 * static_cast<std::int64_t>(first));
+    work::Fork aligned = fork;
+    aligned.aligned_on_one_core = true;
+    const JobTiming of_aligned = run(one_stage({aligned}), Cluster::kMasterAlone, config);
+    EXPECT_EQ(of_aligned.stages[0].cycles.count(), 400);
+    EXPECT_EQ(run(one_stage({aligned}), 2, config).stages[0].cycles,
+              run(one_stage({fork}), 2, config).stages[0].cycles);
   }
 }
 

@@ -143,6 +143,7 @@ inline void expect_equal(const work::StageRun& a, const work::StageRun& b) {
       EXPECT_EQ(fork->name, other.name);
       EXPECT_EQ(fork->shares, other.shares);
       EXPECT_EQ(fork->master_takes_part, other.master_takes_part);
+      EXPECT_EQ(fork->aligned_on_one_core, other.aligned_on_one_core);
     }
     if (const auto* transfer = std::get_if<work::Transfer>(&a.steps[i])) {
       const auto& other = std::get<work::Transfer>(b.steps[i]);

@@ -288,6 +288,19 @@ TEST(WorkTrace, ReadsTheSixthVersion) {
   }
 }
 
+TEST(WorkTrace, KeepsWhichForksAreAlignedOnOneCore) {
+  WorkFrame written = testing::example_frame(0);
+  for (work::Step& step : written.front_end.stages.at(0).steps)
+    if (auto* fork = std::get_if<work::Fork>(&step))
+      fork->aligned_on_one_core = !fork->master_takes_part;
+  WorkTraceWriter writer(3);
+  writer.add(written);
+  const WorkTrace trace("example", writer.finish(testing::example_info()));
+  WorkFrame read;
+  ASSERT_TRUE(WorkFrames(trace, true).next(read));
+  testing::expect_equal(read, written);
+}
+
 TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
   const WorkTrace trace("example", testing::example_trace_with_offload(40));
   for (const auto code : {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6,

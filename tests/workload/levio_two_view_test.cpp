@@ -148,6 +148,22 @@ TEST(LevioEightPoint, TriangulationFindsThePoint) {
   }
 }
 
+/// Facts on the release: scratch is misaligned in 74 % of the calls on eight cores and in none on one.
+TEST(LevioEightPoint, WordsStraddleOnATeamAndNotOnOneCore) {
+  TwoViewSceneOptions options = like_real_frames();
+  options.matches = 61;  // the mask in front of the scratch is no whole number of words
+  const auto found = estimate<work::Counting>(make_two_view_scene(100, options));
+  ASSERT_TRUE(found.essential.ok);
+  std::uint64_t on_team = 0, on_one = 0;
+  for (const work::Step& step : found.job.stages.at(0).steps)
+    if (const auto* fork = std::get_if<work::Fork>(&step)) {
+      for (const work::Segment& share : fork->shares) on_team += share[Op::Straddle];
+      on_one += work::shares_on_one_core(*fork)[Op::Straddle];
+    }
+  EXPECT_GT(on_team, 0u);
+  EXPECT_EQ(on_one, 0u);
+}
+
 TEST(LevioEightPoint, DoesTheWorkOfTheRelease) {
   work::Counts hypotheses, scoring, recovery, master;
   double number = 0, matches = 0;

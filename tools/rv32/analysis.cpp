@@ -71,6 +71,7 @@ void Analysis::finish_transfer(const Block& next) {
   const std::uint32_t pc = next.instructions.front().pc;
   if (leaf_ != nullptr) {
     if (last_.kind == Kind::Branch && pc != last_end_) leaf_use_.stalls += 2;
+    if (last_.kind == Kind::Branch && pc < last_.pc) leaf_use_.spared += last_counts_ ? 2 : 1;
     if (pc != leaf_back_) return;
     end_library();
     if (leaf_is_tail_) return_to(pc);
@@ -148,6 +149,7 @@ void Analysis::count_library(const Block& block) {
   const bool library = leaf_->role == Role::Library;
   for (const Instruction& in : block.instructions) {
     leaf_use_.instructions += 1;
+    if (in.spared != Kind::Other && in.spared != Kind::LoopCounter) leaf_use_.spared += 1;
     if (!library) continue;
     leaf_use_.stalls += stall_of(in) + (uses_loaded(last_, in) ? 1 : 0);
     for (std::uint32_t line = first_line(in); line <= last_line(in); ++line) {
@@ -292,7 +294,9 @@ void Analysis::write(std::FILE* out) const {
     put("load_use_xpulp", a.load_use_xpulp);
     put("host", a.host);
     put("inclusive", a.inclusive);
-    for (const auto& [name, use] : a.library)
+    for (const auto& [name, use] : a.library) {
+      std::fprintf(out, "spared\t%s\t%s\t%s\t%llu\n", key.first.c_str(), key.second.c_str(),
+                   name.c_str(), static_cast<unsigned long long>(use.spared));
       std::fprintf(out, "library\t%s\t%s\t%s\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\n",
                    key.first.c_str(), key.second.c_str(), name.c_str(),
                    static_cast<unsigned long long>(use.calls),
@@ -303,6 +307,7 @@ void Analysis::write(std::FILE* out) const {
                    static_cast<unsigned long long>(use.fewest_stalls),
                    static_cast<unsigned long long>(use.most_stalls),
                    static_cast<unsigned long long>(use.lines));
+    }
   }
   for (const auto& [name, lines] : lines_of_function_)
     std::fprintf(out, "function\t%s\t%d\n", name.c_str(), lines.count());

@@ -36,9 +36,11 @@ struct LibraryUse {
   std::uint64_t fewest = ~std::uint64_t{0}, most = 0;
   std::uint64_t fewest_stalls = ~std::uint64_t{0}, most_stalls = 0;
   std::uint64_t lines = 0;
+  std::uint64_t spared = 0;  ///< of the instructions, by Xpulp, with what repeats loops
 
   LibraryUse& operator+=(const LibraryUse& o) {
     calls += o.calls, instructions += o.instructions, stalls += o.stalls, lines += o.lines;
+    spared += o.spared;
     fewest = std::min(fewest, o.fewest), most = std::max(most, o.most);
     fewest_stalls = std::min(fewest_stalls, o.fewest_stalls);
     most_stalls = std::max(most_stalls, o.most_stalls);
@@ -46,6 +48,7 @@ struct LibraryUse {
   }
   LibraryUse& operator-=(const LibraryUse& o) {
     calls -= o.calls, instructions -= o.instructions, stalls -= o.stalls, lines -= o.lines;
+    spared -= o.spared;
     return *this;
   }
 };

@@ -138,6 +138,8 @@ class Trace:
                     self.library[symbol].append(numbers)
                     self.calls[row[0], row[1]][symbol, "calls"] += numbers[0]
                     self.calls[row[0], row[1]][symbol, "instructions"] += numbers[1]
+            elif kind == "spared":
+                self.calls[row[0], row[1]][row[2], "spared"] += int(row[3])
             elif kind == "function":
                 self.function_lines[row[0]] = int(row[1])
             elif kind == "scene":
@@ -292,11 +294,12 @@ def in_counted_flow(contracted, uncontracted):
     return kinds
 
 
-def copied_and_cleared(trace):
+def copied_and_cleared(trace, isa):
     """Instructions of memcpy and its kin by scene and function. A compiler calls them in the place
     of loops that were counted."""
-    return {key: sum(n for (symbol, what), n in calls.items()
-                     if what == "instructions" and symbol in ("memcpy", "memmove", "memset", "byte_memset"))
+    sign = {"instructions": 1, "spared": -1 if isa.in_hardware else 0}
+    return {key: sum(sign.get(what, 0) * n for (symbol, what), n in calls.items()
+                     if symbol in ("memcpy", "memmove", "memset", "byte_memset"))
             for key, calls in trace.calls.items()}
 
 
@@ -423,6 +426,8 @@ def class_totals(kinds, calls):
     library = 0
     for (symbol, what), n in calls.items():
         operation = OPERATION_OF.get(symbol, "memory")
+        if what == "spared":
+            continue
         if what == "calls":
             amounts["f64" if operation.startswith("f64") else operation] += n
         else:
@@ -610,7 +615,7 @@ def main():
     check_same_control_flow(uncontracted, counts)
     isa = INSTRUCTION_SETS[arguments.isa](root)
     executed = in_counted_flow(contracted, uncontracted)
-    compiled = compiled_work(executed, copied_and_cleared(uncontracted), counts, isa)
+    compiled = compiled_work(executed, copied_and_cleared(uncontracted, isa), counts, isa)
     write_footprints(contracted, hard, compiled, isa, root / f"platform_models/code/{arguments.isa}.csv")
     here = root / "tools/rv32"
     if arguments.isa != "rv32imfc":

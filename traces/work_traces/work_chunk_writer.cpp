@@ -11,6 +11,11 @@ std::string_view label_of(const work::Step& step) {
   return std::holds_alternative<work::Serial>(step) ? "serial" : "transfer";
 }
 
+std::uint64_t kind_of(const work::Fork& fork) {
+  if (fork.master_takes_part) return kForkWithMaster;
+  return fork.aligned_on_one_core ? kForkAlignedOnOneCore : kFork;
+}
+
 }  // namespace
 
 std::uint64_t NameTable::number_of(std::string_view name) {
@@ -54,7 +59,7 @@ void ChunkWriter::write_stage(const work::StageRun& stage, bool on_controller) {
       write_counts({on_controller ? Kind::Controller : Kind::Serial, stage.stage, before, {}},
                    serial->counts);
     } else if (const auto* fork = std::get_if<work::Fork>(&step)) {
-      text_.whole(fork->master_takes_part ? kForkWithMaster : kFork);
+      text_.whole(kind_of(*fork));
       text_.whole(names_->number_of(fork->name));
       const std::size_t workers = fork->shares.size() - (fork->master_takes_part ? 1 : 0);
       const Place place{Kind::Share, stage.stage, fork->name, {}};

@@ -195,10 +195,12 @@ void WorkFrames::read_step(work::Step& step, bool on_controller) {
       return;
     }
     case kFork:
-    case kForkWithMaster: {
+    case kForkWithMaster:
+    case kForkAlignedOnOneCore: {
       auto* fork = std::get_if<work::Fork>(&step);
       if (fork == nullptr) fork = &step.emplace<work::Fork>();
       fork->master_takes_part = kind == kForkWithMaster;
+      fork->aligned_on_one_core = kind == kForkAlignedOnOneCore;
       read_fork(*fork, on_controller);
       return;
     }

@@ -91,12 +91,12 @@ EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatch
   for ([[maybe_unused]] int i : P::range(0, options.iterations / options.batch)) {
     for (int h : P::range(0, options.batch))
       draw_sample<P>(random, numbers, kEssentialSample, batch.sample(h));
-    machine.fork("8-point hypotheses", [&](work::Core& core) {
+    machine.fork_aligned_on_one_core("8-point hypotheses", [&](work::Core& core) {
       const auto [begin, end] = core.share(options.batch);
       for (int h : P::range(begin, end))
         essential_from_sample<P>(matches, batch.sample(h), batch.essential(h), core.scratch);
     });
-    machine.fork("8-point scoring", [&](work::Core& core) {
+    machine.fork_aligned_on_one_core("8-point scoring", [&](work::Core& core) {
       const auto [begin, end] = core.share(options.batch);
       for (int h : P::range(begin, end))
         score_essential<P>(batch.essential(h), matches, threshold, batch.mask(h), batch.score(h));

@@ -70,7 +70,7 @@ void triangulate_all(work::Machine& machine, MatrixView<P> T_a, MatrixView<P> T_
                      const PixelMatches<P>& matches, const CameraConstants<P>& camera,
                      MatrixView<P> points) {
   using F = typename P::F32;
-  machine.fork("recover pose", [&](work::Core& core) {
+  machine.fork_aligned_on_one_core("recover pose", [&](work::Core& core) {
     const auto [begin, end] = slice_of(matches.n, core);
     for (int i : P::range(begin, end)) {
       const Vec2<P> a{F(matches.a[2 * i]), F(matches.a[2 * i + 1])};
