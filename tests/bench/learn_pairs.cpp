@@ -14,9 +14,9 @@ constexpr const char* kHead =
     R"(// The 256 pairs of points that the descriptor of `levio` compares: learned, not edited by hand.
 //
 // Method: ORB's (Rublee et al. 2011, "Learning good binary features"). Candidates are all pairs of
-// points of a grid of 2 px in the disc, at least kMinPairDistance apart. Each was evaluated on {}
-// features of the synthetic flight (seed {}, a frame each second), as `levio` finds, blurs and turns
-// them. They were ordered by how near the mean of their bit is to 1/2. One was taken if its bits
+// points of a grid of 2 px in the disc, at least kMinPairDistance apart. Each was evaluated on the
+// first {} features of a frame each second of the synthetic flight (seed {}), as `levio` finds,
+// blurs and turns them. They were ordered by how near the mean of their bit is to 1/2. One was taken if its bits
 // correlate with those of each pair before by less than a limit. The limit rose from 0.{} to 0.{}:
 // then there were 256.
 //
@@ -43,7 +43,7 @@ void print_header() {
   const std::vector<TurnedPatch> patches = turned_patches(frames_of_flight(kSeed));
   const LearnedPairs learned = learn_pairs(patches);
   const vio::PairWords& words = learned.words;
-  fmt::print(kHead, patches.size(), kSeed, LearnedPairs::kFirstLimit, learned.limit);
+  fmt::print(kHead, LearnedPairs::kFeatures, kSeed, LearnedPairs::kFirstLimit, learned.limit);
   constexpr std::size_t kPerLine = 8;
   for (std::size_t k = 0; k < words.size(); ++k)
     fmt::print("{}{:#010x}{}", k % kPerLine == 0 ? "\n    " : " ", words[k],

@@ -168,7 +168,9 @@ std::vector<const Candidate*> take(const std::vector<Candidate>& candidates, int
 
 }  // namespace
 
-LearnedPairs learn_pairs(const std::vector<TurnedPatch>& patches) {
+LearnedPairs learn_pairs(std::vector<TurnedPatch> patches) {
+  check(patches.size() >= LearnedPairs::kFeatures, "a flight has the features to learn from");
+  patches.resize(LearnedPairs::kFeatures);
   std::vector<Candidate> candidates;
   for (const PointPair& pair : candidate_pairs())
     candidates.push_back({pair, PairBits(pair, patches)});

@@ -69,6 +69,7 @@ vio::PointPair unpack_pair(std::uint32_t word);
 std::vector<vio::PointPair> candidate_pairs();
 
 struct LearnedPairs {
+  static constexpr std::size_t kFeatures = 3000;  ///< that a pattern is learned from
   /// Two pairs of a pattern correlate by less than the limit, in hundredths, which rises until
   /// there are enough.
   static constexpr int kFirstLimit = 15, kStep = 3;
@@ -77,7 +78,7 @@ struct LearnedPairs {
   int limit;  ///< the last one
 };
 
-/// A pattern for features that look like these.
-LearnedPairs learn_pairs(const std::vector<TurnedPatch>& patches);
+/// A pattern for features that look like the first LearnedPairs::kFeatures of these.
+LearnedPairs learn_pairs(std::vector<TurnedPatch> patches);
 
 }  // namespace leviosim::tests
