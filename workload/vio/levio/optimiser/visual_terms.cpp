@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "workload/graph/linearise_landmark.h"
+#include "workload/math/host_inline.h"
 #include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
@@ -110,7 +111,8 @@ bool invert_landmark(const LandmarkRecords<P>& records, int i, int number, typen
 
 /// J_pᵀ J_l of an observation, 6×3.
 template <class P>
-void form_product(const Floats<P>& slot, typename P::template Array<typename P::F32, 18>& W) {
+LEVIOSIM_HOST_INLINE void form_product(const Floats<P>& slot,
+                                       typename P::template Array<typename P::F32, 18>& W) {
   using F = typename P::F32;
   const Vec3<P> l0 = load_vec3<P>(slot, LandmarkRecords<P>::kByPoint);
   const Vec3<P> l1 = load_vec3<P>(slot, LandmarkRecords<P>::kByPoint + 3);
