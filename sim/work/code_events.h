@@ -39,10 +39,11 @@ constexpr CodeName name_of(Routine routine) {
 using CodeEvent = std::uint32_t;
 
 /// Some events in a row, known by their hash: computed on the way, it costs less than to look at
-/// them again.
+/// them again. Hash and number of events are no neighbours here, as they are in CodeEvents: GCC
+/// would copy both at once, and such a load waits for the two stores of a moment ago.
 struct CodeWindow {
-  std::span<const CodeEvent> events;
   std::uint64_t hash;
+  std::span<const CodeEvent> events;
 };
 
 class CodeEvents {
@@ -78,7 +79,7 @@ class CodeEvents {
   /// Takes the events so far. They are there until the next is added.
   CodeWindow take() {
     append_calls();
-    return {{events_.data(), std::exchange(size_, 0)}, std::exchange(hash_, 0)};
+    return {std::exchange(hash_, 0), {events_.data(), std::exchange(size_, 0)}};
   }
 
  private:
