@@ -5,6 +5,7 @@
 // Left out: a test whether the columns depend on each other; the result is then not a number.
 #pragma once
 
+#include "workload/math/host_inline.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
 #include "workload/math/target_call.h"
@@ -17,7 +18,7 @@ namespace qr {
 
 /// Root of the sum of squares of elements first … size - 1.
 template <class P, class Vector>
-typename P::F32 norm_from(Vector v, int first, int size) {
+LEVIOSIM_HOST_INLINE typename P::F32 norm_from(Vector v, int first, int size) {
   using F = typename P::F32;
   F sum = 0.0f;
   for (int i : P::byte_range(first, size)) {
@@ -32,10 +33,10 @@ typename P::F32 norm_from(Vector v, int first, int size) {
 /// knows no bound of it.
 /// @param reflector  m, work memory
 template <class P>
-LEVIOSIM_TARGET_CALL void solve_in_place(MatrixView<P> a,
-                                         typename P::template Span<typename P::F32> b,
-                                         typename P::template Span<typename P::F32> reflector,
-                                         typename P::template Span<typename P::F32> x) {
+LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL void solve_in_place(
+    MatrixView<P> a, typename P::template Span<typename P::F32> b,
+    typename P::template Span<typename P::F32> reflector,
+    typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
   const int m = a.rows(), n = a.cols();
   for (int k : P::byte_range(0, n)) {
@@ -73,9 +74,9 @@ LEVIOSIM_TARGET_CALL void solve_in_place(MatrixView<P> a,
 /// @param b  m, destroyed
 /// @param x  n
 template <class P>
-LEVIOSIM_TARGET_CALL void least_squares(MatrixView<P> a,
-                                        typename P::template Span<typename P::F32> b,
-                                        typename P::template Span<typename P::F32> x) {
+LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL void least_squares(
+    MatrixView<P> a, typename P::template Span<typename P::F32> b,
+    typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
   using Span = typename P::template Span<F>;
   const typename P::Function function("levio_least_squares");

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 
+#include "workload/math/host_inline.h"
 #include "workload/math/matrix.h"
 #include "workload/math/target_call.h"
 
@@ -48,8 +49,8 @@ Operand<P> transposed(ConstMatrixView<P> matrix) {
 
 /// c = a b, which must fit. c must not overlap a or b.
 template <class P>
-LEVIOSIM_TARGET_CALL void product(const MatrixView<P>& c, const Operand<P>& a,
-                                  const Operand<P>& b) {
+LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL void product(const MatrixView<P>& c, const Operand<P>& a,
+                                                       const Operand<P>& b) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_product");
