@@ -15,7 +15,6 @@
 #define LEVIOSIM_TARGET_CALL [[gnu::noipa]]
 extern "C" void* byte_memset(void* to, int value, std::size_t n);
 #define LEVIOSIM_TARGET_CLEAR byte_memset
-#define LEVIOSIM_TARGET_ROLLED _Pragma("GCC unroll 1")
 
 #ifdef __arm__
 #define LEVIOSIM_MARK_BEGIN "nop\n"

@@ -13,7 +13,6 @@
 #ifndef LEVIOSIM_TARGET_CLEAR
 #define LEVIOSIM_TARGET_CLEAR std::memset
 #endif
-/// Before a loop whose steps are not written out one after the other.
-#ifndef LEVIOSIM_TARGET_ROLLED
-#define LEVIOSIM_TARGET_ROLLED
-#endif
+/// Before a loop whose steps are not written out one after the other. On the host neither: they are
+/// too many for its registers.
+#define LEVIOSIM_TARGET_ROLLED _Pragma("GCC unroll 1")
