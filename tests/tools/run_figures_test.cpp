@@ -79,8 +79,10 @@ TEST(RunFigures, TheBookSaysWhatRestsOnCodeThatWasNotMeasured) {
   soc::StageBook book({}, chip);
   work::Segment measured, unmeasured;
   measured[work::Op::IntAlu] = unmeasured[work::Op::IntAlu] = 1000;
-  measured.compiled[static_cast<std::size_t>(work::Compiled::Executed)] = 900;
-  measured.compiled[static_cast<std::size_t>(work::Compiled::Priced)] = 900;
+  work::CompiledWork compiled{};
+  compiled[static_cast<std::size_t>(work::Compiled::Executed)] = 900;
+  compiled[static_cast<std::size_t>(work::Compiled::Priced)] = 900;
+  work::set_compiled(measured.compiled, chip.cluster.core.code, compiled);
   const work::Fork fork{"share", {measured, unmeasured}};
   book.add_work({{{"matching", {work::Serial{measured}, fork, work::Serial{unmeasured}}, {}}}});
   StageResult stage = book.stages().front();

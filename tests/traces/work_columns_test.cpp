@@ -14,7 +14,7 @@ namespace {
 using work::Op;
 
 FileFields all_fields() {
-  FileFields fields{std::vector<std::size_t>(kCounters)};
+  FileFields fields{std::vector<std::size_t>(kCounters), {}};
   std::iota(fields.counters.begin(), fields.counters.end(), 0);
   return fields;
 }

@@ -57,7 +57,16 @@ const work::CodeMap& scaled_code(double factor) {
                       factor * row->number(2), row->text(3), factor * row->number(4), row->text(5),
                       row->text(6), row->text(7), row->text(8), row->text(9), row->text(10));
   }
-  return found->second = platform::code_map_from("scaled", scaled);
+  work::CodeMap& map = found->second = platform::code_map_from("scaled", scaled);
+  // What is executed stays as it is, on all instruction sets.
+  for (std::size_t i = 0; i < map.pieces().size(); ++i)
+    for (std::size_t set = 0; set < work::kCompiledFor.size(); ++set) {
+      const auto executed_on = static_cast<work::CompiledFor>(set);
+      map.set_compiled(
+          static_cast<int>(i), executed_on,
+          work::compiled_of(platform::compiled_code().pieces()[i].compiled, executed_on));
+    }
+  return map;
 }
 
 template <class Body>
