@@ -224,9 +224,10 @@ class Jobs : public RunObserver {
 /// Without the compiled work of instruction sets that are not the chip's, which replays do not
 /// read.
 work::Counts as_on_gap9(work::Counts counts) {
-  const auto own = work::compiled_of(counts.compiled, work::CompiledFor::Rv32imfc);
+  constexpr auto kCode = work::CompiledFor::Rv32imfcXpulp;
+  const auto own = work::compiled_of(counts.compiled, kCode);
   counts.compiled = {};
-  work::set_compiled(counts.compiled, work::CompiledFor::Rv32imfc, own);
+  work::set_compiled(counts.compiled, kCode, own);
   return counts;
 }
 

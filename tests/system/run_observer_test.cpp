@@ -131,12 +131,12 @@ TEST_F(Observed, TimingRecordedJobsAgainGivesTheSameCycles) {
 
 /// Re-pricing what one run recorded is what another run on the changed chip measures.
 TEST_F(Observed, AStageModelPredictsTheRunOnAnotherChip) {
-  FrameLog log;
+  const sim::ChipConfig base = platform::load_platform("gap9");
+  FrameLog log(base.cluster.core.code);
   run(&log);
-  FrameLog changed_log;
+  FrameLog changed_log(base.cluster.core.code);
   run(&changed_log, {"isa.instruction_overhead=1.4", "isa.load_use_fraction=0.1",
                      "isa.ops.loop_iteration.issue=0.5"});
-  const sim::ChipConfig base = platform::load_platform("gap9");
   const sim::ChipConfig changed =
       platform::load_platform("gap9", {"isa.instruction_overhead=1.4", "isa.load_use_fraction=0.1",
                                        "isa.ops.loop_iteration.issue=0.5"});

@@ -66,7 +66,7 @@ class InstructionSet:
 
     def __init__(self, title, prices, price_file, slots, in_hardware=(), load_use="load_use"):
         """@param slots  beyond 1, of kinds of instructions; of accounts that are no kinds, in all
-        @param in_hardware  accounts of what repeats loops, where the hardware does that
+        @param in_hardware  accounts of what repeats loops, where hardware may do that
         @param load_use  account of loads whose value the next instruction needs"""
         self.title, self.prices, self.price_file, self.slots = title, prices, price_file, slots
         self.in_hardware, self.load_use = in_hardware, load_use
@@ -88,12 +88,12 @@ def rv32imfc(root):
 
 
 def rv32imfc_xpulp(root):
-    """What Xpulp spares is no slot (xpulp.h). Its hardware loops take what repeats a loop: the branch,
-    and the counter if it serves nothing else. Loops that none holds are counted besides, so they have
-    no part in the prices here."""
+    """What Xpulp spares is no slot (xpulp.h). What repeats a loop is told apart from all else, so it
+    has the price of RV32IMFC here; hardware loops take it on a chip, where they hold the loop."""
     name = "platform_models/isa/rv32imfc_xpulp.yaml"
     base = read_issue(root / "platform_models/isa/rv32imfc.yaml")
-    prices = {**base, **read_issue(root / name), "loop_jump": 0.0}
+    loops = {"loop_iteration": base["loop_iteration"], "loop_jump": 0.0}
+    prices = {**base, **read_issue(root / name), **loops}
     spared = ("spared_move", "spared_index", "spared_sum", "spared_shift")
     return InstructionSet("RV32IMFC with Xpulp", prices, name, {kind: -1 for kind in spared},
                           ("branch_back", "loop_counter"), "load_use_xpulp")
@@ -320,15 +320,16 @@ def compiled_work(executed_kinds, memory, counts, isa):
         if not visits or not counted_visits:
             continue
         executed = isa.executed(kinds) + by_library[function]
-        # A backward branch may also repeat what was not counted as a loop.
-        in_hardware = min(sum(kinds.get(kind, 0) for kind in isa.in_hardware),
-                          len(isa.in_hardware) * counted[function]["loop_iteration"])
-        executed -= in_hardware
         priced = sum(n * isa.prices.get(op, 0.0) for op, n in counted[function].items() if op != "visits")
         repetition = isa.prices["loop_iteration"]
         priced_loops = counted[function]["loop_iteration"] * repetition
-        in_library = by_library[function] * priced_loops / priced if priced else 0
-        executed_loops = min(repetition * kinds["branch_back"], priced_loops)
+        if isa.in_hardware:  # of libraries, too
+            in_library, repeats = 0, sum(kinds.get(kind, 0) for kind in isa.in_hardware)
+        else:
+            in_library = by_library[function] * priced_loops / priced if priced else 0
+            repeats = repetition * kinds["branch_back"]
+        # A backward branch may also repeat what was not counted as a loop.
+        executed_loops = min(repeats, priced_loops)
         loads = kinds["load"] + kinds["float_load"] + kinds["more_loaded"] + kinds["more_restored"]
         work[function] = (executed / visits, priced / counted_visits, loads / visits,
                           kinds[isa.load_use] / visits, (executed_loops + in_library) / visits,
