@@ -143,8 +143,9 @@ void add_core(Table& table, const CoreSection& section) {
       [](auto& core) -> auto& { return core.instruction_overhead; });
   table.add_of_cores(
       section,
-      quantity(key("unmeasured_instructions"), kRatio, 0.1, 10,
-               "instructions executed per one accounted for by ops, in code that was not measured"),
+      optional(quantity(
+          key("unmeasured_instructions"), kRatio, 0.1, 10,
+          "instructions executed per one accounted for by ops, in code that was not measured")),
       [](auto& core) -> auto& { return core.unmeasured_instructions; });
   table.add_of_cores(
       section,

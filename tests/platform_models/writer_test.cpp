@@ -32,6 +32,17 @@ TEST(Writer, Gap9ReadsBackInFull) {
   }
 }
 
+/// Traces that were recorded before the key came into being have a platform without it.
+TEST(Writer, APlatformOfAnOlderRecordingReadsBack) {
+  std::string text = to_yaml(resolve_platform("gap9"));
+  const std::size_t key = text.find("unmeasured_instructions:");
+  ASSERT_NE(key, std::string::npos);
+  const std::size_t begin = text.rfind('\n', key) + 1;
+  text.erase(begin, text.find('\n', key) + 1 - begin);
+  EXPECT_EQ(resolve_platform_text("older.yaml", text).config.cluster.core.unmeasured_instructions,
+            1);
+}
+
 TEST(Writer, WritingAgainGivesTheSameBytes) {
   const ResolvedPlatform platform = resolve_platform("gap9");
   const std::string text = to_yaml(platform);
