@@ -39,7 +39,7 @@ double number_in(std::string_view cell, double limit, std::string_view what,
 /// Lines of code as bytes.
 std::uint32_t bytes_in(std::string_view cell, const std::string& where) {
   return static_cast<std::uint32_t>(
-      std::lround(number_in(cell, 1e6, "16-byte lines", where) * kLineBytes));
+      std::lround(number_in(cell, 2e8, "16-byte lines", where) * kLineBytes));
 }
 
 /// The last columns of a row; none if they are empty.

@@ -99,9 +99,10 @@ class Table {
 void add_operation(Table& table, const CoreSection& section, const work::OpInfo& info) {
   const std::string row = fmt::format("{}.ops.{}", section.path, info.name);
   const work::Op op = info.op;
-  // Only cores with hardware loops have a cost for it, and files may be older.
+  // Files may be older, and only cores with hardware loops have a cost for loop_jump.
   const auto needed = [op](Field field) {
-    return op == work::Op::LoopJump ? optional(std::move(field)) : field;
+    const bool newer = op == work::Op::LoopJump || op == work::Op::IntAddShift;
+    return newer ? optional(std::move(field)) : field;
   };
   table.add_of_cores(
       section,

@@ -44,9 +44,16 @@ struct OpCost {
   bool routine = false;  ///< the numbers are of a whole library routine as it was compiled
 };
 
+/// What operations cost that files leave out: those that are older than the operation.
+constexpr std::array<OpCost, work::kOpCount> default_costs() {
+  std::array<OpCost, work::kOpCount> costs{};
+  costs[work::index(work::Op::IntAddShift)].issue = 2;  // a sum and a shift
+  return costs;
+}
+
 /// How counted operations become instructions of one instruction set, and their latencies.
 struct CoreConfig {
-  std::array<OpCost, work::kOpCount> ops{};
+  std::array<OpCost, work::kOpCount> ops = default_costs();
   /// Instructions emitted per one that ops account for, routines left out. Where functions were
   /// measured, their ratio (work::CompiledWork) comes on top.
   double instruction_overhead = 1;

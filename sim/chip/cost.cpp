@@ -94,7 +94,7 @@ void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKin
       (cost.routine ? operations.count
                     : (operations.emitted + operations.unmeasured * core.unmeasured_instructions) *
                           core.instruction_overhead);
-  to.*stall_breakdown(info.op) += operations.count * cost.stall;
+  to.*stall_breakdown(info.op) += operations.stalled * cost.stall;
   if (info.op == Op::LoadStream || info.op == Op::LoadIndexed)
     to.load_use += core.load_use_stall *
                    (operations.used_at_once + operations.unmeasured_loads * core.load_use_fraction);

@@ -48,6 +48,7 @@ struct Demand {
 /// Operations of one kind, with what their segments' compiled code makes of them.
 struct OperationsOfKind {
   double count = 0;
+  double stalled = 0;           ///< that stall: of loops that a compiler writes out, those left
   double emitted = 0;           ///< of measured code, times executed to counted instructions
   double unmeasured = 0;        ///< of code that was not measured
   double used_at_once = 0;      ///< of loads: those whose value the next instruction needs
@@ -55,6 +56,7 @@ struct OperationsOfKind {
 
   OperationsOfKind& operator+=(const OperationsOfKind& o) {
     count += o.count;
+    stalled += o.stalled;
     emitted += o.emitted;
     unmeasured += o.unmeasured;
     used_at_once += o.used_at_once;
@@ -74,8 +76,13 @@ class CompiledRatios {
   CompiledRatios(const work::Counts& segment, work::CompiledFor code);
   OperationsOfKind apply(work::Op op, double count) const {
     const bool repeats = op == work::Op::LoopIteration || op == work::Op::LoopJump;
-    return {count, measured_ ? count * (repeats ? emitted_loops_ : emitted_) : 0,
-            measured_ ? 0 : count, count * used_at_once_, loads_measured_ ? 0 : count};
+    const double emitted = count * (repeats ? emitted_loops_ : emitted_);
+    return {.count = count,
+            .stalled = measured_ && repeats ? emitted : count,
+            .emitted = measured_ ? emitted : 0,
+            .unmeasured = measured_ ? 0 : count,
+            .used_at_once = count * used_at_once_,
+            .unmeasured_loads = loads_measured_ ? 0 : count};
   }
 
  private:

@@ -12,8 +12,8 @@
 namespace leviosim::work {
 
 /// A value in one more register: a counter that is set, a window that moves on, an address that is
-/// kept. For code that was scheduled by hand, whose author knows what compilers otherwise decide
-/// (the platform's instruction overhead stands for that).
+/// kept, a number brought into the range of its type. For code whose author knows what compilers
+/// otherwise decide (the platform's instruction overhead stands for that).
 template <class T>
 T copied(T x) {
   if constexpr (!std::is_arithmetic_v<T>) count(Op::IntAlu);
@@ -25,13 +25,20 @@ inline float sqrt(float x) { return std::sqrt(x); }
 inline float abs(float x) { return std::fabs(x); }
 inline float min(float a, float b) { return b < a ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }
+/// (a + b) >> places: what instruction sets for signal processing do in one instruction. The sum
+/// wraps.
+inline std::int32_t add_shifted(std::int32_t a, std::int32_t b, int places) {
+  return I32::wrap_add(a, b) >> places;
+}
 inline std::int32_t abs(std::int32_t x) { return x < 0 ? -x : x; }
 inline std::int32_t min(std::int32_t a, std::int32_t b) { return b < a ? b : a; }
 inline std::int32_t max(std::int32_t a, std::int32_t b) { return a < b ? b : a; }
 /// Sums of pairs, nibbles and bytes. The host vectorises it; std::popcount would be a library call
 /// on hosts whose baseline has no such instruction.
 inline std::int32_t popcount(std::uint32_t x) {
-#ifdef __riscv  // one instruction, as on the chips that count it as one: Zbb's
+#if defined(__riscv_zbb)
+  return __builtin_popcount(x);
+#elif defined(__riscv)  // one instruction, as on the chips that count it as one: Zbb's
   std::int32_t bits;
   asm(".insn i 0x13, 1, %0, %1, 0x602" : "=r"(bits) : "r"(x));
   return bits;
@@ -80,6 +87,10 @@ inline F32 min(F32 a, F32 b) {
 inline F32 max(F32 a, F32 b) {
   count(Op::F32Sign);
   return F32(max(a.v, b.v));
+}
+inline I32 add_shifted(I32 a, I32 b, int places) {
+  count(Op::IntAddShift);
+  return I32(I32::wrap_add(a.v, b.v) >> places);
 }
 inline I32 abs(I32 x) {
   count(Op::IntMinMax);

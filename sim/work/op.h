@@ -16,6 +16,7 @@ namespace leviosim::work {
 
 enum class Op : std::uint8_t {
   IntAlu,
+  IntAddShift,
   IntMinMax,
   IntMul,
   IntMac,
@@ -72,6 +73,7 @@ struct OpInfo {
 
 inline constexpr std::array kOps = {
     OpInfo{Op::IntAlu, "int_alu", "integer add, subtract, logic, shift, negate"},
+    OpInfo{Op::IntAddShift, "int_add_shift", "integer sum or difference that is shifted right"},
     OpInfo{Op::IntMinMax, "int_min_max", "integer minimum, maximum, absolute value"},
     OpInfo{Op::IntMul, "int_mul", "32-bit integer product"},
     OpInfo{Op::IntMac, "int_mac", "32-bit integer product added to or subtracted from a value"},

@@ -16,6 +16,7 @@
 #include "workload/inertial/preintegration.h"
 #include "workload/math/jacobi.h"
 #include "workload/math/solve.h"
+#include "workload/vio/levio/vision/matcher.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/matcher.h"
 
@@ -84,21 +85,32 @@ std::function<void()> extraction(Bench<P>& b) {
   };
 }
 
+/// @param match  match_two_way() of everything else, or that of `levio`
 template <class P>
-std::function<void()> matching(Bench<P>& b) {
+std::function<void()> matching_by(decltype(&match_two_way<P>) match, Bench<P>& b) {
   constexpr int kCurrent = 360, kReference = 1000;
   const auto words = b.data.template alloc<typename P::template Span<typename P::U32>>(
       "words", 8 * (kCurrent + kReference));
   for (int i = 0; i < words.size(); ++i)
     words[i] = typename P::U32(static_cast<std::uint32_t>(b.noise.next() * 2147483000.0f));
-  return [&b, words] {
+  return [&b, words, match] {
     const work::Arena::Frame frame(b.machine.local());
     MatchList<P> out = alloc_matches<P>(b.machine.local(), kCurrent);
     const auto stage = b.machine.stage("matching");
-    match_two_way<P>(b.machine, words.subspan(0, 8 * kCurrent), kCurrent,
-                     words.subspan(8 * kCurrent, 8 * kReference), kReference, {}, out);
+    match(b.machine, words.subspan(0, 8 * kCurrent), kCurrent,
+          words.subspan(8 * kCurrent, 8 * kReference), kReference, {}, out);
     benchmark::DoNotOptimize(out.count);
   };
+}
+
+template <class P>
+std::function<void()> matching(Bench<P>& b) {
+  return matching_by<P>(match_two_way<P>, b);
+}
+
+template <class P>
+std::function<void()> levio_matching(Bench<P>& b) {
+  return matching_by<P>(levio::match_two_way<P>, b);
 }
 
 template <class P>
@@ -205,6 +217,10 @@ BENCHMARK_CAPTURE(compare, extraction, extraction<work::Native>, extraction<work
     ->Iterations(15)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(compare, matching, matching<work::Native>, matching<work::Counting>, 5)
+    ->Iterations(15)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(compare, levio_matching, levio_matching<work::Native>,
+                  levio_matching<work::Counting>, 5)
     ->Iterations(15)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(compare, epnp, epnp<work::Native>, epnp<work::Counting>, 3)

@@ -14,11 +14,12 @@ constexpr const char* kHead =
     R"(// The 256 pairs of points that the descriptor of `levio` compares: learned, not edited by hand.
 //
 // Method: ORB's (Rublee et al. 2011, "Learning good binary features"). Candidates are all pairs of
-// points of a grid of 2 px in the disc, at least kMinPairDistance apart. Each was evaluated on the
-// first {} features of a frame each second of the synthetic flight (seed {}), as `levio` finds,
-// blurs and turns them. They were ordered by how near the mean of their bit is to 1/2. One was taken if its bits
-// correlate with those of each pair before by less than a limit. The limit rose from 0.{} to 0.{}:
-// then there were 256.
+// points of a grid of 2 px in the disc but those side by side; ORB leaves out those closer than the
+// blur is wide, which is 5 px here (sim/VALIDATION.md says why it differs). Each was evaluated on
+// the first {} features of a frame each second of the synthetic flight (seed {}), as `levio` finds,
+// blurs and turns them. They were ordered by how near the mean of their bit is to 1/2. One was
+// taken if its bits correlate with those of each pair before by less than a limit. The limit rose
+// from 0.{} to 0.{}: then there were 256.
 //
 // Made by:
 //     ninja -C build/release leviosim_learn_pairs

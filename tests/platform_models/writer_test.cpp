@@ -43,6 +43,22 @@ TEST(Writer, APlatformOfAnOlderRecordingReadsBack) {
             1);
 }
 
+/// As they were before the operation came into being: a sum and a shift.
+TEST(Writer, APlatformWithoutShiftedSumsReadsBackWithTwoInstructions) {
+  std::string text = to_yaml(resolve_platform("gap9"));
+  std::size_t removed = 0;
+  for (std::size_t key = 0; (key = text.find("int_add_shift:", key)) != std::string::npos;) {
+    const std::size_t begin = text.rfind('\n', key) + 1;
+    text.erase(begin, text.find('\n', key) + 1 - begin);
+    key = begin;
+    ++removed;
+  }
+  ASSERT_GE(removed, 1u);
+  const sim::CoreConfig& core = resolve_platform_text("older.yaml", text).config.cluster.core;
+  EXPECT_EQ(core[work::Op::IntAddShift].issue, 2);
+  EXPECT_EQ(resolve_platform("gap9").config.cluster.core[work::Op::IntAddShift].issue, 1);
+}
+
 TEST(Writer, WritingAgainGivesTheSameBytes) {
   const ResolvedPlatform platform = resolve_platform("gap9");
   const std::string text = to_yaml(platform);

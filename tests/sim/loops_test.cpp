@@ -131,5 +131,20 @@ TEST(Loops, ACopyInARegisterIsOneInstructionOfCountedScalars) {
   EXPECT_EQ(copied(2.5F), 2.5F);
 }
 
+TEST(Loops, AShiftedSumIsOneOperation) {
+  std::int32_t up = 0, down = 0, wrapped = 0;
+  const Counts counts = counts_of_body([&] {
+    up = value(add_shifted(I32(5), I32(6), 2));
+    down = value(add_shifted(I32(-5), I32(-6), 2));  // towards minus infinity
+    wrapped = value(add_shifted(I32(0x7fffffff), I32(1), 31));
+  });
+  EXPECT_EQ(up, 2);
+  EXPECT_EQ(down, -3);
+  EXPECT_EQ(wrapped, -1);
+  EXPECT_EQ(counts[Op::IntAddShift], 3u);
+  EXPECT_EQ(counts[Op::IntAlu], 0u);
+  EXPECT_EQ(add_shifted(-5, -6, 2), -3);
+}
+
 }  // namespace
 }  // namespace leviosim::work

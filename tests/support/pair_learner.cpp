@@ -130,6 +130,15 @@ PointPair unpack_pair(std::uint32_t word) {
   return {coordinate(3), coordinate(2), coordinate(1), coordinate(0)};
 }
 
+namespace {
+
+/// Whether they are neighbours in a row or a column of the grid.
+bool lie_side_by_side(const PointPair& pair, int grid) {
+  return std::abs(pair.x2 - pair.x1) + std::abs(pair.y2 - pair.y1) == grid;
+}
+
+}  // namespace
+
 std::vector<PointPair> candidate_pairs() {
   constexpr int kGrid = 2;
   constexpr int kLast = vio::kPatternRadius / kGrid * kGrid;
@@ -141,7 +150,7 @@ std::vector<PointPair> candidate_pairs() {
   for (std::size_t a = 0; a < points.size(); ++a)
     for (std::size_t b = a + 1; b < points.size(); ++b) {
       const PointPair pair{points[a].x, points[a].y, points[b].x, points[b].y};
-      if (vio::is_far_apart(pair)) pairs.push_back(pair);
+      if (!lie_side_by_side(pair, kGrid)) pairs.push_back(pair);
     }
   return pairs;
 }

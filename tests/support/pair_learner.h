@@ -65,7 +65,8 @@ class PairBits {
 
 vio::PointPair unpack_pair(std::uint32_t word);
 
-/// The pairs of points on a grid of 2 px that a pattern may have, each in one order.
+/// The pairs of points on a grid of 2 px that a pattern may have, each in one order: all but those
+/// that lie side by side.
 std::vector<vio::PointPair> candidate_pairs();
 
 struct LearnedPairs {

@@ -20,12 +20,12 @@ using testing::ProgramResult;
 using tests::PerfettoEvent;
 using tests::PerfettoTrace;
 
-/// Two seconds of flight, recorded once with a timeline.
+/// Three seconds of flight, recorded once with a timeline.
 class TimelineOfFlight : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
     make_folder("timeline");
-    traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 2, .texel_m = 0.02});
+    traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 3, .texel_m = 0.02});
     const ProgramResult result =
         program({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("run"),
                  "--record", "--quiet", "--timeline", path("run.pftrace")});
@@ -93,8 +93,8 @@ TEST_F(TimelineOfFlight, OfAClosedLoopShowsEveryFrameOfTheCamera) {
   std::size_t dropped = 0;
   for (const PerfettoEvent& event : trace.on("camera")) dropped += event.number("dropped") == 1;
   EXPECT_GT(dropped, 0u);
-  EXPECT_EQ(dropped + run.frames.size(), 40u);
-  EXPECT_EQ(trace.on("deadlines").size(), 40u);
+  EXPECT_EQ(dropped + run.frames.size(), 60u);
+  EXPECT_EQ(trace.on("deadlines").size(), 60u);
 }
 
 TEST_F(TimelineOfFlight, ChangesNothingElse) {
@@ -114,7 +114,7 @@ TEST_F(TimelineOfFlight, AReplayOnTheSameChipGivesTheSameBytes) {
                                         "--timeline", path("again.pftrace")});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(text("run.pftrace"), text("again.pftrace"));
-  EXPECT_LE(text("run.pftrace").size(), 40u * 50'000);
+  EXPECT_LE(text("run.pftrace").size(), 60u * 50'000);
 }
 
 TEST_F(TimelineOfFlight, TakesTheFramesThatWereAskedFor) {
@@ -144,8 +144,8 @@ TEST_F(TimelineOfFlight, RefusesWhatItCannotDo) {
   const std::string file = path("none.pftrace");
   expect_refused(replay({"--timeline", file, "--timeline-frames", "5"}),
                  {"--timeline-frames", "'5'", "A:B"});
-  expect_refused(replay({"--timeline", file, "--timeline-frames", "30:41"}),
-                 {"--timeline-frames", "40 frames", "0:40"});
+  expect_refused(replay({"--timeline", file, "--timeline-frames", "30:61"}),
+                 {"--timeline-frames", "60 frames", "0:60"});
   expect_refused(replay({"--timeline-frames", "3:4"}), {"--timeline-frames", "--timeline"});
   expect_refused(replay({"--timeline", path("none/file")}), {"--timeline", "--out", "beside"});
   expect_refused(replay({"--timeline", path("run.pftrace")}), {"--timeline", "--force"});

@@ -15,14 +15,15 @@ Overrides overrides_of(const std::string& profile, const Overrides& given) {
   return as_released(options).overrides;
 }
 
-TEST(ReleasedWork, IsTheSlipOfLevio) {
+TEST(ReleasedWork, IsTheSlipAndTheKeyframesOfLevio) {
   EXPECT_EQ(overrides_of("levio", {"cluster.workers=4"}),
-            (Overrides{"cluster.workers=4", "workload.released_rounding=on"}));
+            (Overrides{"cluster.workers=4", "workload.released_rounding=on",
+                       "workload.released_keyframes=on"}));
   EXPECT_EQ(overrides_of("next", {}), Overrides{});
 }
 
 TEST(ReleasedWork, IsWhatTheOptionsSayIfTheySayIt) {
-  const Overrides off{"workload.released_rounding=off"};
+  const Overrides off{"workload.released_rounding=off", "workload.released_keyframes=off"};
   EXPECT_EQ(overrides_of("levio", off), off);
 }
 

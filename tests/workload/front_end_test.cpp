@@ -60,13 +60,18 @@ TEST_F(FrontEndTest, WithoutWorldMatchesTheTwoViewsDecide) {
   EXPECT_NE(report.source, PoseSource::Predicted);
 }
 
-TEST_F(FrontEndTest, TurningAloneMakesNoKeyframe) {
-  frame(picture);
-  const double angle = std::atan(12 / 114.66);
-  // Trapezoidal steps: half of the first one is at rest.
-  const FrameReport report = frame(turned_right(picture), kAtRest, {0, angle / 0.0475, 0});
-  ASSERT_GE(report.frame_matches, 50);
-  EXPECT_FALSE(report.keyframe);
+/// The release compares where features are, whatever moved them.
+TEST_F(FrontEndTest, TurningAloneMakesNoKeyframeButInTheRelease) {
+  for (const bool released : {false, true}) {
+    FrontEndAlone alone;
+    alone.profile.released_keyframes = released;
+    alone.frame(picture);
+    const double angle = std::atan(12 / 114.66);
+    // Trapezoidal steps: half of the first one is at rest.
+    const FrameReport report = alone.frame(turned_right(picture), kAtRest, {0, angle / 0.0475, 0});
+    ASSERT_GE(report.frame_matches, 50);
+    EXPECT_EQ(report.keyframe, released);
+  }
 }
 
 TEST_F(FrontEndTest, TheSameViewWithoutATurnIsParallax) {

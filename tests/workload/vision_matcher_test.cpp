@@ -8,6 +8,7 @@
 #include <opencv2/features2d.hpp>
 
 #include "tests/workload/vision_runs.h"
+#include "workload/vio/levio/vision/matcher.h"
 
 namespace leviosim::vio::vision_test {
 namespace {
@@ -125,6 +126,24 @@ TEST(VisionMatcher, EmptyListsGiveNoMatches) {
   EXPECT_TRUE(match<work::Counting>({}, {}).empty());
 }
 
+/// A sum of 8 bits is brought into its range after each of 8 words, for each of 80 × 100 pairs.
+TEST(VisionMatcher, OfLevioFindsTheSameAndBringsSumsIntoTheirRange) {
+  const Features reference = random_features(100, 61);
+  const Features current = noisy_copies(reference, 80, 62);
+  const auto run = [&](auto matcher) {
+    work::Machine machine = make_machine<work::Counting>(8);
+    std::vector<PlainMatch> found = match_by<work::Counting>(matcher, machine, current, reference);
+    return std::pair(std::move(found), work::counts_of(machine.take_job().stages[0]));
+  };
+  const auto [expected, shared] = run(match_two_way<work::Counting>);
+  const auto [found, levio] = run(levio::match_two_way<work::Counting>);
+  ASSERT_GT(expected.size(), 30u);
+  EXPECT_EQ(found, expected);
+  work::Counts more = shared;
+  more[work::Op::IntAlu] += 8u * 80u * 100u;
+  EXPECT_EQ(levio, more);
+}
+
 TEST(VisionMatcher, RecordsTwoForksAndTheCompactions) {
   work::Machine machine = make_machine<work::Counting>(8);
   const Features reference = random_features(100, 59);
@@ -137,11 +156,11 @@ TEST(VisionMatcher, RecordsTwoForksAndTheCompactions) {
   EXPECT_TRUE(std::holds_alternative<work::Serial>(stage.steps[1]));
   EXPECT_EQ(std::get<work::Fork>(stage.steps[2]).name, "two-way filter");
   EXPECT_TRUE(std::holds_alternative<work::Serial>(stage.steps[3]));
-  // 8 words for each of 80 × 100 pairs, two loads each.
+  // 8 words for each of 80 × 100 pairs, and once for each current feature.
   work::Counts sum;
   for (const work::Counts& share : search.shares) sum += share;
   EXPECT_EQ(sum[work::Op::Popcount], 8u * 80u * 100u);
-  EXPECT_EQ(sum[work::Op::LoadStream], 16u * 80u * 100u);
+  EXPECT_EQ(sum[work::Op::LoadStream], 8u * 80u * 100u + 8u * 80u);
   // Two lists of 6 bytes per match and one word per core.
   EXPECT_EQ(stage.memory.parallel, Bytes(2 * 6 * 80 + 8 * 4));
 }

@@ -78,20 +78,27 @@ std::vector<typename P::U32> words_of(const Features& features) {
   return words;
 }
 
+/// @param matcher  match_two_way() of everything else, or that of `levio`
 template <class P>
-std::vector<PlainMatch> match(work::Machine& machine, const Features& current,
-                              const Features& reference, const MatcherOptions& options = {}) {
+std::vector<PlainMatch> match_by(decltype(&match_two_way<P>) matcher, work::Machine& machine,
+                                 const Features& current, const Features& reference,
+                                 const MatcherOptions& options = {}) {
   auto current_words = words_of<P>(current);
   auto reference_words = words_of<P>(reference);
   const auto stage = machine.stage("frame matching");
   const work::Arena::Frame frame(machine.local());
   MatchList<P> list = alloc_matches<P>(machine.local(), static_cast<int>(current.size()));
-  match_two_way<P>(machine, span_of<P>(current_words), static_cast<int>(current.size()),
-                   span_of<P>(reference_words), static_cast<int>(reference.size()), options, list);
+  matcher(machine, span_of<P>(current_words), static_cast<int>(current.size()),
+          span_of<P>(reference_words), static_cast<int>(reference.size()), options, list);
   std::vector<PlainMatch> matches;
   for (int i = 0; i < list.count; ++i)
     matches.push_back({list.query.data()[i], list.reference.data()[i], list.distance.data()[i]});
   return matches;
+}
+template <class P>
+std::vector<PlainMatch> match(work::Machine& machine, const Features& current,
+                              const Features& reference, const MatcherOptions& options = {}) {
+  return match_by<P>(match_two_way<P>, machine, current, reference, options);
 }
 template <class P>
 std::vector<PlainMatch> match(const Features& current, const Features& reference, int cores = 8,

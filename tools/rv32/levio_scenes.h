@@ -11,6 +11,7 @@
 #include "workload/vio/levio/geometry/triangulation.h"
 #include "workload/vio/levio/optimiser/optimiser.h"
 #include "workload/vio/levio/vision/extractor.h"
+#include "workload/vio/levio/vision/matcher.h"
 
 namespace leviosim::rv32 {
 

@@ -12,6 +12,11 @@
 #include "sim/work/policy.h"
 
 #define LEVIOSIM_HOST_INLINE
+#define LEVIOSIM_HOST_VECTORISED
+// The compiler may not leave the range to the last of several assignments, as GCC 12 would.
+#define LEVIOSIM_TARGET_BYTE(variable) \
+  variable &= 0xff;                    \
+  asm inline("" : "+r"(variable))
 #define LEVIOSIM_TARGET_CALL [[gnu::noipa]]
 extern "C" void* byte_memset(void* to, int value, std::size_t n);
 #define LEVIOSIM_TARGET_CLEAR byte_memset

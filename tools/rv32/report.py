@@ -42,7 +42,7 @@ CLASSES = [
     ("branch", ["branch"], ["branch_taken", "branch_not_taken", "loop_iteration"]),
     ("branch taken", ["branch_taken"], ["branch_taken", "loop_iteration"]),
     ("jump, call, return", ["jump", "call", "return", "indirect_jump"], ["call", "call"]),
-    ("integer alu", ["alu", "move"], ["int_alu", "int_min_max", "int_mac", "loop_iteration"]),
+    ("integer alu", ["alu", "move"], ["int_alu", "int_add_shift", "int_min_max", "int_mac", "loop_iteration"]),
     ("integer mul", ["mul", "mul_high"], ["int_mul", "int_mac"]),
     ("integer div", ["div"], ["int_div"]),
     ("float add, mul, fma", ["f32_add", "f32_mul", "f32_fma"], ["f32_add", "f32_mul", "f32_fma"]),
@@ -554,6 +554,11 @@ class Unit:
         total = sum(sign * trace.kinds[self.scene, f]["inclusive"] for f, sign in self.terms)
         return total / self.number(trace)
 
+    def executed_itself(self, trace, isa):
+        """Without what it calls and without what the instruction set spares."""
+        total = sum(sign * isa.executed(trace.kinds[self.scene, f]) for f, sign in self.terms)
+        return total / self.number(trace)
+
     def priced(self, trace, counts, costs):
         total = sum(sign * n * costs[op] for f, sign in self.terms
                     for op, n in counts[self.scene, f].items())
@@ -563,12 +568,37 @@ class Unit:
         return trace.kinds[self.scene, self.row["inner"]]["visits"] / self.number(trace)
 
 
+def read_units(here, isa):
+    lines = [line for line in open(here / "units.csv") if not line.startswith("#")]
+    return [row for row in csv.DictReader(lines) if (row["isa"] or "rv32imfc") == isa]
+
+
+UNITS_SECTION = """
+## Units of the released program's work
+
+Instructions per unit of `levio`'s work beside those of the released program, where they are known with Xpulp.
+
+| unit | released | executed | ratio |
+| --- | ---: | ---: | ---: |
+"""
+
+
+def append_units(trace, name, isa, here, page):
+    rows = read_units(here, name)
+    if not rows:
+        return
+    with open(page, "a") as out:
+        out.write(UNITS_SECTION)
+        for row in rows:
+            released, executed = float(row["released"]), Unit(row).executed_itself(trace, isa)
+            out.write(f"| {row['unit']} | {released:,.0f} | {executed:,.1f} | {executed / released:.2f} |\n")
+
+
 def write_units(contracted, uncontracted, counts, costs, here):
     """@param counts  inclusive; of as many visits as `uncontracted` has"""
-    lines = [line for line in open(here / "units.csv") if not line.startswith("#")]
     with open(here / "units.md", "w") as out:
         out.write(f"<!-- {GENERATED} -->\n{UNITS_PAGE}")
-        for row in csv.DictReader(lines):
+        for row in read_units(here, "rv32imfc"):
             unit, released = Unit(row), float(row["released"])
             executed = unit.executed(contracted)
             priced = unit.priced(uncontracted, counts, costs)
@@ -625,6 +655,7 @@ def main():
         write_functions_page(compiled, visits, isa, page)
         if isa.in_hardware:
             write_spared(executed, page)
+        append_units(contracted, arguments.isa, isa, here, page)
         return
     costs = read_costs(here / "rv32imfc_costs.csv")
     write_stages(contracted, here)

@@ -43,6 +43,7 @@ class Scenes {
   void run() {
     read_flight();
     vision();
+    matching();
     LevioScenes<P> levio(data_, camera());
     levio.vision(flight_[0].pixels);
     levio.vision_as_released(flight_[0].pixels);
@@ -108,6 +109,9 @@ class Scenes {
       const Function scene("scene: feature extraction between pixels");
       vio::extract_features<P>(machine_, image, fine, features);
     }
+  }
+
+  void matching() {
     // References: most are current descriptors with some bits flipped, in another order.
     constexpr int kCurrent = 300, kReferences = 500;
     const auto words = data_.alloc<Span<U32>>("descriptors", 8 * (kCurrent + kReferences));
@@ -118,11 +122,16 @@ class Scenes {
         word = work::value(U32(words.data()[from])) ^ (word & noise_.bits() & noise_.bits());
       words.data()[i] = U32(word);
     }
+    const auto current = words.subspan(0, 8 * kCurrent);
+    const auto references = words.subspan(8 * kCurrent, 8 * kReferences);
     auto matches = vio::alloc_matches<P>(data_, kCurrent);
     const auto stage = machine_.stage("matching");
-    const Function scene("scene: matching");
-    vio::match_two_way<P>(machine_, words.subspan(0, 8 * kCurrent), kCurrent,
-                          words.subspan(8 * kCurrent, 8 * kReferences), kReferences, {}, matches);
+    {
+      const Function scene("scene: matching");
+      vio::match_two_way<P>(machine_, current, kCurrent, references, kReferences, {}, matches);
+    }
+    const Function scene("scene: levio matching");
+    vio::levio::match_two_way<P>(machine_, current, kCurrent, references, kReferences, {}, matches);
   }
 
   void two_views() {
@@ -264,6 +273,7 @@ class Scenes {
   void pipelines() {
     vio::Profile levio;
     levio.optimiser.anchor.rotation = 0.01f;
+    levio.released_keyframes = true;
     {
       const Function scene("scene: pipeline");
       pipeline(levio);

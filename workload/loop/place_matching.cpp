@@ -7,21 +7,17 @@ namespace leviosim::vio {
 namespace {
 
 template <class P>
-using Words = typename P::template Span<const typename P::U32>;
-
-template <class P>
 struct NearestTwo {
   typename P::I32 feature, distance, second;
 };
 
 template <class P>
-NearestTwo<P> nearest_two(const Words<P>& point, const FeatureList<P>& features,
+NearestTwo<P> nearest_two(const HeldDescriptor<P>& point, const FeatureList<P>& features,
                           typename P::I32 limit) {
   using I32 = typename P::I32;
   NearestTwo<P> nearest{-1, limit, 256};
   for (int f : P::range(0, features.count)) {
-    const I32 distance = hamming_distance<P>(
-        point, features.descriptors.subspan(kDescriptorWords * f, kDescriptorWords));
+    const I32 distance = hamming_distance<P>(point, features.descriptors, f);
     if (work::unlikely(distance < nearest.second)) {
       if (distance < nearest.distance) {
         if (nearest.feature >= I32(0)) nearest.second = nearest.distance;
@@ -37,12 +33,11 @@ NearestTwo<P> nearest_two(const Words<P>& point, const FeatureList<P>& features,
 
 /// Whether another point of the place is as near to the feature as point `mine`.
 template <class P>
-bool is_contested(const Words<P>& feature, const Words<P>& place, int points, int mine,
-                  typename P::I32 distance) {
+bool is_contested(const HeldDescriptor<P>& feature, const DescriptorWords<P>& place, int points,
+                  int mine, typename P::I32 distance) {
   using I32 = typename P::I32;
   for (int other : P::range(0, points)) {
-    const I32 its =
-        hamming_distance<P>(feature, place.subspan(kDescriptorWords * other, kDescriptorWords));
+    const I32 its = hamming_distance<P>(feature, place, other);
     if (work::unlikely(its <= distance))
       if (I32(other) != I32(mine)) return true;
   }
@@ -52,7 +47,7 @@ bool is_contested(const Words<P>& feature, const Words<P>& place, int points, in
 /// Appends the matches of the points of `share` to `out`, from share.begin on.
 /// @return how many there are
 template <class P>
-typename P::I32 search(const FeatureList<P>& features, const Words<P>& place, int points,
+typename P::I32 search(const FeatureList<P>& features, const DescriptorWords<P>& place, int points,
                        const VerificationOptions& options, work::Share share,
                        const MatchList<P>& out) {
   using I32 = typename P::I32;
@@ -61,12 +56,11 @@ typename P::I32 search(const FeatureList<P>& features, const Words<P>& place, in
                                          (share.end - share.begin) * (features.count + points));
   I32 next = share.begin;
   for (int i : P::range(share.begin, share.end)) {
-    const Words<P> point = place.subspan(kDescriptorWords * i, kDescriptorWords);
-    const NearestTwo<P> nearest = nearest_two<P>(point, features, I32(options.max_distance));
+    const NearestTwo<P> nearest =
+        nearest_two<P>(hold_descriptor<P>(place, i), features, I32(options.max_distance));
     if (nearest.feature < I32(0)) continue;
     if (nearest.distance * I32(100) > nearest.second * I32(options.ratio_percent)) continue;
-    const Words<P> feature = features.descriptors.subspan(
-        I32(nearest.feature * I32(kDescriptorWords)), kDescriptorWords);
+    const auto feature = hold_descriptor<P>(features.descriptors, nearest.feature);
     if (is_contested<P>(feature, place, points, i, nearest.distance)) continue;
     out.query[next] = work::narrow<U16>(nearest.feature);
     out.reference[next] = work::narrow<U16>(I32(i));
@@ -79,9 +73,8 @@ typename P::I32 search(const FeatureList<P>& features, const Words<P>& place, in
 }  // namespace
 
 template <class P>
-void match_place(work::Machine& machine, const FeatureList<P>& features,
-                 typename P::template Span<const typename P::U32> place, int points,
-                 const VerificationOptions& options, MatchList<P>& out) {
+void match_place(work::Machine& machine, const FeatureList<P>& features, DescriptorWords<P> place,
+                 int points, const VerificationOptions& options, MatchList<P>& out) {
   using I32 = typename P::I32;
   using U16 = typename P::U16;
   check(out.capacity >= points, "the match list has room for every point of the place");
@@ -99,10 +92,10 @@ void match_place(work::Machine& machine, const FeatureList<P>& features,
 }
 
 template void match_place<work::Native>(work::Machine&, const FeatureList<work::Native>&,
-                                        Words<work::Native>, int, const VerificationOptions&,
-                                        MatchList<work::Native>&);
+                                        DescriptorWords<work::Native>, int,
+                                        const VerificationOptions&, MatchList<work::Native>&);
 template void match_place<work::Counting>(work::Machine&, const FeatureList<work::Counting>&,
-                                          Words<work::Counting>, int, const VerificationOptions&,
-                                          MatchList<work::Counting>&);
+                                          DescriptorWords<work::Counting>, int,
+                                          const VerificationOptions&, MatchList<work::Counting>&);
 
 }  // namespace leviosim::vio

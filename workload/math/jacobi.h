@@ -5,7 +5,7 @@
 // Left out: cheaper rotations without trigonometry, and cyclic order, which needs no search.
 #pragma once
 
-#include "workload/math/host_inline.h"
+#include "workload/math/host_hints.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
 #include "workload/math/trig.h"

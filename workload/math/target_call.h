@@ -15,4 +15,9 @@
 #endif
 /// Before a loop whose steps are not written out one after the other. On the host neither: they are
 /// too many for its registers.
-#define LEVIOSIM_TARGET_ROLLED _Pragma("GCC unroll 1")
+#define LEVIOSIM_ROLLED _Pragma("GCC unroll 1")
+/// After an assignment to a variable that has 8 bits in the program for the target: it is brought
+/// into their range there and then. The host has 32 bits, whose sums it can vectorise.
+#ifndef LEVIOSIM_TARGET_BYTE
+#define LEVIOSIM_TARGET_BYTE(variable)
+#endif

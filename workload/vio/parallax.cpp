@@ -9,7 +9,6 @@ namespace {
 template <class P>
 Mat3<P> rotation_to_undo(const FrontEndState<P>& state, const InertialPart<P>& inertial,
                          const Frame<P>& frame) {
-  if (!state.profile.parallax_without_rotation) return Mat3<P>::identity();
   if (state.profile.use_imu) return transpose(inertial.motion_since_keyframe().R);
   const KeyframeState<P> last = state.newest_keyframe();
   return transpose(frame.T_world_camera.R) * last.T_world_camera.R;
@@ -44,6 +43,7 @@ template <class P>
 typename P::F32 total_parallax(const FrontEndState<P>& state, const InertialPart<P>& inertial,
                                const Frame<P>& frame) {
   using F = typename P::F32;
+  const typename P::Function function("total_parallax");
   const Mat3<P> R_camera_keyframe = rotation_to_undo(state, inertial, frame);
   F sum = 0.0f;
   for (int i : P::range(0, frame.matches.list.count)) {

@@ -85,8 +85,9 @@ struct Profile {
   LoopOptions loop;
 
   // Keyframes and landmarks (III.B.5–6).
-  float keyframe_parallax = 0.05f;        ///< mean, in normalised coordinates
-  bool parallax_without_rotation = true;  ///< undo the rotation since the keyframe first
+  float keyframe_parallax = 0.05f;  ///< mean, in normalised coordinates
+  /// Rotation counts as parallax, as in the released program. Of the profile levio only.
+  bool released_keyframes = false;
   int max_landmarks = 1000;
   int max_landmark_age = 15;               ///< keyframes without being seen
   float max_landmark_error_sq = 2.0f;      ///< squared reprojection error of a new landmark [px²]

@@ -62,8 +62,7 @@ struct Candidate {
 /// The nearest descriptor among the features around (u, v).
 template <class P>
 Candidate<P> search_around(const FeatureList<P>& features, const Cells<P>& cells, typename P::I32 u,
-                           typename P::I32 v, int radius,
-                           typename P::template Span<const typename P::U32> descriptor,
+                           typename P::I32 v, int radius, const HeldDescriptor<P>& descriptor,
                            int max_distance) {
   using I = typename P::I32;
   const typename P::Function function("search_around");
@@ -82,9 +81,7 @@ Candidate<P> search_around(const FeatureList<P>& features, const Cells<P>& cells
       const I dx = I(features.x[feature]) - u, dy = I(features.y[feature]) - v;
       const I distance_sq = dx * dx + dy * dy;
       if (distance_sq > limit) continue;
-      const I at = feature * I(kDescriptorWords);
-      const I distance =
-          hamming_distance<P>(descriptor, features.descriptors.subspan(at, kDescriptorWords));
+      const I distance = hamming_distance<P>(descriptor, features.descriptors, feature);
       if (distance < best.distance) best = {feature, distance};
     }
   }
@@ -118,9 +115,9 @@ void search(const GuidedInput<P>& input, const FeatureList<P>& features, const C
     const F inverse = F(1.0f) / x.z;
     const F u = F(c.fx) * (x.x * inverse) + F(c.cx), v = F(c.fy) * (x.y * inverse) + F(c.cy);
     if (!(u > 0.0f) || !(v > 0.0f) || !(u < width) || !(v < height)) continue;
-    const Candidate<P> best = search_around<P>(
-        features, cells, work::to_i32(F(u * steps)), work::to_i32(F(v * steps)), radius,
-        input.descriptors.subspan(kDescriptorWords * l, kDescriptorWords), options.max_distance);
+    const Candidate<P> best =
+        search_around<P>(features, cells, work::to_i32(F(u * steps)), work::to_i32(F(v * steps)),
+                         radius, hold_descriptor<P>(input.descriptors, l), options.max_distance);
     claims.feature[l] = work::narrow<U16>(best.feature);
     claims.distance[l] = work::narrow<typename P::Byte>(best.distance);
   }

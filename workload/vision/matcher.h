@@ -9,7 +9,7 @@
 #pragma once
 
 #include "sim/work/machine.h"
-#include "workload/vision/features.h"
+#include "workload/vision/hamming.h"
 
 namespace leviosim::vio {
 
@@ -39,24 +39,13 @@ struct MatcherOptions {
   int max_distance = 35;  ///< bits; a match is strictly closer (PARAMETERS.md#matching)
 };
 
-/// Number of bits in which two descriptors differ.
-template <class P>
-typename P::I32 hamming_distance(typename P::template Span<const typename P::U32> a,
-                                 typename P::template Span<const typename P::U32> b) {
-  typename P::I32 distance = 0;
-  // Unrolled before it is vectorised, this would not be vectorised at all.
-#pragma GCC unroll 1
-  for (int w : P::range(0, kDescriptorWords)) distance += work::popcount(a[w] ^ b[w]);
-  return distance;
-}
-
 /// Matches `current_count` current descriptors to `reference_count` reference descriptors, 8 words
 /// each, all in local memory. `out` needs room for current_count matches; they come in the order of
 /// the current features. The caller opens the stage. Local memory while it runs: a second list of
 /// out.capacity matches and one word per core.
 template <class P>
-void match_two_way(work::Machine& machine, typename P::template Span<const typename P::U32> current,
-                   int current_count, typename P::template Span<const typename P::U32> reference,
-                   int reference_count, const MatcherOptions& options, MatchList<P>& out);
+void match_two_way(work::Machine& machine, DescriptorWords<P> current, int current_count,
+                   DescriptorWords<P> reference, int reference_count, const MatcherOptions& options,
+                   MatchList<P>& out);
 
 }  // namespace leviosim::vio

@@ -145,9 +145,11 @@ std::string stage_lines(const RunResult& run, int rows, int width) {
     std::stable_sort(by_cycles.begin(), by_cycles.end(),
                      [](const auto* a, const auto* b) { return a->parallel > b->parallel; });
     const int shown = std::max(rows - 1, 1);
-    const Cycles least = by_cycles[static_cast<std::size_t>(shown - 1)]->parallel;
-    std::erase_if(stages, [&](const auto* stage) { return stage->parallel < least; });
-    left_out = fmt::format("… {} more with fewer cycles\n", all - static_cast<int>(stages.size()));
+    const auto rest = by_cycles.begin() + shown;
+    std::erase_if(stages, [&](const auto* stage) {
+      return std::find(rest, by_cycles.end(), stage) != by_cycles.end();
+    });
+    left_out = fmt::format("… {} more with fewer cycles\n", all - shown);
   }
   return stages_of(run, stages, "").str(width) + left_out + unmeasured_note(run);
 }

@@ -1,5 +1,6 @@
 #include "workload/vio/levio/keyframe_matching.h"
 
+#include "workload/vio/levio/vision/matcher.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio::levio {
@@ -18,10 +19,33 @@ void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
   machine.copy_in(matches.pixels.subspan(0, capacity), old.list.x);
   machine.copy_in(matches.pixels.subspan(matches.first_v, capacity), old.list.y);
   machine.copy_in(matches.landmarks, old.landmarks);
-  match_two_way<P>(machine, frame.features.list.descriptors, frame.features.list.count, descriptors,
-                   old.list.count, state.profile.matcher, matches.list);
+  levio::match_two_way<P>(machine, frame.features.list.descriptors, frame.features.list.count,
+                          descriptors, old.list.count, state.profile.matcher, matches.list);
 }
 
+template <class P>
+typename P::F32 total_motion(const FrontEndState<P>& state, const Frame<P>& frame) {
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  const typename P::Function function("levio_total_motion");
+  const KeyframeMatches<P>& matches = frame.matches;
+  const FeatureList<P>& features = frame.features.list;
+  F sum = 0.0f;
+  for (int i : P::range(0, matches.list.count)) {
+    const I32 now = matches.list.query[i];
+    const I32 old = matches.list.reference[i];
+    const Vec2<P> seen = state.camera.normalised(features.x[now], features.y[now]);
+    const Vec2<P> before = state.camera.normalised(matches.u(old), matches.v(old));
+    const F dx = seen.x - before.x, dy = seen.y - before.y;
+    sum += work::sqrt(F(dx * dx + dy * dy));
+  }
+  return sum;
+}
+
+template work::Native::F32 total_motion(const FrontEndState<work::Native>&,
+                                        const Frame<work::Native>&);
+template work::Counting::F32 total_motion(const FrontEndState<work::Counting>&,
+                                          const Frame<work::Counting>&);
 template void match_keyframe(const FrontEndState<work::Native>&, Frame<work::Native>&);
 template void match_keyframe(const FrontEndState<work::Counting>&, Frame<work::Counting>&);
 

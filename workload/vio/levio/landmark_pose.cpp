@@ -1,6 +1,7 @@
 #include "workload/vio/levio/landmark_pose.h"
 
 #include "workload/vio/levio/geometry/epnp_ransac.h"
+#include "workload/vio/levio/vision/matcher.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio::levio {
@@ -16,8 +17,9 @@ MatchList<P> match_landmarks(const FrontEndState<P>& state, const Frame<P>& fram
   MatchList<P> list =
       alloc_matches<P>(machine.local(), frame.features.list.capacity, "world matches");
   machine.copy_in(descriptors, graph.descriptors);
-  match_two_way<P>(machine, frame.features.list.descriptors, frame.features.list.count, descriptors,
-                   work::value(graph.landmark_count()), state.profile.matcher, list);
+  levio::match_two_way<P>(machine, frame.features.list.descriptors, frame.features.list.count,
+                          descriptors, work::value(graph.landmark_count()), state.profile.matcher,
+                          list);
   return list;
 }
 

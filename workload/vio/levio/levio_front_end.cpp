@@ -71,7 +71,8 @@ bool LevioFrontEnd<P>::is_keyframe(const Frame<P>& frame) {
   const Profile& profile = state_.profile;
   const int matches = frame.matches.list.count;
   if (matches < profile.min_frame_matches) return true;
-  const F parallax = total_parallax(state_, inertial_, frame);
+  const F parallax = profile.released_keyframes ? levio::total_motion(state_, frame)
+                                                : total_parallax(state_, inertial_, frame);
   return bool(parallax > F(profile.keyframe_parallax * static_cast<float>(matches)));
 }
 

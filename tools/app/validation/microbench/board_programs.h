@@ -57,8 +57,9 @@ void average_pool(In<P, Sample> in, Out<P, Sample> out, work::Share rows) {
     for (const int x : P::range(0, kPooled)) {
       const int at = 2 * y * kPoolSize + 2 * x;
       const I32 upper = I32(in[at]) + I32(in[at + 1]);
-      const I32 sum = upper + I32(in[at + kPoolSize]) + I32(in[at + kPoolSize + 1]);
-      out[y * kPooled + x] = work::narrow<Sample>(sum >> 2);
+      const I32 three = upper + I32(in[at + kPoolSize]);
+      const I32 mean = work::add_shifted(three, I32(in[at + kPoolSize + 1]), 2);
+      out[y * kPooled + x] = work::narrow<Sample>(mean);
     }
 }
 

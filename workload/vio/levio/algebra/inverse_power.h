@@ -5,6 +5,9 @@
 // It stops when the cosine between two successive vectors comes out the same twice: the difference
 // that it asks for is below what single precision can tell apart near 1.
 //
+// What the compiled code executes per counted operation depends on the size, so the two sizes that
+// the pipeline has are named functions of their own.
+//
 // Left out: a test for a singular matrix. A pivot that vanishes leaves the solution zero, and its
 // unit vector is not a number, which ends the iteration.
 #pragma once
@@ -96,7 +99,6 @@ LEVIOSIM_TARGET_CALL void solve_gauss(ConstMatrixView<P> a,
                                       typename P::template Span<typename P::F32> x) {
   using F = typename P::F32;
   using Span = typename P::template Span<F>;
-  const typename P::Function function("levio_solve_gauss");
   const int n = a.rows();
   const typename P::OffloadRegion kernel(solve_of_size(n),
                                          factor_items(n, n) + substitution_items(n, n));
@@ -111,6 +113,19 @@ LEVIOSIM_TARGET_CALL void solve_gauss(ConstMatrixView<P> a,
 }
 
 namespace power {
+
+/// solve_gauss() as a named function.
+template <class P>
+void solve(ConstMatrixView<P> a, typename P::template Span<const typename P::F32> b,
+           typename P::template Span<typename P::F32> x) {
+  if (a.rows() == kMostUnknowns) {
+    const typename P::Function function("levio_solve_gauss_9x9");
+    solve_gauss<P>(a, b, x);
+  } else {
+    const typename P::Function function("levio_solve_gauss_4x4");
+    solve_gauss<P>(a, b, x);
+  }
+}
 
 /// Divides every element by the norm: a root and n divisions.
 template <class P>
@@ -138,7 +153,7 @@ LEVIOSIM_TARGET_CALL int iterate(ConstMatrixView<P> a,
   F last_cosine = 0.0f;
   int steps = 0;
   for (int step : P::range(0, kMostPowerSteps)) {
-    solve_gauss<P>(a, last, next);
+    solve<P>(a, last, next);
     normalise<P>(next, n);
     F cosine = 0.0f;
     for (int i : P::byte_range(0, n)) {
@@ -163,10 +178,17 @@ template <class P>
 LEVIOSIM_TARGET_CALL int smallest_eigenvector(ConstMatrixView<P> a,
                                               typename P::template Span<typename P::F32> x) {
   using Span = typename P::template Span<typename P::F32>;
-  const typename P::Function function("levio_smallest_eigenvector");
-  const typename P::OffloadRegion kernel(eigen_of_size(a.rows()), 1);
-  typename P::template Array<typename P::F32, kMostUnknowns> last, next;
-  return power::iterate<P>(a, Span(last), Span(next), x);
+  const auto iterate = [&] {
+    const typename P::OffloadRegion kernel(eigen_of_size(a.rows()), 1);
+    typename P::template Array<typename P::F32, kMostUnknowns> last, next;
+    return power::iterate<P>(a, Span(last), Span(next), x);
+  };
+  if (a.rows() == kMostUnknowns) {
+    const typename P::Function function("levio_smallest_eigenvector_9x9");
+    return iterate();
+  }
+  const typename P::Function function("levio_smallest_eigenvector_4x4");
+  return iterate();
 }
 
 }  // namespace leviosim::vio::levio

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "workload/math/host_inline.h"
+#include "workload/math/host_hints.h"
 #include "workload/math/matrix.h"
 #include "workload/math/target_call.h"
 

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "workload/graph/linearise_landmark.h"
-#include "workload/math/host_inline.h"
+#include "workload/math/host_hints.h"
 #include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {

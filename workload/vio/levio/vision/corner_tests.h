@@ -36,9 +36,9 @@ typename P::Bool is_corner(typename P::template Span<const typename P::Byte> ima
     dark_run = (dark_run + I(1)) * I(darker[k]);
     longest = work::max(longest, work::max(bright_run, dark_run));
   };
-  LEVIOSIM_TARGET_ROLLED
+  LEVIOSIM_ROLLED
   for (int k : P::range(0, kRingSize)) extend_runs(k);
-  LEVIOSIM_TARGET_ROLLED
+  LEVIOSIM_ROLLED
   for (int k : P::range(0, kFastArc - 1)) extend_runs(k);
   return longest >= I(kFastArc);
 }
