@@ -102,9 +102,10 @@ TEST(CompiledWork, LoopsHaveARatioOfTheirOwn) {
   counts.compiled[static_cast<std::size_t>(work::Compiled::ExecutedLoops)] = 20 * 16;
   counts.compiled[static_cast<std::size_t>(work::Compiled::PricedLoops)] = 40 * 16;
   CoreConfig with_hardware_loops = core();
-  with_hardware_loops.ops[work::index(Op::LoopJump)] = {.issue = 2};
-  EXPECT_DOUBLE_EQ(price(counts, with_hardware_loops).alone.issue,
-                   (600 * 1.0 + 10 * 2 * 0.5) * 1.5);
+  with_hardware_loops.ops[work::index(Op::LoopJump)] = {.issue = 2, .stall = 3};
+  const UsefulCycles alone = price(counts, with_hardware_loops).alone;
+  EXPECT_DOUBLE_EQ(alone.issue, (600 * 1.0 + 10 * 2 * 0.5) * 1.5);
+  EXPECT_DOUBLE_EQ(alone.control, 10 * 3 * 0.5);  // what is written out has no branch to wait for
   CoreConfig without = core();
   without.ops[work::index(Op::LoopIteration)] = {.issue = 2};
   EXPECT_DOUBLE_EQ(price(counts, without).alone.issue, (600 * 1.0 + 400 * 2 * 0.5) * 1.5);

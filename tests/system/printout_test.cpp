@@ -74,6 +74,7 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
                            "memory: fits, L1 ", "energy: ", "trajectory: ", "--tables all"})
     EXPECT_NE(recorded_.out.find(part), std::string::npos) << part << " is not in:\n"
                                                            << recorded_.out;
+  EXPECT_EQ(recorded_.out.find("… 0 more"), std::string::npos) << recorded_.out;
   EXPECT_EQ(lines.back(), "results: " + path("run"));
 }
 
