@@ -189,9 +189,13 @@ std::size_t CodeFetcher::HashOfReuse::operator()(const work::CodeReuse& code) co
 
 CodeFetch CodeFetcher::fetch(const work::CodeReuse& code) const {
   if (line_ == 0) return {};
-  if (const auto found = known_.find(code); found != known_.end()) return found->second;
+  if (latest_code_ == code) return latest_;
   if (known_.size() == kMostKnown) known_.clear();
-  return known_[code] = solve(code);
+  const auto [entry, is_new] = known_.try_emplace(code);
+  if (is_new) entry->second = solve(code);
+  latest_code_ = code;
+  latest_ = entry->second;
+  return latest_;
 }
 
 CodeFetch CodeFetcher::solve(const work::CodeReuse& code) const {

@@ -86,6 +86,9 @@ class CodeFetcher {
   Level own_;
   Level shared_;
   mutable std::unordered_map<work::CodeReuse, CodeFetch, HashOfReuse> known_;
+  /// The latest again, for the cores of a team ask the same in turn. At first: no code.
+  mutable work::CodeReuse latest_code_{};
+  mutable CodeFetch latest_;
 };
 
 }  // namespace leviosim::sim

@@ -54,7 +54,9 @@ void Machine::begin_fork(std::string_view name) {
   check(in_stage_, "a fork belongs to a stage");
   scratch_sum_ = scratch_max_ = Bytes(0);
   fork_ = {name, {}, false};
-  if (recording()) flush_serial();
+  if (!recording()) return;
+  flush_serial();
+  fork_.shares.reserve(static_cast<std::size_t>(config_.cores));
 }
 
 void Machine::end_share(Bytes scratch_peak) {

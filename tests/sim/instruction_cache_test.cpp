@@ -355,6 +355,19 @@ TEST(InstructionCache, StepsAtEachCapacity) {
   EXPECT_NEAR(stall_per_line(16384), 20, 0.6) << "L2";
 }
 
+/// What was asked before, by whomever, is remembered.
+TEST(InstructionCache, AnswersDoNotDependOnWhatWasAskedBefore) {
+  const CodeReuse small = loop_over(1024, 3), large = loop_over(6144, 3);
+  const CodeFetcher asked(caches(), Bytes(512), 1);
+  for (const CodeReuse& code : {small, large, small, small, CodeReuse{}, large}) {
+    const CodeFetch fetch = asked.fetch(code);
+    EXPECT_EQ(fetch.stall, CodeFetcher(caches(), Bytes(512), 1).fetch(code).stall);
+    const CodeFetcher copy = asked;
+    EXPECT_EQ(copy.fetch(code).stall, fetch.stall);
+  }
+  EXPECT_GT(asked.fetch(large).stall, asked.fetch(small).stall);
+}
+
 TEST(InstructionCache, WithoutAPrivateCacheTheSharedOneAnswersAtOnce) {
   const CodeFetcher fetcher(caches(), Bytes(0), 1);
   const CodeFetch fetch = fetcher.fetch(loop_over(1024, 1000));

@@ -33,7 +33,7 @@ std::vector<Place> features_of(vio::ImageView<N> image) {
   const auto stage = machine.stage("feature extraction");
   auto list =
       vio::alloc_features<N>(machine.local(), options.max_features(image.width, image.height));
-  vio::levio::extract_features<N>(machine, image, options, list);
+  vio::levio::extract_features<N>(machine, image, options, vio::levio::DescriptorKind::Exact, list);
   std::vector<Place> places;
   places.reserve(static_cast<std::size_t>(list.count));
   for (int i = 0; i < list.count; ++i) places.push_back({list.x[i], list.y[i]});
@@ -48,7 +48,7 @@ TurnedPatch turned_patch(N::Span<const N::Byte> blurred, int centre) {
     for (int x = -vio::kPatternRadius; x <= vio::kPatternRadius; ++x)
       if (vio::is_in_disc(x, y))
         patch.at(x, y) =
-            static_cast<std::uint8_t>(vio::levio::turned_sample<N, vio::levio::ExactRounding>(
+            static_cast<std::uint8_t>(vio::levio::turned_sample<N, vio::levio::ExactDescriptor>(
                 blurred, kImageWidth, centre, direction, x, y));
   return patch;
 }
@@ -132,15 +132,16 @@ PointPair unpack_pair(std::uint32_t word) {
 
 namespace {
 
-/// Whether they are neighbours in a row or a column of the grid.
-bool lie_side_by_side(const PointPair& pair, int grid) {
-  return std::abs(pair.x2 - pair.x1) + std::abs(pair.y2 - pair.y1) == grid;
+constexpr int kGrid = 2;
+
+bool may_be_chosen(const PointPair& pair, Candidates candidates) {
+  if (candidates == Candidates::FarApart) return vio::is_far_apart(pair);
+  return std::abs(pair.x2 - pair.x1) + std::abs(pair.y2 - pair.y1) > kGrid;
 }
 
 }  // namespace
 
-std::vector<PointPair> candidate_pairs() {
-  constexpr int kGrid = 2;
+std::vector<PointPair> candidate_pairs(Candidates candidates) {
   constexpr int kLast = vio::kPatternRadius / kGrid * kGrid;
   std::vector<Place> points;
   for (int y = -kLast; y <= kLast; y += kGrid)
@@ -150,7 +151,7 @@ std::vector<PointPair> candidate_pairs() {
   for (std::size_t a = 0; a < points.size(); ++a)
     for (std::size_t b = a + 1; b < points.size(); ++b) {
       const PointPair pair{points[a].x, points[a].y, points[b].x, points[b].y};
-      if (!lie_side_by_side(pair, kGrid)) pairs.push_back(pair);
+      if (may_be_chosen(pair, candidates)) pairs.push_back(pair);
     }
   return pairs;
 }
@@ -177,11 +178,11 @@ std::vector<const Candidate*> take(const std::vector<Candidate>& candidates, int
 
 }  // namespace
 
-LearnedPairs learn_pairs(std::vector<TurnedPatch> patches) {
+LearnedPairs learn_pairs(std::vector<TurnedPatch> patches, Candidates allowed) {
   check(patches.size() >= LearnedPairs::kFeatures, "a flight has the features to learn from");
   patches.resize(LearnedPairs::kFeatures);
   std::vector<Candidate> candidates;
-  for (const PointPair& pair : candidate_pairs())
+  for (const PointPair& pair : candidate_pairs(allowed))
     candidates.push_back({pair, PairBits(pair, patches)});
   // Of equals, the one that comes first on the grid.
   std::stable_sort(

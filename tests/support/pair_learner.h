@@ -65,9 +65,14 @@ class PairBits {
 
 vio::PointPair unpack_pair(std::uint32_t word);
 
-/// The pairs of points on a grid of 2 px that a pattern may have, each in one order: all but those
-/// that lie side by side.
-std::vector<vio::PointPair> candidate_pairs();
+/// Which pairs of points a pattern may have: how far apart they lie at least.
+enum class Candidates {
+  NotSideBySide,  ///< all of the grid but neighbours in a row or a column: 2.8 px
+  FarApart        ///< as far as the blur is wide, 5 px, as ORB has it
+};
+
+/// The pairs of points on a grid of 2 px that a pattern may have, each in one order.
+std::vector<vio::PointPair> candidate_pairs(Candidates candidates);
 
 struct LearnedPairs {
   static constexpr std::size_t kFeatures = 3000;  ///< that a pattern is learned from
@@ -80,6 +85,6 @@ struct LearnedPairs {
 };
 
 /// A pattern for features that look like the first LearnedPairs::kFeatures of these.
-LearnedPairs learn_pairs(std::vector<TurnedPatch> patches);
+LearnedPairs learn_pairs(std::vector<TurnedPatch> patches, Candidates candidates);
 
 }  // namespace leviosim::tests

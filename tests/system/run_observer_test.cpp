@@ -9,7 +9,6 @@
 #include "sim/soc/job_timer.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/run/workload_overrides.h"
 #include "tools/app/validation/calibration/stage_model.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -63,8 +62,6 @@ class Observed : public ::testing::Test {
     RunRequest request;
     request.data = flight();
     request.platform = platform::resolve_platform("gap9", overrides);
-    // So that all stages run within these few frames.
-    request.workload = parse_workload_overrides({"workload.released_keyframes=on"});
     request.observer = observer;
     return simulate(request, [](const Progress&) {});
   }
@@ -148,8 +145,7 @@ TEST_F(Observed, AStageModelPredictsTheRunOnAnotherChip) {
     const StageSum before = sum_over(log.frames(), kPaperStages[i]);
     const StageSum after = sum_over(changed_log.frames(), kPaperStages[i]);
     EXPECT_NEAR(models[i].cycles(base), before.mean_single().value(), 1e-3) << models[i].title;
-    // Its optimiser is later, which moves the flight a little.
-    EXPECT_NEAR(models[i].cycles(changed) / after.mean_single().value(), 1, 2e-3)
+    EXPECT_NEAR(models[i].cycles(changed) / after.mean_single().value(), 1, 1e-3)
         << models[i].title;
     EXPECT_GT(models[i].fixed, 0) << models[i].title;
   }

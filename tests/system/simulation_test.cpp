@@ -10,7 +10,6 @@
 #include "sim/base/error.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/report/statistics.h"
-#include "tools/app/run/workload_overrides.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -159,15 +158,12 @@ TEST(RealFrames, AreTrackedWithOtherRandomDrawsToo) {
   EXPECT_LE(errors[1], 0.18);
 }
 
-/// The real frames, with the keyframes of the release; the bounds are those of the project's goals,
-/// not of this machine.
+/// The real frames; the bounds are those of the project's goals, not of this machine.
 TEST(RealFrames, AllThreeHundredFramesOfMachineHall) {
   const auto folder = traces::testing::recorded_data() / "euroc" / "MH_01_easy_t05_t20";
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no recorded flight: set LEVIOSIM_DATA to the folder that contains euroc/";
-  RunRequest as_released = request(folder);
-  as_released.workload = parse_workload_overrides({"workload.released_keyframes=on"});
-  const RunResult result = run(as_released);
+  const RunResult result = run(request(folder));
   ASSERT_EQ(result.frames.size(), 300U);
   ASSERT_TRUE(result.ate.has_value());
   EXPECT_EQ(result.ate->matched, 300U);

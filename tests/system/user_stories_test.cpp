@@ -15,15 +15,14 @@ namespace {
 using nlohmann::json;
 using testing::ProgramResult;
 
-/// Four seconds of flight, the first at rest, recorded once, with the keyframes of the release so
-/// that all stages run.
+/// Four seconds of flight, the first at rest, recorded once.
 class UserStories : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
     make_folder("stories");
     traces::write_synthetic_flight(*folder_ / "flight", {.duration_s = 4, .texel_m = 0.02});
-    expect_done({"run", "--platform", "gap9", "-p", "workload.released_keyframes=on", "--data",
-                 path("flight"), "--out", path("recorded"), "--record", "--quiet"});
+    expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("recorded"),
+                 "--record", "--quiet"});
   }
   static void write(const std::string& name, const std::string& text) {
     std::ofstream(path(name)) << text;

@@ -67,8 +67,7 @@ TEST(WorkloadOverrides, RefuseContradictions) {
   };
   refuse("next", {"workload.joint=off", "workload.subpixel_steps=16"},
          {"workload.subpixel_steps", "workload.joint=on"});
-  refuse("next", {"workload.released_rounding=on"}, {"workload.released_rounding=off", "levio"});
-  refuse("next", {"workload.released_keyframes=on"}, {"workload.released_keyframes=off", "levio"});
+  refuse("next", {"workload.released=on"}, {"workload.released=off", "levio"});
   refuse("levio", {"workload.subpixel_steps=4"}, {"workload.subpixel_steps=1"});
   refuse("levio-no-imu", {"workload.joint=on"}, {"without IMU"});
   refuse("levio", {"workload.loop=on"}, {"workload.loop=off", "workload.guided=on"});

@@ -15,15 +15,14 @@ Overrides overrides_of(const std::string& profile, const Overrides& given) {
   return as_released(options).overrides;
 }
 
-TEST(ReleasedWork, IsTheSlipAndTheKeyframesOfLevio) {
+TEST(ReleasedWork, IsLeviosOnly) {
   EXPECT_EQ(overrides_of("levio", {"cluster.workers=4"}),
-            (Overrides{"cluster.workers=4", "workload.released_rounding=on",
-                       "workload.released_keyframes=on"}));
+            (Overrides{"cluster.workers=4", "workload.released=on"}));
   EXPECT_EQ(overrides_of("next", {}), Overrides{});
 }
 
 TEST(ReleasedWork, IsWhatTheOptionsSayIfTheySayIt) {
-  const Overrides off{"workload.released_rounding=off", "workload.released_keyframes=off"};
+  const Overrides off{"workload.released=off"};
   EXPECT_EQ(overrides_of("levio", off), off);
 }
 

@@ -22,8 +22,7 @@ TEST(ValidationPaper, NoFigureIsWorseThanItsToleranceOrItsGuard) {
   request.data = folder;
   request.platform = platform::resolve_platform("gap9");
   request.observer = &log;
-  request.workload =
-      parse_workload_overrides({"workload.released_rounding=on", "workload.released_keyframes=on"});
+  request.workload = parse_workload_overrides({"workload.released=on"});
   const RunResult run = simulate(request, [](const Progress&) {});
   const Validation validation = validate(run, log, profile_of(request), paper_references());
   for (const Comparison& c : validation.comparisons) {

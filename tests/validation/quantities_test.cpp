@@ -179,7 +179,7 @@ TEST(ValidationReport, FilesAndTablesHaveARowForEverything) {
   const std::string csv = validation_csv(v);
   const auto rows = static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n'));
   EXPECT_EQ(rows, 1 + v.comparisons.size() + v.inputs.size() + 2 * v.normalised.size() +
-                      simulated_cells(v.distributions));
+                      simulated_cells(v.distributions) + 2 * 3 * v.paths.size());
   EXPECT_NE(csv.find("reference,compute.epnp_ransac.multi,kcycles,10899,40,"), std::string::npos);
   const Json json = validation_json(v);
   EXPECT_EQ(json.at("comparisons").size(), v.comparisons.size());
@@ -191,6 +191,8 @@ TEST(ValidationReport, FilesAndTablesHaveARowForEverything) {
   EXPECT_EQ(json.at("distributions").size(), v.distributions.size());
   for (const InputDistribution& distribution : v.distributions)
     EXPECT_NE(text.find(distribution.quantity), std::string::npos);
+  EXPECT_EQ(json.at("paths").size(), v.paths.size());
+  EXPECT_NE(csv.find("path,feature extraction: N cores: EPnP,cycles,,11000,"), std::string::npos);
 }
 
 }  // namespace

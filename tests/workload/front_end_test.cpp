@@ -64,7 +64,7 @@ TEST_F(FrontEndTest, WithoutWorldMatchesTheTwoViewsDecide) {
 TEST_F(FrontEndTest, TurningAloneMakesNoKeyframeButInTheRelease) {
   for (const bool released : {false, true}) {
     FrontEndAlone alone;
-    alone.profile.released_keyframes = released;
+    alone.profile.released = released;
     alone.frame(picture);
     const double angle = std::atan(12 / 114.66);
     // Trapezoidal steps: half of the first one is at rest.

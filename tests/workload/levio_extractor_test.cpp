@@ -28,8 +28,8 @@ const cv::Mat& picture() {
 }
 
 template <class P>
-Features extract_as_released(int cores) {
-  return vision_test::extract_as_levio<P>(picture(), cores);
+Features extract_picture(int cores, DescriptorKind kind = DescriptorKind::Exact) {
+  return vision_test::extract_as_levio<P>(picture(), cores, {}, kind);
 }
 
 /// The shared extraction with the pattern of `levio`.
@@ -52,7 +52,7 @@ Features extract_shared_with_learned_pairs() {
 
 TEST(LevioExtractor, FindsTheFeaturesOfTheSharedExtraction) {
   const Features shared = extract_shared_with_learned_pairs();
-  const Features released = extract_as_released<work::Native>(8);
+  const Features released = extract_picture<work::Native>(8);
   ASSERT_GT(released.size(), 100u);
   ASSERT_EQ(released.size(), shared.size());
   double bits = 0;
@@ -66,7 +66,7 @@ TEST(LevioExtractor, FindsTheFeaturesOfTheSharedExtraction) {
 
 TEST(LevioExtractor, HasAPatternOfItsOwn) {
   const Features shared = vision_test::extract<work::Native>(picture());
-  const Features released = extract_as_released<work::Native>(8);
+  const Features released = extract_picture<work::Native>(8);
   ASSERT_EQ(released.size(), shared.size());
   double bits = 0;
   for (std::size_t i = 0; i < shared.size(); ++i)
@@ -75,10 +75,23 @@ TEST(LevioExtractor, HasAPatternOfItsOwn) {
   EXPECT_NEAR(bits / static_cast<double>(shared.size()), 128, 16);
 }
 
+TEST(LevioExtractor, DescriptorsOfTheReleaseHaveAPatternOfTheirOwn) {
+  const Features exact = extract_picture<work::Native>(8);
+  const Features released = extract_picture<work::Native>(8, DescriptorKind::Released);
+  ASSERT_EQ(released.size(), exact.size());
+  double bits = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    EXPECT_EQ(released[i].x, exact[i].x);
+    EXPECT_EQ(released[i].y, exact[i].y);
+    bits += vision_test::distance_between(released[i], exact[i]);
+  }
+  EXPECT_NEAR(bits / static_cast<double>(exact.size()), 128, 16);
+}
+
 TEST(LevioExtractor, DoesNotDependOnTheNumberOfCoresOrThePolicy) {
-  const Features eight = extract_as_released<work::Native>(8);
-  EXPECT_EQ(extract_as_released<work::Native>(1), eight);
-  EXPECT_EQ(extract_as_released<C>(3), eight);
+  const Features eight = extract_picture<work::Native>(8);
+  EXPECT_EQ(extract_picture<work::Native>(1), eight);
+  EXPECT_EQ(extract_picture<C>(3), eight);
 }
 
 TEST(LevioExtractor, ACornerTestTakes48ProductsAndAReadOfL2Everywhere) {
@@ -126,12 +139,12 @@ TEST(LevioExtractor, TheSlipChangesNegativeCoordinatesOnly) {
   for (int first = -4000; first <= 4000; first += 37)
     for (int second = -4000; second <= 4000; second += 41) {
       const int sum = first + second;
-      const int pixel = ReleasedRounding::whole<N>(first, sum);
+      const int pixel = ReleasedDescriptor::whole<N>(first, sum);
       if (sum >= 0) {
-        EXPECT_EQ(pixel, ExactRounding::whole<N>(first, sum));
+        EXPECT_EQ(pixel, ExactDescriptor::whole<N>(first, sum));
       } else {
         EXPECT_EQ(pixel, -((-first + second + 128) / 256)) << first << ' ' << second;
-        EXPECT_EQ(ExactRounding::whole<N>(first, sum), -((-first - second + 128) / 256));
+        EXPECT_EQ(ExactDescriptor::whole<N>(first, sum), -((-first - second + 128) / 256));
       }
     }
 }
@@ -144,7 +157,7 @@ TEST(LevioExtractor, ADescriptorHasTheProductsOfTheRelease) {
   const Moments<C> moments = levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
   EXPECT_EQ(work::take_tally()[Op::LoadStream], 697u);
   levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
-  levio::describe<C, levio::ExactRounding>(copy.view().pixels, 160, 60 * 160 + 80,
+  levio::describe<C, levio::ExactDescriptor>(copy.view().pixels, 160, 60 * 160 + 80,
                                            direction_of<C>(moments), pattern,
                                            {words.data(), kDescriptorWords});
   const work::Counts counts = work::take_tally();

@@ -1,5 +1,5 @@
-// The pattern of `levio`: learned anew here, looked at, and held against the drawn one on a flight
-// that it was not learned on.
+// The patterns of `levio`: learned anew here, looked at, and held against the drawn one on a flight
+// that they were not learned on.
 #include "workload/vio/levio/vision/learned_pairs.h"
 
 #include <gtest/gtest.h>
@@ -15,6 +15,7 @@
 namespace leviosim::vio::levio {
 namespace {
 
+using tests::Candidates;
 using tests::PairBits;
 using tests::PlainImage;
 using tests::TurnedPatch;
@@ -27,21 +28,36 @@ std::vector<PointPair> unpacked(const PairWords& words) {
 
 TEST(LevioLearnedPairs, AreWhatTheLearnerMakesAnew) {
   const std::vector<TurnedPatch> patches = tests::turned_patches(tests::frames_of_flight(1));
-  EXPECT_EQ(tests::learn_pairs(patches).words, kLearnedPairWords)
+  EXPECT_EQ(tests::learn_pairs(patches, Candidates::FarApart).words, kLearnedPairWords)
+      << "renew the table with leviosim_learn_pairs";
+  EXPECT_EQ(tests::learn_pairs(patches, Candidates::NotSideBySide).words, kReleasedPairWords)
       << "renew the table with leviosim_learn_pairs";
 }
 
-TEST(LevioLearnedPairs, LieInTheDiscAndNotSideBySide) {
-  for (const PointPair& p : unpacked(kLearnedPairWords)) {
+/// A pattern, and how far apart the points of its pairs lie at least.
+struct Pattern {
+  const PairWords& words;
+  double distance;
+};
+class LevioPattern : public ::testing::TestWithParam<Pattern> {};
+INSTANTIATE_TEST_SUITE_P(Both, LevioPattern,
+                         ::testing::Values(Pattern{kLearnedPairWords, 5},
+                                           Pattern{kReleasedPairWords, std::sqrt(8.0)}));
+
+TEST_P(LevioPattern, LiesInTheDiscAndPointsLieApart) {
+  double nearest = 30;
+  for (const PointPair& p : unpacked(GetParam().words)) {
     EXPECT_LE(std::hypot(p.x1, p.y1), 15);
     EXPECT_LE(std::hypot(p.x2, p.y2), 15);
-    EXPECT_GT(std::hypot(p.x2 - p.x1, p.y2 - p.y1), 2);
+    nearest = std::min(nearest, std::hypot(p.x2 - p.x1, p.y2 - p.y1));
   }
+  EXPECT_GE(nearest, GetParam().distance);
+  EXPECT_LT(nearest, GetParam().distance + 1);
 }
 
-TEST(LevioLearnedPairs, AreDifferentInEitherOrder) {
+TEST_P(LevioPattern, HasNoPairTwiceInEitherOrder) {
   std::vector<std::array<int, 4>> pairs;
-  for (const PointPair& p : unpacked(kLearnedPairWords)) {
+  for (const PointPair& p : unpacked(GetParam().words)) {
     pairs.push_back({p.x1, p.y1, p.x2, p.y2});
     pairs.push_back({p.x2, p.y2, p.x1, p.y1});
   }
@@ -75,10 +91,10 @@ Redundancy redundancy(const PairWords& words, const std::vector<TurnedPatch>& pa
 
 /// The last pairs that are taken are biased, more than drawn ones: the method rather takes those
 /// than pairs that are alike.
-TEST(LevioLearnedPairs, AreLessAlikeOnAnotherFlightThanDrawnOnes) {
+TEST_P(LevioPattern, IsLessAlikeOnAnotherFlightThanADrawnOne) {
   const std::vector<TurnedPatch> patches = tests::turned_patches(tests::frames_of_flight(2));
   ASSERT_GT(patches.size(), 1000u);
-  const Redundancy learned = redundancy(kLearnedPairWords, patches);
+  const Redundancy learned = redundancy(GetParam().words, patches);
   const Redundancy drawn = redundancy(kPairWords, patches);
   EXPECT_LT(learned.correlation, 0.8 * drawn.correlation);
   EXPECT_LT(learned.largest, 0.5);
@@ -102,20 +118,23 @@ TEST(PairLearner, ComparesWhatTheExtractorCompares) {
 }
 
 /// By points that lie in the disc.
-TEST(PairLearner, CandidatesAreAllPairsOfTheGridButThoseSideBySide) {
-  const std::vector<PointPair> pairs = tests::candidate_pairs();
+TEST(PairLearner, CandidatesAreAllPairsOfTheGridThatLieApart) {
   std::vector<std::pair<int, int>> points;
   for (int x = -14; x <= 14; x += 2)
     for (int y = -14; y <= 14; y += 2)
       if (x * x + y * y <= 225) points.emplace_back(x, y);
-  std::size_t expected = 0;
-  for (const auto& [x1, y1] : points)
-    for (const auto& [x2, y2] : points)
-      if (std::hypot(x2 - x1, y2 - y1) > 2) ++expected;
-  EXPECT_EQ(2 * pairs.size(), expected);
-  for (const PointPair& p : pairs) {
-    EXPECT_TRUE(p.x1 % 2 == 0 && p.y1 % 2 == 0 && p.x2 % 2 == 0 && p.y2 % 2 == 0);
-    EXPECT_GT(std::hypot(p.x2 - p.x1, p.y2 - p.y1), 2);
+  for (const auto& [candidates, distance] : {std::pair{Candidates::NotSideBySide, std::sqrt(8.0)},
+                                             std::pair{Candidates::FarApart, 5.0}}) {
+    const std::vector<PointPair> pairs = tests::candidate_pairs(candidates);
+    std::size_t expected = 0;
+    for (const auto& [x1, y1] : points)
+      for (const auto& [x2, y2] : points)
+        if (std::hypot(x2 - x1, y2 - y1) > distance - 1e-9) ++expected;
+    EXPECT_EQ(2 * pairs.size(), expected);
+    for (const PointPair& p : pairs) {
+      EXPECT_TRUE(p.x1 % 2 == 0 && p.y1 % 2 == 0 && p.x2 % 2 == 0 && p.y2 % 2 == 0);
+      EXPECT_GT(std::hypot(p.x2 - p.x1, p.y2 - p.y1), distance - 1e-9);
+    }
   }
 }
 

@@ -61,9 +61,14 @@ Features extract(const cv::Mat& image, int cores = 8, const ExtractorOptions& op
 /// As the front end of `levio` does it.
 template <class P>
 Features extract_as_levio(const cv::Mat& image, int cores = 8,
-                          const ExtractorOptions& options = {}) {
+                          const ExtractorOptions& options = {},
+                          levio::DescriptorKind kind = levio::DescriptorKind::Exact) {
+  const auto extract = [kind](work::Machine& machine, ImageView<P> picture,
+                              const ExtractorOptions& how, FeatureList<P>& list) {
+    levio::extract_features<P>(machine, picture, how, kind, list);
+  };
   work::Machine machine = make_machine<P>(cores);
-  return extract_by<P>(levio::extract_features<P>, machine, image, options);
+  return extract_by<P>(extract, machine, image, options);
 }
 
 struct PlainMatch {

@@ -58,6 +58,11 @@ needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
 cut 'table "cycles of"'
 
+figure paper-paths
+needs data
+shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
+cut 'table "kcycles of"'
+
 figure more-keypoints
 needs data
 shows 'leviosim calibrate -p workload.fast_threshold=14 --data euroc/MH_01_easy_t05_t20 --constants isa.instruction_overhead'
@@ -70,13 +75,13 @@ cut 'table input'
 
 figure breakdown
 needs data
-shows 'leviosim run --platform gap9 -p workload.released_rounding=on -p workload.released_keyframes=on --data euroc/MH_01_easy_t05_t20 \
+shows 'leviosim run --platform gap9 -p workload.released=on --data euroc/MH_01_easy_t05_t20 \
       --tables all --out released'
 cut 'sed "1,/^where the core-cycles go/d" | table stage stage useful I-cache FPU divider banks imbalance transfer serial'
 
 figure latency
 needs data
-shows 'leviosim run --platform gap9 -p workload.released_rounding=on -p workload.released_keyframes=on --data euroc/MH_01_easy_t05_t20 \
+shows 'leviosim run --platform gap9 -p workload.released=on --data euroc/MH_01_easy_t05_t20 \
       --tables all --out released'
 cut 'table "pose from"'
 

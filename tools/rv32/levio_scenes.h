@@ -39,17 +39,18 @@ class LevioScenes {
     auto features = vio::alloc_features<P>(data_, options.max_features(kWidth, kHeight));
     const auto stage = machine_.stage("extraction");
     const Function scene("scene: levio feature extraction");
-    vio::levio::extract_features<P>(machine_, image, options, features);
+    vio::levio::extract_features<P>(machine_, image, options, vio::levio::DescriptorKind::Exact,
+                                    features);
   }
 
   void vision_as_released(const Inputs::Block& pixels) {
     const vio::ImageView<P> image{load<Byte>(pixels), kWidth, kHeight};
-    vio::ExtractorOptions options;
-    options.released_rounding = true;
+    const vio::ExtractorOptions options;
     auto features = vio::alloc_features<P>(data_, options.max_features(kWidth, kHeight));
     const auto stage = machine_.stage("extraction");
     const Function scene("scene: levio feature extraction as released");
-    vio::levio::extract_features<P>(machine_, image, options, features);
+    vio::levio::extract_features<P>(machine_, image, options, vio::levio::DescriptorKind::Released,
+                                    features);
   }
 
   /// @param inputs  at the matches of landmarks and pixels

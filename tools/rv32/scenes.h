@@ -273,7 +273,7 @@ class Scenes {
   void pipelines() {
     vio::Profile levio;
     levio.optimiser.anchor.rotation = 0.01f;
-    levio.released_keyframes = true;
+    levio.released = true;
     {
       const Function scene("scene: pipeline");
       pipeline(levio);

@@ -19,15 +19,15 @@ using Kind = Parameter::Kind;
       [](Profile& p, double value) { p.field = static_cast<decltype(p.field)>(value); }
 
 constexpr std::array kParameters = {
+    Parameter{"workload.released", Kind::toggle, "", 0, 1,
+              "do as the released program where that costs accuracy; of the profile levio only",
+              false, LEVIOSIM_FIELD(released)},
     Parameter{"workload.fast_threshold", Kind::whole, "grey levels", 1, 254,
               "brightness difference that makes a FAST corner", false,
               LEVIOSIM_FIELD(extractor.fast_threshold)},
     Parameter{"workload.harris_threshold", Kind::whole, "", 0, 100'000'000,
               "Harris response that a corner must exceed", false,
               LEVIOSIM_FIELD(extractor.harris_threshold)},
-    Parameter{"workload.released_rounding", Kind::toggle, "", 0, 1,
-              "rotate descriptors with the released program's slip; of the profile levio only",
-              false, LEVIOSIM_FIELD(extractor.released_rounding)},
     Parameter{"workload.cell", Kind::whole, "px", 4, 128,
               "side of the square cells that features are kept from", false,
               LEVIOSIM_FIELD(extractor.cell)},
@@ -268,9 +268,6 @@ constexpr std::array kParameters = {
     Parameter{"workload.keyframe_parallax", Kind::number, "", 1e-3, 1,
               "mean parallax in normalised image coordinates that makes a keyframe", false,
               LEVIOSIM_FIELD(keyframe_parallax)},
-    Parameter{"workload.released_keyframes", Kind::toggle, "", 0, 1,
-              "take rotation for parallax, as the released program; of the profile levio only",
-              false, LEVIOSIM_FIELD(released_keyframes)},
     Parameter{"workload.max_landmark_age", Kind::whole, "keyframes", 1, 250,
               "unseen for longer, a landmark is not matched any more", false,
               LEVIOSIM_FIELD(max_landmark_age)},

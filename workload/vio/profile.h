@@ -72,6 +72,10 @@ struct Profile {
   float min_translation = 0.01f;      ///< per keyframe interval, of the 8-point pose [m]
   float max_translation_time = 1.0f;  ///< that the last velocity is trusted for [s]
 
+  /// Do as the released program where that costs accuracy, to be compared with it: rotation counts
+  /// as parallax, and descriptors have its slip and as few matches. Of the profile levio only.
+  bool released = false;
+
   // What `next` adds to it (next/). Not enabled: `levio`.
   GuidedOptions guided;
   RefinementOptions refinement;
@@ -86,8 +90,6 @@ struct Profile {
 
   // Keyframes and landmarks (III.B.5–6).
   float keyframe_parallax = 0.05f;  ///< mean, in normalised coordinates
-  /// Rotation counts as parallax, as in the released program. Of the profile levio only.
-  bool released_keyframes = false;
   int max_landmarks = 1000;
   int max_landmark_age = 15;               ///< keyframes without being seen
   float max_landmark_error_sq = 2.0f;      ///< squared reprojection error of a new landmark [px²]

@@ -24,9 +24,6 @@ struct ExtractorOptions {
   /// published occupation of L1, 64.0 kB, leaves about 300 bytes for tables: room for the others
   /// only.
   bool pattern_in_local_memory = false;
-  /// Rotate the pattern of point pairs with the slip of the released program, which then finds
-  /// fewer matches. For comparisons with that program; of the profile levio only.
-  bool released_rounding = false;
 
   /// Keypoints come in units of 1/subpixel_steps px, refined (subpixel.h) if that is more than 1.
   int subpixel_steps = 1;

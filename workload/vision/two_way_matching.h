@@ -10,6 +10,7 @@
 #pragma once
 
 #include "sim/base/check.h"
+#include "workload/math/host_hints.h"
 #include "workload/vision/matcher.h"
 #include "workload/vision/slices.h"
 
@@ -41,7 +42,7 @@ struct Nearest {
 /// The reference descriptor nearest to `held`, if one is closer than `limit`; else the distance is
 /// `limit`.
 template <class P, class Comparison>
-Nearest<P> find_nearest(const HeldDescriptor<P>& held, DescriptorWords<P> reference, int count,
+LEVIOSIM_HOST_INLINE Nearest<P> find_nearest(const HeldDescriptor<P>& held, DescriptorWords<P> reference, int count,
                         typename P::I32 limit) {
   using I = typename P::I32;
   Nearest<P> nearest = {0, limit};
@@ -55,7 +56,7 @@ Nearest<P> find_nearest(const HeldDescriptor<P>& held, DescriptorWords<P> refere
 /// Appends the matches of the current features of `share` to `list`, from share.begin on.
 /// @return how many there are
 template <class P, class Comparison>
-typename P::I32 search(DescriptorWords<P> current, work::Share share, DescriptorWords<P> reference,
+LEVIOSIM_HOST_CLONES typename P::I32 search(DescriptorWords<P> current, work::Share share, DescriptorWords<P> reference,
                        int reference_count, const MatcherOptions& options,
                        const MatchList<P>& list) {
   using I = typename P::I32;

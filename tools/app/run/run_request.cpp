@@ -13,14 +13,10 @@ void check_together(const vio::Profile& profile) {
     throw InputError(
         "workload.joint is on, but the profile works without IMU: expected workload.joint=off, or "
         "a profile with IMU");
-  if (profile.extractor.released_rounding && profile.guided.enabled)
+  if (profile.released && profile.guided.enabled)
     throw InputError(
-        "workload.released_rounding is on: only the extraction of levio has it; expected "
-        "workload.released_rounding=off, or the profile levio");
-  if (profile.released_keyframes && profile.guided.enabled)
-    throw InputError(
-        "workload.released_keyframes is on: only levio has it; expected "
-        "workload.released_keyframes=off, or the profile levio");
+        "workload.released is on: only levio does as the released program; expected "
+        "workload.released=off, or the profile levio");
   if (profile.loop.enabled && !(profile.guided.enabled && profile.optimiser.joint))
     throw InputError(
         "workload.loop is on: it takes landmarks that were tracked and a world whose vertical is "

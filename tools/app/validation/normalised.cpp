@@ -8,6 +8,7 @@
 
 #include "tools/app/result/summary.h"
 #include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/path_weights.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
 
@@ -206,9 +207,9 @@ std::vector<InputFigure> inputs_of(const RunResult& run, const FrameLog& log,
        mean_over(log, after_first, [](const LoggedFrame& f) { return samples_of(f); }), 10,
        kPrinted},
       {"frames with a pose from EPnP", "epnp_frames", "%",
-       percent_of_frames(log, from(PoseSource::Epnp)), 42.7, kPrinted},
+       percent_of_frames(log, from(PoseSource::Epnp)), kPaperEpnpFrames, kPrinted},
       {"frames with a pose from 8-point", "eight_point_frames", "%",
-       percent_of_frames(log, from(PoseSource::EightPoint)), 57.3, kPrinted},
+       percent_of_frames(log, from(PoseSource::EightPoint)), kPaperEightPointFrames, kPrinted},
       {"frames that ran both", "frames_with_both", "%", percent_of_frames(log, ran_both), 0,
        "either is calculated"},
       {"keyframes", "keyframes", "%", percent_of_frames(log, is_keyframe), {}, kNotPrinted},

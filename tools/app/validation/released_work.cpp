@@ -6,13 +6,10 @@ namespace leviosim::tools {
 
 RunOptions as_released(RunOptions options) {
   if (options.profile != "levio") return options;
-  for (const std::string parameter :
-       {"workload.released_rounding", "workload.released_keyframes"}) {
-    const bool said =
-        std::any_of(options.overrides.begin(), options.overrides.end(),
-                    [&](const std::string& set) { return set.starts_with(parameter); });
-    if (!said) options.overrides.push_back(parameter + "=on");
-  }
+  const std::string parameter = "workload.released=";
+  const bool said = std::any_of(options.overrides.begin(), options.overrides.end(),
+                                [&](const std::string& set) { return set.starts_with(parameter); });
+  if (!said) options.overrides.push_back(parameter + "on");
   return options;
 }
 

@@ -5,9 +5,9 @@
 
 namespace leviosim::tools {
 
-/// The paper's figures are of the released program, whose descriptors are rotated with a slip
-/// (workload/PARAMETERS.md#defects-of-the-release). So are those of levio in such a run, unless the
-/// options say otherwise.
+/// The paper's figures are of the released program, which does some things that cost accuracy
+/// (workload/PARAMETERS.md#defects-of-the-release). So does levio in such a run, unless the options
+/// say otherwise.
 RunOptions as_released(RunOptions options);
 
 }  // namespace leviosim::tools

@@ -93,6 +93,22 @@ Json comparison_json(const Comparison& c) {
   return entry;
 }
 
+std::string path_lines(const StageOnPaths& stage, std::string_view cores,
+                       const StageOnPaths::Means& means) {
+  std::string text;
+  for (const auto& [frames, mean] : {std::pair("EPnP", means.epnp),
+                                     std::pair("8-point", means.eight_point),
+                                     std::pair("as the paper's", means.weighed)})
+    text += fmt::format("path,{}: {}: {},cycles,,{},,,,,,\n", stage.title, cores, frames, cell(mean));
+  return text;
+}
+
+Json means_json(const StageOnPaths::Means& means) {
+  return {{"epnp", json(means.epnp)},
+          {"eight_point", json(means.eight_point)},
+          {"as_in_the_paper", json(means.weighed)}};
+}
+
 Json normalised_json(const NormalisedFigure& n) {
   Json entry;
   entry["stage"] = n.stage;
@@ -125,7 +141,7 @@ Validation validate(const RunResult& run, const FrameLog& log, const vio::Profil
                     const std::vector<Reference>& references) {
   return {compare(references, quantities_of(run, log)), inputs_of(run, log, profile),
           profile.name == "levio" ? input_distributions(log) : std::vector<InputDistribution>{},
-          normalised(run, log, profile)};
+          normalised(run, log, profile), stages_on_paths(log)};
 }
 
 std::string validation_csv(const Validation& validation) {
@@ -147,6 +163,8 @@ std::string validation_csv(const Validation& validation) {
     text += fmt::format("normalised,{}: N cores,cycles per {},,{},,,,,,\n", n.stage, n.unit,
                         cell(n.parallel));
   }
+  for (const StageOnPaths& stage : validation.paths)
+    text += path_lines(stage, "one core", stage.single) + path_lines(stage, "N cores", stage.parallel);
   return text;
 }
 
@@ -180,6 +198,11 @@ Json validation_json(const Validation& validation) {
   document["normalised"] = Json::array();
   for (const NormalisedFigure& figure : validation.normalised)
     document["normalised"].push_back(normalised_json(figure));
+  document["paths"] = Json::array();
+  for (const StageOnPaths& stage : validation.paths)
+    document["paths"].push_back({{"stage", stage.title},
+                                 {"cycles_single", means_json(stage.single)},
+                                 {"cycles_parallel", means_json(stage.parallel)}});
   return document;
 }
 

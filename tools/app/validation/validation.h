@@ -7,6 +7,7 @@
 #include "tools/app/report/statistics.h"
 #include "tools/app/validation/input_distributions.h"
 #include "tools/app/validation/normalised.h"
+#include "tools/app/validation/path_weights.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
 
@@ -27,6 +28,7 @@ struct Validation {
   std::vector<InputFigure> inputs;
   std::vector<InputDistribution> distributions;  ///< of `levio` only
   std::vector<NormalisedFigure> normalised;
+  std::vector<StageOnPaths> paths;
 };
 
 /// Quantities named error.GROUP.{mean,worst} are formed here: of the absolute errors of the
@@ -38,7 +40,7 @@ std::vector<Comparison> compare(const std::vector<Reference>& references,
 Validation validate(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
                     const std::vector<Reference>& references);
 
-/// validation.csv: a row per reference, input and normalised figure, the first column says which.
+/// validation.csv: a row per reference, input, normalised figure and stage on a path, the first column says which.
 std::string validation_csv(const Validation& validation);
 Json validation_json(const Validation& validation);
 

@@ -156,15 +156,47 @@ std::string normalised_table(const Validation& validation, int cores) {
   return "cycles for a unit of work, which depend less on the input\n" + table.str() + kHowToRead;
 }
 
+std::string path_table(const Validation& validation, int cores) {
+  TextTable table({{"kcycles of", kLeft},
+                   {"EPnP"},
+                   {"8-point"},
+                   {"weighed"},
+                   {"error"},
+                   {fmt::format("EPnP, {} cores", cores), kRight, 1},
+                   {"8-point"},
+                   {"weighed"},
+                   {"error"}});
+  const auto add = [](std::vector<std::string>& cells, const StageOnPaths::Means& means,
+                      const Comparison* paper) {
+    for (const std::optional<double>& mean : {means.epnp, means.eight_point, means.weighed})
+      cells.push_back(figure_text(mean ? std::optional(*mean / 1e3) : std::nullopt, 0));
+    const bool compares = paper != nullptr && means.weighed;
+    cells.push_back(compares ? fmt::format("{:+.1f} %", error_of(paper->reference,
+                                                                *means.weighed / 1e3))
+                             : kNothing);
+  };
+  for (const StageOnPaths& stage : validation.paths) {
+    std::vector<std::string> cells{std::string(stage.title)};
+    add(cells, stage.single, find(validation, fmt::format("compute.{}.single", stage.key)));
+    add(cells, stage.parallel, find(validation, fmt::format("compute.{}.multi", stage.key)));
+    table.add(std::move(cells));
+  }
+  return fmt::format(
+      "stages of frames that run either RANSAC, and weighed as the paper's frames: {:g} and {:g} %\n"
+      "{}",
+      kPaperEpnpFrames, kPaperEightPointFrames, table.str());
+}
+
 std::string validation_report(const Validation& validation, int cores) {
   const auto within = std::count_if(
       validation.comparisons.begin(), validation.comparisons.end(), [](const Comparison& c) {
         return c.value && std::abs(*c.error()) <= c.reference.tolerance.value;
       });
-  return fmt::format("{}\n{}\n{}\n{}{}\n{} of {} references within their tolerance\n",
+  return fmt::format("{}\n{}\n{}\n{}{}\n{}\n{} of {} references within their tolerance\n",
                      compute_table(validation, cores), reference_table(validation),
                      input_table(validation), distribution_table(validation),
-                     normalised_table(validation, cores), within, validation.comparisons.size());
+                     normalised_table(validation, cores), path_table(validation, cores), within,
+                     validation.comparisons.size());
 }
 
 }  // namespace leviosim::tools

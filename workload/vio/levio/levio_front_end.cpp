@@ -47,7 +47,10 @@ void LevioFrontEnd<P>::extract(Frame<P>& frame) {
   const KeyframeRecord<P>& keyframe = state_.keyframe;
   frame.features =
       alloc_observed_features<P>(state_.machine.local(), keyframe.features.list.capacity);
-  levio::extract_features<P>(state_.machine, keyframe.image, state_.profile.extractor,
+  const Profile& profile = state_.profile;
+  levio::extract_features<P>(state_.machine, keyframe.image, profile.extractor,
+                             profile.released ? levio::DescriptorKind::Released
+                                              : levio::DescriptorKind::Exact,
                              frame.features.list);
   forget_landmarks(frame);
 }
@@ -71,7 +74,7 @@ bool LevioFrontEnd<P>::is_keyframe(const Frame<P>& frame) {
   const Profile& profile = state_.profile;
   const int matches = frame.matches.list.count;
   if (matches < profile.min_frame_matches) return true;
-  const F parallax = profile.released_keyframes ? levio::total_motion(state_, frame)
+  const F parallax = profile.released ? levio::total_motion(state_, frame)
                                                 : total_parallax(state_, inertial_, frame);
   return bool(parallax > F(profile.keyframe_parallax * static_cast<float>(matches)));
 }

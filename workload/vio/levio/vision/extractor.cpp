@@ -6,7 +6,6 @@
 #include "workload/vio/levio/vision/blur.h"
 #include "workload/vio/levio/vision/corner_tests.h"
 #include "workload/vio/levio/vision/descriptor.h"
-#include "workload/vio/levio/vision/learned_pairs.h"
 #include "workload/vision/extraction_steps.h"
 
 namespace leviosim::vio::levio {
@@ -63,11 +62,11 @@ void detect_all(work::Machine& machine, ConstImageView<P> image, const OffsetTab
 }
 
 /// The fork "describe", in slices of ceil(n / cores).
-template <class P, class Rounding>
+template <class P, class Kind>
 void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList<P>& out) {
   using I = typename P::I32;
   using U = typename P::U32;
-  const typename P::template Span<const U> pattern(kLearnedPattern<P>.data(), kPairs);
+  const typename P::template Span<const U> pattern(Kind::template pattern<P>().data(), kPairs);
   machine.fork("describe", [&](work::Core& core) {
     const int each = (out.count + core.cores - 1) / core.cores;
     for (int i :
@@ -76,7 +75,7 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList
       // The windows around it are streams from a computed place.
       const int centre = work::value(at);
       const Moments<P> moments = levio::disc_moments<P>(blurred.pixels, blurred.width, centre);
-      levio::describe<P, Rounding>(blurred.pixels, blurred.width, centre, direction_of<P>(moments),
+      levio::describe<P, Kind>(blurred.pixels, blurred.width, centre, direction_of<P>(moments),
                                    pattern,
                                    out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
     }
@@ -87,7 +86,7 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList
 
 template <class P>
 void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
-                      const ExtractorOptions& options, FeatureList<P>& out) {
+                      const ExtractorOptions& options, DescriptorKind kind, FeatureList<P>& out) {
   using Bytes = typename P::template Span<typename P::Byte>;
   options.validate();
   const int width = image_in_l2.width, height = image_in_l2.height;
@@ -106,17 +105,17 @@ void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
     const auto [begin, end] = core.share(height);
     levio::blur_rows<P>(image, blurred, begin, end);
   });
-  if (options.released_rounding)
-    describe_all<P, ReleasedRounding>(machine, blurred, out);
+  if (kind == DescriptorKind::Released)
+    describe_all<P, ReleasedDescriptor>(machine, blurred, out);
   else
-    describe_all<P, ExactRounding>(machine, blurred, out);
+    describe_all<P, ExactDescriptor>(machine, blurred, out);
   // Last, because descriptors are of whole pixels.
   if (options.subpixel_steps > 1) refine_keypoints<P>(machine, image, options, {0, out.count}, out);
 }
 
 template void extract_features(work::Machine&, ImageView<work::Native>, const ExtractorOptions&,
-                               FeatureList<work::Native>&);
+                               DescriptorKind, FeatureList<work::Native>&);
 template void extract_features(work::Machine&, ImageView<work::Counting>, const ExtractorOptions&,
-                               FeatureList<work::Counting>&);
+                               DescriptorKind, FeatureList<work::Counting>&);
 
 }  // namespace leviosim::vio::levio

@@ -12,10 +12,15 @@
 
 namespace leviosim::vio::levio {
 
+enum class DescriptorKind {
+  Exact,    ///< pairs of points are turned exactly; their pattern follows ORB's rules
+  Released  ///< they are turned with the release's slip; their pattern finds as few matches
+};
+
 /// Extracts the features of an 8-bit image that lies in L2 and fits in local memory into `out`,
 /// whose capacity must be at least options.max_features(). The caller opens the stage.
 template <class P>
 void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
-                      const ExtractorOptions& options, FeatureList<P>& out);
+                      const ExtractorOptions& options, DescriptorKind kind, FeatureList<P>& out);
 
 }  // namespace leviosim::vio::levio
