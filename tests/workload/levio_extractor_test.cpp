@@ -32,6 +32,17 @@ Features extract_picture(int cores, DescriptorKind kind = DescriptorKind::Exact)
   return vision_test::extract_as_levio<P>(picture(), cores, {}, kind);
 }
 
+/// How many bits descriptors of the same features differ in, on average.
+double mean_bits_at_same_places(const Features& some, const Features& others) {
+  double bits = 0;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    EXPECT_EQ(some[i].x, others[i].x);
+    EXPECT_EQ(some[i].y, others[i].y);
+    bits += vision_test::distance_between(some[i], others[i]);
+  }
+  return bits / static_cast<double>(some.size());
+}
+
 /// The shared extraction with the pattern of `levio`.
 Features extract_shared_with_learned_pairs() {
   using N = work::Native;
@@ -55,37 +66,22 @@ TEST(LevioExtractor, FindsTheFeaturesOfTheSharedExtraction) {
   const Features released = extract_picture<work::Native>(8);
   ASSERT_GT(released.size(), 100u);
   ASSERT_EQ(released.size(), shared.size());
-  double bits = 0;
-  for (std::size_t i = 0; i < shared.size(); ++i) {
-    EXPECT_EQ(released[i].x, shared[i].x);
-    EXPECT_EQ(released[i].y, shared[i].y);
-    bits += vision_test::distance_between(released[i], shared[i]);
-  }
-  EXPECT_LT(bits / static_cast<double>(shared.size()), 8);
+  EXPECT_LT(mean_bits_at_same_places(released, shared), 8);
 }
 
 TEST(LevioExtractor, HasAPatternOfItsOwn) {
   const Features shared = vision_test::extract<work::Native>(picture());
   const Features released = extract_picture<work::Native>(8);
   ASSERT_EQ(released.size(), shared.size());
-  double bits = 0;
-  for (std::size_t i = 0; i < shared.size(); ++i)
-    bits += vision_test::distance_between(released[i], shared[i]);
   // Bits of unrelated pairs agree half of the time.
-  EXPECT_NEAR(bits / static_cast<double>(shared.size()), 128, 16);
+  EXPECT_NEAR(mean_bits_at_same_places(released, shared), 128, 16);
 }
 
 TEST(LevioExtractor, DescriptorsOfTheReleaseHaveAPatternOfTheirOwn) {
   const Features exact = extract_picture<work::Native>(8);
   const Features released = extract_picture<work::Native>(8, DescriptorKind::Released);
   ASSERT_EQ(released.size(), exact.size());
-  double bits = 0;
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    EXPECT_EQ(released[i].x, exact[i].x);
-    EXPECT_EQ(released[i].y, exact[i].y);
-    bits += vision_test::distance_between(released[i], exact[i]);
-  }
-  EXPECT_NEAR(bits / static_cast<double>(exact.size()), 128, 16);
+  EXPECT_NEAR(mean_bits_at_same_places(released, exact), 128, 16);
 }
 
 TEST(LevioExtractor, DoesNotDependOnTheNumberOfCoresOrThePolicy) {
