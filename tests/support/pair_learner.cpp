@@ -47,9 +47,8 @@ TurnedPatch turned_patch(N::Span<const N::Byte> blurred, int centre) {
   for (int y = -vio::kPatternRadius; y <= vio::kPatternRadius; ++y)
     for (int x = -vio::kPatternRadius; x <= vio::kPatternRadius; ++x)
       if (vio::is_in_disc(x, y))
-        patch.at(x, y) =
-            static_cast<std::uint8_t>(vio::levio::turned_sample<N, vio::levio::ExactDescriptor>(
-                blurred, kImageWidth, centre, direction, x, y));
+        patch.at(x, y) = static_cast<std::uint8_t>(
+            blurred[vio::levio::ExactDescriptor::index<N>(kImageWidth, centre, direction, x, y)]);
   return patch;
 }
 

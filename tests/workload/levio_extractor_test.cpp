@@ -153,9 +153,9 @@ TEST(LevioExtractor, ADescriptorHasTheProductsOfTheRelease) {
   const Moments<C> moments = levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
   EXPECT_EQ(work::take_tally()[Op::LoadStream], 697u);
   levio::disc_moments<C>(copy.view().pixels, 160, 60 * 160 + 80);
-  levio::describe<C, levio::ExactDescriptor>(copy.view().pixels, 160, 60 * 160 + 80,
-                                           direction_of<C>(moments), pattern,
-                                           {words.data(), kDescriptorWords});
+  describe<C, levio::ExactDescriptor>(copy.view().pixels, 160, 60 * 160 + 80,
+                                      direction_of<C>(moments), pattern,
+                                      {words.data(), kDescriptorWords});
   const work::Counts counts = work::take_tally();
   // About 4 800, without those of an address of a pixel.
   const double products = static_cast<double>(counts[Op::IntMul] + counts[Op::IntMac]) - 512;

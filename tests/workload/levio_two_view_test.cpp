@@ -19,7 +19,7 @@ using test::TwoViewScene;
 using test::TwoViewSceneOptions;
 using work::Op;
 
-constexpr double kHypotheses = 640;
+constexpr double kEssentialHypotheses = 640;
 constexpr float kThreshold = (0.7f / 114.66f) * (0.7f / 114.66f);
 
 /// Pixels of a scene, as the release keeps them.
@@ -45,7 +45,7 @@ struct Pixels {
 };
 
 template <class P>
-struct Found {
+struct FoundEssential {
   EssentialResult<P> essential;
   Eigen::Matrix3d E;
   RecoveredPose<P> pose;
@@ -53,11 +53,11 @@ struct Found {
 };
 
 template <class P>
-Found<P> estimate(const TwoViewScene& scene, int cores = 8) {
+FoundEssential<P> estimate_essential_of(const TwoViewScene& scene, int cores = 8) {
   work::Machine machine({cores, "L1", Bytes(110000), 1, true});
   const test::MatchStorage<P> matches(scene);
   const Pixels<P> pixels(scene);
-  Found<P> found;
+  FoundEssential<P> found;
   {
     const auto stage = machine.stage("8-point RANSAC");
     work::Arena& local = machine.local();
@@ -101,7 +101,7 @@ TEST(LevioEightPoint, FindsTheMotionAmongOutliers) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const TwoViewScene scene = make_two_view_scene(
         seed, {.matches = 100, .outliers = 0.2, .baseline_m = {0.3, 0.6}, .depth_m = {1, 6}});
-    const auto result = estimate<work::Native>(scene);
+    const auto result = estimate_essential_of<work::Native>(scene);
     if (!result.essential.ok || !result.pose.ok) continue;
     const bool near =
         test::degrees_between(test::to_eigen(result.pose.T_b_a.R), scene.R_b_a) < 1.5 &&
@@ -113,16 +113,17 @@ TEST(LevioEightPoint, FindsTheMotionAmongOutliers) {
 
 TEST(LevioEightPoint, SingularValuesAreEqual) {
   const TwoViewScene scene = make_two_view_scene(3, like_real_frames());
-  const Eigen::VectorXd sigma = tests::singular_values(estimate<work::Native>(scene).E);
+  const Eigen::VectorXd sigma =
+      tests::singular_values(estimate_essential_of<work::Native>(scene).E);
   EXPECT_NEAR(sigma(1) / sigma(0), 1, 1e-4);
   EXPECT_LT(sigma(2), 1e-3 * sigma(0));
 }
 
 TEST(LevioEightPoint, TheMotionDoesNotDependOnTheNumberOfCoresOrThePolicy) {
   const TwoViewScene scene = make_two_view_scene(5, like_real_frames());
-  const auto eight = estimate<work::Native>(scene);
-  const auto one = estimate<work::Native>(scene, 1);
-  const auto counted = estimate<work::Counting>(scene);
+  const auto eight = estimate_essential_of<work::Native>(scene);
+  const auto one = estimate_essential_of<work::Native>(scene, 1);
+  const auto counted = estimate_essential_of<work::Counting>(scene);
   EXPECT_EQ(one.E, eight.E);
   EXPECT_EQ(counted.E, eight.E);
   EXPECT_EQ(test::to_eigen(one.pose.T_b_a.R), test::to_eigen(eight.pose.T_b_a.R));
@@ -148,11 +149,12 @@ TEST(LevioEightPoint, TriangulationFindsThePoint) {
   }
 }
 
-/// Facts on the release: scratch is misaligned in 74 % of the calls on eight cores and in none on one.
+/// Facts on the release: scratch is misaligned in 74 % of the calls on eight cores and in none on
+/// one.
 TEST(LevioEightPoint, WordsStraddleOnATeamAndNotOnOneCore) {
   TwoViewSceneOptions options = like_real_frames();
   options.matches = 61;  // the mask in front of the scratch is no whole number of words
-  const auto found = estimate<work::Counting>(make_two_view_scene(100, options));
+  const auto found = estimate_essential_of<work::Counting>(make_two_view_scene(100, options));
   ASSERT_TRUE(found.essential.ok);
   std::uint64_t on_team = 0, on_one = 0;
   for (const work::Step& step : found.job.stages.at(0).steps)
@@ -169,13 +171,13 @@ TEST(LevioEightPoint, DoesTheWorkOfTheRelease) {
   double number = 0, matches = 0;
   for (std::uint64_t seed = 100; seed < 110; ++seed) {
     const TwoViewScene scene = make_two_view_scene(seed, like_real_frames());
-    const auto found = estimate<work::Counting>(scene);
+    const auto found = estimate_essential_of<work::Counting>(scene);
     ASSERT_TRUE(found.essential.ok);
     hypotheses += of_forks(found.job, "8-point hypotheses");
     scoring += of_forks(found.job, "8-point scoring");
     recovery += of_forks(found.job, "recover pose");
     master += of_master(found.job);
-    number += kHypotheses;
+    number += kEssentialHypotheses;
     matches += scene.n;
   }
   const auto of = [](const work::Counts& c, Op op, double per) {
@@ -196,7 +198,7 @@ TEST(LevioEightPoint, DoesTheWorkOfTheRelease) {
       {"divisions per hypothesis at 6.05 steps",
        of(hypotheses, Op::F32Div, number) - 54 * (steps - 6.05), 355, 0.05},
       {"products in double per rotation", of(hypotheses, Op::F64Mul, rotations), 2, 0},
-      {"divisions per match scored", of(scoring, Op::F32Div, kHypotheses * matches), 1, 0},
+      {"divisions per match scored", of(scoring, Op::F32Div, kEssentialHypotheses * matches), 1, 0},
       {"roots per match scored", of(scoring, Op::F32Sqrt, 1), 0, 0},
       {"steps of 4x4 in pose recovery", steps4, 3.62, 0.2},
       {"divisions per triangulation at 4.3 steps",

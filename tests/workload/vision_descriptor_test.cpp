@@ -59,8 +59,8 @@ std::array<std::uint32_t, kDescriptorWords> descriptor_at(const cv::Mat& image, 
   PolicyImage<P> copy(image);
   std::vector<typename P::U32> words(kDescriptorWords);
   const typename P::template L2Span<const typename P::U32> pattern(kPairPattern<P>.data(), kPairs);
-  describe<P>(copy.view().pixels, image.cols, y * image.cols + x, Direction<P>{cos, sin}, pattern,
-              span_of<P>(words));
+  describe<P, RotatedPoints>(copy.view().pixels, image.cols, y * image.cols + x,
+                             Direction<P>{cos, sin}, pattern, span_of<P>(words));
   std::array<std::uint32_t, kDescriptorWords> plain;
   for (int w = 0; w < kDescriptorWords; ++w) plain[w] = work::value(words[w]);
   return plain;

@@ -12,7 +12,8 @@
 #include "sim/work/policy.h"
 
 #define LEVIOSIM_HOST_INLINE
-#define LEVIOSIM_HOST_VECTORISED
+#define LEVIOSIM_HOST_INLINED
+#define LEVIOSIM_HOST_SHORTCUTS 0
 // The compiler may not leave the range to the last of several assignments, as GCC 12 would.
 #define LEVIOSIM_TARGET_BYTE(variable) \
   variable &= 0xff;                    \

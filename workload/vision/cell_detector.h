@@ -6,6 +6,7 @@
 #include "workload/vision/extractor.h"
 #include "workload/vision/fast.h"
 #include "workload/vision/harris.h"
+#include "workload/vision/host_kernels.h"
 
 namespace leviosim::vio {
 
@@ -74,8 +75,13 @@ void detect_in_box(ConstImageView<P> image, const PixelBox<P>& box,
     for (int x : P::range(box.x0, box.x1)) {
       const int row = y - image.top;
       const int centre = row * image.width + x;
-      if (work::unlikely(is_fast_corner<P>(image.pixels, centre, ring_offsets, fast_threshold))) {
-        const I score = harris_response<P>(image.pixels, image.width, x, row);
+      const typename P::Bool corner = is_corner_at<P>(image, centre, options.fast_threshold, [&] {
+        return is_fast_corner<P>(image.pixels, centre, ring_offsets, fast_threshold);
+      });
+      if (work::unlikely(corner)) {
+        const I score = response_at<P>(image, centre, [&]() LEVIOSIM_HOST_INLINED {
+          return harris_response<P>(image.pixels, image.width, x, row);
+        });
         if (score > harris_threshold) best.offer(x, y, score);
       }
     }

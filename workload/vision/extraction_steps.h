@@ -99,6 +99,8 @@ void detect_all(work::Machine& machine, ConstImageView<P> image, ExtractionTable
   });
 }
 
+inline constexpr host::DiscMask kDisc = host::make_disc_mask(kDiscRadius * kDiscRadius + 1);
+
 /// Writes the descriptors of the features [features.begin, features.end): the fork "describe".
 template <class P, class Pattern>
 void describe_all(work::Machine& machine, ConstImageView<P> blurred,
@@ -113,10 +115,12 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred,
       const I row = out.y[i];
       // The windows around it are streams from a computed place.
       const int centre = work::value(I(row * I(blurred.width) + column)) - rows_above;
-      const Moments<P> moments =
-          disc_moments<P>(blurred.pixels, blurred.width, centre, tables.disc);
-      describe<P>(blurred.pixels, blurred.width, centre, direction_of<P>(moments), pattern,
-                  out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
+      const Moments<P> moments = moments_at<P>(kDisc, blurred, centre, [&] {
+        return disc_moments<P>(blurred.pixels, blurred.width, centre, tables.disc);
+      });
+      describe<P, RotatedPoints>(blurred.pixels, blurred.width, centre, direction_of<P>(moments),
+                                 pattern,
+                                 out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
     }
   });
 }

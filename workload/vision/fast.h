@@ -11,6 +11,7 @@
 #include <array>
 
 #include "sim/work/policy.h"
+#include "workload/math/host_hints.h"
 
 namespace leviosim::vio {
 
@@ -52,9 +53,9 @@ void fill_ring_offsets(int width, typename P::template Span<typename P::I32> off
 /// Whether the pixel at index `centre` is a corner. `offsets`: see fill_ring_offsets; the ring must
 /// lie inside the image. `threshold`: grey levels, strictly exceeded.
 template <class P>
-typename P::Bool is_fast_corner(typename P::template Span<const typename P::Byte> image, int centre,
-                                typename P::template Span<const typename P::I32> offsets,
-                                typename P::I32 threshold) {
+LEVIOSIM_HOST_INLINE typename P::Bool is_fast_corner(
+    typename P::template Span<const typename P::Byte> image, int centre,
+    typename P::template Span<const typename P::I32> offsets, typename P::I32 threshold) {
   using I = typename P::I32;
   const typename P::Code code("is_fast_corner");
   const I centre_level = image[centre];

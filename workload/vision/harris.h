@@ -8,6 +8,7 @@
 #pragma once
 
 #include "sim/work/policy.h"
+#include "workload/math/host_hints.h"
 
 namespace leviosim::vio {
 
@@ -16,8 +17,8 @@ inline constexpr int kHarrisReach = 4;
 
 /// Response at column x, row y; the window must lie inside the image. Positive for corners.
 template <class P>
-typename P::I32 harris_response(typename P::template Span<const typename P::Byte> image, int width,
-                                int x, int y) {
+LEVIOSIM_HOST_INLINE typename P::I32 harris_response(
+    typename P::template Span<const typename P::Byte> image, int width, int x, int y) {
   using I = typename P::I32;
   const typename P::Function function("harris_response");
   constexpr int kWindowRadius = 3;

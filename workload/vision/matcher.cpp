@@ -8,8 +8,8 @@ namespace {
 struct Comparison {
   static constexpr work::CodeName kFunction{"search_matches"};
   template <class P>
-  static typename P::I32 distance(const HeldDescriptor<P>& held, DescriptorWords<P> reference,
-                                  int r) {
+  LEVIOSIM_HOST_INLINE static typename P::I32 distance(const HeldDescriptor<P>& held,
+                                                       DescriptorWords<P> reference, int r) {
     return hamming_distance<P>(held, reference, r);
   }
 };

@@ -8,6 +8,7 @@
 
 #include <array>
 
+#include "workload/math/host_hints.h"
 #include "workload/math/trig.h"
 
 namespace leviosim::vio {
@@ -38,8 +39,9 @@ struct Moments {
 /// Moments of the disc around the pixel at index `centre`; the disc must lie inside the image.
 /// `half_widths`: kDiscHalfWidths, in the memory of the core.
 template <class P>
-Moments<P> disc_moments(typename P::template Span<const typename P::Byte> image, int width,
-                        int centre, typename P::template Span<const typename P::I32> half_widths) {
+LEVIOSIM_HOST_INLINE Moments<P> disc_moments(
+    typename P::template Span<const typename P::Byte> image, int width, int centre,
+    typename P::template Span<const typename P::I32> half_widths) {
   using I = typename P::I32;
   const typename P::Function function("disc_moments");
   I m10 = 0;

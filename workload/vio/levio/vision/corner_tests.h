@@ -3,6 +3,7 @@
 // without early exit. What they compute is that of workload/vision/fast.h and harris.h.
 #pragma once
 
+#include "workload/math/host_hints.h"
 #include "workload/math/target_call.h"
 #include "workload/vio/levio/vision/offset_tables.h"
 
@@ -11,8 +12,9 @@ namespace leviosim::vio::levio {
 /// Whether the pixel at index `centre` is a corner; the ring must lie inside the image.
 /// @param threshold  grey levels, strictly exceeded
 template <class P>
-typename P::Bool is_corner(typename P::template Span<const typename P::Byte> image, int centre,
-                           const OffsetTables<P>& tables, typename P::I32 threshold) {
+LEVIOSIM_HOST_INLINE typename P::Bool is_corner(
+    typename P::template Span<const typename P::Byte> image, int centre,
+    const OffsetTables<P>& tables, typename P::I32 threshold) {
   using Byte = typename P::Byte;
   using I = typename P::I32;
   using U = typename P::U32;
@@ -45,7 +47,7 @@ typename P::Bool is_corner(typename P::template Span<const typename P::Byte> ima
 
 /// Response at index `centre`; the window and its gradients must lie inside the image.
 template <class P>
-LEVIOSIM_TARGET_CALL typename P::I32 corner_response(
+LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL typename P::I32 corner_response(
     typename P::template Span<const typename P::Byte> image, int width, int centre,
     const OffsetTables<P>& tables) {
   using I = typename P::I32;

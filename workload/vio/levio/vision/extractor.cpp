@@ -7,6 +7,7 @@
 #include "workload/vio/levio/vision/corner_tests.h"
 #include "workload/vio/levio/vision/descriptor.h"
 #include "workload/vision/extraction_steps.h"
+#include "workload/vision/host_kernels.h"
 
 namespace leviosim::vio::levio {
 namespace {
@@ -24,8 +25,13 @@ void detect_in_box(ConstImageView<P> image, const PixelBox<P>& box, const Offset
   for (int y : P::range(box.y0, box.y1))
     for (int x : P::range(box.x0, box.x1)) {
       const int centre = y * image.width + x;
-      if (work::unlikely(is_corner<P>(image.pixels, centre, tables, fast_threshold))) {
-        const I score = corner_response<P>(image.pixels, image.width, centre, tables);
+      const typename P::Bool corner = is_corner_at<P>(image, centre, options.fast_threshold, [&] {
+        return is_corner<P>(image.pixels, centre, tables, fast_threshold);
+      });
+      if (work::unlikely(corner)) {
+        const I score = response_at<P>(image, centre, [&]() LEVIOSIM_HOST_INLINED {
+          return corner_response<P>(image.pixels, image.width, centre, tables);
+        });
         if (score > harris_threshold) best.offer(x, y, score);
       }
     }
@@ -61,6 +67,8 @@ void detect_all(work::Machine& machine, ConstImageView<P> image, const OffsetTab
   });
 }
 
+constexpr host::DiscMask kReleasedDisc = host::make_disc_mask(kSquaredDiscRadius);
+
 /// The fork "describe", in slices of ceil(n / cores).
 template <class P, class Kind>
 void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList<P>& out) {
@@ -74,10 +82,11 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList
       const I at = I(out.y[i]) * I(blurred.width) + I(out.x[i]);
       // The windows around it are streams from a computed place.
       const int centre = work::value(at);
-      const Moments<P> moments = levio::disc_moments<P>(blurred.pixels, blurred.width, centre);
-      levio::describe<P, Kind>(blurred.pixels, blurred.width, centre, direction_of<P>(moments),
-                                   pattern,
-                                   out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
+      const Moments<P> moments = moments_at<P>(kReleasedDisc, blurred, centre, [&] {
+        return levio::disc_moments<P>(blurred.pixels, blurred.width, centre);
+      });
+      describe<P, Kind>(blurred.pixels, blurred.width, centre, direction_of<P>(moments), pattern,
+                        out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
     }
   });
 }

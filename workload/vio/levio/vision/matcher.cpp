@@ -9,17 +9,20 @@ namespace {
 struct ByteComparison {
   static constexpr work::CodeName kFunction{"levio_search_matches"};
   template <class P>
-  static typename P::I32 distance(const HeldDescriptor<P>& held, DescriptorWords<P> reference,
-                                  int r) {
+  LEVIOSIM_HOST_INLINE static typename P::I32 distance(const HeldDescriptor<P>& held,
+                                                       DescriptorWords<P> reference, int r) {
     using I = typename P::I32;
     const auto words = reference.subspan(kDescriptorWords * r, kDescriptorWords);
-    I sum = 0;
-    LEVIOSIM_HOST_VECTORISED
-    for (int w = 0; w < kDescriptorWords; ++w) {
-      sum = work::copied(I(sum + work::popcount(held.words[w] ^ typename P::U32(words[w]))));
-      LEVIOSIM_TARGET_BYTE(sum);
-    }
-    return sum;
+    return host_value(
+        [&] {
+          I sum = 0;
+          for (int w = 0; w < kDescriptorWords; ++w) {
+            sum = work::copied(I(sum + work::popcount(held.words[w] ^ typename P::U32(words[w]))));
+            LEVIOSIM_TARGET_BYTE(sum);
+          }
+          return sum;
+        },
+        [&] { return hamming_distance_on_host(held, words.data()); });
   }
 };
 
