@@ -8,10 +8,11 @@
 //   probability m, a line survives the round with exp(-m k / w), so m = 1 - exp(-m k / w): none for
 //   k up to w. Functions lie in memory one behind the other, in an order by chance, so k varies
 //   from set to set.
-// * Other misses of the same work, of code that is new or in larger loops, hit these lines, too.
-//   They come in bursts, when the core goes on to other code, and while a burst is worked off, half
-//   of what the cache holds is of use, on average: of M misses per fetch, a line is hit by
-//   M d / 2 / size while it is not used.
+// * Other misses of the same work hit these lines, too. Those of new code or of larger loops come
+//   in bursts, when the core goes on to other code, and while a burst is worked off, half of what
+//   the cache holds is of use, on average: of M misses per fetch, a line is hit by M d / 2 / size
+//   while it is not used. Those of smaller loops within the loop come in every round, which has
+//   more fetches than the loop has lines: so many times as often.
 // * The shared cache is asked for what the private one lacks.
 //
 // Cores of a team run the same code at about the same time, and form a convoy: whoever comes first
