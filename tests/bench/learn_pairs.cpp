@@ -45,7 +45,8 @@ inline constexpr auto kReleasedPattern = make_pair_pattern<P>(kReleasedPairWords
 
 void print_pattern(std::string_view name, const LearnedPairs& learned) {
   const vio::PairWords& words = learned.words;
-  fmt::print("\n/// The limit rose to 0.{}.\ninline constexpr PairWords {} = {{", learned.limit, name);
+  fmt::print("\n/// The limit rose to 0.{}.\ninline constexpr PairWords {} = {{", learned.limit,
+             name);
   constexpr std::size_t kPerLine = 8;
   for (std::size_t k = 0; k < words.size(); ++k)
     fmt::print("{}{:#010x}{}", k % kPerLine == 0 ? "\n    " : " ", words[k],

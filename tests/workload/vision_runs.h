@@ -60,8 +60,7 @@ Features extract(const cv::Mat& image, int cores = 8, const ExtractorOptions& op
 
 /// As the front end of `levio` does it.
 template <class P>
-Features extract_as_levio(const cv::Mat& image, int cores = 8,
-                          const ExtractorOptions& options = {},
+Features extract_as_levio(const cv::Mat& image, int cores = 8, const ExtractorOptions& options = {},
                           levio::DescriptorKind kind = levio::DescriptorKind::Exact) {
   const auto extract = [kind](work::Machine& machine, ImageView<P> picture,
                               const ExtractorOptions& how, FeatureList<P>& list) {

@@ -2,8 +2,8 @@
 // counted.
 //
 //   const auto corner = host_value(
-//       [&] { return is_corner<P>(image, centre, …); },     // counted, and compiled for targets
-//       [&] { return host::is_corner(pixels + centre, …); });  // what the host computes
+//       [&]() LEVIOSIM_HOST_INLINED { return is_corner<P>(…); },  // counted, and the target's way
+//       [&] { return host::is_corner(…); });                      // what the host computes
 //
 // Nothing uses the value of the counted way. So the host's compiler removes its arithmetic and
 // keeps its counters, which it adds up over loops as far as they do not depend on data. It has to

@@ -75,9 +75,10 @@ void detect_in_box(ConstImageView<P> image, const PixelBox<P>& box,
     for (int x : P::range(box.x0, box.x1)) {
       const int row = y - image.top;
       const int centre = row * image.width + x;
-      const typename P::Bool corner = is_corner_at<P>(image, centre, options.fast_threshold, [&] {
-        return is_fast_corner<P>(image.pixels, centre, ring_offsets, fast_threshold);
-      });
+      const typename P::Bool corner =
+          is_corner_at<P>(image, centre, options.fast_threshold, [&]() LEVIOSIM_HOST_INLINED {
+            return is_fast_corner<P>(image.pixels, centre, ring_offsets, fast_threshold);
+          });
       if (work::unlikely(corner)) {
         const I score = response_at<P>(image, centre, [&]() LEVIOSIM_HOST_INLINED {
           return harris_response<P>(image.pixels, image.width, x, row);

@@ -16,7 +16,6 @@ namespace leviosim::vio {
 
 /// A descriptor reads no farther from its feature than this, in columns and in rows.
 inline constexpr int kDescriptorReach = 15;
-inline constexpr int kWordBits = 32;
 
 /// How `next` turns the points of a pattern: coordinates are rounded to the nearest pixel.
 struct RotatedPoints {
@@ -39,7 +38,7 @@ struct RotatedPoints {
   }
 };
 
-/// The bits of 32 pairs; parameters as of describe().
+/// The bits of a word; parameters as of describe().
 template <class P, class Points, class Pattern>
 LEVIOSIM_HOST_INLINE typename P::U32 compare_pairs(
     typename P::template Span<const typename P::Byte> image, int width, int centre,
@@ -63,7 +62,7 @@ LEVIOSIM_HOST_INLINE typename P::U32 compare_pairs(
 }
 
 /// compare_pairs() as it suits the host.
-/// @param pairs  32 pairs
+/// @param pairs  of the word
 template <class Points, class Pixel, class Word>
 LEVIOSIM_HOST_CLONES std::uint32_t compare_pairs_on_host(const Pixel* centre, int width,
                                                          const Direction<work::Native>& direction,

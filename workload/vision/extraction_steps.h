@@ -115,7 +115,7 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred,
       const I row = out.y[i];
       // The windows around it are streams from a computed place.
       const int centre = work::value(I(row * I(blurred.width) + column)) - rows_above;
-      const Moments<P> moments = moments_at<P>(kDisc, blurred, centre, [&] {
+      const Moments<P> moments = moments_at<P>(kDisc, blurred, centre, [&]() LEVIOSIM_HOST_INLINED {
         return disc_moments<P>(blurred.pixels, blurred.width, centre, tables.disc);
       });
       describe<P, RotatedPoints>(blurred.pixels, blurred.width, centre, direction_of<P>(moments),

@@ -14,6 +14,8 @@ namespace leviosim::vio {
 
 /// 32-bit words of one 256-bit descriptor.
 inline constexpr int kDescriptorWords = 8;
+/// Bits of one word.
+inline constexpr int kWordBits = 32;
 
 /// width × height grey levels, row by row without padding: pixel (x, y) at
 /// pixels[(y - top) * width + x]. Of an image that is in local memory in part, `top` is the first

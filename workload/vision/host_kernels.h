@@ -128,21 +128,20 @@ Moments<work::Native> disc_moments(const DiscMask& disc, const Pixel* centre, in
 
 /// One word of a descriptor: bit k, the highest first, says whether the first point of pair k is
 /// darker than the second.
-/// @param pairs  32 of them, packed (point_pairs.h)
+/// @param pairs  those of the word, packed (point_pairs.h)
 /// @param offset_of  (x, y) -> offset from `centre` of the pixel at which a point of the pattern
 /// lies
 template <class Pixel, class Word, class OffsetOf>
 LEVIOSIM_HOST_INLINE std::uint32_t compare_pairs(const Pixel* centre, const Word* pairs,
                                                  OffsetOf&& offset_of) {
-  constexpr int kBits = 32;
-  std::int32_t first[kBits], second[kBits];
-  for (int k = 0; k < kBits; ++k) {
+  std::int32_t first[kWordBits], second[kWordBits];
+  for (int k = 0; k < kWordBits; ++k) {
     const auto pair = static_cast<std::int32_t>(work::value(pairs[k]));
     first[k] = offset_of(pair >> 24, pair << 8 >> 24);
     second[k] = offset_of(pair << 16 >> 24, pair << 24 >> 24);
   }
   std::uint32_t bits = 0;
-  for (int k = 0; k < kBits; ++k)
+  for (int k = 0; k < kWordBits; ++k)
     bits = bits << 1 | static_cast<std::uint32_t>(static_cast<int>(centre[first[k]]) <
                                                   static_cast<int>(centre[second[k]]));
   return bits;

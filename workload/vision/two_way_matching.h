@@ -42,8 +42,9 @@ struct Nearest {
 /// The reference descriptor nearest to `held`, if one is closer than `limit`; else the distance is
 /// `limit`.
 template <class P, class Comparison>
-LEVIOSIM_HOST_INLINE Nearest<P> find_nearest(const HeldDescriptor<P>& held, DescriptorWords<P> reference, int count,
-                        typename P::I32 limit) {
+LEVIOSIM_HOST_INLINE Nearest<P> find_nearest(const HeldDescriptor<P>& held,
+                                             DescriptorWords<P> reference, int count,
+                                             typename P::I32 limit) {
   using I = typename P::I32;
   Nearest<P> nearest = {0, limit};
   for (int r : P::range(0, count)) {
@@ -56,9 +57,10 @@ LEVIOSIM_HOST_INLINE Nearest<P> find_nearest(const HeldDescriptor<P>& held, Desc
 /// Appends the matches of the current features of `share` to `list`, from share.begin on.
 /// @return how many there are
 template <class P, class Comparison>
-LEVIOSIM_HOST_CLONES typename P::I32 search(DescriptorWords<P> current, work::Share share, DescriptorWords<P> reference,
-                       int reference_count, const MatcherOptions& options,
-                       const MatchList<P>& list) {
+LEVIOSIM_HOST_CLONES typename P::I32 search(DescriptorWords<P> current, work::Share share,
+                                            DescriptorWords<P> reference, int reference_count,
+                                            const MatcherOptions& options,
+                                            const MatchList<P>& list) {
   using I = typename P::I32;
   const typename P::Function function(Comparison::kFunction);
   const I limit = options.max_distance;

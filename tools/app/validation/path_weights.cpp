@@ -50,11 +50,11 @@ std::vector<StageOnPaths> stages_on_paths(const FrameLog& log) {
     const StageSum a = sum_over(epnp.frames, stage), b = sum_over(eight_point.frames, stage);
     const auto means = [&](Value (StageSum::*mean)() const) {
       const Value of_a = (a.*mean)(), of_b = (b.*mean)();
-      return StageOnPaths::Means{
-          of_a, of_b, weighed(of_a, epnp.weight(a), of_b, eight_point.weight(b))};
+      return StageOnPaths::Means{of_a, of_b,
+                                 weighed(of_a, epnp.weight(a), of_b, eight_point.weight(b))};
     };
-    stages.push_back({stage.key, stage.title, means(&StageSum::mean_single),
-                      means(&StageSum::mean_parallel)});
+    stages.push_back(
+        {stage.key, stage.title, means(&StageSum::mean_single), means(&StageSum::mean_parallel)});
   }
   return stages;
 }

@@ -1,6 +1,6 @@
 // Stages that run whichever RANSAC a frame takes, on either path, and weighed as the paper's frames
-// are: it prints that 42.7 % of its frames took EPnP and 57.3 % the 8-point algorithm. A flight that
-// takes EPnP more often has other means, since frames on this path have more matches.
+// are: it prints that 42.7 % of its frames took EPnP and 57.3 % the 8-point algorithm. A flight
+// that takes EPnP more often has other means, since frames on this path have more matches.
 #pragma once
 
 #include <optional>

@@ -96,10 +96,11 @@ Json comparison_json(const Comparison& c) {
 std::string path_lines(const StageOnPaths& stage, std::string_view cores,
                        const StageOnPaths::Means& means) {
   std::string text;
-  for (const auto& [frames, mean] : {std::pair("EPnP", means.epnp),
-                                     std::pair("8-point", means.eight_point),
-                                     std::pair("as the paper's", means.weighed)})
-    text += fmt::format("path,{}: {}: {},cycles,,{},,,,,,\n", stage.title, cores, frames, cell(mean));
+  for (const auto& [frames, mean] :
+       {std::pair("EPnP", means.epnp), std::pair("8-point", means.eight_point),
+        std::pair("as the paper's", means.weighed)})
+    text +=
+        fmt::format("path,{}: {}: {},cycles,,{},,,,,,\n", stage.title, cores, frames, cell(mean));
   return text;
 }
 
@@ -164,7 +165,8 @@ std::string validation_csv(const Validation& validation) {
                         cell(n.parallel));
   }
   for (const StageOnPaths& stage : validation.paths)
-    text += path_lines(stage, "one core", stage.single) + path_lines(stage, "N cores", stage.parallel);
+    text +=
+        path_lines(stage, "one core", stage.single) + path_lines(stage, "N cores", stage.parallel);
   return text;
 }
 

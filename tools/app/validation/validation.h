@@ -40,7 +40,8 @@ std::vector<Comparison> compare(const std::vector<Reference>& references,
 Validation validate(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
                     const std::vector<Reference>& references);
 
-/// validation.csv: a row per reference, input, normalised figure and stage on a path, the first column says which.
+/// validation.csv: a row per reference, input, normalised figure and stage on a path, the first
+/// column says which.
 std::string validation_csv(const Validation& validation);
 Json validation_json(const Validation& validation);
 

@@ -171,9 +171,9 @@ std::string path_table(const Validation& validation, int cores) {
     for (const std::optional<double>& mean : {means.epnp, means.eight_point, means.weighed})
       cells.push_back(figure_text(mean ? std::optional(*mean / 1e3) : std::nullopt, 0));
     const bool compares = paper != nullptr && means.weighed;
-    cells.push_back(compares ? fmt::format("{:+.1f} %", error_of(paper->reference,
-                                                                *means.weighed / 1e3))
-                             : kNothing);
+    cells.push_back(compares
+                        ? fmt::format("{:+.1f} %", error_of(paper->reference, *means.weighed / 1e3))
+                        : kNothing);
   };
   for (const StageOnPaths& stage : validation.paths) {
     std::vector<std::string> cells{std::string(stage.title)};
@@ -182,7 +182,8 @@ std::string path_table(const Validation& validation, int cores) {
     table.add(std::move(cells));
   }
   return fmt::format(
-      "stages of frames that run either RANSAC, and weighed as the paper's frames: {:g} and {:g} %\n"
+      "stages of frames that run either RANSAC, and weighed as the paper's frames: {:g} and {:g} "
+      "%\n"
       "{}",
       kPaperEpnpFrames, kPaperEightPointFrames, table.str());
 }

@@ -48,10 +48,10 @@ void LevioFrontEnd<P>::extract(Frame<P>& frame) {
   frame.features =
       alloc_observed_features<P>(state_.machine.local(), keyframe.features.list.capacity);
   const Profile& profile = state_.profile;
-  levio::extract_features<P>(state_.machine, keyframe.image, profile.extractor,
-                             profile.released ? levio::DescriptorKind::Released
-                                              : levio::DescriptorKind::Exact,
-                             frame.features.list);
+  levio::extract_features<P>(
+      state_.machine, keyframe.image, profile.extractor,
+      profile.released ? levio::DescriptorKind::Released : levio::DescriptorKind::Exact,
+      frame.features.list);
   forget_landmarks(frame);
 }
 
@@ -75,7 +75,7 @@ bool LevioFrontEnd<P>::is_keyframe(const Frame<P>& frame) {
   const int matches = frame.matches.list.count;
   if (matches < profile.min_frame_matches) return true;
   const F parallax = profile.released ? levio::total_motion(state_, frame)
-                                                : total_parallax(state_, inertial_, frame);
+                                      : total_parallax(state_, inertial_, frame);
   return bool(parallax > F(profile.keyframe_parallax * static_cast<float>(matches)));
 }
 

@@ -25,9 +25,10 @@ void detect_in_box(ConstImageView<P> image, const PixelBox<P>& box, const Offset
   for (int y : P::range(box.y0, box.y1))
     for (int x : P::range(box.x0, box.x1)) {
       const int centre = y * image.width + x;
-      const typename P::Bool corner = is_corner_at<P>(image, centre, options.fast_threshold, [&] {
-        return is_corner<P>(image.pixels, centre, tables, fast_threshold);
-      });
+      const typename P::Bool corner =
+          is_corner_at<P>(image, centre, options.fast_threshold, [&]() LEVIOSIM_HOST_INLINED {
+            return is_corner<P>(image.pixels, centre, tables, fast_threshold);
+          });
       if (work::unlikely(corner)) {
         const I score = response_at<P>(image, centre, [&]() LEVIOSIM_HOST_INLINED {
           return corner_response<P>(image.pixels, image.width, centre, tables);
@@ -67,7 +68,7 @@ void detect_all(work::Machine& machine, ConstImageView<P> image, const OffsetTab
   });
 }
 
-constexpr host::DiscMask kReleasedDisc = host::make_disc_mask(kSquaredDiscRadius);
+constexpr host::DiscMask kWindowDisc = host::make_disc_mask(kSquaredDiscRadius);
 
 /// The fork "describe", in slices of ceil(n / cores).
 template <class P, class Kind>
@@ -82,9 +83,10 @@ void describe_all(work::Machine& machine, ConstImageView<P> blurred, FeatureList
       const I at = I(out.y[i]) * I(blurred.width) + I(out.x[i]);
       // The windows around it are streams from a computed place.
       const int centre = work::value(at);
-      const Moments<P> moments = moments_at<P>(kReleasedDisc, blurred, centre, [&] {
-        return levio::disc_moments<P>(blurred.pixels, blurred.width, centre);
-      });
+      const Moments<P> moments =
+          moments_at<P>(kWindowDisc, blurred, centre, [&]() LEVIOSIM_HOST_INLINED {
+            return levio::disc_moments<P>(blurred.pixels, blurred.width, centre);
+          });
       describe<P, Kind>(blurred.pixels, blurred.width, centre, direction_of<P>(moments), pattern,
                         out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
     }
