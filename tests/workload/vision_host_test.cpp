@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "tests/workload/vision_test_images.h"
 #include "workload/vio/levio/vision/corner_tests.h"
