@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/setup.sh
+tools/setup.sh tests
 tools/build.sh release
 found=no
 for program in build/release/tests/bench/*; do

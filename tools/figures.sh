@@ -112,7 +112,7 @@ output_of() { # output_of NAME COMMAND
 take_photo() { # take_photo SIZE PAGE PICTURE
   chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=5000 \
     --window-size="${1/x/,}" --screenshot="$3" "file://$2" >/dev/null 2>&1 ||
-    fail "chromium shows no $2; tools/setup.sh installs it"
+    fail "chromium shows no $2; tools/setup.sh tests installs it"
 }
 
 # What stands between the markers.

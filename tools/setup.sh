@@ -1,22 +1,38 @@
 #!/usr/bin/env bash
 # Installs what leviosim needs and is missing, from Debian 12's packages. Does nothing, and needs no
 # network, where everything is there.
+#   tools/setup.sh          what the program needs
+#   tools/setup.sh tests    what its tests need, too: a browser for pages, references, benchmarks
+#   tools/setup.sh full     and other compilers, with their sanitizers
 set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source tools/progress.sh
 
 packages=(
-  g++ clang cmake ninja-build git          # compilers (Clang for tools/check_reproducible.sh), build
-  libclang-rt-14-dev                       # libFuzzer and its sanitizers (tools/fuzz.sh)
+  g++ cmake ninja-build git                # compiler, build, revision
   libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
   libpng-dev libturbojpeg0-dev             # PNG and JPEG files
   libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
   libsqlite3-dev                                              # results of sweeps
-  parallel                                                    # an example of sweeps, tested
   libjs-chart.js                                              # charts of reports, embedded
-  libgtest-dev libexpat1-dev libxml2-utils libspng-dev        # tests
-  chromium                                                    # tests of pages (120 MB, half a minute)
+)
+tests=(
+  libgtest-dev libexpat1-dev libxml2-utils libspng-dev        # files that are well formed, references
+  parallel                                                    # an example of sweeps
+  chromium                                                    # pages (120 MB, half a minute)
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
 )
+compilers=(clang libclang-rt-14-dev)  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh)
+case ${1:-program} in
+  program) ;;
+  tests) packages+=("${tests[@]}") ;;
+  full) packages+=("${tests[@]}" "${compilers[@]}") ;;
+  *)
+    echo "setup: unknown set '$1'; expected program, tests or full" >&2
+    exit 2
+    ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
@@ -36,7 +52,19 @@ if ((EUID != 0)); then
   fi
   as_root=(sudo)
 fi
-echo "setup: installing ${missing[*]}"
-export DEBIAN_FRONTEND=noninteractive
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+mkdir -p build
+log=build/setup.log
+fail() {
+  grep -E '^(E|W):' "$log" >&2 || tail -n 10 "$log" >&2
+  echo "setup: failed; all that was printed is in $log" >&2
+  exit 1
+}
+echo "setup: installing ${#missing[@]} packages and what they need; $log"
+started=$SECONDS
+"${as_root[@]}" apt-get update -qq >"$log" 2>&1 || fail
+# apt reports "dlstatus:FILE:PERCENT:…" and "pmstatus:PACKAGE:PERCENT:…", each from 0 to 100.
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get install -y -q --no-install-recommends \
+  -o APT::Status-Fd=1 "${missing[@]}" 2>&1 </dev/null | tee -a "$log" |
+  awk -F: '/^dlstatus:/ { print int($3), 200; fflush() } /^pmstatus:/ { print 100 + int($(NF - 1)), 200; fflush() }' |
+  progress "setup" || fail
+echo "setup: done in $((SECONDS - started)) s"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Builds everything, runs every test, and checks the pages and their figures; what CI calls. Exit
-# status 0 only if all is well.
-#   tools/test.sh           release build (GCC), reproducibility over compilers, all tests
-#                           and 20 s of each light fuzz target
-#   tools/test.sh --fast    only the program and its quick tests (ctest -L unit), and the pages
+# Builds leviosim and tests it. A summary ends it, what was printed is in build/test/, and the exit status
+# is 0 only if all is well.
+#   tools/test.sh           the program, its unit tests, a system test for each command, the pages
+#   tools/test.sh --full    all tests, and the same bytes from other compilers, fuzzing, guards: what CI
+#                           calls after the first
 #   tools/test.sh --asan    all tests under address and undefined-behaviour sanitizers
 #   tools/test.sh --tsan    tests of what runs in threads (sweeps, batches, drawing) under the
 #                           thread sanitizer
@@ -11,43 +11,82 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-preset=release
-reproducible=yes
-targets=()
-tests=()
-for option in "$@"; do
-  case $option in
-    --fast)
-      reproducible=no
-      targets=(leviosim leviosim_{sim,workload,platform_models,traces,tools}_tests)
-      tests=(--label-regex unit)
-      ;;
-    --asan) preset=asan reproducible=no ;;
-    --tsan) preset=tsan reproducible=no ;;
-    --clang) preset=clang reproducible=no ;;
-    *)
-      echo "test: unknown option $option; expected --fast, --asan, --tsan or --clang" >&2
-      exit 2
-      ;;
-  esac
-done
+kind=${1:-}
+case $kind in
+  "" | --full) preset=release ;;
+  --asan | --tsan | --clang) preset=${kind#--} ;;
+  *)
+    echo "test: unknown option $kind; expected --full, --asan, --tsan or --clang" >&2
+    exit 2
+    ;;
+esac
 
-tools/setup.sh
-echo "test: building preset $preset"
-tools/build.sh "$preset" "${targets[@]}"
+# A test of each command that takes no minutes.
+commands=(
+  AblateCommand.ResumesAfterAKillAndComparesProfiles
+  BenchmarkOfFewFrames.ListsItsPiecesWithoutDrawingThem
+  Calibration.RecoversKnownConstants
+  Check.AFirstBudgetIsMetByItsRunAndItsTrace
+  'CommandLine.*'
+  Compare.TextFitsEightyColumns
+  EvalCommand.PrintsFiguresWithTheirProtocol
+  FlowCommand.PrintsTheTablesOfAllWorkloadsAndItsOwn
+  PrintoutTest.ARunFitsAScreenOf24LinesOf80Columns
+  ReplayCommand.LeavesTheFolderOfTheRun
+  ReplayCommand.TraceShowsAndChecks
+  Report.OfAFolderIsThatOfTheRunItself
+  StudyCommands.RunOnASyntheticFlight
+  SweepCommand.HoldsEveryPointAgainstABudget
+  TuneCommand.RefusesWhatCannotBe
+  WorkloadCommand.ListsProfilesAndParameters
+)
+filter=$(IFS='|' && echo "${commands[*]}")
+filter="^(${filter//./\\.})\$"
+filter=${filter//\\.\*/\\..*}
 
-failed=()
-check() { "$@" || failed+=("$*"); }
-if [[ $reproducible == yes ]]; then
-  check tools/check_reproducible.sh --quick
-  check tools/fuzz.sh --seconds 20 --light
+logs=build/test
+mkdir -p "$logs"
+summary=()
+failed=0
+check() { # check NAME COMMAND...: its output goes to a file, its end is shown where it fails
+  local name=$1 log="$logs/$1.log" started=$SECONDS result=passed
+  shift
+  echo "test: $name"
+  "$@" >"$log" 2>&1 || result=FAILED
+  if [[ $result == FAILED ]]; then
+    failed=1
+    tail -n 40 "$log"
+  fi
+  summary+=("$(printf '%-16s %-6s %5d s  %s' "$name" "$result" $((SECONDS - started)) "$(counted "$log" "$result")")")
+}
+counted() { # counted LOG RESULT: how many tests, or where to look
+  if [[ $2 == FAILED ]]; then
+    echo "$1"
+  else
+    sed -n 's/^100% tests passed, 0 tests failed out of \([0-9]*\)$/\1 tests/p' "$1"
+  fi
+}
+tests() { ctest --preset "$preset" --parallel "$(nproc)" --no-tests=error "$@"; }
+
+if [[ $kind == "" ]]; then
+  tools/setup.sh tests
+  tools/build.sh release leviosim leviosim_{sim,workload,platform_models,traces,tools,system}_tests
+  check unit tests --label-regex unit
+  check commands tests --tests-regex "$filter"
+  check pages tools/check_pages.sh
+else
+  tools/setup.sh full
+  tools/build.sh "$preset"
+  if [[ $kind == --full ]]; then
+    check reproducible tools/check_reproducible.sh --quick
+    check fuzz tools/fuzz.sh --seconds 20 --light
+    check guard tools/ci/guard.sh
+  fi
+  check pages tools/check_pages.sh
+  check all-tests tests
+  if [[ $kind == --full ]]; then
+    tools/figures.sh --check || echo "test: figures are stale (above); tools/figures.sh makes them anew"
+  fi
 fi
-check tools/check_pages.sh
-if [[ $preset == release && ${#targets[@]} == 0 ]]; then
-  check tools/ci/guard.sh
-  tools/figures.sh --check || echo "test: figures are stale (above); tools/figures.sh makes them anew"
-fi
-# Last, so that its summary is what stands at the end of the log.
-check ctest --preset "$preset" --parallel 2 "${tests[@]}"
-((${#failed[@]} == 0)) || printf 'test: failed: %s\n' "${failed[@]}" >&2
-exit $((${#failed[@]} > 0))
+printf 'test: %s\n' "${summary[@]}"
+exit "$failed"

@@ -81,7 +81,7 @@ std::string schema_fault(const std::string& file) {
           .c_str());
   const std::string text = base::read_text_file(said);
   if (WEXITSTATUS(status) == 127)
-    return "xmllint is missing; tools/setup.sh installs it (package libxml2-utils): " + text;
+    return "xmllint is missing; tools/setup.sh tests installs it (package libxml2-utils): " + text;
   return status == 0 ? std::string() : text;
 }
 
