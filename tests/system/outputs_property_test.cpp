@@ -6,7 +6,7 @@
 
 #include "tests/support/run_program.h"
 #include "tests/support/scratch.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -12,7 +12,7 @@
 #include "tools/app/run/replay.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/study/sweep/sweep_store.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

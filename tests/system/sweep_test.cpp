@@ -8,7 +8,7 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/sweep/pareto.h"
 #include "tools/app/study/sweep/sampling.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -6,7 +6,7 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/flights/benchmark_files.h"
 #include "tools/app/study/flights/benchmark_report.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::tools {
 namespace {
@@ -136,7 +136,7 @@ TEST(FlightPlans, RefuseFaultsWithTheirPlace) {
   refuse("[a, b]", "a", {"p.yaml:1: motions", "is a single value; expected a list"});
   refuse("[2, 3]", "[1, 3]", {"p.yaml:2: worlds.fresh", "world 1 is in another set"});
   refuse("[2, 3]", "[-2]", {"p.yaml:2: worlds.fresh", "'-2'", "a whole number from 0"});
-  refuse("3, whole", "2", {"p.yaml:3: pieces", "'2'", "from 3 to 1000000, or whole"});
+  refuse("3, whole", "2", {"p.yaml:3: pieces", "'2'", "from 3 to 1000000, rest, or whole"});
   refuse("3, whole", "all", {"p.yaml:3: pieces", "'all'", "or whole"});
   const auto refuse_more = [&](const std::string& line, std::initializer_list<std::string> parts) {
     expect_input_error([&] { parse_flight_plan("p.yaml", kPlan + line); }, parts);
@@ -316,6 +316,26 @@ TEST_F(FlightBenchmark, CountsWhatDiverged) {
   EXPECT_NE(benchmark_text(benchmark_, all, kAnyWidth).find("2 of 6"), std::string::npos);
 }
 
+TEST_F(FlightBenchmark, SaysWhetherRunsKnewThatTheyWereWrong) {
+  for (RunOutcome& outcome : outcomes_) outcome.health = Health::good;
+  EXPECT_EQ(result().rows[0].failed, 0u);
+  outcomes_[0].ate_m = 0.5;  // of 2 m: 25 %, and good
+  outcomes_[1].ate_m = 0.3;  // 15 %
+  outcomes_[1].health = Health::unreliable;
+  outcomes_[2].ate_m.reset();
+  outcomes_[2].health = Health::lost;
+  outcomes_[3].health = Health::unreliable;  // 2 %
+  const BenchmarkRow row = result().rows[0];
+  EXPECT_EQ(row.failed, 3u);
+  EXPECT_EQ(row.alarms.failed, 3u);
+  EXPECT_EQ(row.alarms.told, 2u);
+  EXPECT_EQ(row.alarms.right, 2u) << "2 and 2.5 %; 3 % is not below 3";
+  EXPECT_EQ(row.alarms.false_alarms, 1u);
+  EXPECT_EQ(row.alarms.silent, 1u);
+  outcomes_[0].health.reset();
+  EXPECT_EQ(result().rows[0].alarms.failed, 2u) << "what says nothing does not count";
+}
+
 TEST_F(FlightBenchmark, TellsTheSameInAllItsForms) {
   const BenchmarkResult all = result();
   const std::string text = benchmark_text(benchmark_, all, kAnyWidth);
@@ -375,6 +395,39 @@ TEST_F(FlightPieces, BeginAtTheStartsAndEndWithinTheFlight) {
   EXPECT_EQ(both.pieces.size(), 6u);
   EXPECT_EQ(text_of(drawn_flights(both)[0].frames), "0:6 ");
   expect_input_error([&] { benchmark("[5]"); }, {"p.yaml", "no piece", "0.1 s"});
+}
+
+TEST_F(FlightPieces, OfRecordingsBeginAtFramesAndNeedNoDrawing) {
+  std::filesystem::create_directory_symlink(data_.root(), folder_ / "b");
+  const Benchmark some = make_benchmark(
+      parse_flight_plan("p.yaml",
+                        "recordings: [b]\nstarts: { even: [0, 2], odd: [1, 2] }\nsize: 32x24\n"
+                        "pieces: [3, rest]\nseeds: [1]\ndisturbances: [none, noise=9]\n"),
+      folder_.path().string());
+  std::string ranges;
+  for (const FlightPiece& piece : some.pieces)
+    if (piece.disturbance == 1) ranges += text_of({piece.frames});
+  EXPECT_EQ(ranges, "0:3 2:5 1:4 3:6 0:6 2:6 1:6 ") << "rests are longer than three frames";
+  EXPECT_EQ(some.pieces.size(), 14u);
+  EXPECT_TRUE(drawn_flights(some).empty());
+  const std::vector<Point> runs = benchmark_runs(some);
+  ASSERT_EQ(runs.size(), 14u);
+  std::set<std::string> keys;
+  for (const Point& run : runs) keys.insert(run_key(run, {}, platform::Schema()));
+  EXPECT_EQ(keys.size(), 14u);
+  EXPECT_EQ(runs[1].request.disturbance.text(), "noise=9");
+  EXPECT_EQ(text_of({*runs[3].request.frames}), "2:5 ");
+}
+
+TEST(FlightPlans, OfRecordingsNeedStarts) {
+  const auto refuse = [](const std::string& text, std::initializer_list<std::string> parts) {
+    expect_input_error([&] { parse_flight_plan("p.yaml", text + "\npieces: [3]"); }, parts);
+  };
+  refuse("recordings: [a]", {"missing key 'starts'"});
+  refuse("recordings: [a]\nstarts: { x: [1] }", {"p.yaml:2: starts.x", "[FIRST, STEP]"});
+  refuse("recordings: [a]\nstarts: { x: [1, 0] }", {"p.yaml:2: starts.x", "'0'"});
+  refuse("recordings: [a]\nstarts: { x: [1, 2] }\ndisturbances: [nosie=1]",
+         {"p.yaml:3: disturbances", "did you mean 'noise'"});
 }
 
 TEST_F(FlightPieces, NeedTheRecordedImu) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/traces/test_folder.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/relative_error.h"
 

@@ -6,7 +6,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/euroc_models.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

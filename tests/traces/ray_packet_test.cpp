@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/screen_bounds.h"
 
 namespace leviosim::traces {

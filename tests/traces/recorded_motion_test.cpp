@@ -8,7 +8,7 @@
 #include "tests/traces/imu_integration.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -13,7 +13,7 @@
 #include "traces/datasets/image_source.h"
 #include "traces/datasets/imu_batches.h"
 #include "traces/synthesis/hall.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

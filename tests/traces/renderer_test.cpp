@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "traces/datasets/euroc_models.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,4 +1,4 @@
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 #include <gtest/gtest.h>
 

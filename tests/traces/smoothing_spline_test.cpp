@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "sim/base/error.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

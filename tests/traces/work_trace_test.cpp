@@ -4,7 +4,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "tests/traces/work_trace_example.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

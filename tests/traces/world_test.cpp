@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,8 +1,8 @@
 #include "tools/commands/benchmark_flights_command.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 
@@ -58,18 +58,24 @@ FlightPlan plan_of(const FlightWords& words) {
 
 std::string list_text(const Benchmark& benchmark) {
   std::string text;
-  for (const FlightPiece& piece : benchmark.pieces)
-    text += fmt::format("{}\t{}\tworld {}\t{}:{}\t{:.2f} s\t{:.2f} m\n",
-                        printable(benchmark.plan.sets[piece.set].name),
-                        printable(benchmark.plan.motions[piece.motion]), piece.world,
-                        piece.frames.begin, piece.frames.end, piece.start_s, piece.path_m);
+  for (const FlightPiece& piece : benchmark.pieces) {
+    const FlightMotion& motion = benchmark.motions[piece.motion];
+    const traces::Disturbance& disturbance = benchmark.plan.disturbances[piece.disturbance];
+    text +=
+        fmt::format("{}\t{}\t{}\t{}:{}\t{:.2f} s\t{:.2f} m{}\n",
+                    printable(benchmark.plan.sets[piece.set].name), printable(motion.sequence.name),
+                    motion.recorded ? "recorded" : fmt::format("world {}", piece.world),
+                    piece.frames.begin, piece.frames.end, piece.start_s, piece.path_m,
+                    disturbance.kind == nullptr ? "" : "\t" + disturbance.text());
+  }
   return text;
 }
 
 base::OutputRequest out_request(const FlightWords& words, const FlightPlan& plan) {
   base::OutputRequest request{.option = "--out", .path = words.out, .replace = words.force};
-  for (const std::string& motion : plan.motions)
-    request.inputs.push_back(fs::path(words.motions) / motion);
+  for (const auto* folders : {&plan.motions, &plan.recordings})
+    for (const std::string& folder : *folders)
+      request.inputs.push_back(fs::path(words.motions) / folder);
   if (fs::path(words.plan).has_parent_path()) request.inputs.emplace_back(words.plan);
   return request;
 }
@@ -131,7 +137,8 @@ Command add_benchmark_flights_command(CLI::App& app, const Words& words) {
   };
   command->add_option("PLAN", typed->plan, fmt::format("a YAML file, or one of {}", plan_names()));
   add("--motions", typed->motions, "DIR",
-      "folder with an ASL folder for each motion of the plan (images not needed)");
+      "folder with an ASL folder for each motion and recording of the plan (motions need no "
+      "images)");
   add_list_option(*command, "--profile", typed->profiles, "NAME,...",
                   "of the workload, in place of the plan's variants", true);
   add_list_option(*command, "-p,--set", typed->overrides, "PATH=VALUE",

@@ -207,6 +207,7 @@ Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
   const double period_s = 1 / data.imu_model.rate_hz;
   require_cover(data, options.imu_edge_periods * period_s, imu_csv);
   require_no_gaps(data, options.max_imu_gap_periods * period_s, imu_csv);
+  disturb(data, options.disturbance);
   return data;
 }
 

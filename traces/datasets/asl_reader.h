@@ -23,6 +23,7 @@ struct OpenOptions {
   double max_imu_gap_periods = 3;
   /// How far a frame may lie outside the IMU samples, in nominal IMU periods.
   double imu_edge_periods = 1;
+  Disturbance disturbance{};  ///< made after everything has been checked
 };
 
 /// Where ground truth lies in a mav0 folder, if there is any.

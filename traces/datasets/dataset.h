@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "traces/datasets/camera_model.h"
+#include "traces/datasets/disturbance.h"
 #include "traces/datasets/imu_model.h"
 
 namespace leviosim::traces {
@@ -43,6 +44,7 @@ struct Dataset {
   std::vector<FrameRef> frames;               ///< never empty
   std::vector<ImuSample> imu;                 ///< covers the frames
   std::vector<GroundTruthPose> ground_truth;  ///< empty if the folder has none
+  Disturbance disturbance{};                  ///< that an ImageSource still makes to pictures
 };
 
 }  // namespace leviosim::traces

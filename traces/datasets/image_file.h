@@ -1,7 +1,7 @@
 // Grey pictures from the bytes of a PNG or JPEG file, by libraries that print nothing and say what
 // is wrong. The head of the file is checked before memory is asked for. And PNG files of pictures.
-// Left out: colour, more than 8 bits, other formats; all of them are refused. OpenCV's codecs, which
-// load a hundred libraries when a program starts.
+// Left out: colour, more than 8 bits, other formats; all of them are refused. OpenCV's codecs,
+// which load a hundred libraries when a program starts.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,8 +15,8 @@ namespace leviosim::traces {
 /// that are damaged or cut off.
 cv::Mat decode_gray(std::string_view bytes, cv::Size expected);
 
-/// The bytes of a PNG file of a picture, 8-bit grey (CV_8UC1) and of a row at least; the same pixels
-/// give the same bytes. Compressed lightly, for pictures with noise.
+/// The bytes of a PNG file of a picture, 8-bit grey (CV_8UC1) and of a row at least; the same
+/// pixels give the same bytes. Compressed lightly, for pictures with noise.
 std::string encode_png(const cv::Mat& image);
 
 }  // namespace leviosim::traces

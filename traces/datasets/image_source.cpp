@@ -14,6 +14,7 @@ ImageSource::ImageSource(const Dataset& data, ImageSize size)
     : frames_csv_(data.frames_csv),
       frames_(data.frames),
       full_size_(data.camera.width, data.camera.height),
+      disturbance_(data.disturbance),
       preparation_(data.camera, size) {}
 
 cv::Mat ImageSource::decode(const FrameRef& frame) const {
@@ -38,6 +39,8 @@ GrayImage ImageSource::read(std::size_t i) const {
   result.height = intrinsics().height;
   result.t_ns = frames_[i].t_ns;
   result.pixels = preparation_.apply(decode(frames_[i]));
+  disturb_picture(disturbance_, {result.t_ns, frames_.front().t_ns, frames_.back().t_ns},
+                  result.width, result.pixels);
   return result;
 }
 

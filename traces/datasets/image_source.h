@@ -40,6 +40,7 @@ class ImageSource {
   std::filesystem::path frames_csv_;
   std::vector<FrameRef> frames_;
   cv::Size full_size_;
+  Disturbance disturbance_;
   ImagePreparation preparation_;
 };
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/texture.h"
 
 namespace leviosim::traces {

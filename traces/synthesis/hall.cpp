@@ -8,7 +8,7 @@
 #include "sim/base/parallel_for.h"
 #include "traces/synthesis/hall_layout.h"
 #include "traces/synthesis/painted_box.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -11,7 +11,7 @@
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/imu_model.h"
 #include "traces/synthesis/motion.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "sim/base/angles.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -16,7 +16,7 @@
 #include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/recorded_motion.h"
 #include "traces/synthesis/renderer.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

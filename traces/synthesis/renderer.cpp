@@ -7,7 +7,7 @@
 #include "sim/base/check.h"
 #include "sim/base/interruption.h"
 #include "traces/synthesis/ray_packet.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

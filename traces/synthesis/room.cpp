@@ -6,7 +6,7 @@
 
 #include "sim/base/parallel_for.h"
 #include "traces/synthesis/painted_box.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/world.h"
 
 namespace leviosim::traces {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "traces/synthesis/canvas.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {

@@ -11,7 +11,7 @@
 #include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/motion.h"
 #include "traces/synthesis/renderer.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/world.h"
 
 namespace leviosim::traces {

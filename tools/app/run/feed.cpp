@@ -45,7 +45,8 @@ std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
 }  // namespace
 
 Feed::Feed(const RunRequest& request)
-    : data_(traces::open_asl(request.data, {.frames = request.frames})),
+    : data_(traces::open_asl(request.data,
+                             {.frames = request.frames, .disturbance = request.disturbance})),
       frames_(camera_frames(request, data_)),
       rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),
       images_(data_, request.image_size),

@@ -26,6 +26,7 @@ struct RunRequest {
   std::string data;  ///< ASL folder (the synthetic flight has been made)
   std::string profile = "levio";
   std::optional<traces::FrameRange> frames;
+  traces::Disturbance disturbance;  ///< of the data
   traces::ImageSize image_size{160, 120};
   bool native = false;  ///< no timing, any resolution
   int cores = 8;

@@ -51,6 +51,7 @@ class Numbers {
     take("matched", outcome.matched);
     take("completion", outcome.completion);
     take("map_restarts", outcome.map_restarts);
+    take("health", outcome.health);
     take("scale.windows", outcome.scale.windows);
     take("scale.mean", outcome.scale.mean);
     take("scale.sigma", outcome.scale.sigma);
@@ -82,7 +83,7 @@ class Numbers {
     if (writes_to_ != nullptr)
       writes_to_->figures.push_back({name, {}, {}, static_cast<double>(value)});
     else
-      value = static_cast<Number>(number(name, std::is_integral_v<Number>));
+      value = static_cast<Number>(number(name, !std::is_floating_point_v<Number>));
   }
   void take(const std::string& name, Banded& figure) {
     take(name, figure.value);
@@ -108,6 +109,12 @@ class Numbers {
   Outcome* writes_to_ = nullptr;
   std::map<std::string, double> read_;
 };
+
+std::optional<Health> health_of(const vio::FrameFacts& frame) {
+  for (const vio::FrameFact& fact : vio::kFrameFacts)
+    if (fact.name == "health") return static_cast<Health>(frame.*fact.of);
+  return std::nullopt;
+}
 
 RunOutcome compute(const Point& point, const Measure& how) {
   RunRequest request = point.request;
@@ -159,6 +166,7 @@ RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, con
   outcome.frames = expected;
   for (const FrameResult& frame : run.frames)
     outcome.map_restarts += static_cast<std::size_t>(frame.map_restarts);
+  if (!run.frames.empty()) outcome.health = health_of(run.frames.back());
   if (run.camera) outcome.loop = loop_of(run);
   return outcome;
 }

@@ -2,6 +2,7 @@
 // closed loop on a chip what became of its frames and what it took.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ struct LoopOutcome {
   std::optional<Banded> frame_j;  ///< per processed frame, idle time included
 };
 
+/// What a front end says of its map: its frame fact "health", if it has one.
+enum class Health : std::uint8_t { good, unreliable, lost };
+
 struct RunOutcome {
   std::string failure;          ///< why there are no errors; empty if there are
   std::optional<double> ate_m;  ///< RMSE
@@ -47,6 +51,7 @@ struct RunOutcome {
   std::size_t matched = 0;
   double completion = 0;
   std::size_t map_restarts = 0;
+  std::optional<Health> health;       ///< at the last frame
   traces::ScaleSummary scale;         ///< of the estimate over the truth
   std::optional<double> end_drift_m;  ///< traces::end_drift(); none if the path is too short
   double path_m = 0;                  ///< of the truth

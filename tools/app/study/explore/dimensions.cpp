@@ -8,7 +8,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "tools/app/run/workload_overrides.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::tools {
 namespace {

@@ -35,7 +35,8 @@ std::string digest_of_motion(const traces::MotionRecord& record) {
   return digest_of(files);
 }
 
-FlightMotion open_one(const FlightPlan& plan, const std::string& name, const fs::path& folder) {
+FlightMotion open_one_motion(const FlightPlan& plan, const std::string& name,
+                             const fs::path& folder) {
   const traces::MotionRecord record = traces::open_motion(folder);
   if (record.imu.empty())
     throw InputError(
@@ -55,22 +56,51 @@ FlightMotion open_one(const FlightPlan& plan, const std::string& name, const fs:
   return motion;
 }
 
+FlightMotion open_one_recording(const FlightPlan& plan, const std::string& name,
+                                const fs::path& folder) {
+  FlightMotion motion;
+  motion.recorded = true;
+  motion.sequence = open_sequence({name, folder.string()}, std::nullopt, {plan.size});
+  for (const traces::FrameRef& frame : traces::open_asl(folder).frames)
+    motion.stamps_ns.push_back(frame.t_ns);
+  return motion;
+}
+
+/// Where pieces begin that are no whole flights.
+std::vector<std::size_t> starts_of(const FlightMotion& motion, const FlightSet& set) {
+  if (!motion.recorded) return motion.starts.frames;
+  std::vector<std::size_t> starts;
+  for (std::size_t start = set.first; start < motion.stamps_ns.size(); start += set.step)
+    starts.push_back(start);
+  return starts;
+}
+
+/// The fewest frames of a piece that goes on to the end.
+std::size_t shortest_rest(const FlightPlan& plan) {
+  std::size_t longest = kFewestFrames - 1;
+  for (const std::size_t length : plan.lengths)
+    if (length != kRest) longest = std::max(longest, length);
+  return longest + 1;
+}
+
 /// The ranges of frames of a length in a flight, and how many starts have none.
 struct Ranges {
   std::vector<FrameRange> frames;
   std::size_t too_late = 0;
 };
 
-Ranges ranges_of(const FlightMotion& motion, std::size_t length) {
+Ranges ranges_of(const FlightPlan& plan, const FlightMotion& motion, const FlightSet& set,
+                 std::size_t length) {
   Ranges ranges;
   const std::size_t all = motion.stamps_ns.size();
   if (length == kWholeFlight) {
     ranges.frames.push_back({0, all});
     return ranges;
   }
-  for (const std::size_t start : motion.starts.frames)
-    if (length <= all - start)
-      ranges.frames.push_back({start, start + length});
+  const std::size_t needed = length == kRest ? shortest_rest(plan) : length;
+  for (const std::size_t start : starts_of(motion, set))
+    if (needed <= all - start)
+      ranges.frames.push_back({start, length == kRest ? all : start + length});
     else
       ++ranges.too_late;
   return ranges;
@@ -85,29 +115,42 @@ FlightPiece make_piece(const FlightMotion& motion, const FrameRange& frames) {
   return piece;
 }
 
-void add_pieces(Benchmark& benchmark, std::size_t length) {
+/// Those of a length, set and motion.
+void add_pieces(Benchmark& benchmark, std::size_t length, std::size_t set, std::size_t motion) {
   const FlightPlan& plan = benchmark.plan;
-  for (const FlightMotion& motion : benchmark.motions)
-    benchmark.too_late += ranges_of(motion, length).too_late;
-  for (std::size_t set = 0; set < plan.sets.size(); ++set)
-    for (std::size_t m = 0; m < benchmark.motions.size(); ++m)
-      for (const std::uint64_t world : plan.sets[set].worlds)
-        for (const FrameRange& frames : ranges_of(benchmark.motions[m], length).frames) {
-          FlightPiece& piece =
-              benchmark.pieces.emplace_back(make_piece(benchmark.motions[m], frames));
-          piece.motion = m;
-          piece.set = set;
-          piece.world = world;
-          piece.length = length;
-        }
+  const FlightMotion& flight = benchmark.motions[motion];
+  if (plan.sets[set].recorded() != flight.recorded) return;
+  const Ranges ranges = ranges_of(plan, flight, plan.sets[set], length);
+  // Starts of a motion are the same in all its sets.
+  const auto same = [&](const FlightPiece& p) { return p.motion == motion && p.length == length; };
+  if (flight.recorded || std::none_of(benchmark.pieces.begin(), benchmark.pieces.end(), same))
+    benchmark.too_late += ranges.too_late;
+  const std::vector<std::uint64_t> as_recorded{0};
+  for (const std::uint64_t world : flight.recorded ? as_recorded : plan.sets[set].worlds)
+    for (const FrameRange& frames : ranges.frames)
+      for (std::size_t d = 0; d < plan.disturbances.size(); ++d) {
+        FlightPiece& piece = benchmark.pieces.emplace_back(make_piece(flight, frames));
+        piece.motion = motion;
+        piece.set = set;
+        piece.world = world;
+        piece.disturbance = d;
+        piece.length = length;
+      }
 }
 
 /// What the pictures of a piece are made from, in place of their digests.
 std::string pictures_of(const Benchmark& benchmark, const FlightPiece& piece) {
   const auto& [width, height] = benchmark.plan.size;
-  return fmt::format("rendered {} world {} size {}x{} frames {}:{} by {}",
-                     benchmark.motions[piece.motion].sequence.inputs, piece.world, width, height,
-                     piece.frames.begin, piece.frames.end, flight_version());
+  const FlightMotion& motion = benchmark.motions[piece.motion];
+  const traces::Disturbance& disturbance = benchmark.plan.disturbances[piece.disturbance];
+  const std::string disturbed =
+      disturbance.kind == nullptr ? "" : fmt::format(" disturbed {}", disturbance.text());
+  if (motion.recorded)
+    return fmt::format("{} frames {}:{}{}", motion.sequence.work, piece.frames.begin,
+                       piece.frames.end, disturbed);
+  return fmt::format("rendered {} world {} size {}x{} frames {}:{} by {}{}", motion.sequence.inputs,
+                     piece.world, width, height, piece.frames.begin, piece.frames.end,
+                     flight_version(), disturbed);
 }
 
 /// "rendered/MH_01_easy-world-4-160x120-1a2b3c4d5e6f".
@@ -144,14 +187,21 @@ Benchmark make_benchmark(FlightPlan plan, const std::string& folder) {
   benchmark.plan = std::move(plan);
   for (const std::string& name : benchmark.plan.motions) {
     throw_if_interrupted();
-    benchmark.motions.push_back(open_one(benchmark.plan, name, fs::path(folder) / name));
+    benchmark.motions.push_back(open_one_motion(benchmark.plan, name, fs::path(folder) / name));
   }
-  for (const std::size_t length : benchmark.plan.lengths) add_pieces(benchmark, length);
+  for (const std::string& name : benchmark.plan.recordings) {
+    throw_if_interrupted();
+    benchmark.motions.push_back(open_one_recording(benchmark.plan, name, fs::path(folder) / name));
+  }
+  for (const std::size_t length : benchmark.plan.lengths)
+    for (std::size_t set = 0; set < benchmark.plan.sets.size(); ++set)
+      for (std::size_t motion = 0; motion < benchmark.motions.size(); ++motion)
+        add_pieces(benchmark, length, set, motion);
   if (benchmark.pieces.empty())
-    throw InputError(fmt::format(
-        "{}: no piece begins in mid-air every {:g} s and ends within its flight; expected shorter "
-        "pieces, or whole flights",
-        benchmark.plan.name, benchmark.plan.every_s));
+    throw InputError(
+        fmt::format("{}: no piece begins in mid-air (motions: every {:g} s) and ends within its "
+                    "flight; expected shorter pieces, or whole flights",
+                    benchmark.plan.name, benchmark.plan.every_s));
   return benchmark;
 }
 
@@ -172,6 +222,11 @@ std::vector<Point> benchmark_runs(const Benchmark& benchmark) {
         run.request.native = true;
         run.request.seed = seed;
         run.work = pictures_of(benchmark, piece);
+        run.request.disturbance = benchmark.plan.disturbances[piece.disturbance];
+        if (benchmark.motions[piece.motion].recorded) {
+          run.request.data = benchmark.motions[piece.motion].sequence.folder;
+          run.request.frames = piece.frames;
+        }
         run.sequence = &benchmark.motions[piece.motion].sequence;
         run.row = row_of(benchmark, v, p);
       }
@@ -181,7 +236,8 @@ std::vector<Point> benchmark_runs(const Benchmark& benchmark) {
 std::vector<DrawnFlight> drawn_flights(const Benchmark& benchmark) {
   std::map<std::pair<std::size_t, std::uint64_t>, std::vector<FrameRange>> all;
   for (const FlightPiece& piece : benchmark.pieces)
-    all[{piece.motion, piece.world}].push_back(piece.frames);
+    if (!benchmark.motions[piece.motion].recorded)
+      all[{piece.motion, piece.world}].push_back(piece.frames);
   std::vector<DrawnFlight> flights;
   for (auto& [of, ranges] : all)
     flights.push_back({of.first, of.second, merged(std::move(ranges))});

@@ -15,18 +15,20 @@
 
 namespace leviosim::tools {
 
-/// A motion of the plan, opened.
+/// A motion or recording of the plan, opened.
 struct FlightMotion {
-  Sequence sequence;  ///< of the whole flight; without pictures
+  Sequence sequence;  ///< of the whole flight; a motion's has no pictures
+  bool recorded = false;
   std::vector<std::int64_t> stamps_ns;
-  Starts starts;
+  Starts starts{};  ///< of a motion
 };
 
-/// Frames of a flight in one world.
+/// Frames of a flight in one world, or as they were recorded.
 struct FlightPiece {
   std::size_t motion = 0;  ///< of the benchmark
   std::size_t set = 0;     ///< of the plan
   std::uint64_t world = 0;
+  std::size_t disturbance = 0;        ///< of the plan
   std::size_t length = kWholeFlight;  ///< as in the plan
   traces::FrameRange frames;          ///< of the whole flight
   double start_s = 0;                 ///< from the first frame of the flight
@@ -35,22 +37,23 @@ struct FlightPiece {
 
 struct Benchmark {
   FlightPlan plan;
-  std::vector<FlightMotion> motions;
-  std::vector<FlightPiece> pieces;  ///< by length, set, motion, world, then start
+  std::vector<FlightMotion> motions;  ///< those of the plan, then its recordings
+  std::vector<FlightPiece> pieces;    ///< by length, set, motion, world, start, then disturbance
   std::size_t too_late =
       0;  ///< starts in motion from which a length goes beyond the end of a flight
 };
 
-/// @param folder  holds an ASL folder for each motion of the plan; images need not be there
+/// @param folder  holds an ASL folder for each motion and recording of the plan; images of motions
+///                need not be there
 /// @throws InputError naming the option or file
 Benchmark make_benchmark(FlightPlan plan, const std::string& folder);
 
 /// A run for each variant, piece and seed, in this order; its row is row_of(). The benchmark must
-/// outlive them. They name no data yet.
+/// outlive them. Those of motions name no data yet.
 std::vector<Point> benchmark_runs(const Benchmark& benchmark);
 std::size_t row_of(const Benchmark& benchmark, std::size_t variant, std::size_t piece);
 
-/// What is drawn of a motion in a world: the frames of all its pieces.
+/// What is drawn of a motion in a world: the frames of all its pieces. Recordings are not drawn.
 struct DrawnFlight {
   std::size_t motion = 0;
   std::uint64_t world = 0;

@@ -10,6 +10,16 @@
 
 namespace leviosim::tools {
 
+namespace {
+
+/// As front ends name it; nothing of those that say nothing.
+std::string health_text(const std::optional<Health>& health) {
+  if (!health) return {};
+  return *health == Health::good ? "good" : *health == Health::lost ? "lost" : "unreliable";
+}
+
+}  // namespace
+
 std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Point>& runs,
                                const std::vector<RunOutcome>& outcomes, const Measure& how) {
   using Run = const FinishedRun&;
@@ -22,6 +32,8 @@ std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Poi
               [&](Run r) { return plan.variants[r.point.row / benchmark.pieces.size()].name(); });
   columns.add("set", [=, &plan](Run r) { return plan.sets[piece_of(r).set].name; });
   columns.add("world", [=](Run r) { return piece_of(r).world; });
+  columns.add("disturbance",
+              [=, &plan](Run r) { return plan.disturbances[piece_of(r).disturbance].text(); });
   columns.add("piece", [=](Run r) { return length_text(piece_of(r).length); });
   columns.add("start_s", [=](Run r) { return base::fixed(piece_of(r).start_s, 3); });
   columns.add("first_frame", [=](Run r) { return piece_of(r).frames.begin; });
@@ -30,6 +42,7 @@ std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Poi
   columns.add("scale_sigma", [](Run r) { return base::fixed(r.outcome.scale.sigma, 6); });
   columns.add("end_drift_m", [](Run r) { return base::fixed(r.outcome.end_drift_m, 6); });
   columns.add("map_restarts", [](Run r) { return r.outcome.map_restarts; });
+  columns.add("health", [](Run r) { return health_text(r.outcome.health); });
   return runs_csv(runs, outcomes, how, std::move(columns));
 }
 
@@ -42,8 +55,11 @@ std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result
   table.add("variant", [&](R r) { return plan.variants[r.variant].name(); });
   table.add("piece", [=](R r) { return length_text(piece_of(r).length); });
   table.add("set", [=, &plan](R r) { return plan.sets[piece_of(r).set].name; });
-  table.add("motion", [=, &plan](R r) { return plan.motions[piece_of(r).motion]; });
+  table.add("motion",
+            [=, &benchmark](R r) { return benchmark.motions[piece_of(r).motion].sequence.name; });
   table.add("world", [=](R r) { return piece_of(r).world; });
+  table.add("disturbance",
+            [=, &plan](R r) { return plan.disturbances[piece_of(r).disturbance].text(); });
   table.add("start_s", [=](R r) { return fixed(piece_of(r).start_s, 3); });
   table.add("first_frame", [=](R r) { return piece_of(r).frames.begin; });
   table.add("frames", [=](R r) { return piece_of(r).frames.end - piece_of(r).frames.begin; });
@@ -63,6 +79,8 @@ std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result
   add("scale_sigma", [](R r) { return r.scale_sigma.median; });
   add("end_drift_m", [](R r) { return r.end_drift.median; });
   table.add("diverged", [](R r) { return r.diverged; });
+  table.add("failed", [](R r) { return r.failed; });
+  table.add("silent", [](R r) { return r.alarms.silent; });
   table.add("map_restarts", [](R r) { return r.map_restarts; });
   return table.text(result.pieces);
 }
@@ -97,6 +115,7 @@ Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
                   {"set", "set", "", true},
                   {"sequence", "motion", "", true},
                   {"world", "world", "", true},
+                  {"disturbance", "disturbance", "", true},
                   {"start_s", "start", "s", true},
                   {"seed", "seed", "", true},
                   {"path_m", "path", "m", true},

@@ -28,7 +28,12 @@ std::string interval_text(const MedianInterval& interval, int decimals) {
 }
 
 std::string motion_name(const Benchmark& benchmark, const BenchmarkRow& row) {
-  return row.motion ? benchmark.plan.motions[*row.motion] : kAllMotions;
+  return row.motion ? benchmark.motions[*row.motion].sequence.name : kAllMotions;
+}
+
+/// "3 of 4".
+std::string alarm_text(const Alarms& alarms, std::size_t count, std::size_t of) {
+  return alarms.runs > 0 ? fmt::format("{} of {}", count, of) : kNothing;
 }
 
 /// Percent of the path for pieces, which differ in length; metres as well for whole flights.
@@ -37,6 +42,7 @@ TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
   TextTable table({{"profile", kLeft, 1},
                    {"piece", kLeft, 1},
                    {"set", kLeft},
+                   {"disturbance", kLeft, 1},
                    {"motion", kLeft},
                    {"pieces", kRight, 4},
                    {"ATE %"},
@@ -49,18 +55,34 @@ TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
                    {"scale", kRight, 4},
                    {"σ %", kRight, 3},
                    {"diverged"},
+                   {"failed"},
+                   {"told", kRight, 1},
+                   {"false", kRight, 1},
+                   {"silent", kRight, 1},
                    {"restarts", kRight, 5}});
   for (const BenchmarkRow& row : result.rows)
-    table.add({plan.variants[row.variant].name(), length_text(row.length), plan.sets[row.set].name,
-               motion_name(benchmark, row), fmt::format("{}", row.pieces),
-               error_text(row.percent.median, 2), interval_text(row.percent.over_pieces, 2),
-               interval_text(row.percent.over_seeds, 2), error_text(row.percent.worst, 2),
-               error_text(row.metres.median, 3), error_text(row.metres.worst, 3),
-               figure_text(row.end_drift.median, 3), figure_text(row.scale.median, 3),
+    table.add({plan.variants[row.variant].name(),
+               length_text(row.length),
+               plan.sets[row.set].name,
+               plan.disturbances[row.disturbance].text(),
+               motion_name(benchmark, row),
+               fmt::format("{}", row.pieces),
+               error_text(row.percent.median, 2),
+               interval_text(row.percent.over_pieces, 2),
+               interval_text(row.percent.over_seeds, 2),
+               error_text(row.percent.worst, 2),
+               error_text(row.metres.median, 3),
+               error_text(row.metres.worst, 3),
+               figure_text(row.end_drift.median, 3),
+               figure_text(row.scale.median, 3),
                figure_text(row.scale_sigma.median ? std::optional(100 * *row.scale_sigma.median)
                                                   : std::nullopt,
                            1),
                fmt::format("{} of {}", row.diverged, row.runs),
+               fmt::format("{}", row.failed),
+               alarm_text(row.alarms, row.alarms.told, row.alarms.failed),
+               alarm_text(row.alarms, row.alarms.false_alarms, row.alarms.right),
+               row.alarms.runs > 0 ? fmt::format("{}", row.alarms.silent) : kNothing,
                fmt::format("{}", row.map_restarts)});
   return table;
 }
@@ -94,15 +116,20 @@ std::string notes(const Benchmark& benchmark, const BenchmarkResult& result,
       "{0}end: error of the last second after an alignment of the first 5 % of the path, median of "
       "runs\n"
       "{0}scale of the estimate in windows of 5 s, and its standard deviation in a flight: medians "
-      "of runs; diverged: an error above the path\n",
-      bullet, fmt::join(plan.seeds, ", "), confidences(of_pieces), confidences(of_seeds));
+      "of runs; diverged: an error above the path\n"
+      "{0}failed: runs that diverged, are lost, or have an error above {4:g} %; told: of those "
+      "with "
+      "such an error, runs that end unreliable or lost; false: the same of runs below {5:g} %; "
+      "silent: runs above {6:g} % that end good\n",
+      bullet, fmt::join(plan.seeds, ", "), confidences(of_pieces), confidences(of_seeds),
+      kFailedPercent, kRightPercent, kSilentPercent);
   text += fmt::format(
       "{}a piece begins every {:g} s where the vehicle moves; left out of these starts: {} at "
       "rest, "
       "{} too near the end\n",
       bullet, plan.every_s, at_rest, benchmark.too_late);
   for (const FlightSet& set : plan.sets)
-    text += fmt::format("{}{}: worlds {}\n", bullet, set.name, fmt::join(set.worlds, ", "));
+    text += fmt::format("{}{}: {}\n", bullet, set.name, set.text());
   return text;
 }
 
@@ -135,10 +162,19 @@ Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
   return {{"variant", plan.variants[row.variant].name()},
           {"piece", length_text(row.length)},
           {"set", plan.sets[row.set].name},
-          {"motion", row.motion ? Json(plan.motions[*row.motion]) : Json(nullptr)},
+          {"disturbance", plan.disturbances[row.disturbance].text()},
+          {"motion", row.motion ? Json(motion_name(benchmark, row)) : Json(nullptr)},
           {"pieces", row.pieces},
           {"runs", row.runs},
           {"diverged", row.diverged},
+          {"failed", row.failed},
+          {"alarms",
+           {{"runs", row.alarms.runs},
+            {"failed", row.alarms.failed},
+            {"told", row.alarms.told},
+            {"right", row.alarms.right},
+            {"false", row.alarms.false_alarms},
+            {"silent", row.alarms.silent}}},
           {"map_restarts", row.map_restarts},
           {"ate_percent", error_json(row.percent, "%")},
           {"ate", error_json(row.metres, "m")},

@@ -57,7 +57,11 @@ PieceRow piece_row(std::size_t variant, std::size_t piece, const Seeds& seeds) {
   row.scale_sigma = spread_of_known({&seeds}, scale_sigma);
   row.end_drift = spread_of_known({&seeds}, end_drift);
   row.diverged = row.percent.failed;
-  for (const RunOutcome& outcome : seeds) row.map_restarts += outcome.map_restarts;
+  for (const RunOutcome& outcome : seeds) {
+    row.map_restarts += outcome.map_restarts;
+    row.failed += failed(outcome) ? 1 : 0;
+    row.alarms.add(outcome);
+  }
   return row;
 }
 
@@ -74,10 +78,13 @@ class RowMaker {
     for (std::size_t p = 0; p < benchmark_.pieces.size(); ++p) {
       const FlightPiece& piece = benchmark_.pieces[p];
       if (piece.length != row.length || piece.set != row.set) continue;
+      if (piece.disturbance != row.disturbance) continue;
       if (row.motion && piece.motion != *row.motion) continue;
       const std::size_t at = row_of(benchmark_, row.variant, p);
       mine.push_back(&outcomes_[at]);
       row.diverged += pieces_[at].diverged;
+      row.failed += pieces_[at].failed;
+      for (const RunOutcome& outcome : outcomes_[at]) row.alarms.add(outcome);
       row.map_restarts += pieces_[at].map_restarts;
     }
     if (mine.empty()) return std::nullopt;
@@ -105,6 +112,25 @@ std::optional<double> error_percent(const RunOutcome& outcome) {
   return 100 * *error / outcome.path_m;
 }
 
+bool failed(const RunOutcome& outcome) {
+  const std::optional<double> error = error_percent(outcome);
+  return !error || *error > kFailedPercent || outcome.health == Health::lost;
+}
+
+void Alarms::add(const RunOutcome& outcome) {
+  if (!outcome.health) return;
+  const std::optional<double> error = error_percent(outcome);
+  const bool good = outcome.health == Health::good;
+  const bool wrong = !error || *error > kFailedPercent;
+  const auto count = [](bool is) { return is ? std::size_t{1} : std::size_t{0}; };
+  runs += 1;
+  failed += count(wrong);
+  told += count(wrong && !good);
+  right += count(error && *error < kRightPercent);
+  false_alarms += count(error && *error < kRightPercent && !good);
+  silent += count((!error || *error > kSilentPercent) && good);
+}
+
 BenchmarkResult condense(const Benchmark& benchmark, const std::vector<Point>& runs,
                          const std::vector<RunOutcome>& outcomes) {
   const FlightPlan& plan = benchmark.plan;
@@ -121,15 +147,18 @@ BenchmarkResult condense(const Benchmark& benchmark, const std::vector<Point>& r
   };
   for (std::size_t variant = 0; variant < plan.variants.size(); ++variant)
     for (const std::size_t length : plan.lengths)
-      for (std::size_t set = 0; set < plan.sets.size(); ++set) {
-        BenchmarkRow row;
-        row.variant = variant;
-        row.length = length;
-        row.set = set;
-        for (row.motion = 0; *row.motion < plan.motions.size(); ++*row.motion) add(row);
-        row.motion.reset();
-        if (plan.motions.size() > 1) add(row);
-      }
+      for (std::size_t set = 0; set < plan.sets.size(); ++set)
+        for (std::size_t d = 0; d < plan.disturbances.size(); ++d) {
+          BenchmarkRow row;
+          row.variant = variant;
+          row.length = length;
+          row.set = set;
+          row.disturbance = d;
+          for (row.motion = 0; *row.motion < benchmark.motions.size(); ++*row.motion) add(row);
+          row.motion.reset();
+          const bool recorded = plan.sets[set].recorded();
+          if ((recorded ? plan.recordings : plan.motions).size() > 1) add(row);
+        }
   return result;
 }
 

@@ -15,6 +15,29 @@ namespace leviosim::tools {
 /// ATE over the length of the true path; none if the run diverged. [%]
 std::optional<double> error_percent(const RunOutcome& outcome);
 
+/// Beyond it a run failed, whether it is lost or only wrong. [% of the path]
+inline constexpr double kFailedPercent = 10;
+/// Up to it a run is right. [%]
+inline constexpr double kRightPercent = 3;
+/// Beyond it nobody may call a run good. [%]
+inline constexpr double kSilentPercent = 20;
+
+/// What runs said of themselves at their end, against what they were. Runs that say nothing, for
+/// their front end has no "health", do not count.
+struct Alarms {
+  std::size_t runs = 0;    ///< that say something
+  std::size_t failed = 0;  ///< of these
+  std::size_t told = 0;    ///< of the failed: that do not call themselves good
+  std::size_t right = 0;
+  std::size_t false_alarms = 0;  ///< of the right: that do not call themselves good
+  std::size_t silent = 0;        ///< error above kSilentPercent, and good
+
+  void add(const RunOutcome& outcome);
+};
+
+/// Whether a run diverged, is lost, or has an error above kFailedPercent.
+bool failed(const RunOutcome& outcome);
+
 /// A variant on a piece, over the seeds.
 struct PieceRow {
   std::size_t variant = 0;  ///< of the plan
@@ -25,7 +48,9 @@ struct PieceRow {
   Spread scale_sigma;       ///< of runs with two windows or more
   Spread end_drift;         ///< of runs whose path is long enough
   std::size_t diverged = 0;
+  std::size_t failed = 0;        ///< runs, those that diverged among them
   std::size_t map_restarts = 0;  ///< of all runs
+  Alarms alarms;
 };
 
 /// An error over the pieces of a row. What does not exist is that of runs that diverged.
@@ -36,16 +61,19 @@ struct RowError {
   std::optional<double> worst;  ///< of all runs
 };
 
-/// A variant on all pieces of a length, set and motion.
+/// A variant on all pieces of a length, set, motion and disturbance.
 struct BenchmarkRow {
   std::size_t variant = 0;
   std::size_t length = kWholeFlight;
   std::size_t set = 0;
   std::optional<std::size_t> motion;  ///< none: all of them
+  std::size_t disturbance = 0;
   std::size_t pieces = 0;
   std::size_t runs = 0;
   std::size_t diverged = 0;
+  std::size_t failed = 0;
   std::size_t map_restarts = 0;
+  Alarms alarms;
   RowError percent;
   RowError metres;
   Spread scale;        ///< of the runs that have one
@@ -54,8 +82,9 @@ struct BenchmarkRow {
 };
 
 struct BenchmarkResult {
-  std::vector<PieceRow> pieces;    ///< by row_of()
-  std::vector<BenchmarkRow> rows;  ///< by variant, length, set, motion; all motions last
+  std::vector<PieceRow> pieces;  ///< by row_of()
+  std::vector<BenchmarkRow>
+      rows;  ///< by variant, length, set, disturbance, motion; all motions last
 };
 
 /// @param runs  benchmark_runs()

@@ -24,7 +24,6 @@ using platform::Place;
 using platform::YamlEntry;
 using platform::YamlNode;
 
-constexpr std::int64_t kFewestFrames = 3;  // that can be aligned
 constexpr std::int64_t kMostFrames = 1'000'000;
 constexpr double kLeastEvery = 0.01;
 
@@ -43,8 +42,9 @@ class PlanReader {
 
   FlightPlan read() {
     const YamlNode root = platform::parse_yaml(file_, plan_.text);
-    const std::vector<std::string> keys{"motions", "worlds", "pieces",  "every",
-                                        "seeds",   "size",   "variants"};
+    const std::vector<std::string> keys{"motions",      "worlds",  "recordings", "starts",
+                                        "pieces",       "every",   "seeds",      "size",
+                                        "disturbances", "variants"};
     const std::vector<YamlEntry> all = platform::entries_of(root, file_, "");
     for (const YamlEntry& entry : all) {
       if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
@@ -52,9 +52,18 @@ class PlanReader {
                                       base::did_you_mean(entry.key, keys), fmt::join(keys, ", ")));
       read_key(entry);
     }
-    for (const char* key : {"motions", "worlds", "pieces"})
-      if (std::none_of(all.begin(), all.end(), [&](const YamlEntry& e) { return e.key == key; }))
-        Place{file_}.fail(fmt::format("missing key '{}'", key));
+    const auto has = [&](const char* key) {
+      return std::any_of(all.begin(), all.end(), [&](const YamlEntry& e) { return e.key == key; });
+    };
+    const auto need = [&](const char* key) {
+      if (!has(key)) Place{file_}.fail(fmt::format("missing key '{}'", key));
+    };
+    if (has("motions") || has("worlds") || !has("recordings"))
+      for (const char* key : {"motions", "worlds"}) need(key);
+    if (has("recordings") || has("starts"))
+      for (const char* key : {"recordings", "starts"}) need(key);
+    need("pieces");
+    if (plan_.disturbances.empty()) plan_.disturbances.emplace_back();
     if (plan_.variants.empty()) plan_.variants = {{"next", {}}};
     return std::move(plan_);
   }
@@ -68,11 +77,18 @@ class PlanReader {
     const Place at = place(entry);
     if (entry.key == "motions") {
       for (const Item& item : items(entry, at)) plan_.motions.push_back(plain_name(item));
-    } else if (entry.key == "worlds") {
+    } else if (entry.key == "recordings") {
+      for (const Item& item : items(entry, at)) plan_.recordings.push_back(plain_name(item));
+    } else if (entry.key == "worlds" || entry.key == "starts") {
       read_sets(entry);
     } else if (entry.key == "pieces") {
       for (const Item& item : items(entry, at))
-        plan_.lengths.push_back(item.text == "whole" ? kWholeFlight : frames(item));
+        plan_.lengths.push_back(item.text == "whole"  ? kWholeFlight
+                                : item.text == "rest" ? kRest
+                                                      : frames(item));
+    } else if (entry.key == "disturbances") {
+      for (const Item& item : items(entry, at))
+        checked(at, [&] { plan_.disturbances.push_back(traces::parse_disturbance(item.text)); });
     } else if (entry.key == "seeds") {
       plan_.seeds.clear();
       for (const Item& item : items(entry, at))
@@ -123,7 +139,7 @@ class PlanReader {
     std::size_t count = 0;
     checked(item.place, [&] {
       count = static_cast<std::size_t>(
-          parse_whole("frames", item.text, kFewestFrames, kMostFrames, ", or whole"));
+          parse_whole("frames", item.text, kFewestFrames, kMostFrames, ", rest, or whole"));
     });
     return count;
   }
@@ -145,20 +161,37 @@ class PlanReader {
     return item.text;
   }
 
-  void read_sets(const YamlEntry& worlds) {
-    std::set<std::uint64_t> seen;
-    for (const YamlEntry& entry : platform::entries_of(worlds.value, file_, "worlds")) {
-      const Place at = place(entry, "worlds");
+  void read_sets(const YamlEntry& sets) {
+    for (const YamlEntry& entry : platform::entries_of(sets.value, file_, sets.key)) {
+      const Place at = place(entry, sets.key);
       FlightSet set{plain_name({entry.key, at}), {}};
-      for (const Item& item : items(entry, at)) {
-        set.worlds.push_back(
-            whole<std::uint64_t>("a world", item, 0, std::numeric_limits<std::int64_t>::max()));
-        if (!seen.insert(set.worlds.back()).second)
-          at.fail(fmt::format("world {} is in another set, too; sets share no world", item.text));
-      }
+      for (const FlightSet& other : plan_.sets)
+        if (other.name == set.name) at.fail(fmt::format("there is a set '{}' already", set.name));
+      if (sets.key == "worlds")
+        read_worlds(items(entry, at), set);
+      else
+        read_starts(items(entry, at), at, set);
       plan_.sets.push_back(std::move(set));
     }
-    if (plan_.sets.empty()) place(worlds).fail("is empty; expected sets of worlds");
+    if (plan_.sets.empty())
+      place(sets).fail(fmt::format("is empty; expected sets of {}", sets.key));
+  }
+
+  void read_worlds(const std::vector<Item>& worlds, FlightSet& set) {
+    for (const Item& item : worlds) {
+      set.worlds.push_back(
+          whole<std::uint64_t>("a world", item, 0, std::numeric_limits<std::int64_t>::max()));
+      if (!worlds_.insert(set.worlds.back()).second)
+        item.place.fail(
+            fmt::format("world {} is in another set, too; sets share no world", item.text));
+    }
+  }
+
+  static void read_starts(const std::vector<Item>& starts, const Place& at, FlightSet& set) {
+    if (starts.size() != 2)
+      at.fail("expected [FIRST, STEP]: the frame of the first start, and frames to the next one");
+    set.first = whole<std::size_t>("a frame", starts[0], 0, kMostFrames);
+    set.step = whole<std::size_t>("frames", starts[1], 1, kMostFrames);
   }
 
   void read_variants(const YamlEntry& variants) {
@@ -187,12 +220,19 @@ class PlanReader {
 
   std::string file_;
   FlightPlan plan_;
+  std::set<std::uint64_t> worlds_;  ///< of all sets
 };
 
 }  // namespace
 
 std::string length_text(std::size_t frames) {
+  if (frames == kRest) return "rest";
   return frames == kWholeFlight ? "whole" : fmt::format("{} frames", frames);
+}
+
+std::string FlightSet::text() const {
+  return recorded() ? fmt::format("frames {}, {}, ... of recordings", first, first + step)
+                    : fmt::format("worlds {}", fmt::join(worlds, ", "));
 }
 
 std::string FlightVariant::name() const {

@@ -5,9 +5,16 @@
 //   worlds:                                   # seeds of what is drawn, in sets
 //     development: [1, 2, 3]
 //     fresh: [4, 5, 6]
-//   pieces: [90, 400, whole]                  # frames from every start in mid-air; whole flights
+//   pieces: [90, 400, rest, whole]            # frames from every start in mid-air; from there to
+//                                             # the end; whole flights
 //   every: 20                                 # seconds from start to start [20]
-//   seeds: [1, 2, 3]                          # of the workload's random draws [1, 2, 3]
+//   recordings: [MH_01_easy_t05_t20]          # folders with pictures, in place of motions or
+//   beside starts:                                   # in recordings: the first frame and the step,
+//   in sets
+//     even: [0, 20]
+//     odd: [10, 20]
+//   disturbances: [none, noise=10]            # of all pieces (traces/datasets/disturbance.h)
+//   [none] seeds: [1, 2, 3]                          # of the workload's random draws [1, 2, 3]
 //   size: 160x120                             # of the images [160x120]
 //   variants:                                 # [next]
 //     - { profile: next, workload.window: 8 }
@@ -15,11 +22,13 @@
 // All faults are InputErrors with file, line, key and the nearest valid name.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sim/base/builtin_file.h"
+#include "traces/datasets/disturbance.h"
 #include "traces/datasets/image_preparation.h"
 #include "workload/vio/parameters.h"
 
@@ -27,13 +36,25 @@ namespace leviosim::tools {
 
 /// In place of a number of frames: from the first to the last.
 inline constexpr std::size_t kWholeFlight = 0;
+/// In place of a number of frames: from every start to the last frame, where that is longer than
+/// all pieces of the plan that have a number.
+inline constexpr std::size_t kRest = std::numeric_limits<std::size_t>::max();
 
-/// "90 frames", "whole".
+/// The fewest of a piece: that can be aligned.
+inline constexpr std::size_t kFewestFrames = 3;
+
+/// "90 frames", "rest", "whole".
 std::string length_text(std::size_t frames);
 
 struct FlightSet {
-  std::string name;  ///< "fresh"
-  std::vector<std::uint64_t> worlds;
+  std::string name;                   ///< "fresh"
+  std::vector<std::uint64_t> worlds;  ///< in which motions are drawn; none: recordings as they are
+  std::size_t first = 0;              ///< frame of a recording at which its first piece begins
+  std::size_t step = 1;               ///< frames from there to the next one
+
+  bool recorded() const { return worlds.empty(); }
+  /// "worlds 1, 2, 3", "frames 10, 30, ...".
+  std::string text() const;
 };
 
 struct FlightVariant {
@@ -48,8 +69,10 @@ struct FlightPlan {
   std::string name;  ///< or file
   std::string text;
   std::vector<std::string> motions;
+  std::vector<std::string> recordings;
   std::vector<FlightSet> sets;
-  std::vector<std::size_t> lengths;  ///< of the pieces, in frames; kWholeFlight
+  std::vector<std::size_t> lengths;               ///< of the pieces, in frames; kRest, kWholeFlight
+  std::vector<traces::Disturbance> disturbances;  ///< of every piece; never empty
   double every_s = 20;
   std::vector<std::uint32_t> seeds{1, 2, 3};
   traces::ImageSize size{160, 120};

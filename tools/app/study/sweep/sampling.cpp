@@ -8,7 +8,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/interruption.h"
-#include "traces/synthesis/rng.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::tools {
 namespace {
