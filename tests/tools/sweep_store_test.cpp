@@ -103,7 +103,7 @@ TEST(SweepStore, ReadsTheVersionBeforeAndRefusesLaterOnes) {
   };
   set_format(kSweepFormatBefore);
   {
-    SweepStore before(folder.path());
+    SweepStore before(folder.path(), Database::Mode::existing);
     EXPECT_EQ(latency(before, 1), 5);
     EXPECT_EQ(before.place(), std::nullopt);
     before.keep_place(folder / "plan.yaml");

@@ -126,7 +126,7 @@ void merge(const SweepWords& words) {
       {"--merge", words.merge.front(), {words.merge.begin() + 1, words.merge.end()}, {}});
   if (words.force) out.empty();
   SweepStore(fs::path(words.merge[1])).copy_plan_to(out.path());
-  SweepStore store(out.path());
+  SweepStore store(out.path(), Database::Mode::existing);
   for (std::size_t i = 1; i < words.merge.size(); ++i) {
     throw_if_interrupted();
     SweepStore part{fs::path(words.merge[i])};

@@ -1,6 +1,12 @@
 // As much of SQLite as sweeps need: statements with bound values, rows one after the other. Faults,
 // such as a file that is no data base or a full disk, are InputErrors that name the file. Waiting
 // for other processes and long statements end with Interrupted (sim/base/interruption.h).
+//
+// A data base may be a stranger's. SQLite would play back a journal beside it, and delete whatever
+// file that names as its super-journal: a journal that names one, and whatever else beside the file
+// would be opened but is none, is refused before SQLite sees it. Functions in its schema are not
+// trusted, triggers do not run, values are bounded, and statements end after a number of steps that
+// grows with the file.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +22,11 @@ namespace leviosim::tools {
 
 class Database {
  public:
-  enum class Mode { create, existing };
+  enum class Mode {
+    create,
+    existing,
+    read_only  ///< changes nothing, and refuses what a killed process left half-done
+  };
 
   Database(const std::filesystem::path& file, Mode mode);
   ~Database();
@@ -31,8 +41,12 @@ class Database {
 
  private:
   friend class Statement;
+  void confine();
+  static int is_to_stop(void* database);
+
   std::string file_;
   sqlite3* handle_ = nullptr;
+  std::uint64_t steps_ = 0;  ///< of SQLite's machine, in long statements
 };
 
 class Statement {

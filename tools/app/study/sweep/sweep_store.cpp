@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "platform_models/loader/dimension.h"
 #include "sim/base/csv_table.h"
@@ -59,6 +60,37 @@ void say_place(Database& database, const fs::path& plan, const fs::path& folder)
   say(database, "format", kSweepFormat);
 }
 
+enum class Schema { empty, of_sweep, foreign };
+
+/// Whether the tables are those of a sweep, word by word: what else a stranger's would compute when
+/// they are read is not run. Tables and views of other names are not looked at.
+Schema schema_of(Database& database) {
+  static constexpr const char* kEntries =
+      "SELECT name, type, sql, tbl_name FROM sqlite_master WHERE sql IS NOT NULL";
+  Database expected("", Database::Mode::create);  // in memory
+  expected.run(kSweepTables);
+  std::map<std::string, std::pair<std::string, std::string>> ours;
+  for (Statement entry(expected, kEntries); entry.step();)
+    ours[entry.text(0)] = {entry.text(1), entry.text(2)};
+  bool is_empty = true;
+  std::set<std::string> found;
+  for (Statement entry(database, kEntries); entry.step();) {
+    is_empty = false;
+    const auto same = ours.find(entry.text(0));
+    if (same != ours.end()) {
+      if (same->second != std::pair(entry.text(1), entry.text(2))) return Schema::foreign;
+      found.insert(same->first);
+    } else if (ours.count(entry.text(3)) > 0) {
+      return Schema::foreign;  // an index or a trigger of our tables
+    }
+  }
+  if (is_empty) return Schema::empty;
+  const bool is_whole = std::all_of(ours.begin(), ours.end(), [&](const auto& entry) {
+    return entry.first == "front" || found.count(entry.first) > 0;  // later than the others
+  });
+  return is_whole ? Schema::of_sweep : Schema::foreign;
+}
+
 bool is_objective(const std::string& name) {
   return std::any_of(kObjectives.begin(), kObjectives.end(),
                      [&](const Objective& o) { return o.figure == name; });
@@ -69,7 +101,9 @@ bool is_objective(const std::string& name) {
 SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const SweepPoints& points)
     : folder_(folder), database_(made(folder), Database::Mode::create) {
   Transaction transaction(database_);
+  if (schema_of(database_) == Schema::foreign) database_.fail("is no file of leviosim sweep");
   database_.run(kSweepTables);
+  if (planned() > 0) expect_known_format();
   database_.run(fmt::format("PRAGMA application_id = {}", kSweepApplication));
   if (planned() > 0) {
     if (!holds(points))
@@ -118,12 +152,13 @@ void SweepStore::plan(const SweepPoints& points) {
   }
 }
 
-SweepStore::SweepStore(const fs::path& folder)
-    : folder_(folder), database_(existing(folder), Database::Mode::existing) {
-  Statement tables(database_,
-                   "SELECT COUNT(*) FROM sqlite_master WHERE name IN ('sweep', 'planned')");
-  tables.step();
-  if (tables.whole(0) != 2) database_.fail("is no file of leviosim sweep");
+SweepStore::SweepStore(const fs::path& folder, Database::Mode mode)
+    : folder_(folder), database_(existing(folder), mode) {
+  if (schema_of(database_) != Schema::of_sweep) database_.fail("is no file of leviosim sweep");
+  expect_known_format();
+}
+
+void SweepStore::expect_known_format() {
   if (const auto format = fact("format"); format != kSweepFormat && format != kSweepFormatBefore)
     database_.fail(fmt::format("is of a version that is not known; expected '{}'", kSweepFormat));
 }
@@ -361,16 +396,8 @@ std::optional<std::string> SweepStore::publish(base::OutputFile& file) {
 
 bool is_sweep(const fs::path& folder, bool may_be_empty) {
   Database database(folder / kSweepFile, Database::Mode::existing);
-  const auto count = [&](const char* sql) {
-    Statement statement(database, sql);
-    return statement.step() ? statement.whole(0) : 0;
-  };
-  if (count("PRAGMA application_id") == kSweepApplication) return true;
-  // Those of before were not marked.
-  if (count("SELECT COUNT(*) FROM sqlite_master WHERE name IN ('sweep', 'planned', 'outcomes')") ==
-      3)
-    return true;
-  return may_be_empty && count("SELECT COUNT(*) FROM sqlite_master") == 0;
+  const Schema schema = schema_of(database);
+  return schema == Schema::of_sweep || (may_be_empty && schema == Schema::empty);
 }
 
 void empty_sweep(const fs::path& folder) {

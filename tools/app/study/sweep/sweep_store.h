@@ -35,7 +35,8 @@ class SweepStore {
   SweepStore(const std::filesystem::path& folder, const std::string& plan,
              const SweepPoints& points);
   /// Opens what is there. @throws InputError if it is no sweep's
-  explicit SweepStore(const std::filesystem::path& folder);
+  explicit SweepStore(const std::filesystem::path& folder,
+                      Database::Mode mode = Database::Mode::read_only);
 
   std::set<int> finished();
   void put(int point, const Outcome& result);
@@ -79,6 +80,7 @@ class SweepStore {
  private:
   using Keys = std::vector<std::pair<int, std::string>>;
 
+  void expect_known_format();
   /// A row of the table `sweep`.
   std::optional<std::string> fact(std::string_view name);
   Keys keys();
