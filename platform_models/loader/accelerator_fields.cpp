@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "platform_models/loader/member_values.h"
 #include "platform_models/loader/rules.h"
 #include "sim/base/error.h"
 #include "sim/energy/model.h"
@@ -26,14 +27,15 @@ constexpr double kMaxEnergy = 1e-3;  // joules
 struct Side {
   std::string_view section;
   sim::Accelerators& (*of)(ChipConfig&);
-  EnergyConfig::Items& (*energies)(EnergyConfig&);
+  EnergyConfig::Items EnergyConfig::*energies;
+  sim::AreaConfig::Accelerators sim::AreaConfig::*areas;
   bool has_l1;
 };
 const std::array<Side, 2> kSides = {{
     {"cluster", [](ChipConfig& c) -> sim::Accelerators& { return c.cluster.accelerators; },
-     [](EnergyConfig& e) -> EnergyConfig::Items& { return e.cluster_accelerators; }, true},
+     &EnergyConfig::cluster_accelerators, &sim::AreaConfig::cluster_accelerators, true},
     {"controller", [](ChipConfig& c) -> sim::Accelerators& { return c.controller.accelerators; },
-     [](EnergyConfig& e) -> EnergyConfig::Items& { return e.controller_accelerators; }, false},
+     &EnergyConfig::controller_accelerators, &sim::AreaConfig::controller_accelerators, false},
 }};
 
 std::string section_of(const Side& side, const work::OffloadKindInfo& kernel) {
@@ -96,26 +98,37 @@ Field units_of(const Side& side, const work::OffloadKindInfo& kernel) {
   return field;
 }
 
-Field energy_of(const Side& side, const work::OffloadKindInfo& kernel) {
-  const std::size_t k = work::index(kernel.kernel);
-  Field field = row(section_of(side, kernel) + ".energy", kEnergy, 0, kMaxEnergy,
-                    fmt::format("of a unit for an item ({}), memory aside", kernel.item));
-  const auto energies = side.energies;
+/// A number with a band. @param all  the numbers of all kinds of kernel in the chip's `range`
+template <class Range, class All>
+Field banded(Field field, std::size_t k, Range ChipConfig::*range, All all) {
   field.set = [=](ChipConfig& chip, double value) {
-    for (EnergyConfig* config : {&chip.energy.value, &chip.energy.low, &chip.energy.high})
-      energies(*config)[k] = Joules(value);
+    Range& r = chip.*range;
+    for (auto* numbers : {&r.value, &r.low, &r.high}) put((numbers->*all)[k], value);
   };
-  field.get = [=](const ChipConfig& chip) {
-    return energies(const_cast<ChipConfig&>(chip).energy.value)[k].count();
-  };
+  field.get = [=](const ChipConfig& chip) { return as_number(((chip.*range).value.*all)[k]); };
   field.set_band = [=](ChipConfig& chip, double low, double high) {
-    energies(chip.energy.low)[k] = Joules(low);
-    energies(chip.energy.high)[k] = Joules(high);
+    put(((chip.*range).low.*all)[k], low);
+    put(((chip.*range).high.*all)[k], high);
   };
   return field;
 }
 
-bool is_energy(const Field& field) { return field.dimension == &kEnergy; }
+Field energy_of(const Side& side, const work::OffloadKindInfo& kernel) {
+  return banded(row(section_of(side, kernel) + ".energy", kEnergy, 0, kMaxEnergy,
+                    fmt::format("of a unit for an item ({}), memory aside", kernel.item)),
+                work::index(kernel.kernel), &ChipConfig::energy, side.energies);
+}
+
+Field area_of(const Side& side, const work::OffloadKindInfo& kernel) {
+  return banded(row(section_of(side, kernel) + ".area", kGates, 0, kMaxGates,
+                    fmt::format("size of a unit; unknown unless said: {}", kernel.description)),
+                work::index(kernel.kernel), &ChipConfig::area, side.areas);
+}
+
+/// Whether a platform may leave the number out and have the rest of the accelerator.
+bool may_be_missing(const Field& field, bool knows_energy) {
+  return field.dimension == &kGates || (field.dimension == &kEnergy && !knows_energy);
+}
 
 }  // namespace
 
@@ -129,6 +142,7 @@ std::vector<Field> accelerator_fields(std::string_view section) {
         if (number.member != &AcceleratorConfig::l1_words || side.has_l1)
           fields.push_back(field_of(side, kernel, number));
       fields.push_back(energy_of(side, kernel));
+      fields.push_back(area_of(side, kernel));
     }
   }
   return fields;
@@ -146,7 +160,7 @@ void check_accelerators_are_whole(const Schema& schema, const Settings& settings
         if (schema.fields()[i].path.rfind(section, 0) != 0) continue;
         if (settings[i])
           given = &*settings[i];
-        else if (missing == nullptr && (knows_energy || !is_energy(schema.fields()[i])))
+        else if (missing == nullptr && !may_be_missing(schema.fields()[i], knows_energy))
           missing = &schema.fields()[i];
       }
       if (given != nullptr && missing != nullptr)

@@ -1,5 +1,6 @@
 // Files that are part of the program, so that it needs none beside itself. The tables are generated
-// from platform_models/chips/*.yaml, isa/*.yaml and code/*.csv when the program is built (tools/embed.cmake).
+// from platform_models/chips/*.yaml, isa/*.yaml and code/*.csv when the program is built
+// (tools/embed.cmake).
 #pragma once
 
 #include <span>

@@ -43,7 +43,9 @@ inline constexpr std::array kBankUnits{Unit{"banks", 1}};
 inline constexpr std::array kUnitUnits{Unit{"units", 1}};
 inline constexpr std::array kVoltageUnits{Unit{"V", 1}, Unit{"mV", 1e-3}};
 inline constexpr std::array kEnergyUnits{Unit{"J", 1}, Unit{"uJ", 1e-6}, Unit{"nJ", 1e-9},
-                                         Unit{"pJ", 1e-12}};
+                                         Unit{"pJ", 1e-12}, Unit{"fJ", 1e-15}};
+inline constexpr std::array kAreaUnits{Unit{"um2", 1}, Unit{"mm2", 1e6}};
+inline constexpr std::array kGateUnits{Unit{"kGE", 1}};
 inline constexpr std::array kPowerUnits{Unit{"W", 1}, Unit{"mW", 1e-3}, Unit{"uW", 1e-6},
                                         Unit{"nW", 1e-9}};
 
@@ -60,6 +62,8 @@ inline constexpr Dimension kUnits{"a number of functional units", kUnitUnits, tr
 inline constexpr Dimension kVoltage{"a voltage", kVoltageUnits};
 inline constexpr Dimension kEnergy{"an energy", kEnergyUnits};
 inline constexpr Dimension kPower{"a power", kPowerUnits};
+inline constexpr Dimension kArea{"an area", kAreaUnits};
+inline constexpr Dimension kGates{"thousands of gate equivalents", kGateUnits};
 inline constexpr Dimension kChoice{"a choice", {}};
 
 std::string_view trim(std::string_view text);

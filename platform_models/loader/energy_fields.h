@@ -1,7 +1,9 @@
-// The rows of the schema about supply and energy: sections `supply` and `energy`. A platform has
-// both in full, or neither: energies of events are not known for every chip.
+// The rows of the schema about supply, energy and area: sections `supply`, `energy`, `area`.
+// Neither energies nor areas are known for every chip, so a platform may leave them out, but in
+// groups only.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "platform_models/loader/schema.h"
@@ -9,8 +11,11 @@
 namespace leviosim::platform {
 
 std::vector<Field> energy_fields();
+std::vector<Field> area_fields();
 
-/// Whether this parameter belongs to the sections that a platform has together or not at all.
-bool is_about_energy(const Field& field);
+/// What a platform has in full or not at all. With energy figures it has Always, and either Fixed
+/// leakages and cycles, or those that follow from areas: BySize and Area. It may have areas alone.
+enum class EnergyGroup : std::uint8_t { None, Always, Fixed, BySize, Area };
+EnergyGroup energy_group_of(const Field& field);
 
 }  // namespace leviosim::platform

@@ -384,7 +384,8 @@ std::vector<Field> all_fields() {
   table.append(accelerator_fields("controller"));
   add_l2(table);
   std::vector<Field> fields = table.take();
-  for (Field& field : energy_fields()) fields.push_back(std::move(field));
+  for (std::vector<Field>& part : std::array{energy_fields(), area_fields()})
+    for (Field& field : part) fields.push_back(std::move(field));
   return fields;
 }
 

@@ -13,6 +13,9 @@ namespace leviosim::platform {
 inline constexpr double kMinClock = 1e3;
 inline constexpr double kMaxClock = 1e11;
 
+/// And sizes beyond this, in thousands of gate equivalents.
+inline constexpr double kMaxGates = 1e6;
+
 /// Numbers, switches (on unless 0) and enumerators by their value.
 template <class T>
 requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void put(T& target, double value) {

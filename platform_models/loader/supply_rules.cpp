@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -29,21 +30,19 @@ class SupplyRules {
       : schema_(schema), settings_(settings), supply_(supply) {}
 
   void all_or_none() const {
-    const Setting* given = nullptr;
-    const Field* missing = nullptr;
-    for (std::size_t i = 0; i < schema_.fields().size(); ++i) {
-      const Field& field = schema_.fields()[i];
-      if (!is_about_energy(field)) continue;
-      if (settings_[i])
-        given = &*settings_[i];
-      else if (missing == nullptr)
-        missing = &field;
-    }
-    if (given != nullptr && missing != nullptr)
+    require_whole({EnergyGroup::Area}, "the section area in full, or none of it");
+    const Setting* area = first_given(EnergyGroup::Area);
+    const Setting* fixed = first_given(EnergyGroup::Fixed);
+    if (area != nullptr && fixed != nullptr)
       throw InputError(
-          fmt::format("{}, but {} is missing ({}): expected the sections supply and energy in "
-                      "full, or neither",
-                      state(*given), missing->path, missing->description));
+          fmt::format("{}, but {}: expected leakage and clock by size (energy.by_size) on a chip "
+                      "with areas, and no fixed amounts beside them",
+                      state(*fixed), state(*area)));
+    require_whole({EnergyGroup::Always, area ? EnergyGroup::BySize : EnergyGroup::Fixed},
+                  "the sections supply and energy in full, or neither");
+    const Setting* by_size = first_given(EnergyGroup::BySize);
+    if (area == nullptr && by_size != nullptr)
+      throw InputError(fmt::format("{}: expected the section area, too", state(*by_size)));
   }
 
   void points_in_order() const {
@@ -84,6 +83,28 @@ class SupplyRules {
   }
 
  private:
+  const Setting* first_given(EnergyGroup group) const {
+    for (std::size_t i = 0; i < schema_.fields().size(); ++i)
+      if (settings_[i] && energy_group_of(schema_.fields()[i]) == group) return &*settings_[i];
+    return nullptr;
+  }
+
+  void require_whole(const std::vector<EnergyGroup>& groups, std::string_view expected) const {
+    const Setting* given = nullptr;
+    const Field* missing = nullptr;
+    for (std::size_t i = 0; i < schema_.fields().size(); ++i) {
+      const Field& field = schema_.fields()[i];
+      if (std::count(groups.begin(), groups.end(), energy_group_of(field)) == 0) continue;
+      if (settings_[i])
+        given = &*settings_[i];
+      else if (missing == nullptr)
+        missing = &field;
+    }
+    if (given != nullptr && missing != nullptr)
+      throw InputError(fmt::format("{}, but {} is missing ({}): expected {}", state(*given),
+                                   missing->path, missing->description, expected));
+  }
+
   std::string of(std::string_view path) const { return state(*settings_[schema_.find(path)]); }
 
   [[noreturn]] void contradict(std::string_view a, std::string_view b,

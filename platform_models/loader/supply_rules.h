@@ -7,7 +7,7 @@
 
 namespace leviosim::platform {
 
-/// Throws an InputError if a platform has a part of the sections `supply` and `energy` only.
+/// Throws an InputError if a platform has only a part of `supply` and `energy`, or of `area`.
 void check_energy_is_whole(const Schema& schema, const Settings& settings);
 
 /// Throws an InputError that names the parameters at odds and where each was given. A platform

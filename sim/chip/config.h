@@ -11,6 +11,7 @@
 #include <string>
 
 #include "sim/base/units.h"
+#include "sim/chip/area_config.h"
 #include "sim/chip/energy_config.h"
 #include "sim/work/compiled_work.h"
 #include "sim/work/offload_regions.h"
@@ -176,6 +177,7 @@ struct ChipConfig {
   L2Config l2;
   SupplyConfig supply{};
   EnergyRange energy{};
+  AreaRange area{};
 };
 
 /// The compiled code that all cores execute; none if they differ.

@@ -25,7 +25,7 @@ struct SupplyConfig {
 };
 
 /// Energies and powers at one voltage. Energies of events and of clock cycles scale with the square
-/// of the voltage; powers, which do not depend on the clock, scale with the voltage.
+/// of the voltage; powers, which do not depend on the clock, scale with the voltage unless said.
 struct EnergyConfig {
   Volts voltage;  ///< at which the numbers below hold
 
@@ -65,6 +65,20 @@ struct EnergyConfig {
     Joules cycle;  ///< in each cycle of the controller's clock
     Watts static_power;
   } soc;
+
+  /// What flows and what the clock takes by the size of what there is (energy/area.h), in place of
+  /// the fixed numbers above: leakages and cycles of core, L1, DMA, cluster and soc. All zero where
+  /// a platform gives those.
+  struct BySize {
+    Joules gate_cycle;     ///< of a thousand gates in each clock cycle; a core's instruction has it
+    double gated = 0;      ///< share of it of a core whose clock is stopped
+    Joules bank_cycle;     ///< of a bank of L1 or a block of L2 in each clock cycle
+    Joules stalled_cycle;  ///< of a core that waits with its clock on
+    Watts gate_leakage;    ///< of a thousand gates
+    Watts l1_leakage;      ///< of a KiB
+    Watts l2_leakage;      ///< of a KiB
+    double leakage_exponent = 1;  ///< leakage grows with this power of the voltage
+  } by_size;
 
   /// Of an item of a call that an accelerator serves, by kind of kernel.
   using Items = std::array<Joules, work::kOffloadKindCount>;

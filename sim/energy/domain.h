@@ -18,12 +18,12 @@ struct DomainInfo {
 
 inline constexpr std::array kDomains{
     DomainInfo{Domain::Cores, "cores", "instructions and leakage of the cluster's cores"},
-    DomainInfo{Domain::Fpu, "fpu", "operations of the cluster's floating-point units"},
-    DomainInfo{Domain::L1, "l1", "accesses and leakage of L1"},
+    DomainInfo{Domain::Fpu, "fpu", "operations, clock and leakage of the cluster's floating-point units"},
+    DomainInfo{Domain::L1, "l1", "accesses, clock and leakage of L1 with its network"},
     DomainInfo{Domain::Dma, "dma", "transfers, clock and leakage of the cluster's DMA"},
     DomainInfo{Domain::Cluster, "cluster", "clock, interconnect and leakage of the cluster"},
     DomainInfo{Domain::Controller, "controller", "fabric controller with its floating-point unit"},
-    DomainInfo{Domain::L2, "l2", "accesses of L2"},
+    DomainInfo{Domain::L2, "l2", "accesses, clock and leakage of L2"},
     DomainInfo{Domain::Soc, "soc", "clock of the rest of the chip, leakage, regulator"},
 };
 

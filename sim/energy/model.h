@@ -6,10 +6,13 @@
 // chip at two points. Hence a change of the clock alone changes neither the energy of a task's
 // events nor that of its cycles; it changes how long static power flows.
 //
+// Where a platform has areas, leakage and clock follow from the size of what there is (area.h), and
+// leakage grows with a power of the voltage.
+//
 // Source of the constants: the platform file's section `energy`.
 //
-// Leaves out: the data that an instruction works on and which instruction it is; leakage that grows
-// faster than the voltage, and with temperature; sleep states; losses of the regulator that are
+// Leaves out: the data that an instruction works on and which instruction it is; that leakage grows
+// with temperature; sleep states, power switches; losses of the regulator that are
 // proportional to its load; external memory, sensors and pads.
 #pragma once
 

@@ -46,6 +46,22 @@ inline constexpr std::array kUncertaintySources{
                       [](const EnergyConfig& from, EnergyConfig& to) {
                         to.cluster.idle_clock = from.cluster.idle_clock;
                       }},
+    UncertaintySource{"leakage of gates and memories",
+                      [](const EnergyConfig& from, EnergyConfig& to) {
+                        const EnergyConfig::BySize clock = to.by_size;
+                        to.by_size = from.by_size;
+                        to.by_size.gate_cycle = clock.gate_cycle;
+                        to.by_size.gated = clock.gated;
+                        to.by_size.bank_cycle = clock.bank_cycle;
+                        to.by_size.stalled_cycle = clock.stalled_cycle;
+                      }},
+    UncertaintySource{"clock of gates and memories that do nothing",
+                      [](const EnergyConfig& from, EnergyConfig& to) {
+                        to.by_size.gate_cycle = from.by_size.gate_cycle;
+                        to.by_size.gated = from.by_size.gated;
+                        to.by_size.bank_cycle = from.by_size.bank_cycle;
+                        to.by_size.stalled_cycle = from.by_size.stalled_cycle;
+                      }},
     UncertaintySource{"energy of accelerators",
                       [](const EnergyConfig& from, EnergyConfig& to) {
                         to.cluster_accelerators = from.cluster_accelerators;

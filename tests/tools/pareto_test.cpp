@@ -17,7 +17,7 @@ std::vector<int> front_of(const std::vector<SweepOutcome>& outcomes) {
 }
 
 TEST(ParetoTies, EqualPointsAreAllOnTheFront) {
-  const Values same{1, 2, 3, 4};
+  const Values same{1, 2, 3, 4, 5};
   EXPECT_FALSE(dominates(outcome(1, same), outcome(2, same)));
   EXPECT_EQ(front_of({outcome(3, same), outcome(1, same), outcome(2, same)}),
             (std::vector{1, 2, 3}));
@@ -25,9 +25,9 @@ TEST(ParetoTies, EqualPointsAreAllOnTheFront) {
 
 TEST(ParetoTies, APointThatIsWorseInOneAndEqualInTheRestIsBeaten) {
   for (std::size_t k = 0; k < kObjectives.size(); ++k) {
-    Values worse{1, 2, 3, 4};
+    Values worse{1, 2, 3, 4, 5};
     *worse[k] += 0.5;
-    const SweepOutcome good = outcome(2, {1, 2, 3, 4}), bad = outcome(1, worse);
+    const SweepOutcome good = outcome(2, {1, 2, 3, 4, 5}), bad = outcome(1, worse);
     EXPECT_TRUE(dominates(good, bad)) << k;
     EXPECT_FALSE(dominates(bad, good)) << k;
     EXPECT_EQ(front_of({bad, good}), std::vector{2}) << k;
@@ -35,15 +35,15 @@ TEST(ParetoTies, APointThatIsWorseInOneAndEqualInTheRestIsBeaten) {
 }
 
 TEST(ParetoTies, AFigureThatIsMissingIsTheWorstAndEqualToOneThatIsMissing) {
-  const Values without{1, 2, 3, std::nullopt};
-  EXPECT_EQ(front_of({outcome(1, without), outcome(2, {1, 2, 3, 4})}), std::vector{2});
+  const Values without{1, 2, 3, std::nullopt, 5};
+  EXPECT_EQ(front_of({outcome(1, without), outcome(2, {1, 2, 3, 4, 5})}), std::vector{2});
   EXPECT_EQ(front_of({outcome(1, without), outcome(2, without)}), (std::vector{1, 2}));
 }
 
 TEST(ParetoTies, AFailureIsOnNoFront) {
-  SweepOutcome failed = outcome(1, {0, 0, 0, 0});
+  SweepOutcome failed = outcome(1, {0, 0, 0, 0, 0});
   failed.failure = "too little L1";
-  EXPECT_EQ(front_of({failed, outcome(2, {1, 2, 3, 4})}), std::vector{2});
+  EXPECT_EQ(front_of({failed, outcome(2, {1, 2, 3, 4, 5})}), std::vector{2});
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/report/area_table.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
@@ -228,17 +229,52 @@ void systems(const PlatformsOptions& options) {
               [&] { return table_document("systems", systems_csv(rows)); }));
 }
 
+std::string csv_of(const std::vector<platform::Parameter>& parameters) {
+  using P = platform::Parameter;
+  const base::CsvTable<P> table{{"parameter", [](const P& p) { return p.path; }},
+                                {"value", [](const P& p) { return p.value; }},
+                                {"unit", [](const P& p) { return p.unit; }},
+                                {"confidence", [](const P& p) { return p.confidence; }},
+                                {"source", [](const P& p) { return p.source; }}};
+  return table.text(parameters);
+}
+
+/// Parts with their bands, then the numbers that they follow from, with ranges and sources.
+void area(const PlatformsOptions& options) {
+  const platform::ResolvedPlatform chip =
+      platform::resolve_platform(options.names[0], options.run.overrides);
+  if (!sim::knows_area(chip.config))
+    throw InputError(
+        fmt::format("platforms area: {} has no areas (no source gives them); expected "
+                    "a chip with the section area, such as gap9",
+                    printable(chip.name)));
+  std::vector<platform::Parameter> numbers;
+  for (const platform::Parameter& p : chip.parameters)
+    if (p.path.starts_with("area.") || p.path.ends_with(".area")) numbers.push_back(p);
+  const auto lines = [&] {
+    TextTable sources({{"number", TextTable::Align::Left},
+                       {"value"},
+                       {"range", TextTable::Align::Right, 1},
+                       {"confidence", TextTable::Align::Left, 1},
+                       {"source", TextTable::Align::Left, 2}});
+    for (const platform::Parameter& p : numbers)
+      sources.add({p.path, in_words(&p),
+                   p.range ? fmt::format("{:g}–{:g}", p.range->low, p.range->high) : "–",
+                   p.confidence, printable(p.source)});
+    return fmt::format("area of {}\n\n{}\n{}", printable(chip.name), area_table(chip.config),
+                       sources.str());
+  };
+  print(printout(options.run.json, lines, [&] {
+    return table_document("area of " + chip.name, area_csv(chip.config),
+                          {{"numbers", rows_of_csv(csv_of(numbers))}});
+  }));
+}
+
 void show(const PlatformsOptions& options) {
   const platform::ResolvedPlatform chip =
       platform::resolve_platform(options.names[0], options.run.overrides);
   const auto document = [&] {
-    using P = platform::Parameter;
-    const base::CsvTable<P> table{{"parameter", [](const P& p) { return p.path; }},
-                                  {"value", [](const P& p) { return p.value; }},
-                                  {"unit", [](const P& p) { return p.unit; }},
-                                  {"confidence", [](const P& p) { return p.confidence; }},
-                                  {"source", [](const P& p) { return p.source; }}};
-    return table_document("platform " + chip.name, table.text(chip.parameters));
+    return table_document("platform " + chip.name, csv_of(chip.parameters));
   };
   print(printout(
       options.run.json, [&] { return platform::to_yaml(chip); }, document));
@@ -258,10 +294,11 @@ struct Action {
   void (*run)(const PlatformsOptions&);
 };
 
-const std::array<Action, 6> kActions = {{
+const std::array<Action, 7> kActions = {{
     {"list", 0, "no platform", {}, list},
     {"show", 1, "one platform", {}, show},
     {"diff", 2, "two platforms", {}, show_differences},
+    {"area", 1, "one platform", {}, area},
     {"feasibility",
      kAnyNumber,
      "platforms",
@@ -311,7 +348,8 @@ Command add_platforms_command(CLI::App& app) {
   run_options.data = "synthetic";
   command->add_option(
       "ACTION", options->action,
-      "list (the default), show NAME, diff NAME NAME, feasibility or stages [NAME ...], systems");
+      "list (the default), show NAME, diff NAME NAME, area NAME, feasibility or stages [NAME ...], "
+      "systems");
   command->add_option("NAME", options->names, "chips: names or files");
   command
       ->add_option("-p,--set", run_options.overrides,
@@ -336,6 +374,7 @@ Command add_platforms_command(CLI::App& app) {
   command->add_flag("--quiet", run_options.quiet, "no progress")->group(group);
   add_examples(*command, {"leviosim platforms", "leviosim platforms show gap9 -p cluster.workers=4",
                           "leviosim platforms diff gap9 gap8",
+                          "leviosim platforms area gap9 -p cluster.fpu.units=8",
                           "leviosim platforms feasibility gap9 cortex-m7 --data flight "
                           "--csv chips.csv",
                           "leviosim platforms stages gap9 gap9-eigen --data flight",

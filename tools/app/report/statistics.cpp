@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sim/energy/area.h"
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/result/camera_figures.h"
@@ -229,6 +230,21 @@ void add_energy(StatisticList& list, const RunResult& run) {
              energy->power_of_controller(), 1e3);
 }
 
+/// Of chips with areas. Missing, not too small, where a part's area is unknown.
+void add_area(StatisticList& list, const RunResult& run) {
+  if (!sim::knows_area(run.chip)) return;
+  const auto add = [&](const std::string& name, const char* description, const sim::AreaItem& sum) {
+    const auto mm2 = [&](sim::SquareMicrometres area) {
+      return sum.known ? Json(area.count() * 1e-6) : Json();
+    };
+    list.add(name, "mm2", description, mm2(sum.area));
+    list.add(name + ".low", "mm2", fmt::format("{}: low end", description), mm2(sum.low));
+    list.add(name + ".high", "mm2", fmt::format("{}: high end", description), mm2(sum.high));
+  };
+  add("area.chip", "logic and memories of the chip", sim::total_area(run.chip));
+  add("area.cluster", "of the cluster", sim::cluster_area(run.chip));
+}
+
 void add_accuracy(StatisticList& list, const RunResult& run) {
   list.add("trajectory.poses", "1", "poses of the trajectory", run.trajectory.size());
   list.add("trajectory.length", "m", "of the estimated path", rounded(path_length(run.trajectory)));
@@ -249,6 +265,7 @@ Json statistics(const RunResult& run) {
     add_latencies_of_all(list, run);
     add_l2(list, run);
     add_energy(list, run);
+    add_area(list, run);
     list.add("optimiser.published", "1", "results that reached the front end",
              run.optimiser_published);
     list.add("optimiser.late", "1", "frames at whose start the controller was still busy",

@@ -30,9 +30,9 @@ double end_of(const Trial& trial) {
   return trial.high ? trial.parameter->range->high : trial.parameter->range->low;
 }
 
-/// Energies and what the supply allows have no effect on time.
+/// Energies, areas and what the supply allows have no effect on time.
 bool is_of_time(const platform::Parameter& parameter) {
-  for (const std::string_view section : {"energy.", "supply."})
+  for (const std::string_view section : {"energy.", "supply.", "area."})
     if (std::string_view(parameter.path).substr(0, section.size()) == section) return false;
   return true;
 }

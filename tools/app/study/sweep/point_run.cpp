@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sim/base/error.h"
+#include "sim/energy/area.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/report/statistics.h"
@@ -46,6 +47,9 @@ void add_objectives(const RunResult& run, bool ate_holds, std::vector<Figure>& f
       add(1, "per frame, idle time included", per_frame->value.count() * 1e3);
   add(2, "highest of the cluster's stages", l1_peak(run));
   if (run.ate && ate_holds) add(3, "RMSE of the trajectory", run.ate->translation.rmse);
+  if (sim::knows_area(run.chip))
+    if (const sim::AreaItem chip = sim::total_area(run.chip); chip.known)
+      add(4, "of the chip, without pads and analogue parts", chip.area.count() * 1e-6);
 }
 
 void add_comparison(const Replay& replay, std::vector<Figure>& figures) {

@@ -9,8 +9,8 @@
 namespace leviosim::tools {
 
 /// What sweeps are judged by, first of all figures; less is better. A figure is missing where it
-/// does not exist: energy of chips without energy figures, the error without ground truth or where
-/// the algorithm would have computed something else than was recorded.
+/// does not exist: energy and area of chips without such figures, the error without ground truth or
+/// where the algorithm would have computed something else than was recorded.
 struct Objective {
   const char* figure;
   const char* unit;
@@ -22,7 +22,8 @@ inline constexpr std::array kObjectives{
     Objective{"objective.latency", "ms", "latency ms", 3, 1},
     Objective{"objective.energy", "mJ", "energy mJ", 4, 1},
     Objective{"objective.l1_peak", "byte", "L1 peak kB", 1, 1e-3},
-    Objective{"objective.ate", "m", "ATE m", 4, 1}};
+    Objective{"objective.ate", "m", "ATE m", 4, 1},
+    Objective{"objective.area", "mm2", "area mm2", 3, 1}};
 
 /// Computes the point, or times its recorded work. A chip too small for the work is a failure.
 /// @param for_budget  keeps also what limits of budgets may be about besides: frame.*, the peaks of

@@ -28,6 +28,7 @@ Json sweep_page(SweepStore& store) {
       {"objective.energy", "energy per frame", "mJ"},
       {"objective.l1_peak", "L1 peak", "kB", false, false, 1e-3},
       {"objective.ate", "position error (ATE)", "m"},
+      {"objective.area", "area", "mm2"},
       {"latency.all.p50", "median latency", "ms", false, false, kNsToMs},
       {"latency.all.p99", "latency of 99 %", "ms", false, false, kNsToMs},
       {"latency.all.worst", "worst latency", "ms", false, false, kNsToMs},
@@ -40,7 +41,8 @@ Json sweep_page(SweepStore& store) {
   if (!parameters.empty() && parameters.size() <= 2)
     page.curves = {parameters.front(),
                    parameters.size() == 2 ? parameters.back() : std::string(),
-                   {"objective.latency", "objective.energy", "objective.l1_peak", "objective.ate"}};
+                   {"objective.latency", "objective.energy", "objective.l1_peak", "objective.ate",
+                    "objective.area"}};
   page.x = "objective.latency";
   page.y = "objective.energy";
   page.colour = parameters.size() > 1 ? parameters.back() : std::string();
