@@ -88,23 +88,23 @@ const Parameter* PlatformFile::find(const std::string& path) {
   return setting ? &setting->parameter : nullptr;
 }
 
-std::vector<CanonicalLine> canonical_lines(const Schema& schema, const ResolvedPlatform& platform) {
-  std::vector<CanonicalLine> lines{{"", fmt::format("chip {}\n", platform.name)}};
+std::string canonical_text(const Schema& schema, const ResolvedPlatform& platform) {
+  std::string text = fmt::format("chip {}\n", platform.name);
   for (const Parameter& parameter : platform.parameters) {
     const std::size_t index = schema.find(parameter.path);
     check(index != Schema::kNone, "a resolved parameter is not in the schema");
     const Field& field = schema.fields()[index];
     const Setting setting =
         read_value(field, parameter.value, parameter.unit, Place{parameter.path});
-    std::string text = fmt::format("{} {}", parameter.path, number_text(setting.base));
+    text += fmt::format("{} {}", parameter.path, number_text(setting.base));
     if (field.set_band && parameter.range) {
       const double factor = field.dimension->find(parameter.unit)->factor;
       text += fmt::format(" {} {}", number_text(parameter.range->low * factor),
                           number_text(parameter.range->high * factor));
     }
-    lines.push_back({parameter.path, text + '\n'});
+    text += '\n';
   }
-  return lines;
+  return text;
 }
 
 }  // namespace leviosim::platform

@@ -41,14 +41,9 @@ class PlatformFile {
   std::map<std::string, Document> documents_;
 };
 
-struct CanonicalLine {
-  std::string path;  ///< of the parameter; empty in the first line, the name of the chip
-  std::string text;  ///< "cluster.clock 240000000\n"
-};
-
 /// What the chip is, whatever its file looks like: a line per parameter in base units. Ends of a
 /// range count where the chip depends on them (Field::set_band). Platforms of the same lines time
 /// and price work alike.
-std::vector<CanonicalLine> canonical_lines(const Schema& schema, const ResolvedPlatform& platform);
+std::string canonical_text(const Schema& schema, const ResolvedPlatform& platform);
 
 }  // namespace leviosim::platform

@@ -7,7 +7,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/sweep/pareto.h"
-#include "tools/app/study/sweep/sampling.h"
+#include "tools/app/study/sweep/points.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -42,7 +42,7 @@ class SweepPlans : public ::testing::Test {
     std::vector<std::string> texts;
     const Expansion all = expanded(points, more);
     for (std::size_t i = 0; i < all.points.size(); ++i)
-      texts.push_back(all.points.settings_text(i));
+      texts.push_back(all.points[i].settings_text());
     return texts;
   }
   void expect_refused(const std::string& points, std::initializer_list<std::string> parts) {
@@ -75,7 +75,7 @@ TEST_F(SweepPlans, MembersAreMultipliedAndGroupsFollowEachOther) {
       "  - random: { number: 5, over: { platform.cluster.clock: { from: 100, to: 370 } } }\n");
   EXPECT_EQ(all.asked, 2u * 3 + 5);
   EXPECT_EQ(all.points.size(), 11u);
-  EXPECT_EQ(all.points.settings_text(1),
+  EXPECT_EQ(all.points[1].settings_text(),
             "profile=levio seed=3 cores=2 platform.cluster.clock=370MHz");
   EXPECT_EQ(all.points[10].number, 11);
 }
@@ -90,7 +90,7 @@ TEST_F(SweepPlans, TheSamePointIsThereOnceHoweverItIsWritten) {
   // 370 MHz, 240 MHz, perhaps the window, 4 workers; 4 of 8 workers is another chip.
   std::set<std::string> keys;
   for (std::size_t i = 0; i < all.points.size(); ++i)
-    EXPECT_TRUE(keys.insert(all.points.key(i)).second);
+    EXPECT_TRUE(keys.insert(all.points[i].key).second);
   const bool window_differs =
       vio::find_parameter("workload.window")->get(vio::profile_named("levio", 1)) != 10;
   EXPECT_EQ(all.points.size(), window_differs ? 5u : 4u);
@@ -211,7 +211,7 @@ TEST_F(SweepPlans, PointsAreWhatResolvingEachOfThemGives) {
       list += fmt::format("  - {{ {} }}\n", text);
       rows.push_back(set);
     }
-    Expansion all{SweepPoints(plan_)};
+    Expansion all;
     try {
       all = expanded("impossible: skip\npoints:\n list:\n" + list);
     } catch (const InputError& error) {
@@ -226,7 +226,7 @@ TEST_F(SweepPlans, PointsAreWhatResolvingEachOfThemGives) {
       settings.insert(plan_.base.begin(), plan_.base.end());
       std::string identity;
       try {
-        identity = text_of(resolve(plan_, settings, inputs_, "a point").identity);
+        identity = resolve(plan_, settings, inputs_, "a point").identity;
       } catch (const InputError&) {
         ++impossible;
         continue;
@@ -257,12 +257,12 @@ TEST_F(SweepPlans, ParametersAreShownAsTheyAreWhereNothingSetsThem) {
       "      - { cores: 2, seed: 7 }\n");
   ASSERT_EQ(all.points.size(), 4u);
   const auto window = vio::find_parameter("workload.window")->get(vio::profile_named("levio", 1));
-  EXPECT_EQ(all.points.settings_text(0),
+  EXPECT_EQ(all.points[0].settings_text(),
             fmt::format("platform.cluster.clock=100MHz platform.cluster.fpu.mapping=dynamic "
                         "workload.window={} profile=levio size=160x120 platform.cluster.workers="
                         "8cores cores=8 seed=1",
                         window));
-  EXPECT_EQ(all.points.settings_text(1),
+  EXPECT_EQ(all.points[1].settings_text(),
             "platform.cluster.clock=370MHz platform.cluster.fpu.mapping=fixed workload.window=4 "
             "profile=levio-no-imu size=80x60 platform.cluster.workers=8cores cores=8 seed=1");
   EXPECT_EQ(all.points[2].parameters[6].text, "4");  // as many as workers
@@ -288,21 +288,20 @@ TEST(SweepSampling, ALatinHypercubeHasOnePointInEachStratumOfEachDimension) {
   EXPECT_NE(latin_draws(50, 1, 1), latin_draws(50, 0, 1));
 }
 
+TEST_F(SweepPlans, MorePointsThanCanBeKeptAreRefusedBeforeAnyIsMade) {
+  const std::string many = "{ from: 0, to: 999, step: 1 }";
+  expect_refused(
+      "points: { grid: { seed: " + many +
+          ", cores: [1, 2, 3, 4, 5, 6, 7, 8], "
+          "workload.window: [4, 5, 6, 7, 8, 9, 10, 11, 12, 13] , profile: [levio, next] } }",
+      {"plan.yaml:2", "more than 100000 points"});
+}
+
 TEST(SweepSampling, MoreRandomPointsContinueFewer) {
   const auto few = random_draws(10, 2, 1);
   const auto more = random_draws(20, 2, 1);
   EXPECT_TRUE(std::equal(few.begin(), few.end(), more.begin()));
   EXPECT_NE(random_draws(10, 1, 1), few);
-}
-
-TEST(ValuePool, HoldsEachTextOncePerKey) {
-  ValuePool pool(2);
-  for (int i = 0; i < 5000; ++i) ASSERT_EQ(pool.add(0, fmt::format("v{}", i)), ValueId(i));
-  for (int i = 0; i < 5000; ++i) ASSERT_EQ(pool.add(0, fmt::format("v{}", i)), ValueId(i));
-  EXPECT_EQ(pool.size(0), 5000u);
-  EXPECT_EQ(pool.size(1), 0u);
-  EXPECT_EQ(pool.add(1, "v7"), 0u);
-  EXPECT_EQ(pool.text(0, 4711), "v4711");
 }
 
 TEST(SweepFront, IsWhatComparingAllPairsGives) {

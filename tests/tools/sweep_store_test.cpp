@@ -18,7 +18,7 @@ using traces::testing::expect_input_error;
 using traces::testing::TempFolder;
 
 /// A plan with one parameter, its values in MHz. The points live as long as the test program.
-const SweepPoints& plan_of(const std::vector<int>& clocks) {
+const std::vector<SweepPoint>& plan_of(const std::vector<int>& clocks) {
   struct Plan {
     traces::testing::AslFolder data;
     SweepInputs inputs{".", ProgressLine::Style::None};
@@ -90,7 +90,7 @@ TEST(SweepStore, RemembersWhereThePlanLiesAlsoAfterAMerge) {
   store.copy_plan_to(in("deep/er"));
   EXPECT_EQ(SweepStore(in("deep/er")).place(), store.place());
   EXPECT_EQ(store.plan_text(), "plan");
-  EXPECT_EQ(store.key_of(2), plan_of({100, 200}).key(1));
+  EXPECT_EQ(store.key_of(2), plan_of({100, 200})[1].key);
   EXPECT_EQ(store.key_of(3), "");
 }
 

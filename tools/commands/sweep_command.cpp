@@ -96,18 +96,18 @@ std::string budget_key(const std::string& key) {
 Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, SweepStore& store,
                  const RunnerOptions& options, bool for_budget) {
   const std::set<int> finished = store.finished();
-  const SweepPoints& points = sweep.expansion.points;
+  const std::vector<SweepPoint>& points = sweep.expansion.points;
   PointBatch batch{.keeps_failures = false};
   std::vector<std::size_t> open;
   for (const std::size_t i : chosen) {
     if (finished.count(static_cast<int>(i) + 1) > 0) continue;
     throw_if_interrupted();
     open.push_back(i);
-    batch.keys.push_back(for_budget ? budget_key(points.key(i)) : points.key(i));
+    batch.keys.push_back(for_budget ? budget_key(points[i].key) : points[i].key);
   }
   batch.before = chosen.size() - open.size();
   batch.compute = [&](std::size_t i) {
-    return run_point(resolve(sweep.plan, points.settings(open[i]), sweep.inputs,
+    return run_point(resolve(sweep.plan, points[open[i]].settings, sweep.inputs,
                              fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)),
                      for_budget);
   };
@@ -166,7 +166,7 @@ void run_plan(const SweepWords& words) {
   if (words.list) {
     for (std::size_t i = 0; i < expansion.points.size(); ++i) {
       throw_if_interrupted();
-      print_result("{}\t{}\n", i + 1, printable(expansion.points.settings_text(i)));
+      print_result("{}\t{}\n", i + 1, printable(expansion.points[i].settings_text()));
     }
     return;
   }

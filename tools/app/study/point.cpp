@@ -9,55 +9,30 @@
 namespace leviosim::tools {
 namespace {
 
-class Identity {
- public:
-  std::vector<IdentityLine> of(const Point& point, const platform::Schema& schema) {
-    add("", point.work + '\n');
-    if (point.trace == nullptr) add_workload(point.request);
-    if (point.request.native)
-      add("", "native\n");
-    else
-      add_chip(point.request, schema);
-    return std::move(lines_);
-  }
+std::string workload_lines(const RunRequest& request) {
+  std::string text = fmt::format("size {}x{}\nseed {}\nprofile {}\n", request.image_size.width,
+                                 request.image_size.height, request.seed, request.profile);
+  const vio::Profile profile = profile_of(request);
+  for (const vio::Parameter& p : vio::parameters())
+    text += fmt::format("{} {}\n", p.name, value_text(p, p.get(profile)));
+  return text;
+}
 
- private:
-  void add(std::string key, std::string text) {
-    lines_.push_back({std::move(key), std::move(text)});
-  }
-
-  void add_workload(const RunRequest& request) {
-    add("", fmt::format("size {}x{}\n", request.image_size.width, request.image_size.height));
-    add("seed", fmt::format("seed {}\n", request.seed));
-    add("", fmt::format("profile {}\n", request.profile));
-    const vio::Profile profile = profile_of(request);
-    for (const vio::Parameter& p : vio::parameters())
-      add(std::string(p.name), fmt::format("{} {}\n", p.name, value_text(p, p.get(profile))));
-  }
-
-  void add_chip(const RunRequest& request, const platform::Schema& schema) {
-    add("cores", fmt::format("cores {}\n", request.cores));
-    for (const platform::CanonicalLine& line : canonical_lines(schema, request.platform))
-      add(line.path.empty() ? "" : "platform." + line.path, line.text);
-    if (!request.camera) return;
-    const auto& [fps, deadline] = *request.camera;
-    add("", fmt::format("camera {} {}\n", fps ? fmt::format("{}", *fps) : "as recorded",
-                        info_of(deadline).name));
-  }
-
-  std::vector<IdentityLine> lines_;
-};
+std::string chip_lines(const RunRequest& request, const platform::Schema& schema) {
+  std::string text =
+      fmt::format("cores {}\n", request.cores) + canonical_text(schema, request.platform);
+  if (!request.camera) return text;
+  const auto& [fps, deadline] = *request.camera;
+  return text + fmt::format("camera {} {}\n", fps ? fmt::format("{}", *fps) : "as recorded",
+                            info_of(deadline).name);
+}
 
 }  // namespace
 
-std::vector<IdentityLine> identity_of(const Point& point, const platform::Schema& schema) {
-  return Identity().of(point, schema);
-}
-
-std::string text_of(const std::vector<IdentityLine>& identity) {
-  std::string text;
-  for (const IdentityLine& line : identity) text += line.text;
-  return text;
+std::string identity_of(const Point& point, const platform::Schema& schema) {
+  std::string text = point.work + '\n';
+  if (point.trace == nullptr) text += workload_lines(point.request);
+  return text + (point.request.native ? "native\n" : chip_lines(point.request, schema));
 }
 
 std::string point_key(std::string_view kept, const std::string& identity) {

@@ -22,20 +22,14 @@ struct Point {
   std::size_t row = 0;  ///< of the study's table; several points of a row are condensed
 };
 
-/// A part of what a point is.
-struct IdentityLine {
-  std::string key;   ///< of a plan that sets it, such as "seed"; empty if none does by itself
-  std::string text;  ///< "seed 1\n"
-};
-
 /// All that an outcome depends on, besides the program: work, parameters of the workload, the chip
 /// and the camera. The folder does not count, and parameters count as they are, set or not.
-std::vector<IdentityLine> identity_of(const Point& point, const platform::Schema& schema);
-std::string text_of(const std::vector<IdentityLine>& identity);
+/// @returns a line per part
+std::string identity_of(const Point& point, const platform::Schema& schema);
 
 /// A digest of everything that an outcome depends on, the simulator included.
 /// @param kept      which figures of the point are kept
-/// @param identity  its text_of()
+/// @param identity  identity_of() the point
 /// @returns 64 hexadecimal digits
 std::string point_key(std::string_view kept, const std::string& identity);
 

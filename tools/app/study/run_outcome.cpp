@@ -193,7 +193,7 @@ RunOutcome run_outcome_of(const Outcome& figures) {
 
 std::string run_key(const Point& point, const Measure& how, const platform::Schema& schema) {
   return point_key(fmt::format("errors, drift {} {}", name_of(how.alignment), how.length_m),
-                   text_of(identity_of(point, schema)));
+                   identity_of(point, schema));
 }
 
 std::vector<RunOutcome> run_outcomes(const std::vector<Point>& points, const Measure& how,

@@ -78,10 +78,10 @@ RunRecord read_point(const PointName& name, const RecordOptions& options, RunFil
   if (!file) refuse(name, "the sweep does not say where its plan lies");
   if (store.simulator() != results_version()) refuse(name, "the sweep is of another leviosim");
   Swept swept(*file, store.plan_text(), options);
-  const SweepPoints& points = swept.expansion.points;
-  if (i >= points.size() || points.key(i) != store.key_of(static_cast<int>(i) + 1))
+  const std::vector<SweepPoint>& points = swept.expansion.points;
+  if (i >= points.size() || points[i].key != store.key_of(static_cast<int>(i) + 1))
     refuse(name, "what the plan names has changed since the sweep");
-  const SweepRow settings = points.settings(i);
+  const SweepRow settings = points[i].settings;
   const ResolvedPoint point = resolve(swept.plan, settings, swept.inputs, name.text());
   return computed_record(
       name.text(), point.request, manifest_of(point, settings),

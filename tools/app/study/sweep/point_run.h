@@ -4,7 +4,7 @@
 #include <array>
 
 #include "tools/app/study/outcome.h"
-#include "tools/app/study/sweep/resolve.h"
+#include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
 

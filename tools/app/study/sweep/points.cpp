@@ -3,88 +3,162 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <bit>
+#include <limits>
+#include <unordered_set>
+#include <utility>
 
-#include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
-#include "tools/app/study/point.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/run/replay.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/run/workload_overrides.h"
+#include "traces/datasets/image_preparation.h"
 
 namespace leviosim::tools {
-
-SweepPoints::SweepPoints(const SweepPlan& plan)
-    : plan_(&plan), pool_(std::make_unique<ValuePool>(plan.keys.size())) {
-  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
-    const auto set = plan.base.find(plan.keys[k].name);
-    base_.push_back(set == plan.base.end() ? kUnset : pool_->add(k, set->second));
-  }
-}
-
-void SweepPoints::put_values(std::size_t row, std::span<ValueId> values) const {
-  std::copy(base_.begin(), base_.end(), values.begin());
-  const auto after = std::upper_bound(first_rows_.begin(), first_rows_.end(), row);
-  const auto group = static_cast<std::size_t>(after - first_rows_.begin()) - 1;
-  groups_[group].put(row - first_rows_[group], values);
-}
-
-std::vector<ValueId> SweepPoints::values_of(std::size_t row) const {
-  std::vector<ValueId> values(base_.size());
-  put_values(row, values);
-  return values;
-}
-
-const PointFamily& SweepPoints::family_of(std::span<const ValueId> values) const {
-  return *families_.at(PointFamily::identifier(*plan_, values));
-}
-
-SweepRow SweepPoints::settings_of(std::span<const ValueId> values) const {
-  SweepRow settings = plan_->base;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (values[k] != kUnset) settings[plan_->keys[k].name] = pool_->text(k, values[k]);
-  return settings;
-}
-
-SweepRow SweepPoints::settings(std::size_t i) const { return settings_of(values_of(rows_[i])); }
-
-std::string SweepPoints::key(std::size_t i) const {
-  const std::vector<ValueId> values = values_of(rows_[i]);
-  return point_key(kSweepFigures, family_of(values).identity(values));
-}
-
-SweepPoint SweepPoints::operator[](std::size_t i) const {
-  const std::vector<ValueId> values = values_of(rows_[i]);
-  const PointFamily& family = family_of(values);
-  SweepPoint point{static_cast<int>(i) + 1, settings_of(values), {}, {}};
-  for (std::size_t k = 0; k < values.size(); ++k)
-    point.parameters.push_back(family.parameter(k, values));
-  point.key = point_key(kSweepFigures, family.identity(values));
-  return point;
-}
-
-std::string SweepPoints::settings_text(std::size_t i) const {
-  const std::vector<ValueId> values = values_of(rows_[i]);
-  const PointFamily& family = family_of(values);
-  std::string text;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const PointParameter p = family.parameter(k, values);
-    text += fmt::format("{}{}={}", k == 0 ? "" : " ", p.name, p.text);
-  }
-  return text;
-}
-
 namespace {
 
-/// Of an outline and numbers: all bits count (the finaliser of MurmurHash3).
-std::uint32_t hash_of(std::size_t outline, std::span<const double> numbers) {
-  std::uint64_t hash = outline;
-  for (const double number : numbers) {
-    hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0xFF51AFD7ED558CCDu;
-    hash = (hash ^ (hash >> 33)) * 0xC4CEB9FE1A85EC53u;
-    hash ^= hash >> 33;
+const std::string kPlatformPrefix = "platform.";
+
+class Resolver {
+ public:
+  Resolver(const SweepPlan& plan, const SweepRow& settings, SweepInputs& inputs,
+           const std::string& where)
+      : plan_(plan), settings_(settings), inputs_(inputs), place_{where} {}
+
+  ResolvedPoint resolve() {
+    if (has("trace") == has("data"))
+      place_.fail(has("trace") ? "has a trace and data; expected one of them"
+                               : "has neither trace nor data; expected one of them");
+    try {
+      if (has("trace"))
+        take_recording();
+      else
+        take_data();
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      if (what.starts_with(place_.where)) throw;
+      place_.fail(what);
+    }
+    point_.identity = identity_of(point_, point_.chip->schema());
+    return std::move(point_);
   }
-  return static_cast<std::uint32_t>(hash ^ (hash >> 32));
-}
+
+ private:
+  bool has(const std::string& name) const { return settings_.count(name) > 0; }
+  std::string text(const std::string& name, const std::string& otherwise = {}) const {
+    const auto it = settings_.find(name);
+    return it == settings_.end() ? otherwise : it->second;
+  }
+  std::vector<std::string> with_prefix(std::string_view prefix, bool keep) const {
+    std::vector<std::string> found;
+    for (const auto& [name, value] : settings_)
+      if (name.starts_with(prefix))
+        found.push_back(fmt::format("{}={}", keep ? name : name.substr(prefix.size()), value));
+    return found;
+  }
+
+  void take_chip(platform::PlatformFile& file) {
+    point_.chip = &file;
+    point_.overrides = with_prefix(kPlatformPrefix, false);
+    point_.request.platform = file.resolve(point_.overrides);
+    const sim::ClusterConfig& cluster = point_.request.platform.config.cluster;
+    point_.request.cores =
+        has("cores") ? static_cast<int>(parse_whole("cores", text("cores"), 1, cluster.max_workers))
+                     : cluster.workers;
+  }
+
+  void take_recording() {
+    for (const auto& [name, value] : settings_)
+      if (find_key(name, plan_.reference->schema(), place_).belongs_to_recording())
+        place_.fail(
+            fmt::format("{}: recorded work is that of a run as it was; expected data in place of "
+                        "the trace",
+                        name));
+    SweepInputs::Trace& trace = inputs_.trace(text("trace"), place_);
+    point_.trace = trace.work.get();
+    point_.work = fmt::format("trace {}", trace.sha256);
+    take_chip(has("platform") ? inputs_.platform(text("platform"), place_) : trace.platform);
+    check_cores(*trace.work, point_.request);
+  }
+
+  void take_data() {
+    if (!has("platform")) place_.fail("has no platform; expected one (leviosim platforms)");
+    RunRequest& request = point_.request;
+    const SweepInputs::Data& data = inputs_.data(text("data"), text("frames"), place_);
+    request.data = data.folder;
+    if (has("frames")) request.frames = traces::parse_frame_range(text("frames"));
+    request.image_size = parse_size(text("size", "160x120"));
+    traces::make_decimation(data.camera, request.image_size);
+    request.profile = text("profile", "levio");
+    request.seed = static_cast<std::uint32_t>(
+        parse_whole("seed", text("seed", "1"), 0, std::numeric_limits<std::uint32_t>::max()));
+    request.workload = parse_workload_overrides(with_prefix(vio::kParameterPrefix, true));
+    profile_of(request);  // refuses parameters that contradict each other
+    point_.work = data.work;
+    take_chip(inputs_.platform(text("platform"), place_));
+  }
+
+  const SweepPlan& plan_;
+  const SweepRow& settings_;
+  SweepInputs& inputs_;
+  platform::Place place_;
+  ResolvedPoint point_;
+};
+
+/// What a key is at a point, set there or not.
+class ParameterReader {
+ public:
+  ParameterReader(const SweepPlan& plan, const ResolvedPoint& point, const SweepRow& settings)
+      : plan_(plan),
+        point_(point),
+        settings_(settings),
+        chip_(point.chip->settings_with(point.overrides)) {}
+
+  PointParameter read(const SweepKey& key) const {
+    const auto it = settings_.find(key.name);
+    const std::string set = it == settings_.end() ? std::string() : it->second;
+    const RunRequest& request = point_.request;
+    if (key.kind == SweepKey::Kind::chip) return chip_parameter(key);
+    if (key.kind == SweepKey::Kind::cores) return whole(key, request.cores);
+    if (point_.trace != nullptr) return {key.name, set};
+    switch (key.kind) {
+      case SweepKey::Kind::workload: {
+        const double value = key.parameter->get(profile_of(request));
+        return {key.name, value_text(*key.parameter, value), value,
+                std::string(key.parameter->unit)};
+      }
+      case SweepKey::Kind::seed:
+        return whole(key, request.seed);
+      case SweepKey::Kind::profile:
+        return {key.name, request.profile};
+      case SweepKey::Kind::size:
+        return {key.name,
+                fmt::format("{}x{}", request.image_size.width, request.image_size.height)};
+      default:
+        return {key.name, set};
+    }
+  }
+
+ private:
+  static PointParameter whole(const SweepKey& key, std::int64_t value) {
+    return {key.name, fmt::format("{}", value), static_cast<double>(value)};
+  }
+  PointParameter chip_parameter(const SweepKey& key) const {
+    const platform::Schema& schema = point_.chip->schema();
+    const std::size_t field = schema.find(key.path);
+    const std::optional<platform::Setting>& setting = chip_[field];
+    if (!setting) return {key.name, {}};
+    if (schema.fields()[field].is_choice()) return {key.name, setting->parameter.value};
+    const SweepNumber number = chip_number(key, setting->base, *plan_.reference);
+    return {key.name, number.text(), number.value, number.unit};
+  }
+
+  const SweepPlan& plan_;
+  const ResolvedPoint& point_;
+  const SweepRow& settings_;
+  platform::Settings chip_;
+};
 
 std::string text_of(const SweepRow& row) {
   std::vector<std::string> parts;
@@ -94,149 +168,52 @@ std::string text_of(const SweepRow& row) {
 
 }  // namespace
 
-/// The rows of different points, told apart by a hash of what they are.
-class SeenRows {
- public:
-  /// Whether the row is new. @param is_same  whether a row that was there is the same point
-  template <class IsSame>
-  bool add(std::uint32_t hash, std::uint32_t row, const IsSame& is_same) {
-    if (2 * (count_ + 1) > slots_.size()) grow();
-    std::size_t at = hash & (slots_.size() - 1);
-    for (; slots_[at].row != kFree; at = (at + 1) & (slots_.size() - 1))
-      if (slots_[at].hash == hash && is_same(slots_[at].row)) return false;
-    slots_[at] = {hash, row};
-    ++count_;
-    return true;
-  }
+ResolvedPoint resolve(const SweepPlan& plan, const SweepRow& settings, SweepInputs& inputs,
+                      const std::string& where) {
+  return Resolver(plan, settings, inputs, where).resolve();
+}
 
- private:
-  static constexpr std::uint32_t kFree = UINT32_MAX;
-  struct Slot {
-    std::uint32_t hash = 0;
-    std::uint32_t row = kFree;
-  };
-  void grow() {
-    std::vector<Slot> before(std::max<std::size_t>(16, 2 * slots_.size()));
-    before.swap(slots_);
-    for (const Slot& slot : before) {
-      if (slot.row == kFree) continue;
-      std::size_t at = slot.hash & (slots_.size() - 1);
-      while (slots_[at].row != kFree) at = (at + 1) & (slots_.size() - 1);
-      slots_[at] = slot;
-    }
-  }
-  std::vector<Slot> slots_;
-  std::size_t count_ = 0;
-};
-
-class Expander {
- public:
-  Expander(const SweepPlan& plan, SweepInputs& inputs)
-      : plan_(plan), inputs_(inputs), expansion_{SweepPoints(plan)}, points_(expansion_.points) {}
-
-  Expansion expand() {
-    for (const SweepGroup& group : plan_.groups) {
-      points_.groups_.emplace_back(plan_, group, *points_.pool_);
-      points_.first_rows_.push_back(expansion_.asked);
-      const std::size_t rows = points_.groups_.back().size();
-      if (expansion_.asked + rows > kMostPoints)
-        group.place.fail(fmt::format("gives more than {} points in all", kMostPoints));
-      for (std::size_t i = 0; i < rows; ++i) add(group, expansion_.asked++);
-    }
-    if (points_.size() == 0)
-      throw InputError(fmt::format("{}: no point of the plan is possible: {}", plan_.file,
-                                   expansion_.first_impossible));
-    return std::move(expansion_);
-  }
-
- private:
-  struct Known {
-    PointFamily* family = nullptr;
-    std::size_t outline = 0;  ///< equal for equal outlines
-  };
-
-  void add(const SweepGroup& group, std::size_t row) {
-    constexpr std::size_t kRowsPerPoll = 64;
-    if (row % kRowsPerPoll == 0) throw_if_interrupted();
-    points_.put_values(row, values_);
-    Known* known = known_of(values_);
-    if (known == nullptr || !known->family->accepts(values_)) {
-      if (known != nullptr && expansion_.impossible > 0) {
-        ++expansion_.impossible;
-        return;
-      }
-      const std::optional<ResolvedPoint> point = resolved(group, row);
-      if (!point) return;
-      check(known == nullptr, "resolve() accepts what a family of points does not");
-      known = &make_family(*point);
-    }
-    known->family->put_numbers(values_, numbers_);
-    const auto is_same = [&](std::uint32_t other) { return is_point(other, *known); };
-    if (seen_.add(hash_of(known->outline, numbers_), static_cast<std::uint32_t>(row), is_same))
-      points_.rows_.push_back(static_cast<std::uint32_t>(row));
-  }
-
-  /// Nothing, if the plan says to leave out what is impossible.
-  std::optional<ResolvedPoint> resolved(const SweepGroup& group, std::size_t row) {
-    try {
-      std::vector<ValueId> own(values_.size(), kUnset);
-      points_.groups_.back().put(row - points_.first_rows_.back(), own);
-      SweepRow shown;
-      for (std::size_t k = 0; k < own.size(); ++k)
-        if (own[k] != kUnset) shown[plan_.keys[k].name] = points_.pool_->text(k, own[k]);
-      return resolve(plan_, points_.settings_of(values_), inputs_,
-                     fmt::format("{}: point {}", group.place.where, text_of(shown)));
-    } catch (const InputError& error) {
-      if (!plan_.skip_impossible) throw;
-      if (expansion_.impossible++ == 0) expansion_.first_impossible = error.what();
-      return std::nullopt;
-    }
-  }
-
-  Known* known_of(std::span<const ValueId> values) {
-    std::vector<ValueId> identifier = PointFamily::identifier(plan_, values);
-    if (last_ != nullptr && last_->first == identifier) return &last_->second;
-    const auto it = known_.find(identifier);
-    if (it == known_.end()) return nullptr;
-    last_ = &*it;
-    return &it->second;
-  }
-
-  Known& make_family(const ResolvedPoint& point) {
-    std::vector<ValueId> identifier = PointFamily::identifier(plan_, values_);
-    auto& family = points_.families_[identifier];
-    family = std::make_unique<PointFamily>(plan_, *points_.pool_, values_,
-                                           points_.settings_of(values_), point);
-    const std::size_t outline =
-        outlines_.emplace(family->outline(), outlines_.size()).first->second;
-    return known_[std::move(identifier)] = Known{family.get(), outline};
-  }
-
-  /// Whether the point of a row is the one whose numbers are in numbers_.
-  bool is_point(std::size_t row, const Known& known) {
-    points_.put_values(row, other_values_);
-    const Known& other = *known_of(other_values_);
-    if (other.outline != known.outline) return false;
-    other.family->put_numbers(other_values_, other_numbers_);
-    return other_numbers_ == numbers_;
-  }
-
-  const SweepPlan& plan_;
-  SweepInputs& inputs_;
-  Expansion expansion_;
-  SweepPoints& points_;
-  std::map<std::vector<ValueId>, Known> known_;  ///< families by identifier
-  std::pair<const std::vector<ValueId>, Known>* last_ = nullptr;
-  std::map<std::string, std::size_t> outlines_;
-  SeenRows seen_;
-  std::vector<ValueId> values_ = std::vector<ValueId>(plan_.keys.size());
-  std::vector<ValueId> other_values_ = values_;
-  std::vector<double> numbers_ = std::vector<double>(plan_.keys.size());
-  std::vector<double> other_numbers_ = numbers_;
-};
+std::string SweepPoint::settings_text() const {
+  std::vector<std::string> parts;
+  for (const PointParameter& p : parameters) parts.push_back(fmt::format("{}={}", p.name, p.text));
+  return fmt::format("{}", fmt::join(parts, " "));
+}
 
 Expansion expand(const SweepPlan& plan, SweepInputs& inputs) {
-  return Expander(plan, inputs).expand();
+  Expansion all;
+  std::unordered_set<std::string> seen;  // keys
+  const auto add = [&](const SweepGroup& group, SweepRow row) {
+    const std::string where = fmt::format("{}: point {}", group.place.where, text_of(row));
+    row.insert(plan.base.begin(), plan.base.end());
+    try {
+      const ResolvedPoint point = resolve(plan, row, inputs, where);
+      std::string key = point_key(kSweepFigures, point.identity);
+      if (!seen.insert(key).second) return;
+      SweepPoint& added = all.points.emplace_back();
+      added.number = static_cast<int>(all.points.size());
+      const ParameterReader parameters(plan, point, row);
+      for (const SweepKey& k : plan.keys) added.parameters.push_back(parameters.read(k));
+      added.settings = std::move(row);
+      added.key = std::move(key);
+    } catch (const InputError& error) {
+      if (!plan.skip_impossible) throw;
+      if (all.impossible++ == 0) all.first_impossible = error.what();
+    }
+  };
+  for (const SweepGroup& group : plan.groups) {
+    std::vector<SweepRow> rows = rows_of(group);
+    all.asked += rows.size();
+    if (all.asked > kMostPoints)
+      group.place.fail(fmt::format("gives more than {} points in all", kMostPoints));
+    for (SweepRow& row : rows) {
+      throw_if_interrupted();
+      add(group, std::move(row));
+    }
+  }
+  if (all.points.empty())
+    throw InputError(
+        fmt::format("{}: no point of the plan is possible: {}", plan.file, all.first_impossible));
+  return all;
 }
 
 }  // namespace leviosim::tools

@@ -12,7 +12,7 @@
 #include "tools/app/budget/figures.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
-#include "tools/app/study/sweep/resolve.h"
+#include "tools/app/study/sweep/points.h"
 #include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::tools {
@@ -83,8 +83,9 @@ RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int
   return record;
 }
 
-SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan, const SweepPoints& points,
-                       SweepInputs& inputs, SweepStore& store) {
+SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
+                       const std::vector<SweepPoint>& points, SweepInputs& inputs,
+                       SweepStore& store) {
   SweepCheck check;
   std::optional<RunRecord> first;
   TextTable table({{"point"},
@@ -99,7 +100,7 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan, const SweepP
     ++check.held;
     std::optional<Miss> miss;
     if (outcome->failure.empty()) {
-      const SweepRow settings = points.settings(i);
+      const SweepRow settings = points[i].settings;
       RunRecord record =
           point_record(resolve(plan, settings, inputs, plan.file), settings, number, *outcome);
       if (!record.value("frame.latency.mean"))
@@ -114,7 +115,7 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan, const SweepP
     }
     if (!miss) continue;
     if (++check.missed <= kMostMisses)
-      table.add({fmt::format("{}", number), miss->limit, miss->found, points.settings_text(i)});
+      table.add({fmt::format("{}", number), miss->limit, miss->found, points[i].settings_text()});
   }
   check.text = fmt::format("{} points against {}: {} do not meet it\n", check.held,
                            printable(budget.file), check.missed);

@@ -24,7 +24,8 @@ RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int
                        const Outcome& outcome);
 
 /// @throws InputError for figures that the points do not have, Interrupted
-SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan, const SweepPoints& points,
-                       SweepInputs& inputs, SweepStore& store);
+SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
+                       const std::vector<SweepPoint>& points, SweepInputs& inputs,
+                       SweepStore& store);
 
 }  // namespace leviosim::tools

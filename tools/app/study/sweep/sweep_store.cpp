@@ -98,7 +98,8 @@ bool is_objective(const std::string& name) {
 
 }  // namespace
 
-SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const SweepPoints& points)
+SweepStore::SweepStore(const fs::path& folder, const std::string& plan,
+                       const std::vector<SweepPoint>& points)
     : folder_(folder), database_(made(folder), Database::Mode::create) {
   Transaction transaction(database_);
   if (schema_of(database_) == Schema::foreign) database_.fail("is no file of leviosim sweep");
@@ -123,18 +124,18 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan, const Sw
   transaction.commit();
 }
 
-bool SweepStore::holds(const SweepPoints& points) {
+bool SweepStore::holds(const std::vector<SweepPoint>& points) {
   if (planned() != static_cast<std::int64_t>(points.size())) return false;
   Statement select(database_, "SELECT point, key FROM planned ORDER BY point");
   for (std::size_t i = 0; select.step(); ++i) {
     throw_if_interrupted();
-    if (select.whole(0) != static_cast<std::int64_t>(i) + 1 || select.text(1) != points.key(i))
+    if (select.whole(0) != static_cast<std::int64_t>(i) + 1 || select.text(1) != points[i].key)
       return false;
   }
   return true;
 }
 
-void SweepStore::plan(const SweepPoints& points) {
+void SweepStore::plan(const std::vector<SweepPoint>& points) {
   Statement point(database_, "INSERT INTO planned VALUES(?, ?)");
   Statement parameter(database_, "INSERT INTO parameters VALUES(?, ?, ?, ?, ?, ?)");
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -33,7 +33,7 @@ class SweepStore {
   /// @param plan  its text
   /// @throws InputError if it holds another sweep
   SweepStore(const std::filesystem::path& folder, const std::string& plan,
-             const SweepPoints& points);
+             const std::vector<SweepPoint>& points);
   /// Opens what is there. @throws InputError if it is no sweep's
   explicit SweepStore(const std::filesystem::path& folder,
                       Database::Mode mode = Database::Mode::read_only);
@@ -84,8 +84,8 @@ class SweepStore {
   /// A row of the table `sweep`.
   std::optional<std::string> fact(std::string_view name);
   Keys keys();
-  bool holds(const SweepPoints& points);
-  void plan(const SweepPoints& points);
+  bool holds(const std::vector<SweepPoint>& points);
+  void plan(const std::vector<SweepPoint>& points);
   void write(int point, const Outcome& result);
   std::vector<std::string> figure_names();
   void write_front();
