@@ -5,4 +5,5 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/setup.sh
 tools/build.sh release leviosim
+echo "demo: for the commands that it names: export PATH=\$PWD/build/release:\$PATH"
 build/release/leviosim demo --out out/demo --force

@@ -3,7 +3,11 @@
 // and 143 where it was interrupted. Faults of leviosim itself abort.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+#include <csignal>
 #include <filesystem>
+#include <string_view>
 
 #include "sim/base/error.h"
 
@@ -20,6 +24,7 @@
 #include "tools/commands/calibrate_command.h"
 #include "tools/commands/check_command.h"
 #include "tools/commands/compare_command.h"
+#include "tools/commands/demo_command.h"
 #include "tools/commands/eval_command.h"
 #include "tools/commands/explore_command.h"
 #include "tools/commands/flow_command.h"
@@ -60,6 +65,23 @@ int end_after_report() {
   }
 }
 
+/// Of commands that find again what they finished.
+bool goes_on(const Words& words) {
+  constexpr std::array<std::string_view, 5> kCommands{"sweep", "ablate", "explore", "tune",
+                                                      "benchmark-flights"};
+  return !words.empty() &&
+         std::find(kCommands.begin(), kCommands.end(), words.front()) != kCommands.end();
+}
+
+/// Says what was kept, to whoever asked the program to stop.
+int end_interrupted(const Interrupted& stop, const Words& words) {
+  if (stop.signal() == SIGINT || stop.signal() == SIGTERM)
+    print_error(goes_on(words)
+                    ? "interrupted: what was finished is kept; the same command goes on from there"
+                    : "interrupted: nothing unfinished was kept; the same command begins anew");
+  return kSignalled + stop.signal();
+}
+
 int run_program(const Words& words) {
   CLI::App app("Runs visual-inertial odometry on models of ultra-low-power multicore chips.",
                "leviosim");
@@ -67,7 +89,8 @@ int run_program(const Words& words) {
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
   try {
     const int status = run_command_line(app,
-                                        {add_run_command(app, words),
+                                        {add_demo_command(app, words),
+                                         add_run_command(app, words),
                                          add_synth_command(app),
                                          add_platforms_command(app),
                                          add_workload_command(app),
@@ -99,7 +122,7 @@ int run_program(const Words& words) {
   } catch (const LimitNotMet&) {
     return end_after_report();
   } catch (const Interrupted& stop) {
-    return kSignalled + stop.signal();
+    return end_interrupted(stop, words);
   }
 }
 

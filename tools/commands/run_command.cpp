@@ -1,14 +1,11 @@
 #include "tools/commands/run_command.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/run/recording_source.h"
@@ -20,28 +17,14 @@
 namespace leviosim::tools {
 namespace {
 
-/// What the run knows about itself beyond its work.
-void complete(traces::WorkTraceInfo& info, const RunOptions& options, const RunRequest& request,
-              const Manifest& manifest) {
-  info.program = fmt::format("leviosim {} {}", version(), revision());
-  info.seed = request.seed;
-  info.data = options.data;
-  info.first_frame = static_cast<std::int64_t>(manifest.first_frame);
-  info.platform = fmt::format("{}", fmt::join(manifest.overrides, " "));
-  info.platform =
-      options.platform + (info.platform.empty() ? std::string() : " with " + info.platform);
-  info.platform_yaml = platform::to_yaml(request.platform);
-  for (const InputDigest& input : manifest.inputs)
-    info.inputs.emplace_back(input.name, input.sha256);
-}
-
 struct RunCommandOptions : RunOptions {
   GateOptions gate;
   TimelineOptions timeline;
   std::string report;
 };
 
-void run(const CLI::App& command, const RunCommandOptions& options, const Words& words) {
+void run(const CLI::App& command, RunCommandOptions options, const Words& words) {
+  set_run_defaults(options);
   RunRequest request = make_request(command, options);
   check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
@@ -67,8 +50,7 @@ void run(const CLI::App& command, const RunCommandOptions& options, const Words&
   publish(out, run_printout(options, result), [&] {
     write_run_files(out, files);
     if (!options.record) return;
-    complete(recording.info, options, request, manifest);
-    out.write(kWorkTraceFile, recording.writer.finish(std::move(recording.info)));
+    out.write(kWorkTraceFile, work_trace_of(std::move(recording), options, request, manifest));
   });
   if (timeline) timeline->publish(result, !options.json);
   report_and_check({make_record(out.shown_path(), manifest, result, parts.stages()), files}, page,

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sim/base/error.h"
+#include "sim/base/input_file.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/run/workload_overrides.h"
 #include "workload/vio/profile.h"
@@ -101,9 +102,9 @@ int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster) {
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
-  add_chip_options(command, options, "");
+  add_chip_options(command, options, " [gap9]");
   command.add_flag("--native", options.native, "no chip, no timing: the golden model");
-  add_workload_options(command, options, "");
+  add_workload_options(command, options, " [synthetic]");
   add_text(command, "--size", options.size, "WxH", "image size [160x120]");
   add_text(command, "--fps", options.camera_fps, "F",
            "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
@@ -113,6 +114,17 @@ void add_run_options(CLI::App& command, RunOptions& options) {
            "seconds that the first poses may wait for the initialisation, which corrects them [0]");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
   add_out_options(command, options);
+  command.get_option("--out")->description(
+      "folder for the results; must be new or empty [leviosim-run, or with the next free number]");
+}
+
+void set_run_defaults(RunOptions& options) {
+  if (options.platform.empty() && !options.native) options.platform = "gap9";
+  if (options.data.empty()) options.data = "synthetic";
+  const std::string name = "leviosim-run";
+  if (!options.out.empty()) return;
+  options.out = name;
+  for (int n = 2; base::exists(options.out); ++n) options.out = fmt::format("{}-{}", name, n);
 }
 
 void add_chip_run_options(CLI::App& command, RunOptions& options) {
@@ -141,14 +153,11 @@ traces::ImageSize parse_size(const std::string& text) {
 }
 
 RunRequest make_request(const CLI::App& command, const RunOptions& options) {
-  require(command, "--data", "an ASL folder or 'synthetic'");
-  require(command, "--out", "a folder for the results");
   RunRequest request = make_workload_request(options);
   request.initial_delay_s = parse_initial_delay(options.initial_delay, request);
   if (options.native) {
     refuse_chip_options(command, options);
   } else {
-    require(command, "--platform", "the name of a chip or a platform file, or --native");
     resolve_chip(options, request);
     request.camera = parse_camera(options.camera_fps, options.deadline);
     const bool waits = request.initial_delay_s > 0 || profile_of(request).initial_frames > 0;

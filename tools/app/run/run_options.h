@@ -36,6 +36,10 @@ struct RunOptions {
 /// Declares the options on the subcommand.
 void add_run_options(CLI::App& command, RunOptions& options);
 
+/// What `leviosim run` takes where nothing is said: gap9, the synthetic flight, and a folder here
+/// that is not there yet.
+void set_run_defaults(RunOptions& options);
+
 /// The same for commands that always run on a chip, with what they say by default: gap9 and the
 /// synthetic flight. They declare --out themselves.
 void add_chip_run_options(CLI::App& command, RunOptions& options);

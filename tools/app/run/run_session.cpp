@@ -1,6 +1,6 @@
 #include "tools/app/run/run_session.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -88,6 +88,22 @@ Manifest make_manifest(const RunOptions& options, const RunRequest& request, con
   manifest.platform = options.platform;
   manifest.overrides = split_overrides(options.overrides).chip;
   return manifest;
+}
+
+std::string work_trace_of(WorkRecording recording, const RunOptions& options,
+                          const RunRequest& request, const Manifest& manifest) {
+  traces::WorkTraceInfo& info = recording.info;
+  info.program = fmt::format("leviosim {} {}", version(), revision());
+  info.seed = request.seed;
+  info.data = options.data;
+  info.first_frame = static_cast<std::int64_t>(manifest.first_frame);
+  info.platform = options.platform;
+  if (!manifest.overrides.empty())
+    info.platform += fmt::format(" with {}", fmt::join(manifest.overrides, " "));
+  info.platform_yaml = platform::to_yaml(request.platform);
+  for (const InputDigest& input : manifest.inputs)
+    info.inputs.emplace_back(input.name, input.sha256);
+  return recording.writer.finish(std::move(info));
 }
 
 std::string heading(const RunOptions& options, const RunResult& run) {

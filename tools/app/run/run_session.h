@@ -9,6 +9,7 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/progress_line.h"
 #include "tools/app/run/manifest.h"
+#include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_options.h"
 #include "tools/app/run/run_source.h"
 
@@ -39,6 +40,10 @@ RunResult simulate_with_progress(const RunRequest& request, RunSource& source,
 Manifest manifest_of_data(const RunRequest& request);
 
 Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words);
+
+/// The file of what a run recorded, with what the run knows about itself beyond its work.
+std::string work_trace_of(WorkRecording recording, const RunOptions& options,
+                          const RunRequest& request, const Manifest& manifest);
 
 /// "leviosim 0.1.0: levio on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, …"
 std::string heading(const RunOptions& options, const RunResult& run);

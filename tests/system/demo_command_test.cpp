@@ -1,0 +1,43 @@
+// The demonstration: both profiles and the what-if on a screen, and what it leaves behind.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/support/run_program.h"
+#include "tools/app/report/text_table.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(DemoCommand, ShowsBothProfilesOnAScreenAndLeavesThemWithAReport) {
+  const traces::testing::TempFolder folder;
+  const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+  traces::write_synthetic_flight(path("flight"), {.duration_s = 1.5, .texel_m = 0.05});
+  const std::vector<std::string> words{"demo",    "--data", path("flight"),
+                                       "--quiet", "--out",  path("demo")};
+  const testing::ProgramResult shown = testing::run_program(folder.path(), words);
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  int lines = 0;
+  std::istringstream in(shown.out);
+  for (std::string line; std::getline(in, line); ++lines)
+    EXPECT_TRUE(line.find(folder.path().string()) != std::string::npos || display_width(line) <= 80)
+        << line;
+  EXPECT_LE(lines, 24) << shown.out;
+  for (const char* part : {"levio: 1", "next: 1", "feature extraction", "optimiser iteration",
+                           "L1 and L2", "one FPU", "240 MHz", "█", "leviosim replay"})
+    EXPECT_NE(shown.out.find(part), std::string::npos) << part << " is not in:\n" << shown.out;
+  for (const char* file : {"demo/report.html", "demo/next/stats.json"})
+    EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
+  // Its first suggestion works, and nothing of others is replaced.
+  EXPECT_EQ(testing::run_program(folder.path(), {"replay", path("demo/levio"), "-p",
+                                                 "cluster.fpu.units=1", "--out", path("one-fpu")})
+                .status,
+            0);
+  EXPECT_EQ(testing::run_program(folder.path(), words).status, 2);
+}
+
+}  // namespace
+}  // namespace leviosim::tools
