@@ -226,8 +226,7 @@ TEST_F(Check, TheExamplesForServersWork) {
     fs::copy(path("budgets.yaml"), folder / "budgets.yaml");
     EXPECT_EQ(run_script(folder, commands), 0) << base::read_text_file(folder / "log");
     EXPECT_EQ(junit_fault(base::read_text_file(folder / "junit.xml")), "");
-    fs::remove_all(folder / "run");
-    fs::remove(folder / "junit.xml");
+    // The next job of a server finds what this one left.
     std::ofstream(folder / "budgets.yaml") << "budgets:\n  - limits: [L1 peak <= 1 kB]\n";
     EXPECT_EQ(run_script(folder, commands), 1) << base::read_text_file(folder / "log");
   }

@@ -89,6 +89,7 @@ TEST_F(EvalCommand, SaysWhichLengthsAreTooLong) {
   expect_parts(eval({}).out, {"no relative errors over 40 m: too long for 11.66 m of path"});
   const std::string out = eval({"--relative", "50", "--relative", "3", "--relative", "12"}).out;
   expect_parts(out, {"no relative errors over 12 m, 50 m: too long", "   3 m"});
+  EXPECT_EQ(eval({"--relative", "50,3,12"}).out, out);
 }
 
 TEST_F(EvalCommand, TakesOtherProtocols) {

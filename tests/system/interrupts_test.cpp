@@ -168,6 +168,7 @@ TEST_F(Interrupts, CountWhereTheCallerIgnoresThemAndWhateverTheWork) {
   program.send(SIGINT);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.status, 128 + SIGINT) << result.out << result.err;
+  EXPECT_NE(result.err.find("the same command"), std::string::npos) << result.err;
 }
 
 TEST_F(Interrupts, HangingUpIsIgnoredWhereTheCallerIgnoresIt) {

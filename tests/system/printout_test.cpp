@@ -78,6 +78,17 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
   EXPECT_EQ(lines.back(), "results: " + path("run"));
 }
 
+TEST_F(PrintoutTest, ARunWithoutOptionsTakesTheChipAndNamesANewFolder) {
+  ::setenv("L", leviosim::tests::program_path().c_str(), 1);
+  ::setenv("IN", folder_.c_str(), 1);
+  const std::string run = "$L run --data flight --frames 0:3 --quiet";
+  const std::string line = "cd $IN && " + run + " >first && " + run + " >second";
+  ASSERT_EQ(std::system(line.c_str()), 0) << line;  // NOLINT: the line is the test's own
+  EXPECT_EQ(lines_of(read_text_file(folder_ / "first")).back(), "results: leviosim-run");
+  EXPECT_EQ(lines_of(read_text_file(folder_ / "second")).back(), "results: leviosim-run-2");
+  EXPECT_NE(read_text_file(folder_ / "first").find("levio on gap9"), std::string::npos);
+}
+
 TEST_F(PrintoutTest, TablesAreChosenByName) {
   const ProgramResult all = replay("all", {"--tables", "all"});
   for (const char* part : {"where the core-cycles go", "pose from", "blocks alive at the peak",

@@ -126,6 +126,22 @@ TEST_F(TimelineOfFlight, TakesTheFramesThatWereAskedFor) {
   EXPECT_EQ(PerfettoTrace(bytes).on("camera").size(), 2u);
 }
 
+TEST_F(TimelineOfFlight, APictureHasTwoFramesAndSaysWhich) {
+  const ProgramResult result = program(
+      {"replay", path("run"), "--out", path("drawn"), "--quiet", "--timeline", path("drawn.svg")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("timeline of frames 29:31 (--timeline-frames"), std::string::npos)
+      << result.out;
+}
+
+TEST_F(TimelineOfFlight, NamesOfOtherFormatsAreRefused) {
+  for (const char* name : {"x.json", "x.html"})
+    testing::expect_refused(
+        program({"replay", path("run"), "--out", path("no"), "--timeline", path(name)}),
+        {name, ".svg", ".pftrace"});
+  EXPECT_FALSE(fs::exists(*folder_ / "no"));
+}
+
 TEST_F(TimelineOfFlight, LeavesJsonOnStdoutAsItIs) {
   const ProgramResult result =
       program({"replay", path("run"), "--out", path("json"), "--quiet", "--json", "--timeline",

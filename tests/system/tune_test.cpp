@@ -37,6 +37,7 @@ TEST(TuneOptions, ClocksAreRangesAndLists) {
   EXPECT_EQ(megahertz(parse_clocks("100:125:10")), (Clocks{100, 110, 120}));
   EXPECT_EQ(megahertz(parse_clocks("240")), (Clocks{240}));
   EXPECT_EQ(megahertz(parse_clocks("370,100:120:20")), (Clocks{100, 120, 370}));
+  EXPECT_EQ(megahertz(parse_clocks("240MHz,370")), (Clocks{240, 370}));
   EXPECT_EQ(parse_clocks("12.5"), (std::vector<Hertz>{Hertz(12'500'000)}));
   for (const char* text : {"", "0", "-5", "fast", "100:200", "100:200:", "100:200:0", "1:2:3:4",
                            "100:200:-10", "nan", "1e300"})

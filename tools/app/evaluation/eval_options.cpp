@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
@@ -23,7 +24,11 @@ bool remove_suffix(std::string& text, std::string_view suffix) {
 
 std::vector<double> parse_lengths(const std::vector<std::string>& words) {
   std::vector<double> lengths;
-  for (const std::string& word : words) lengths.push_back(parse_positive("--relative", word));
+  for (const std::string& word : words) {
+    std::istringstream list(word + ',');  // "1,2" is two of them, and "1," one and a fault
+    for (std::string length; std::getline(list, length, ',');)
+      lengths.push_back(parse_positive("--relative", length));
+  }
   if (lengths.empty()) lengths.push_back(kDefaultLength);
   std::sort(lengths.begin(), lengths.end());
   lengths.erase(std::unique(lengths.begin(), lengths.end()), lengths.end());
@@ -73,7 +78,7 @@ void add_eval_options(CLI::App& command, EvalOptions& options) {
       "to the nearest true sample of a matched pose: 10ms, 0.01s, or a number of ms [10ms]");
   command
       .add_option("--relative", options.relative,
-                  "length of sub-trajectories in metres, repeatable [40]")
+                  "lengths of sub-trajectories in metres: 10,40; repeatable [40]")
       ->type_name("M")
       ->take_all()
       ->allow_extra_args(false);

@@ -12,6 +12,8 @@
 namespace leviosim::tools {
 namespace {
 
+constexpr int kFramesOfPicture = 2;  // as many as a picture of usual width shows
+
 std::optional<traces::FrameRange> range_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   try {
@@ -32,7 +34,19 @@ void refuse_within(const base::OutputRequest& results, const std::string& file) 
                     results.shown()));
 }
 
+/// What opens such files would not open this one.
+void refuse_other_formats(const std::string& file) {
+  const std::filesystem::path extension = std::filesystem::path(file).extension();
+  for (const char* other : {".json", ".html", ".htm", ".csv", ".png", ".pdf"})
+    if (extension == other)
+      throw InputError(fmt::format(
+          "--timeline {}: expected a name that ends in .svg, a picture, or in .pftrace, for "
+          "ui.perfetto.dev",
+          file));
+}
+
 base::OutputRequest file_request(const std::string& file, const base::OutputRequest& results) {
+  refuse_other_formats(file);
   refuse_within(results, file);
   return {
       .option = "--timeline", .path = file, .replace = results.replace, .inputs = results.inputs};
@@ -48,22 +62,29 @@ void add_timeline_options(CLI::App& command, TimelineOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--timeline-frames", options.frames,
-                  "frames of the timeline as frames.csv numbers them, B exclusive [all]")
+                  "frames of the timeline as frames.csv numbers them, B exclusive [all; of a "
+                  "picture two in the middle]")
       ->type_name("A:B");
 }
 
 RequestedTimeline::RequestedTimeline(const TimelineOptions& options,
                                      const base::OutputRequest& results, const RunRequest& request)
     : name_(options.file),
-      collector_(request.platform.config, request.cores, range_of(options.frames)),
+      is_picture_(std::filesystem::path(name_).extension() == ".svg"),
+      chosen_(is_picture_ && options.frames.empty()),
+      collector_(request.platform.config, request.cores, range_of(options.frames),
+                 chosen_ ? kFramesOfPicture : 0),
       file_(claimed_file(file_request(options.file, results))) {}
 
 void RequestedTimeline::publish(const RunResult& run, bool prints_name) {
-  const bool is_picture = std::filesystem::path(name_).extension() == ".svg";
+  std::string label = "timeline";
+  if (chosen_ && collector_.events().range)
+    label += fmt::format(" of frames {}:{} (--timeline-frames A:B for others)",
+                         collector_.events().range->begin, collector_.events().range->end);
   tools::publish({{file_,
-                   is_picture ? timeline_picture(collector_.events(), run)
-                              : perfetto_timeline(collector_.events(), run),
-                   "timeline"}},
+                   is_picture_ ? timeline_picture(collector_.events(), run)
+                               : perfetto_timeline(collector_.events(), run),
+                   label}},
                  Printout("", !prints_name));
 }
 

@@ -38,6 +38,8 @@ class RequestedTimeline {
 
  private:
   std::string name_;
+  bool is_picture_;
+  bool chosen_;  ///< its frames, since the user named none
   TimelineCollector collector_;
   std::optional<base::OutputFile> file_;
 };

@@ -30,13 +30,17 @@ std::optional<Watts> power_in(const std::optional<RunEnergy>& energy, std::strin
 }  // namespace
 
 TimelineCollector::TimelineCollector(const sim::ChipConfig& chip, int cores,
-                                     std::optional<traces::FrameRange> range)
-    : events_{sim::timebase_of(chip), cores, range, {}, {}} {
+                                     std::optional<traces::FrameRange> range, int middle)
+    : middle_(middle), events_{sim::timebase_of(chip), cores, range, {}, {}} {
   job_run_.chip = chip;
   job_run_.cores = cores;
 }
 
 void TimelineCollector::on_start(int frames) {
+  if (middle_ > 0 && frames > middle_) {
+    const auto begin = static_cast<std::size_t>((frames - middle_) / 2);
+    events_.range = traces::FrameRange{begin, begin + static_cast<std::size_t>(middle_)};
+  }
   if (events_.range)
     traces::check_frame_range(*events_.range, static_cast<std::size_t>(frames),
                               "--timeline-frames: the run");

@@ -13,8 +13,9 @@ class TimelineCollector : public RunObserver {
  public:
   /// @param cores  of the team
   /// @param range  frames to keep, by their numbers in the run; all if absent
+  /// @param middle  if not 0: so many frames in the middle of the run in place of all
   TimelineCollector(const sim::ChipConfig& chip, int cores,
-                    std::optional<traces::FrameRange> range = {});
+                    std::optional<traces::FrameRange> range = {}, int middle = 0);
 
   bool wants_steps() const override { return true; }
   /// @throws InputError for a range that is not of the run
@@ -29,6 +30,7 @@ class TimelineCollector : public RunObserver {
                                      bool on_controller);
   StepEvents step_of(const sim::StepTiming& timing) const;
 
+  int middle_;
   RunResult job_run_;  ///< a run of one job, for its energy
   TimelineEvents events_;
 };

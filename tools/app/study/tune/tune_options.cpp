@@ -31,7 +31,10 @@ constexpr double kMega = 1e6;
 Hertz parse_megahertz(const std::string& text) {
   constexpr double kMost = 1e5;  // beyond any clock, and small enough to be a whole number of hertz
   double value = 0;
-  if (!base::parse_number(text, value) || !(value > 0) || value > kMost)
+  constexpr std::string_view kUnit = "MHz";
+  const std::string number =
+      text.ends_with(kUnit) ? text.substr(0, text.size() - kUnit.size()) : text;
+  if (!base::parse_number(number, value) || !(value > 0) || value > kMost)
     refuse("--clock", text, "a clock in MHz above 0, such as 240, or a range 100:370:10");
   return Hertz(std::llround(value * kMega));
 }
