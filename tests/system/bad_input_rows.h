@@ -91,8 +91,6 @@ inline std::vector<Row> command_lines() {
       {"NoCommand", {}, {"expected a command"}},
       {"UnknownCommand", {"rnu"}, {"rnu", "did you mean 'run'"}},
       {"UnknownOption", run({"--forse"}), {"--forse", "did you mean '--force'"}},
-      {"MissingData", {"run", "--platform", "gap9", "--out", "@F/out"}, {"--data is missing"}},
-      {"MissingOut", {"run", "--platform", "gap9", "--data", "@D"}, {"--out is missing"}},
       {"EmptyOut", {"run", "--native", "--data", "@D", "--out=", "--quiet"}, {"--out"}},
       {"UnknownPlatform",
        {"run", "--platform", "gap7", "--data", "@D", "--out", "@F/out"},
