@@ -195,7 +195,7 @@ TEST_F(BatchCommands, RefuseBadInputBeforeAnyRun) {
 
 TEST_F(BatchCommands, ReplaceNothingButResults) {
   fs::create_directory(folder_ / "out");
-  base::write_file_atomically(folder_ / "out/thesis.tex", "mine");
+  outputs::write_file_atomically(folder_ / "out/thesis.tex", "mine");
   expect_refused(run_program(folder_.path(), words("ablate", {"--force"})),
                  {"something else than results"});
   EXPECT_TRUE(fs::exists(folder_ / "out/thesis.tex"));

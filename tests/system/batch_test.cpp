@@ -66,7 +66,7 @@ TEST(OutcomeCache, TakesNoFileThatWasCutOffOrIsOfAnotherKind) {
   for (const std::string& broken :
        {std::string(), text.substr(0, text.size() / 2), std::string("{}"), std::string("[1]"),
         std::string(R"({"format":"leviosim outcome 0"})"), std::string("\xff\x00", 2)}) {
-    base::write_file_atomically(file, broken);
+    outputs::write_file_atomically(file, broken);
     EXPECT_FALSE(cache.find(key)) << broken;
   }
 }
@@ -242,12 +242,12 @@ TEST_F(Batch, IsTheSameWithAnyNumberOfThreadsAndFromTheCache) {
   const std::string one = run("a", 1);
   EXPECT_EQ(kept("a"), 6u);
   EXPECT_EQ(run("b", 3), one);
-  base::write_file_atomically(data_.image(5), "no image");
+  outputs::write_file_atomically(data_.image(5), "no image");
   EXPECT_EQ(run("a", 2), one);  // which computes nothing
 }
 
 TEST_F(Batch, StoresNothingOfARunThatFails) {
-  base::write_file_atomically(data_.image(5), "no image");
+  outputs::write_file_atomically(data_.image(5), "no image");
   expect_input_error([&] { run("a", 1); }, {data_.image(5).filename().string()});
   EXPECT_FALSE(fs::exists(folder_ / "a"));
 }

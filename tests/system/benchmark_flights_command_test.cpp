@@ -39,8 +39,8 @@ class BenchmarkFlights : public ::testing::Test {
   /// The motion is called `motion`.
   std::vector<std::string> words(const std::string& plan, const std::string& out,
                                  const std::vector<std::string>& further = {}) const {
-    base::write_file_atomically(folder_ / "plan.yaml",
-                                "motions: [motion]\nworlds: { one: [1], other: [2] }\n" + plan);
+    outputs::write_file_atomically(folder_ / "plan.yaml",
+                                   "motions: [motion]\nworlds: { one: [1], other: [2] }\n" + plan);
     std::vector<std::string> all{"benchmark-flights",     path("plan.yaml"), "--motions",
                                  folder_.path().string(), "--out",           path(out)};
     all.insert(all.end(), further.begin(), further.end());
@@ -94,7 +94,7 @@ TEST_F(BenchmarkOfFewFrames, RefusesBadInputBeforeAnythingIsDrawn) {
   expect_refused(run(words("pieces: [50]\nevery: 0.1\nsize: 32x24", "out")), {"no piece"});
   expect_refused(run(words("pieces: [3]\nevery: 0.1\nsize: 64x48", "out")), {"64x48", "32x24"});
   fs::create_directory(folder_ / "mine");
-  base::write_file_atomically(folder_ / "mine/thesis.tex", "mine");
+  outputs::write_file_atomically(folder_ / "mine/thesis.tex", "mine");
   expect_refused(run(words(kPlan, "mine", {"--force"})), {"something else than results"});
   expect_refused(run(words(kPlan, "motion", {"--force"})), {"motion"});
   EXPECT_FALSE(fs::exists(folder_ / "out"));
@@ -142,7 +142,7 @@ TEST_F(BenchmarkOfFewFrames, GoesOnWhereItWasAndDrawsNothingTwice) {
 TEST_F(BenchmarkOfFewFrames, DrawsAFlightAnewThatWasChanged) {
   ASSERT_EQ(run(words(kPlan, "out", {"--seed", "1"})).status, 0);
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "cache/leviosim/rendered"))
-    if (entry.path().extension() == ".png") base::write_file_atomically(entry.path(), "spoilt");
+    if (entry.path().extension() == ".png") outputs::write_file_atomically(entry.path(), "spoilt");
   const ProgramResult more = run(words(kPlan, "more", {"--seed", "2"}));
   EXPECT_EQ(more.status, 0) << more.err;
 }

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "sim/base/error.h"
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_folder.h"
 #include "tests/support/run_program.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/flight_cache.h"
@@ -202,7 +202,7 @@ TEST_F(CommandLine, ReplacesResultsOnlyIfForced) {
 }
 
 TEST_F(CommandLine, AnImageThatCannotBeReadLeavesNothingBehind) {
-  base::write_file_atomically(data_.image(3), "no image");
+  outputs::write_file_atomically(data_.image(3), "no image");
   expect_run_refused({"--quiet"}, {data_.image(3).filename().string()});
 }
 
@@ -271,7 +271,7 @@ TEST(FlightCache, AnExistingFlightIsUsedIfItIsWhole) {
   EXPECT_THROW(cached_flight(ProgressLine::Style::None), InputError);
   fs::remove_all(folder);
   {
-    base::OutputFolder drawn({.option = {}, .path = folder.string()});
+    outputs::OutputFolder drawn({.option = {}, .path = folder.string()});
     drawn.write("mav0/flight", "x");
     EXPECT_FALSE(drawn.commit());
   }

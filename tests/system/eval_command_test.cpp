@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using base::read_text_file;
-using base::write_file_atomically;
+using outputs::write_file_atomically;
 using testing::expect_refused;
 using testing::ProgramResult;
 using testing::run_program;
@@ -169,10 +169,10 @@ TEST_F(EvalCommand, NamesOfFilesMayHoldAnything) {
 }
 
 TEST_F(EvalCommand, KittiFilesNeedNoTimes) {
-  base::write_file_atomically(folder_ / "k.txt",
-                              "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n"
-                              "1 0 0 1 0 1 0 1 0 0 1 0\n1 0 0 1 0 1 0 1 0 0 1 1\n");
-  base::write_file_atomically(folder_ / "times.txt", "0\n0.1\n0.2\n0.3\n");
+  outputs::write_file_atomically(folder_ / "k.txt",
+                                 "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n"
+                                 "1 0 0 1 0 1 0 1 0 0 1 0\n1 0 0 1 0 1 0 1 0 0 1 1\n");
+  outputs::write_file_atomically(folder_ / "times.txt", "0\n0.1\n0.2\n0.3\n");
   const std::vector<std::string> words{"eval", path("k.txt"), path("k.txt"), "--relative", "1"};
   ProgramResult result = run_program(folder_.path(), words);
   EXPECT_EQ(result.status, 0) << result.err;
@@ -188,18 +188,18 @@ TEST_F(EvalCommand, KittiFilesNeedNoTimes) {
 
 TEST_F(EvalCommand, RefusesFiles) {
   expect_files_refused("none.tum", "gt.tum", {"none.tum", "no such file"});
-  base::write_file_atomically(folder_ / "nan.tum", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n");
+  outputs::write_file_atomically(folder_ / "nan.tum", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n");
   expect_files_refused("nan.tum", "gt.tum", {"nan.tum line 2, column 3 (ty)", "'nan'"});
-  base::write_file_atomically(folder_ / "empty.tum", "");
+  outputs::write_file_atomically(folder_ / "empty.tum", "");
   expect_files_refused("est.tum", "empty.tum", {"empty.tum", "no row"});
-  base::write_file_atomically(folder_ / "five", "1 2 3 4 5\n");
+  outputs::write_file_atomically(folder_ / "five", "1 2 3 4 5\n");
   expect_files_refused("five", "gt.tum", {"five line 1", "5 columns", "8 (TUM)"});
   traces::write_tum(folder_ / "later.tum", spiral(0, 90'000'000'000));
   expect_files_refused("est.tum", "later.tum", {"none of the 201 estimated poses", "10 ms"});
   fs::create_directory(folder_ / "folder");
   expect_files_refused("folder", "gt.tum", {"folder", "trajectory.tum"});
-  base::write_file_atomically(folder_ / "huge.tum",
-                              "6 1e200 0 0 0 0 0 1\n7 0 1e250 0 0 0 0 1\n8 0 0 0 0 0 0 1\n");
+  outputs::write_file_atomically(folder_ / "huge.tum",
+                                 "6 1e200 0 0 0 0 0 1\n7 0 1e250 0 0 0 0 1\n8 0 0 0 0 0 0 1\n");
   expect_files_refused("huge.tum", "gt.tum", {"too large"});
 }
 
@@ -220,7 +220,7 @@ TEST_F(EvalCommand, RefusesOptions) {
 }
 
 TEST_F(EvalCommand, ReplacesFilesOnlyIfForced) {
-  base::write_file_atomically(folder_ / "mine.svg", "mine");
+  outputs::write_file_atomically(folder_ / "mine.svg", "mine");
   expect_refused(eval({"--plot", path("mine.svg"), "--force"}), {"--plot", "exists"});
   expect_refused(eval({"--json", path("mine.svg"), "--force"}), {"--json", "exists"});
   expect_refused(eval({"--plot", path("picture.png")}), {"--plot", ".svg"});

@@ -27,7 +27,7 @@ class Inputs : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   void write(const std::string& name, const std::string& text) const {
-    base::write_file_atomically(folder_ / name, text);
+    outputs::write_file_atomically(folder_ / name, text);
   }
 
   /// Three seconds of processor time; thirty of the clock, for what waits.
@@ -271,8 +271,8 @@ TEST_F(Inputs, FlightsThatAreLongerThanSimulatedTimeAreFoundBeforeTheFirstFrame)
   std::string samples = "#timestamp\n";
   for (std::int64_t t_ns = 4'950'000'000; t_ns < 350'003'000'000'000'000; t_ns += 2'990'000'000'000)
     samples += fmt::format("{},0,0,0,0,0,9.8\n", t_ns);
-  base::write_file_atomically(data.mav0("imu0/data.csv"), samples);
-  base::write_file_atomically(data.image(0), "no picture");
+  outputs::write_file_atomically(data.mav0("imu0/data.csv"), samples);
+  outputs::write_file_atomically(data.image(0), "no picture");
   expect_refusal({"run", "--platform", "gap9", "--data", data.root().string(), "--size", "32x24",
                   "--out", path("out")},
                  {"is outside the simulated range"});
@@ -284,8 +284,8 @@ TEST_F(Inputs, TruthThatDoesNotOverlapIsFoundBeforeTheFirstFrame) {
   std::string truth = "#timestamp\n";
   for (int i = 0; i < 5; ++i)
     truth += fmt::format("{},0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n", 90'000'000'000 + i);
-  base::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"), truth);
-  base::write_file_atomically(data.image(0), "no picture");
+  outputs::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"), truth);
+  outputs::write_file_atomically(data.image(0), "no picture");
   const std::vector<std::string> parts{"state_groundtruth_estimate0/data.csv: none of the 6 frames",
                                        "5000000000", "90000000000", "expected at least 3"};
   expect_run_refused(data, parts);
@@ -305,8 +305,8 @@ TEST_F(Inputs, TwoPosesOfTruthAreTooFew) {
   const std::string truth = base::read_text_file(data.mav0("state_groundtruth_estimate0/data.csv"));
   const std::size_t end = truth.find("5055000000");  // frames 0 and 1 lie before
   ASSERT_NE(end, std::string::npos);
-  base::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"),
-                              truth.substr(0, end));
+  outputs::write_file_atomically(data.mav0("state_groundtruth_estimate0/data.csv"),
+                                 truth.substr(0, end));
   expect_run_refused(data, {"2 of the 6 frames", "expected at least 3"});
 }
 
@@ -317,7 +317,7 @@ TEST_F(Inputs, ARunThatDropsTheFramesOfItsTruthKeepsItsResults) {
   const std::string truth = base::read_text_file(file);
   const std::size_t end = truth.find("1000105000000");
   ASSERT_NE(end, std::string::npos);
-  base::write_file_atomically(file, truth.substr(0, end));
+  outputs::write_file_atomically(file, truth.substr(0, end));
   const ProgramResult result =
       program({"run", "--platform", "gap9", "--data", path("flight"), "--out", path("out"),
                "--deadline", "drop", "-p", "cluster.clock=20MHz"});
@@ -332,7 +332,7 @@ TEST_F(Inputs, ARunThatDropsTheFramesOfItsTruthKeepsItsResults) {
 TEST_F(Inputs, DamagedPicturesAreOneLine) {
   const auto expect = [&](const std::string& bytes, const std::string& part) {
     const AslFolder data;
-    base::write_file_atomically(data.image(0), bytes);
+    outputs::write_file_atomically(data.image(0), bytes);
     expect_run_refused(data, {"5000000000.png", "cam0/data.csv line 2", part});
   };
   std::string png = base::read_text_file(data_.image(0));

@@ -75,18 +75,19 @@ class Interrupts : public ::testing::Test {
                               "--out", path("recorded")});
     ASSERT_EQ(recorded.status, 0) << recorded.err;
     fs::rename(folder_ / "recorded/work.trace", folder_ / "TRACE");
-    base::write_file_atomically(
+    outputs::write_file_atomically(
         folder_ / "PLAN",
         fmt::format("base: {{ trace: {} }}\npoints: {{ random: {{ number: 300000, over: {{ "
                     "platform.cluster.clock: {{ from: 100, to: 300 }}, "
                     "platform.cluster.dma.bytes_per_cycle: {{ from: 1, to: 16 }} }} }} }}\n",
                     path("TRACE")));
-    base::write_file_atomically(folder_ / "FLIGHTS.yaml",
-                                "motions: [FLIGHT]\nworlds: { one: [1, 2, 3] }\npieces: [whole]\n");
+    outputs::write_file_atomically(
+        folder_ / "FLIGHTS.yaml",
+        "motions: [FLIGHT]\nworlds: { one: [1, 2, 3] }\npieces: [whole]\n");
     std::string table;
     for (int i = 0; i < 300'000; ++i)
       table += fmt::format("{}.{:03} {} {} 0 0 0 0 1\n", i / 100, i % 100 * 10, i * 0.001, i % 7);
-    base::write_file_atomically(folder_ / "TABLE", table);
+    outputs::write_file_atomically(folder_ / "TABLE", table);
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 

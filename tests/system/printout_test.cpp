@@ -107,16 +107,16 @@ TEST_F(PrintoutTest, TablesAreChosenByName) {
 /// Every command that prints tables prints them within the terminal, and all of them elsewhere.
 TEST_F(PrintoutTest, TablesFitTheTerminal) {
   const std::string run_folder = path("run"), flight = path("flight");
-  base::write_file_atomically(folder_ / "tables.yaml",
-                              "base: { trace: run }\n"
-                              "points: { grid: { platform.cluster.clock: [200MHz, 240MHz],\n"
-                              "  platform.controller.clock: [200MHz],\n"
-                              "  platform.cluster.dma.bytes_per_cycle: [4] } }\n");
-  base::write_file_atomically(folder_ / "tables-flights.yaml",
-                              "motions: [flight]\nworlds: { one: [1] }\npieces: [whole]\n"
-                              "size: 32x24\nseeds: [1]\n");
-  base::write_file_atomically(folder_ / "tables-budgets.yaml",
-                              "budgets:\n  - limits: [frame latency p99 <= 1 ms]\n");
+  outputs::write_file_atomically(folder_ / "tables.yaml",
+                                 "base: { trace: run }\n"
+                                 "points: { grid: { platform.cluster.clock: [200MHz, 240MHz],\n"
+                                 "  platform.controller.clock: [200MHz],\n"
+                                 "  platform.cluster.dma.bytes_per_cycle: [4] } }\n");
+  outputs::write_file_atomically(folder_ / "tables-flights.yaml",
+                                 "motions: [flight]\nworlds: { one: [1] }\npieces: [whole]\n"
+                                 "size: 32x24\nseeds: [1]\n");
+  outputs::write_file_atomically(folder_ / "tables-budgets.yaml",
+                                 "budgets:\n  - limits: [frame latency p99 <= 1 ms]\n");
   const std::string few =
       fmt::format(" --data {} --frames 0:30 --seed 1 --quiet --cache {}", flight, path("cache"));
   const std::string chip = fmt::format(" --data {} --frames 0:8 --quiet", flight);
@@ -175,12 +175,12 @@ TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
     words.insert(words.end(), few.begin(), few.end());
     return words;
   };
-  base::write_file_atomically(
+  outputs::write_file_atomically(
       folder_ / "plan.yaml",
       "base: { trace: run }\npoints: { grid: { platform.cluster.clock: [200, 240] } }\n");
-  base::write_file_atomically(folder_ / "flights.yaml",
-                              "motions: [flight]\nworlds: { one: [1] }\npieces: [whole]\n"
-                              "size: 32x24\nseeds: [1]\n");
+  outputs::write_file_atomically(folder_ / "flights.yaml",
+                                 "motions: [flight]\nworlds: { one: [1] }\npieces: [whole]\n"
+                                 "size: 32x24\nseeds: [1]\n");
   const std::vector<std::vector<std::string>> commands{
       {"run", "--native", "--data", flight, "--quiet", "--out", path("native")},
       {"eval", est, flight},

@@ -73,7 +73,7 @@ TEST_F(ReplayCommand, TraceShowsAndChecks) {
 
   std::string bytes = base::read_text_file(folder_ / "run/work.trace");
   bytes.resize(bytes.size() / 2);
-  base::write_file_atomically(folder_ / "cut.trace", bytes);
+  outputs::write_file_atomically(folder_ / "cut.trace", bytes);
   for (const char* action : {"info", "check"})
     expect_refused(program({"trace", action, path("cut.trace")}), {"cut.trace", "truncated"});
   expect_refused(program({"replay", path("cut.trace"), "--out", path("none")}),

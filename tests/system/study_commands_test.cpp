@@ -74,9 +74,9 @@ TEST_F(StudyCommands, MicrobenchFailsWhereARowIsBeyondItsToleranceOrItsGuard) {
 }
 
 TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
-  base::write_file_atomically(folder_ / "mine.yaml", "mine");
+  outputs::write_file_atomically(folder_ / "mine.yaml", "mine");
   fs::create_directory(folder_ / "folder");
-  base::write_file_atomically(folder_ / "folder/thesis.tex", "mine");
+  outputs::write_file_atomically(folder_ / "folder/thesis.tex", "mine");
   expect_refusal({"calibrate", "--data", "x", "--yaml", path("mine.yaml")},
                  {"exists", "not a file that leviosim wrote"});
   expect_refusal({"calibrate", "--data", "x", "--yaml", path("mine.csv")}, {"ends in .yaml"});

@@ -34,15 +34,15 @@ class SweepCommand : public ::testing::Test {
         run_program(folder_, {"run", "--platform", "gap9", "--data", path("flight"), "--record",
                               "--out", path("recorded"), "--quiet"});
     ASSERT_EQ(recorded.status, 0) << recorded.err;
-    base::write_file_atomically(folder_ / "plan.yaml",
-                                "base: { trace: recorded }\n"
-                                "points:\n"
-                                "  - grid:\n"
-                                "      platform.cluster.clock: [200, 370]\n"
-                                "      platform.cluster.fpu.units: [1, 4]\n"
-                                "      platform.cluster.dma.bytes_per_cycle: [4, 8]\n"
-                                "  - list:\n"
-                                "      - { platform.cluster.l1.size: 64KiB }\n");
+    outputs::write_file_atomically(folder_ / "plan.yaml",
+                                   "base: { trace: recorded }\n"
+                                   "points:\n"
+                                   "  - grid:\n"
+                                   "      platform.cluster.clock: [200, 370]\n"
+                                   "      platform.cluster.fpu.units: [1, 4]\n"
+                                   "      platform.cluster.dma.bytes_per_cycle: [4, 8]\n"
+                                   "  - list:\n"
+                                   "      - { platform.cluster.l1.size: 64KiB }\n");
     const ProgramResult whole = sweep({"--out", path("whole")}, "whole");
     ASSERT_EQ(whole.status, 1) << "L1 is too small at a point" << whole.err;
     whole_out_ = whole.out;
@@ -114,12 +114,12 @@ TEST_F(SweepCommand, GivesTheFiguresOfReplaysAndRunsNothingTwice) {
 }
 
 TEST_F(SweepCommand, HoldsEveryPointAgainstABudget) {
-  base::write_file_atomically(folder_ / "budgets.yaml",
-                              "budgets:\n"
-                              "  - limits:\n"
-                              "      - frame latency p99 <= 1 s\n"
-                              "      - stage: feature*\n"
-                              "        limit: cycles <= +5 %\n");
+  outputs::write_file_atomically(folder_ / "budgets.yaml",
+                                 "budgets:\n"
+                                 "  - limits:\n"
+                                 "      - frame latency p99 <= 1 s\n"
+                                 "      - stage: feature*\n"
+                                 "        limit: cycles <= +5 %\n");
   const ProgramResult held =
       sweep({"--out", path("held"), "--budget", path("budgets.yaml")}, "whole");
   EXPECT_EQ(held.status, 1) << held.err;
@@ -130,8 +130,8 @@ TEST_F(SweepCommand, HoldsEveryPointAgainstABudget) {
   EXPECT_NE(csv("held").find(",frame.latency.p99,"), std::string::npos);
   EXPECT_EQ(csv("whole").find(",frame.latency.p99,"), std::string::npos);
 
-  base::write_file_atomically(folder_ / "budgets.yaml",
-                              "budgets:\n  - limits: [frame latency p99 <= 1 ns]\n");
+  outputs::write_file_atomically(folder_ / "budgets.yaml",
+                                 "budgets:\n  - limits: [frame latency p99 <= 1 ns]\n");
   const ProgramResult again =
       sweep({"--out", path("held"), "--budget", path("budgets.yaml")}, "whole");
   EXPECT_EQ(again.status, 1);
@@ -142,8 +142,8 @@ TEST_F(SweepCommand, HoldsEveryPointAgainstABudget) {
 }
 
 TEST_F(SweepCommand, AFinishedSweepWithoutBudgetKeepsTooLittleForOne) {
-  base::write_file_atomically(folder_ / "budgets.yaml",
-                              "budgets:\n  - limits: [L1 peak <= 1 MB]\n");
+  outputs::write_file_atomically(folder_ / "budgets.yaml",
+                                 "budgets:\n  - limits: [L1 peak <= 1 MB]\n");
   const ProgramResult late =
       sweep({"--out", path("whole"), "--budget", path("budgets.yaml")}, "whole");
   EXPECT_EQ(late.status, 2);
@@ -180,9 +180,9 @@ TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
     ASSERT_LE(sweep({"--out", path("singly"), "--point", point}, "s").status, 1);
   EXPECT_EQ(SweepStore(folder_ / "singly").finished(), (std::set<int>{2, 9}));
 
-  base::write_file_atomically(folder_ / "other.yaml",
-                              "base: { trace: recorded }\n"
-                              "points: { grid: { platform.cluster.clock: [200] } }\n");
+  outputs::write_file_atomically(folder_ / "other.yaml",
+                                 "base: { trace: recorded }\n"
+                                 "points: { grid: { platform.cluster.clock: [200] } }\n");
   ASSERT_EQ(run_program(folder_, {"sweep", path("other.yaml"), "--out", path("other"), "--quiet",
                                   "--cache", path("cache-other")})
                 .status,
@@ -205,19 +205,19 @@ TEST_F(SweepCommand, ListsItsPointsAndRefusesWhatItCannotDo) {
   testing::expect_refused(sweep({"--out", path("x"), "--point", "10"}, "x"), {"--point '10'"});
   testing::expect_refused(sweep({"--out", path("flight")}, "x"), {"something else"});
   testing::expect_refused(sweep({}, "x"), {"--out"});
-  base::write_file_atomically(folder_ / "bad.yaml",
-                              "base: { trace: recorded }\n"
-                              "points: { grid: { workload.window: [4] } }\n");
+  outputs::write_file_atomically(folder_ / "bad.yaml",
+                                 "base: { trace: recorded }\n"
+                                 "points: { grid: { workload.window: [4] } }\n");
   testing::expect_refused(run_program(folder_, {"sweep", path("bad.yaml"), "--out", path("x")}),
                           {"bad.yaml:2", "workload.window", "recorded work", "data"});
   EXPECT_FALSE(fs::exists(folder_ / "x"));
 }
 
 TEST_F(SweepCommand, RefusesAMillionPointsBeforeAnyIsMade) {
-  base::write_file_atomically(folder_ / "million.yaml",
-                              "base: { trace: recorded }\n"
-                              "points: { random: { number: 1000000, over: {\n"
-                              "  platform.cluster.clock: { from: 100, to: 370 } } } }\n");
+  outputs::write_file_atomically(folder_ / "million.yaml",
+                                 "base: { trace: recorded }\n"
+                                 "points: { random: { number: 1000000, over: {\n"
+                                 "  platform.cluster.clock: { from: 100, to: 370 } } } }\n");
   const ProgramResult refused = run_program(folder_, {"sweep", path("million.yaml"), "--list"});
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(refused.out, "");
@@ -225,9 +225,9 @@ TEST_F(SweepCommand, RefusesAMillionPointsBeforeAnyIsMade) {
 }
 
 TEST_F(SweepCommand, LivePointsHaveTheAccuracyOfTheirRun) {
-  base::write_file_atomically(folder_ / "live.yaml",
-                              "base: { data: flight, platform: gap9, frames: '0:6' }\n"
-                              "points: { grid: { workload.window: [4, 6] } }\n");
+  outputs::write_file_atomically(folder_ / "live.yaml",
+                                 "base: { data: flight, platform: gap9, frames: '0:6' }\n"
+                                 "points: { grid: { workload.window: [4, 6] } }\n");
   const ProgramResult live =
       run_program(folder_, {"sweep", path("live.yaml"), "--out", path("live"), "--quiet", "--cache",
                             path("cache-live")});
@@ -290,9 +290,9 @@ TEST_F(SweepCommand, PointsAreComparedLikeReplaysOfTheirChips) {
 TEST_F(SweepCommand, PointsMoveWithTheirPlanAndAreRefusedAfterItsTraceHasChanged) {
   fs::create_directory(folder_ / "before");
   fs::copy(folder_ / "recorded", folder_ / "before/recorded");
-  base::write_file_atomically(folder_ / "before/plan.yaml",
-                              "base: { trace: recorded }\n"
-                              "points: { grid: { platform.cluster.clock: [200, 240] } }\n");
+  outputs::write_file_atomically(folder_ / "before/plan.yaml",
+                                 "base: { trace: recorded }\n"
+                                 "points: { grid: { platform.cluster.clock: [200, 240] } }\n");
   ASSERT_EQ(run_program(folder_, {"sweep", path("before/plan.yaml"), "--out", path("before/swept"),
                                   "--quiet", "--cache", path("cache-moved")})
                 .status,

@@ -62,10 +62,10 @@ class Terminal : public ::testing::Test {
 fs::path Terminal::folder_;
 
 TEST_F(Terminal, ErrorsAreOneLineWhateverTheyName) {
-  base::write_file_atomically(folder_ / "plan.yaml",
-                              "base: { \"x\\ny\\e[2J\": 1 }\npoints: { list: [{ seed: 1 }] }\n");
-  base::write_file_atomically(folder_ / "est.tum", "1 2 3\x1b[2J 4 5 6 7 8\n");
-  base::write_file_atomically(folder_ / "chip.yaml", "name: \"a\\nb\"\n\"k\\e[1m\\nq\": 3\n");
+  outputs::write_file_atomically(folder_ / "plan.yaml",
+                                 "base: { \"x\\ny\\e[2J\": 1 }\npoints: { list: [{ seed: 1 }] }\n");
+  outputs::write_file_atomically(folder_ / "est.tum", "1 2 3\x1b[2J 4 5 6 7 8\n");
+  outputs::write_file_atomically(folder_ / "chip.yaml", "name: \"a\\nb\"\n\"k\\e[1m\\nq\": 3\n");
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {kHostile},
            {"run", kHostile},
@@ -131,14 +131,14 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   const fs::path beside = folder_ / ("s" + out);
   fs::create_directory(beside);
   fs::copy_file(folder_ / ("r" + out) / "work.trace", beside / "x\xff.trace");
-  base::write_file_atomically(
+  outputs::write_file_atomically(
       beside / "plan.yaml",
       "base: { trace: \"x\xff.trace\" }\npoints: { grid: { platform.cluster.clock: [240] } }\n");
   const ProgramResult swept = run({"sweep", (beside / "plan.yaml").string(), "--cache",
                                    path("cache" + kHostile), "--out", path("sw" + out)});
   EXPECT_TRUE(swept.status == 0 || swept.status == 2) << swept.err;  // YAML must be UTF-8
   fs::copy_file(folder_ / ("r" + out) / "work.trace", beside / "x.trace");
-  base::write_file_atomically(
+  outputs::write_file_atomically(
       beside / "plan.yaml",
       "base: { trace: x.trace }\npoints: { grid: { platform.cluster.clock: [240] } }\n");
   expect_done({"sweep", (beside / "plan.yaml").string(), "--cache", path("cache" + kHostile),
@@ -180,7 +180,8 @@ TEST_F(Terminal, AReaderThatHasSeenEnoughIsNoneWhereALimitIsNotMet) {
                  "--out", path("checked")})
                 .status,
             0);
-  base::write_file_atomically(folder_ / "tight.yaml", "budgets: [{ limits: [L1 peak <= 1 kB] }]\n");
+  outputs::write_file_atomically(folder_ / "tight.yaml",
+                                 "budgets: [{ limits: [L1 peak <= 1 kB] }]\n");
   const auto [status, err] =
       shell(fmt::format("(sleep 0.3; $L check '{}' --budget '{}') | true; exit ${{PIPESTATUS[0]}}",
                         path("checked"), path("tight.yaml")));

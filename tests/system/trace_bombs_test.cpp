@@ -50,7 +50,7 @@ TraceParts gap9_parts() {
 class TraceBombs : public ::testing::TestWithParam<TraceBomb> {
  protected:
   TraceBombs() {
-    base::write_file_atomically(folder_ / "bomb.trace", GetParam().file(gap9_parts()));
+    outputs::write_file_atomically(folder_ / "bomb.trace", GetParam().file(gap9_parts()));
   }
   ProgramResult program(std::vector<std::string> words) const {
     const AddressSpace little(kLittle);
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, TraceBombs, ::testing::ValuesIn(kTraceBombs),
 class TraceLimitsOfPrograms : public ::testing::Test {
  protected:
   void write(const std::string& name, const std::string& content) {
-    base::write_file_atomically(folder_ / name, content);
+    outputs::write_file_atomically(folder_ / name, content);
   }
   ProgramResult program(std::vector<std::string> words) const {
     const AddressSpace little(kLittle);

@@ -335,8 +335,8 @@ TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
 }
 
 TEST_F(TuneCommand, HasThreeSeedsByDefaultAndHoldsTheChosenPointAgainstABudget) {
-  base::write_file_atomically(folder_ / "budgets.yaml",
-                              "budgets:\n  - limits: [L1 peak <= 1 kB, completion >= 1 %]\n");
+  outputs::write_file_atomically(folder_ / "budgets.yaml",
+                                 "budgets:\n  - limits: [L1 peak <= 1 kB, completion >= 1 %]\n");
   const ProgramResult result =
       run_program(folder_.path(), words({"--clock", "6", "--ate", "1000", "--miss-rate", "1",
                                          "--budget", path("budgets.yaml")}));

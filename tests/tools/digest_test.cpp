@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/base/atomic_file.h"
 #include "sim/base/csv.h"
+#include "sim/outputs/atomic_file.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
 
@@ -18,7 +18,7 @@ TEST(InputDigests, ChangeWithAPixelOfAFrameInRangeOnly) {
   const std::vector<InputDigest> before = digests();
   ASSERT_EQ(before.size(), 6u);
   const auto append = [&](int frame) {
-    base::write_file_atomically(asl.image(frame), base::read_text_file(asl.image(frame)) + "x");
+    outputs::write_file_atomically(asl.image(frame), base::read_text_file(asl.image(frame)) + "x");
   };
   append(4);
   EXPECT_EQ(digests().back().sha256, before.back().sha256);

@@ -119,7 +119,7 @@ const std::map<std::string, std::set<std::string>> kPartMayName{
     {"sim", {"sim"}},
     {"workload", {"sim/base", "sim/work", "workload"}},
     {"platform_models", {"sim", "platform_models"}},
-    {"traces", {"sim/base", "sim/work", "traces"}},
+    {"traces", {"sim/base", "sim/outputs", "sim/work", "traces"}},
     {"tools/app", {"sim", "workload", "platform_models", "traces", "tools/app"}},
     {"tools/commands", {"sim", "workload", "platform_models", "traces", "tools/app"}},
 };

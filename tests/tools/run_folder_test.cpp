@@ -60,7 +60,7 @@ Manifest example_manifest() {
 }
 
 void write_to(const fs::path& folder, const RunResult& run, const std::string& platform) {
-  base::OutputFolder out({.option = {}, .path = folder.string()});
+  outputs::OutputFolder out({.option = {}, .path = folder.string()});
   write_run_folder(out, run, example_manifest(), platform);
   EXPECT_FALSE(out.commit());
 }
@@ -167,7 +167,7 @@ TEST(RunFolder, OnlyTheManifestsHostPartDependsOnTheHost) {
   write_to(folder / "b", run, "x");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder / "a")) {
     const std::string name = entry.path().filename().string();
-    if (name == base::kRecordName) continue;
+    if (name == outputs::kRecordName) continue;
     std::string a = base::read_text_file(folder / ("a/" + name));
     std::string b = base::read_text_file(folder / ("b/" + name));
     if (name == "manifest.json") {
@@ -191,7 +191,7 @@ TEST(RunFolder, OfANativeRunHasNoFilesAboutAChip) {
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
     names.insert(entry.path().filename().string());
-  EXPECT_EQ(names, (std::set<std::string>{base::kRecordName, "manifest.json", "stats.json",
+  EXPECT_EQ(names, (std::set<std::string>{outputs::kRecordName, "manifest.json", "stats.json",
                                           "frames.csv", "trajectory.tum"}));
   EXPECT_TRUE(Json::parse(base::read_text_file(folder / "manifest.json")).at("platform").is_null());
 }
@@ -199,7 +199,7 @@ TEST(RunFolder, OfANativeRunHasNoFilesAboutAChip) {
 TEST(RunFolder, NothingIsLeftWhenWritingFails) {
   const TempFolder folder;
   {
-    base::OutputFolder out({.option = "--out", .path = (folder / "out").string()});
+    outputs::OutputFolder out({.option = "--out", .path = (folder / "out").string()});
     out.write("stats.json", "x");  // where a file is to be written
     traces::testing::expect_input_error(
         [&] { write_run_folder(out, example_run(), example_manifest(), "x"); }, {"stats.json"});

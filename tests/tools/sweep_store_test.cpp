@@ -40,7 +40,7 @@ const std::vector<SweepPoint>& plan_of(const std::vector<int>& clocks) {
 }
 
 void publish(SweepStore& store, const TempFolder& folder) {
-  base::OutputFile csv(
+  outputs::OutputFile csv(
       {.option = "--out", .path = (folder / kSweepCsv).string(), .replace = true, .inputs = {}});
   EXPECT_FALSE(store.publish(csv).has_value());
 }

@@ -62,7 +62,7 @@ TEST(AslReader, AcceptsCarriageReturnsAndBlankLinesAtTheEnd) {
     std::string text;
     for (const char c : base::read_text_file(folder.mav0(name)))
       text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-    base::write_file_atomically(folder.mav0(name), "\xEF\xBB\xBF" + text + "\r\n \r\n\n");
+    outputs::write_file_atomically(folder.mav0(name), "\xEF\xBB\xBF" + text + "\r\n \r\n\n");
   }
   const Dataset data = open_asl(folder.root());
   EXPECT_EQ(data.frames.size(), 6u);
@@ -203,9 +203,9 @@ TEST(AslReader, RowWithoutFileName) {
 TEST(AslReader, EmptySequences) {
   for (const char* name : {kFrames, kImu, kTruth}) {
     const AslFolder folder;
-    base::write_file_atomically(folder.mav0(name), "#heading only\n");
+    outputs::write_file_atomically(folder.mav0(name), "#heading only\n");
     expect_broken(folder, {name, "empty"});
-    base::write_file_atomically(folder.mav0(name), "");
+    outputs::write_file_atomically(folder.mav0(name), "");
     expect_broken(folder, {name, "empty"});
   }
 }

@@ -12,7 +12,7 @@ using testing::TempFolder;
 
 TEST(Csv, SkipsCommentsAndTrimsCells) {
   const TempFolder folder;
-  base::write_file_atomically(folder / "a.csv", "# one\n 1 , +2.5e1 \r\n# two\n3,-4");
+  outputs::write_file_atomically(folder / "a.csv", "# one\n 1 , +2.5e1 \r\n# two\n3,-4");
   base::CsvReader csv(folder / "a.csv", base::Separator::comma, {"a", "b"});
   const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
@@ -28,7 +28,7 @@ TEST(Csv, SkipsCommentsAndTrimsCells) {
 
 TEST(Csv, BlanksSeparateWhereAsked) {
   const TempFolder folder;
-  base::write_file_atomically(folder / "a.txt", "  1\t2   3 \n");
+  outputs::write_file_atomically(folder / "a.txt", "  1\t2   3 \n");
   base::CsvReader csv(folder / "a.txt", base::Separator::blanks, {"a", "b", "c"});
   const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
@@ -38,7 +38,7 @@ TEST(Csv, BlanksSeparateWhereAsked) {
 
 TEST(Csv, LongCellsAreCutInMessages) {
   const TempFolder folder;
-  base::write_file_atomically(folder / "a.csv", std::string(500, 'x'));
+  outputs::write_file_atomically(folder / "a.csv", std::string(500, 'x'));
   base::CsvReader csv(folder / "a.csv", base::Separator::comma, {"a"});
   const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);

@@ -126,7 +126,7 @@ TEST(ImageSource, ThreadsReadTheSame) {
 /// Writes something else in place of frame 1 and expects an error that names its row.
 void expect_bad_image(const cv::Mat& image, std::initializer_list<std::string> parts) {
   const AslFolder folder;
-  base::write_file_atomically(folder.image(1), tests::png_of(image));
+  outputs::write_file_atomically(folder.image(1), tests::png_of(image));
   const ImageSource source(open_asl(folder.root()), {16, 12});
   EXPECT_NO_THROW(source.read(0));
   expect_input_error([&] { source.read(1); }, {"5050000000.png", "cam0/data.csv line 3"});
@@ -141,7 +141,7 @@ TEST(ImageSource, WrongImages) {
 
 TEST(ImageSource, BrokenImages) {
   const AslFolder folder;
-  base::write_file_atomically(folder.image(1), "this is no picture");
+  outputs::write_file_atomically(folder.image(1), "this is no picture");
   fs::resize_file(folder.image(2), fs::file_size(folder.image(2)) / 2);
   const ImageSource source(open_asl(folder.root()), {16, 12});
   expect_input_error([&] { source.read(1); },

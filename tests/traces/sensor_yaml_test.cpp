@@ -33,7 +33,7 @@ void expect_broken_imu(const std::string& from, const std::string& to,
 TEST(SensorYaml, WhatIsWrittenReadsBackExactly) {
   const TempFolder folder;
   const CameraModel camera = euroc_cam0();
-  base::write_file_atomically(folder / "sensor.yaml", format_camera_yaml(camera, "c"));
+  outputs::write_file_atomically(folder / "sensor.yaml", format_camera_yaml(camera, "c"));
   const CameraModel read = read_camera_model(folder / "sensor.yaml");
   EXPECT_EQ(read.T_body_camera.matrix(), camera.T_body_camera.matrix());
   EXPECT_EQ(read.fx, camera.fx);
@@ -42,7 +42,7 @@ TEST(SensorYaml, WhatIsWrittenReadsBackExactly) {
   EXPECT_EQ(read.p2, camera.p2);
   EXPECT_EQ(read.height, camera.height);
   EXPECT_EQ(read.rate_hz, camera.rate_hz);
-  base::write_file_atomically(folder / "imu.yaml", format_imu_yaml(euroc_imu0(), "c"));
+  outputs::write_file_atomically(folder / "imu.yaml", format_imu_yaml(euroc_imu0(), "c"));
   const ImuModel imu = read_imu_model(folder / "imu.yaml");
   EXPECT_EQ(imu.rate_hz, 200);
   EXPECT_EQ(imu.gyro_noise_density, 1.6968e-4);
@@ -126,7 +126,8 @@ TEST(SensorYaml, PreparedImagesAreMarked) {
   EXPECT_FALSE(read_camera_model(folder.mav0("cam0/sensor.yaml")).prepared);
   CameraModel camera = folder.camera();
   camera.prepared = true;
-  base::write_file_atomically(folder.mav0("cam0/sensor.yaml"), format_camera_yaml(camera, "test"));
+  outputs::write_file_atomically(folder.mav0("cam0/sensor.yaml"),
+                                 format_camera_yaml(camera, "test"));
   EXPECT_TRUE(read_camera_model(folder.mav0("cam0/sensor.yaml")).prepared);
   folder.replace("cam0/sensor.yaml", "prepared: true", "prepared: maybe");
   expect_input_error([&] { read_camera_model(folder.mav0("cam0/sensor.yaml")); },
@@ -141,7 +142,7 @@ TEST(SensorYaml, NoYamlAtAll) {
   expect_broken_camera("sensor_type: camera", "sensor_type: [camera",
                        {"cam0/sensor.yaml line", "not valid YAML"});
   const TempFolder folder;
-  base::write_file_atomically(folder / "sensor.yaml", "just a text\n");
+  outputs::write_file_atomically(folder / "sensor.yaml", "just a text\n");
   expect_input_error([&] { read_camera_model(folder / "sensor.yaml"); }, {"a single value"});
   expect_input_error([&] { read_camera_model(folder / "none.yaml"); }, {"cannot be opened"});
 }

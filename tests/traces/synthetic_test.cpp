@@ -116,7 +116,7 @@ TEST(Synthetic, ACacheIsRepairedAlsoIfItWasChanged) {
   options.duration_s = 0.1;
   write_synthetic_flight(folder / "a", options);
   const auto drawn = contents(folder / "a");
-  base::write_file_atomically(folder / "a/mav0/imu0/data.csv", "damaged");
+  outputs::write_file_atomically(folder / "a/mav0/imu0/data.csv", "damaged");
   options.overwrite = true;
   expect_input_error([&] { write_synthetic_flight(folder / "a", options); }, {"imu0/data.csv"});
   options.repair = true;

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/atomic_file.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
+#include "sim/outputs/atomic_file.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "traces/datasets/asl_writer.h"
@@ -107,7 +107,7 @@ class AslFolder {
     const auto position = text.find(from);
     ASSERT_NE(position, std::string::npos) << from;
     text.replace(position, from.size(), to);
-    base::write_file_atomically(mav0(name), text);
+    outputs::write_file_atomically(mav0(name), text);
   }
 
  private:
@@ -119,7 +119,7 @@ class AslFolder {
     change(lines);
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
-    base::write_file_atomically(mav0(name), text);
+    outputs::write_file_atomically(mav0(name), text);
   }
 
   void write_streams() {
@@ -141,12 +141,12 @@ class AslFolder {
     }
     for (const char* name : {"cam0/data", "imu0", "state_groundtruth_estimate0"})
       std::filesystem::create_directories(mav0(name));
-    base::write_file_atomically(mav0("cam0/sensor.yaml"), format_camera_yaml(camera_, "test"));
-    base::write_file_atomically(mav0("cam0/data.csv"), format_frames_csv(frames));
-    base::write_file_atomically(mav0("imu0/sensor.yaml"), format_imu_yaml(imu_, "test"));
-    base::write_file_atomically(mav0("imu0/data.csv"), format_imu_csv(samples));
-    base::write_file_atomically(mav0("state_groundtruth_estimate0/data.csv"),
-                                format_ground_truth_csv(truth));
+    outputs::write_file_atomically(mav0("cam0/sensor.yaml"), format_camera_yaml(camera_, "test"));
+    outputs::write_file_atomically(mav0("cam0/data.csv"), format_frames_csv(frames));
+    outputs::write_file_atomically(mav0("imu0/sensor.yaml"), format_imu_yaml(imu_, "test"));
+    outputs::write_file_atomically(mav0("imu0/data.csv"), format_imu_csv(samples));
+    outputs::write_file_atomically(mav0("state_groundtruth_estimate0/data.csv"),
+                                   format_ground_truth_csv(truth));
   }
 
   void write_images() {
@@ -155,7 +155,7 @@ class AslFolder {
       for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x)
           picture.at<uchar>(y, x) = static_cast<uchar>((x * 37 + y * 91 + i * 13) % 251);
-      base::write_file_atomically(image(i), encode_png(picture));
+      outputs::write_file_atomically(image(i), encode_png(picture));
     }
   }
 

@@ -20,7 +20,7 @@ constexpr const char* kKitti =
 class TrajectoryFiles : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) {
-    base::write_file_atomically(folder_ / name, text);
+    outputs::write_file_atomically(folder_ / name, text);
     return folder_ / name;
   }
   TempFolder folder_;

@@ -59,9 +59,9 @@ TEST(Tum, RoundTrip) {
 
 TEST(Tum, ReadsOtherSpellingsOfTime) {
   const TempFolder folder;
-  base::write_file_atomically(folder / "t.tum",
-                              "5 0 0 0 0 0 0 1\n6.25 0 0 0 0 0 0 1\n7.1234567899 0 0 0 0 0 0 1\n"
-                              "1.5e1 0 0 0 0 0 0 1\n");
+  outputs::write_file_atomically(folder / "t.tum",
+                                 "5 0 0 0 0 0 0 1\n6.25 0 0 0 0 0 0 1\n7.1234567899 0 0 0 0 0 0 1\n"
+                                 "1.5e1 0 0 0 0 0 0 1\n");
   const Trajectory read = read_tum(folder / "t.tum");
   ASSERT_EQ(read.size(), 4u);
   EXPECT_EQ(read[0].t_ns, 5'000'000'000);
@@ -74,7 +74,7 @@ TEST(Tum, BrokenFiles) {
   const TempFolder folder;
   const auto file = folder / "t.tum";
   const auto expect = [&](const std::string& text, std::initializer_list<std::string> parts) {
-    base::write_file_atomically(file, text);
+    outputs::write_file_atomically(file, text);
     expect_input_error([&] { read_tum(file); }, parts);
   };
   expect("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 1\n", {"t.tum line 2", "7 columns instead of 8"});

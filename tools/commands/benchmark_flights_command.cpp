@@ -71,8 +71,8 @@ std::string list_text(const Benchmark& benchmark) {
   return text;
 }
 
-base::OutputRequest out_request(const FlightWords& words, const FlightPlan& plan) {
-  base::OutputRequest request{.option = "--out", .path = words.out, .replace = words.force};
+outputs::OutputRequest out_request(const FlightWords& words, const FlightPlan& plan) {
+  outputs::OutputRequest request{.option = "--out", .path = words.out, .replace = words.force};
   for (const auto* folders : {&plan.motions, &plan.recordings})
     for (const std::string& folder : *folders)
       request.inputs.push_back(fs::path(words.motions) / folder);
@@ -90,8 +90,8 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
     print_result("{}", list_text(make_benchmark(std::move(plan), words.motions)));
     return;
   }
-  std::optional<base::OutputFile> page = claimed_report(words.report, words.force);
-  base::OutputFolder out(out_request(words, plan));
+  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.force);
+  outputs::OutputFolder out(out_request(words, plan));
   const Benchmark benchmark = make_benchmark(std::move(plan), words.motions);
   const Measure how;
   std::vector<Point> runs = benchmark_runs(benchmark);

@@ -20,7 +20,7 @@ struct CalibrateOptions {
 };
 
 /// Loading takes what ends in .yaml for a file.
-std::optional<base::OutputFile> claimed_platform_file(const RunOptions& options) {
+std::optional<outputs::OutputFile> claimed_platform_file(const RunOptions& options) {
   const std::string extension = std::filesystem::path(options.out).extension().string();
   if (!options.out.empty() && extension != ".yaml" && extension != ".yml")
     throw InputError(
@@ -35,7 +35,7 @@ void run(const CalibrateOptions& given) {
   const std::vector<std::string> constants = parse_constants("--constants", options.constants);
   const platform::Variants platform(request.platform);
   bounds_of(platform, constants);  // refuses constants without a range before the run
-  std::optional<base::OutputFile> out = claimed_platform_file(options.run);
+  std::optional<outputs::OutputFile> out = claimed_platform_file(options.run);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.run.quiet);
   request.data = data_folder(options.run, style);
   FrameLog log(request.platform.config.cluster.core.code);

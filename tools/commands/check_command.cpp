@@ -46,12 +46,12 @@ std::string text_report(const CheckOptions& options, const CheckResult& result) 
 void run(const CLI::App& command, const CheckOptions& options) {
   check_options(command, options);
   const Gate gate(options.gate, options);
-  std::optional<base::OutputFile> junit =
+  std::optional<outputs::OutputFile> junit =
       claimed_file({.option = "--junit",
                     .path = options.junit,
                     .replace = options.force,
                     .inputs = {options.run, options.gate.budget, options.gate.baseline}});
-  std::optional<base::OutputFile> page = claimed_report(
+  std::optional<outputs::OutputFile> page = claimed_report(
       options.report, options.force, {options.run, options.gate.budget, options.gate.baseline});
   RunFiles files;
   const RunRecord record = read_record(options.run, options, &files);

@@ -73,7 +73,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
   const Allowed allowed = parse_allowed(options.allow);
   if (format == ReportFormat::csv && options.runs.size() > 2)
     throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
-  std::optional<base::OutputFile> page =
+  std::optional<outputs::OutputFile> page =
       claimed_report(options.report, options.force, {options.runs.begin(), options.runs.end()});
   const std::vector<ReportedRun> runs = records(options);
   std::vector<RunComparison> comparisons;

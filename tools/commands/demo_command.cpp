@@ -198,7 +198,7 @@ std::string screen(const Flown& levio, const Flown& next, const std::string& wha
 
 void run(RunOptions options, const Words& words) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  base::OutputFolder out(out_request(options));
+  outputs::OutputFolder out(out_request(options));
   const Flown levio = fly(options, "levio", true, words, style);
   const Flown next = fly(options, "next", false, words, style);
   const std::string text = screen(levio, next, what_ifs(levio), options, options.out);

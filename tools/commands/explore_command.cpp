@@ -84,7 +84,7 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
       },
       [&] { return table_document("exploration", points_csv(dimensions, explored)); });
   publish(*plan.out, text, [&] {
-    base::OutputFolder& out = *plan.out;
+    outputs::OutputFolder& out = *plan.out;
     out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
     out.write("points.csv", points_csv(dimensions, explored));
     out.write("best.md", best_markdown(plan, explored));

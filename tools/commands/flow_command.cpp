@@ -54,7 +54,7 @@ FlowRun run_flow(const FlowOptions& options, const RunRequest& request, Progress
   return flow;
 }
 
-void write_folder(base::OutputFolder& out, const FlowRun& flow, const Manifest& manifest,
+void write_folder(outputs::OutputFolder& out, const FlowRun& flow, const Manifest& manifest,
                   const std::string& platform_yaml) {
   const auto write = [&](const char* name, const std::string& text) {
     if (!text.empty()) out.write(name, text);
@@ -76,7 +76,7 @@ void run(const CLI::App& command, const FlowOptions& options, const Words& words
   if (!options.fps.empty()) parse_positive("--fps", options.fps);
   RunRequest request = request_of(options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  base::OutputFolder out(out_request(options));
+  outputs::OutputFolder out(out_request(options));
   request.data = data_folder(options, style);
   const FlowRun flow = run_flow(options, request, style);
   const Manifest manifest = make_manifest(options, request, words);

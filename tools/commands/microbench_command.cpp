@@ -33,10 +33,10 @@ struct MicrobenchOptions {
 void run(const MicrobenchOptions& options) {
   const platform::ResolvedPlatform chip =
       platform::resolve_platform(options.platform, options.overrides);
-  std::optional<base::OutputFile> out = claimed_file({.option = "--csv",
-                                                      .path = options.csv,
-                                                      .replace = options.force,
-                                                      .inputs = {options.platform}});
+  std::optional<outputs::OutputFile> out = claimed_file({.option = "--csv",
+                                                         .path = options.csv,
+                                                         .replace = options.force,
+                                                         .inputs = {options.platform}});
   const bool is_board = chip.name == kBoard;
   std::vector<MicrobenchRow> rows;
   std::string tables;

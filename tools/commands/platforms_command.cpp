@@ -148,9 +148,9 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
 
 void feasibility(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
-  base::OutputRequest wanted = out_request(run, "--csv");
+  outputs::OutputRequest wanted = out_request(run, "--csv");
   wanted.inputs.insert(wanted.inputs.end(), options.names.begin(), options.names.end());
-  std::optional<base::OutputFile> out = claimed_file(wanted);
+  std::optional<outputs::OutputFile> out = claimed_file(wanted);
   const std::vector<Feasibility> rows = rows_for(options, true);
   const auto lines = [&] {
     return fmt::format("{} on {}\n\n{}", run.profile, printable(run.data), feasibility_table(rows));
@@ -203,11 +203,11 @@ void systems(const PlatformsOptions& options) {
   RunOptions any_chip = run;
   any_chip.platform = "gap9";
   RunRequest request = make_chip_request(any_chip);
-  base::OutputRequest wanted = out_request(run, "--csv");
-  std::optional<base::OutputFile> csv = claimed_file(wanted);
+  outputs::OutputRequest wanted = out_request(run, "--csv");
+  std::optional<outputs::OutputFile> csv = claimed_file(wanted);
   wanted.option = "--svg";
   wanted.path = options.svg;
-  std::optional<base::OutputFile> svg = claimed_file(wanted);
+  std::optional<outputs::OutputFile> svg = claimed_file(wanted);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
   request.data = data_folder(run, style);
   ProgressLine line(style);

@@ -86,11 +86,11 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  std::optional<base::OutputFile> page =
+  std::optional<outputs::OutputFile> page =
       claimed_report(options.report, options.force, {trace_file(options.trace)});
-  base::OutputRequest wanted = out_request(options);
+  outputs::OutputRequest wanted = out_request(options);
   wanted.inputs.push_back(trace_file(options.trace));
-  base::OutputFolder out(wanted);
+  outputs::OutputFolder out(wanted);
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
   RunRequest request = request_for(trace, options);
   std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);

@@ -20,7 +20,7 @@ void run(const CLI::App& command, const ReportOptions& options) {
   require(command, "RUN", "one or more run folders");
   require(command, "--out", "the page to write, such as report.html");
   const Allowed allowed = parse_allowed(options.allow);
-  std::optional<base::OutputFile> page = claimed_report(
+  std::optional<outputs::OutputFile> page = claimed_report(
       options.out, options.force, {options.runs.begin(), options.runs.end()}, "--out");
   std::vector<ReportedRun> runs;
   for (const std::string& name : options.runs) {

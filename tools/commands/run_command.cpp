@@ -29,8 +29,8 @@ void run(const CLI::App& command, RunCommandOptions options, const Words& words)
   check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  std::optional<base::OutputFile> page = claimed_report(options.report, options.force);
-  base::OutputFolder out(out_request(options));
+  std::optional<outputs::OutputFile> page = claimed_report(options.report, options.force);
+  outputs::OutputFolder out(out_request(options));
   std::optional<RequestedTimeline> timeline =
       requested_timeline(options.timeline, out_request(options), request);
   request.data = data_folder(options, style);

@@ -21,7 +21,7 @@ struct SensitivityOptions : RunOptions {
 void run(const SensitivityOptions& options) {
   const unsigned jobs = parse_jobs(options.jobs);
   RunRequest request = make_chip_request(options);
-  std::optional<base::OutputFile> out = claimed_file(out_request(options, "--csv"));
+  std::optional<outputs::OutputFile> out = claimed_file(out_request(options, "--csv"));
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);

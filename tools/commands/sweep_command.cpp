@@ -81,7 +81,7 @@ struct Sweep {
 };
 
 /// The rows of sweep.csv, wherever it was put.
-std::string document(const base::OutputFile& csv) {
+std::string document(const outputs::OutputFile& csv) {
   return table_document("sweep", base::read_file(csv.shown_path(), base::InputKind::table));
 }
 
@@ -177,7 +177,7 @@ void run_plan(const SweepWords& words) {
   if (!words.budget.empty()) budget = read_budget(words.budget);
   const std::vector<std::size_t> chosen = chosen_points(words, expansion.points.size());
   const RunnerOptions options = runner_options(words.runner, "point", words.quiet);
-  std::optional<base::OutputFile> page = claimed_report(words.report, words.force, {words.plan});
+  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.force, {words.plan});
   SweepFolder out({"--out", words.out, {words.plan}, options.cache});
   if (words.force) out.empty();
   const auto begin = std::chrono::steady_clock::now();

@@ -90,7 +90,7 @@ void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
 void run(const CLI::App& command, const GatedTuneWords& words, const Words& command_line) {
   expect_json_or_budget(words.run.json, words.gate.budget);
   const std::optional<Gate> gate = optional_gate(words.gate, {});
-  std::optional<base::OutputFile> page = claimed_report(words.report, words.run.force);
+  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.run.force);
   const TunePlan plan = make_tune_plan(command, words);
   const std::vector<Point> runs = tune_runs(plan);
   const std::vector<TunePoint> points =

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kNotExamined = "not examined yet";
 
 /// The folder of the run, with what was found out about it.
-void write_folder(base::OutputFolder& out, const Validation& validation, const RunResult& run,
+void write_folder(outputs::OutputFolder& out, const Validation& validation, const RunResult& run,
                   const Manifest& manifest, const std::string& platform) {
   write_run_folder(out, run, manifest, platform);
   out.write("validation.csv", validation_csv(validation));
@@ -41,7 +41,7 @@ void run(const RunOptions& given, const Words& words) {
   RunRequest request = make_chip_request(options);
   const std::vector<Reference> references = paper_references();
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  std::optional<base::OutputFolder> out;
+  std::optional<outputs::OutputFolder> out;
   if (!options.out.empty()) out.emplace(out_request(options));
   request.data = data_folder(options, style);
   FrameLog log(request.platform.config.cluster.core.code);

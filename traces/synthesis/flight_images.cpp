@@ -18,7 +18,7 @@ std::string png(ImageSize size, std::vector<std::uint8_t>& pixels) {
 
 }  // namespace
 
-void write_flight_images(base::OutputFolder& out, const std::vector<std::int64_t>& stamps_ns,
+void write_flight_images(outputs::OutputFolder& out, const std::vector<std::int64_t>& stamps_ns,
                          ImageSize size, const DrawImage& draw, unsigned threads,
                          const FlightProgress& progress) {
   std::mutex mutex;
@@ -32,7 +32,7 @@ void write_flight_images(base::OutputFolder& out, const std::vector<std::int64_t
   });
 }
 
-void commit_flight(base::OutputFolder& out) {
+void commit_flight(outputs::OutputFolder& out) {
   if (const std::optional<std::string> elsewhere = out.commit()) throw InputError(*elsewhere);
 }
 

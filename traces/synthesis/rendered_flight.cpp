@@ -11,12 +11,12 @@
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/asl_writer.h"
 #include "traces/datasets/frame_stamps.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/hall.h"
 #include "traces/synthesis/illumination.h"
 #include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/recorded_motion.h"
 #include "traces/synthesis/renderer.h"
-#include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
 namespace {
@@ -123,7 +123,7 @@ double seconds_of_motion(const Plan& plan, std::int64_t t_ns) {
   return static_cast<double>(t_ns - plan.origin_ns) * 1e-9;
 }
 
-void write_streams(base::OutputFolder& out, const Plan& plan,
+void write_streams(outputs::OutputFolder& out, const Plan& plan,
                    const RenderedFlightOptions& options) {
   const auto write = [&](const fs::path& name, const std::string& text) {
     out.write("mav0/" + name.string(), text);
@@ -184,8 +184,8 @@ World make_world(const Plan& plan, const RenderedFlightOptions& options) {
   return make_hall(path, plan.record.camera, hall);
 }
 
-void write_pictures(base::OutputFolder& out, const Plan& plan, const RenderedFlightOptions& options,
-                    const FlightProgress& progress) {
+void write_pictures(outputs::OutputFolder& out, const Plan& plan,
+                    const RenderedFlightOptions& options, const FlightProgress& progress) {
   const CameraModel& camera = plan.record.camera;
   const ImagePreparation preparation(
       camera, options.prepared.value_or(ImageSize{camera.width, camera.height}));
@@ -221,11 +221,11 @@ std::vector<std::int64_t> rendered_frame_stamps(const MotionRecord& record,
 void write_rendered_flight(const fs::path& motion_dir, const fs::path& out_dir,
                            const RenderedFlightOptions& options, const FlightProgress& progress) {
   check_options(options);
-  base::OutputFolder out({.option = {},
-                          .path = out_dir.string(),
-                          .replace = options.overwrite || options.repair,
-                          .inputs = {motion_dir, motion_dir / "mav0"},
-                          .repair = options.repair});
+  outputs::OutputFolder out({.option = {},
+                             .path = out_dir.string(),
+                             .replace = options.overwrite || options.repair,
+                             .inputs = {motion_dir, motion_dir / "mav0"},
+                             .repair = options.repair});
   const Plan plan = make_plan(motion_dir, options);
   const CameraModel& camera = plan.record.camera;
   const ImageSize size = options.prepared.value_or(ImageSize{camera.width, camera.height});

@@ -7,11 +7,11 @@
 
 #include "sim/base/error.h"
 #include "traces/datasets/asl_writer.h"
+#include "traces/datasets/rng.h"
 #include "traces/synthesis/flight_images.h"
 #include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/motion.h"
 #include "traces/synthesis/renderer.h"
-#include "traces/datasets/rng.h"
 #include "traces/synthesis/world.h"
 
 namespace leviosim::traces {
@@ -58,7 +58,7 @@ std::vector<std::int64_t> imu_stamps(const SyntheticOptions& options, std::int64
                 static_cast<std::int64_t>(std::ceil(span_s * rate - 1e-6)));
 }
 
-void write_text(base::OutputFolder& out, const SyntheticOptions& options, const Motion& motion,
+void write_text(outputs::OutputFolder& out, const SyntheticOptions& options, const Motion& motion,
                 const std::vector<std::int64_t>& frames) {
   ImuSynthesizer imu(options.imu, derive_seed(options.seed, kImuSeed));
   const ImuTrack track =
@@ -76,7 +76,7 @@ void write_text(base::OutputFolder& out, const SyntheticOptions& options, const 
   write("state_groundtruth_estimate0/data.csv", format_ground_truth_csv(track.truth));
 }
 
-void write_images(base::OutputFolder& out, const SyntheticOptions& options, const Motion& motion,
+void write_images(outputs::OutputFolder& out, const SyntheticOptions& options, const Motion& motion,
                   const std::vector<std::int64_t>& frames, const FlightProgress& progress) {
   const World world =
       make_room(derive_seed(options.seed, kWorldSeed), options.texel_m, options.threads);
@@ -97,10 +97,10 @@ void write_images(base::OutputFolder& out, const SyntheticOptions& options, cons
 void write_synthetic_flight(const std::filesystem::path& out_dir, const SyntheticOptions& options,
                             const FlightProgress& progress) {
   check_options(options);
-  base::OutputFolder out({.option = {},
-                          .path = out_dir.string(),
-                          .replace = options.overwrite || options.repair,
-                          .repair = options.repair});
+  outputs::OutputFolder out({.option = {},
+                             .path = out_dir.string(),
+                             .replace = options.overwrite || options.repair,
+                             .repair = options.repair});
   const HandHeldFlight motion(derive_seed(options.seed, kMotionSeed));
   const std::vector<std::int64_t> frames = frame_stamps(options);
   const auto pixels = static_cast<std::uint64_t>(options.camera.width) *

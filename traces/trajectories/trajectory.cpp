@@ -6,9 +6,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "sim/base/atomic_file.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
+#include "sim/outputs/atomic_file.h"
 #include "traces/datasets/asl_reader.h"
 
 namespace leviosim::traces {
@@ -50,7 +50,7 @@ std::string format_tum(const Trajectory& trajectory) {
 }
 
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory) {
-  base::write_file_atomically(file, format_tum(trajectory));
+  outputs::write_file_atomically(file, format_tum(trajectory));
 }
 
 Trajectory read_tum(const std::filesystem::path& file) {

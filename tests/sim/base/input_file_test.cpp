@@ -25,11 +25,11 @@ TEST(InputFile, GivesAllBytes) {
   const TempFolder folder;
   std::string bytes = "\n\0\r\xff"s;
   for (int i = 0; i < 100'000; ++i) bytes += static_cast<char>(i * 7);
-  base::write_file_atomically(folder / "file", bytes);
+  outputs::write_file_atomically(folder / "file", bytes);
   EXPECT_EQ(read_file(folder / "file", InputKind::table), bytes);
   fs::create_symlink(folder / "file", folder / "link");
   EXPECT_EQ(read_file(folder / "link", InputKind::table), bytes);
-  base::write_file_atomically(folder / "empty", "");
+  outputs::write_file_atomically(folder / "empty", "");
   EXPECT_EQ(read_file(folder / "empty", InputKind::table), "");
 }
 
@@ -81,19 +81,19 @@ TEST(InputFile, BoundsTheSizeOfEachKind) {
        {InputKind::platform, InputKind::plan, InputKind::sensor, InputKind::table, InputKind::image,
         InputKind::work_trace, InputKind::cached_result}) {
     const fs::path file = folder / "file";
-    base::write_file_atomically(file, "x");
+    outputs::write_file_atomically(file, "x");
     fs::resize_file(file, static_cast<std::uintmax_t>(info_of(kind).most_bytes) + 1);  // a hole
     expect_input_error([&] { read_file(file, kind); },
                        {file.string(), "larger", info_of(kind).name, "MiB"});
   }
   const fs::path most = folder / "most";
-  base::write_file_atomically(most, std::string(std::size_t{1} << 20, 'x'));
+  outputs::write_file_atomically(most, std::string(std::size_t{1} << 20, 'x'));
   EXPECT_EQ(read_file(most, InputKind::plan).size(), std::size_t{1} << 20);
 }
 
 TEST(PathKind, TellsWhatIsThere) {
   const TempFolder folder;
-  base::write_file_atomically(folder / "file", "x");
+  outputs::write_file_atomically(folder / "file", "x");
   fs::create_symlink("nowhere", folder / "dangling");
   fs::create_symlink("round", folder / "round");
   EXPECT_EQ(kind_of(folder / "file"), PathKind::file);

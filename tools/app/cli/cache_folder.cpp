@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "sim/base/error.h"
-#include "sim/base/file_system.h"
+#include "sim/outputs/file_system.h"
 
 namespace leviosim::tools {
 namespace {
@@ -21,8 +21,8 @@ constexpr const char* kWayOut = "set XDG_CACHE_HOME to a folder of yours";
 fs::path private_folder(const fs::path& folder) {
   if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
     throw InputError(fmt::format("{}: cannot be created: {}; {}", folder.string(),
-                                 base::reason(errno), kWayOut));
-  const std::optional<struct stat> status = base::status_of(folder);
+                                 outputs::reason(errno), kWayOut));
+  const std::optional<struct stat> status = outputs::status_of(folder);
   if (!status || !S_ISDIR(status->st_mode) || status->st_uid != ::geteuid() ||
       (status->st_mode & 077) != 0)
     throw InputError(fmt::format(

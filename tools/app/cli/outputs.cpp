@@ -20,7 +20,7 @@ std::optional<std::string> fault_of(const std::function<std::optional<std::strin
 
 }  // namespace
 
-void publish(base::OutputFolder& out, const Printout& report, const std::function<void()>& write,
+void publish(outputs::OutputFolder& out, const Printout& report, const std::function<void()>& write,
              const std::string& label) {
   bool is_written = false;
   const std::optional<std::string> fault = fault_of([&] {
@@ -35,9 +35,9 @@ void publish(base::OutputFolder& out, const Printout& report, const std::functio
   if (fault) throw InputError(*fault);
 }
 
-std::optional<base::OutputFile> claimed_file(const base::OutputRequest& request) {
+std::optional<outputs::OutputFile> claimed_file(const outputs::OutputRequest& request) {
   if (request.path.empty()) return std::nullopt;
-  return std::optional<base::OutputFile>(std::in_place, request);
+  return std::optional<outputs::OutputFile>(std::in_place, request);
 }
 
 void publish(std::initializer_list<FileOutput> files, const Printout& report) {

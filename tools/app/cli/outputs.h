@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "sim/base/output_file.h"
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_file.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/cli/printout.h"
 
 namespace leviosim::tools {
@@ -16,14 +16,14 @@ namespace leviosim::tools {
 /// Writes a folder of results, gives it its name, and prints the report with the line
 /// "results: DIR", which a whole printout goes without. @param write  the files
 /// @throws InputError, after the report, if the results are not under their name; Interrupted
-void publish(base::OutputFolder& out, const Printout& report, const std::function<void()>& write,
+void publish(outputs::OutputFolder& out, const Printout& report, const std::function<void()>& write,
              const std::string& label = "results");
 
 /// The file of an option; none if the option is empty. @throws InputError if it cannot be written
-std::optional<base::OutputFile> claimed_file(const base::OutputRequest& request);
+std::optional<outputs::OutputFile> claimed_file(const outputs::OutputRequest& request);
 
 struct FileOutput {
-  std::optional<base::OutputFile>& file;
+  std::optional<outputs::OutputFile>& file;
   std::string bytes;
   std::string label;  ///< of the line after the report, "table"; empty: none
 };

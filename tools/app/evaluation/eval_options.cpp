@@ -35,12 +35,12 @@ std::vector<double> parse_lengths(const std::vector<std::string>& words) {
   return lengths;
 }
 
-base::OutputRequest output(const EvalOptions& options, const char* option,
-                           const std::string& file) {
-  base::OutputRequest request{.option = option,
-                              .path = file,
-                              .replace = options.force,
-                              .inputs = {options.estimate, options.truth, options.times}};
+outputs::OutputRequest output(const EvalOptions& options, const char* option,
+                              const std::string& file) {
+  outputs::OutputRequest request{.option = option,
+                                 .path = file,
+                                 .replace = options.force,
+                                 .inputs = {options.estimate, options.truth, options.times}};
   request.inputs.insert(request.inputs.end(), options.also.begin(), options.also.end());
   return request;
 }

@@ -35,8 +35,8 @@ struct EvalRequest {
   traces::ReadOptions read;
   traces::EvaluationOptions evaluation;  ///< stamps are those of the files
   std::vector<double> lengths_m;         ///< rising, each once
-  std::optional<base::OutputFile> json;
-  std::optional<base::OutputFile> plot;
+  std::optional<outputs::OutputFile> json;
+  std::optional<outputs::OutputFile> plot;
 };
 
 void add_eval_options(CLI::App& command, EvalOptions& options);

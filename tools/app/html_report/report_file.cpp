@@ -16,9 +16,9 @@ void add_report_option(CLI::App& command, std::string& file) {
       ->type_name("FILE.html");
 }
 
-std::optional<base::OutputFile> claimed_report(const std::string& file, bool replace,
-                                               std::vector<std::filesystem::path> inputs,
-                                               const std::string& option) {
+std::optional<outputs::OutputFile> claimed_report(const std::string& file, bool replace,
+                                                  std::vector<std::filesystem::path> inputs,
+                                                  const std::string& option) {
   return claimed_file(
       {.option = option, .path = file, .replace = replace, .inputs = std::move(inputs)});
 }
@@ -41,7 +41,7 @@ Json runs_report(const std::vector<ReportedRun>& runs,
   return data;
 }
 
-void report_and_check(const ReportedRun& run, std::optional<base::OutputFile>& page,
+void report_and_check(const ReportedRun& run, std::optional<outputs::OutputFile>& page,
                       const std::optional<Gate>& gate, bool say) {
   std::optional<CheckResult> check;
   if (gate) check = gate->check(run.record);
@@ -49,7 +49,7 @@ void report_and_check(const ReportedRun& run, std::optional<base::OutputFile>& p
   if (check) print_check(*check);
 }
 
-void publish_report(std::optional<base::OutputFile>& file, const Json& data, bool say) {
+void publish_report(std::optional<outputs::OutputFile>& file, const Json& data, bool say) {
   if (file) publish({{file, html_page(data), "report"}}, Printout(std::string(), !say));
 }
 

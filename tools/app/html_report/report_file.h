@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/output_file.h"
+#include "sim/outputs/output_file.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/run_json.h"
@@ -22,9 +22,9 @@ void add_report_option(CLI::App& command, std::string& file);
 
 /// None if no file is named. @param inputs  that stay as they are
 /// @throws InputError if it cannot be written
-std::optional<base::OutputFile> claimed_report(const std::string& file, bool replace,
-                                               std::vector<std::filesystem::path> inputs = {},
-                                               const std::string& option = "--report");
+std::optional<outputs::OutputFile> claimed_report(const std::string& file, bool replace,
+                                                  std::vector<std::filesystem::path> inputs = {},
+                                                  const std::string& option = "--report");
 
 /// A run with the files that it left, or would leave.
 struct ReportedRun {
@@ -40,11 +40,11 @@ Json runs_report(const std::vector<ReportedRun>& runs,
 /// How commands that run or replay end: with the page, and what a budget says, if they are asked
 /// for.
 /// @throws LimitNotMet if a limit is not met
-void report_and_check(const ReportedRun& run, std::optional<base::OutputFile>& page,
+void report_and_check(const ReportedRun& run, std::optional<outputs::OutputFile>& page,
                       const std::optional<Gate>& gate, bool say = true);
 
 /// Writes the page, if there is a file for it.
 /// @param say  whether to print where it is
-void publish_report(std::optional<base::OutputFile>& file, const Json& data, bool say = true);
+void publish_report(std::optional<outputs::OutputFile>& file, const Json& data, bool say = true);
 
 }  // namespace leviosim::tools

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "sim/base/error.h"
-#include "sim/base/output_record.h"
+#include "sim/outputs/output_record.h"
 #include "tools/app/cli/cache_folder.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/version.h"
@@ -43,7 +43,7 @@ class FileLock {
 
 /// Whether all files of the flight are there as they were drawn.
 bool is_whole(const fs::path& folder) {
-  const std::optional<base::OutputRecord> record = base::OutputRecord::read(folder);
+  const std::optional<outputs::OutputRecord> record = outputs::OutputRecord::read(folder);
   return record && !record->paths().empty() && record->is_complete(folder);
 }
 

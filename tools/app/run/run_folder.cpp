@@ -248,11 +248,11 @@ RunFiles run_files(const RunResult& run, const Manifest& manifest,
   return files;
 }
 
-void write_run_files(base::OutputFolder& out, const RunFiles& files, const std::string& below) {
+void write_run_files(outputs::OutputFolder& out, const RunFiles& files, const std::string& below) {
   for (const auto& [name, text] : files) out.write(below + name, text);
 }
 
-void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manifest& manifest,
+void write_run_folder(outputs::OutputFolder& out, const RunResult& run, const Manifest& manifest,
                       const std::string& platform_yaml, const std::string& below) {
   write_run_files(out, run_files(run, manifest, platform_yaml), below);
 }

@@ -20,7 +20,7 @@
 #include <map>
 #include <string>
 
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/result/run_result.h"
 #include "tools/app/run/manifest.h"
 
@@ -43,13 +43,14 @@ RunFiles run_files(const RunResult& run, const Manifest& manifest,
                    const std::string& platform_yaml);
 
 /// Writes into a folder that the caller has claimed. @throws InputError if a file cannot be written
-void write_run_files(base::OutputFolder& out, const RunFiles& files, const std::string& below = {});
+void write_run_files(outputs::OutputFolder& out, const RunFiles& files,
+                     const std::string& below = {});
 
 /// Both.
 /// @param platform_yaml  unused for a native run
 /// @param below          folder in it, "chosen/"
 /// @throws InputError if a file cannot be written
-void write_run_folder(base::OutputFolder& out, const RunResult& run, const Manifest& manifest,
+void write_run_folder(outputs::OutputFolder& out, const RunResult& run, const Manifest& manifest,
                       const std::string& platform_yaml, const std::string& below = {});
 
 /// The texts of the CSV files; the units stand in the column names.

@@ -18,8 +18,8 @@ namespace leviosim::tools {
 
 namespace fs = std::filesystem;
 
-base::OutputRequest out_request(const RunOptions& options, const char* option) {
-  base::OutputRequest request{.option = option, .path = options.out, .replace = options.force};
+outputs::OutputRequest out_request(const RunOptions& options, const char* option) {
+  outputs::OutputRequest request{.option = option, .path = options.out, .replace = options.force};
   request.inputs = data_inputs(options.data);
   request.inputs.emplace_back(options.platform);
   return request;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "sim/base/output_request.h"
+#include "sim/outputs/output_request.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/progress_line.h"
 #include "tools/app/run/manifest.h"
@@ -17,7 +17,7 @@ namespace leviosim::tools {
 
 /// What --out and --force ask for, or another option that RunOptions::out keeps; what the run reads
 /// stays as it is.
-base::OutputRequest out_request(const RunOptions& options, const char* option = "--out");
+outputs::OutputRequest out_request(const RunOptions& options, const char* option = "--out");
 
 /// What --data stands for: the folder, and the one in it that may be a link.
 std::vector<std::filesystem::path> data_inputs(const std::string& data);

@@ -117,11 +117,11 @@ BatchPlan make_plan(const CLI::App& command, const BatchWords& words) {
   plan.measure = {traces::parse_alignment(words.align),
                   parse_positive("--relative", words.relative)};
   plan.runner = runner_options(words.runner, "run", words.quiet);
-  base::OutputRequest wanted{.option = "--out", .path = words.out, .replace = words.force};
+  outputs::OutputRequest wanted{.option = "--out", .path = words.out, .replace = words.force};
   for (const std::string& word : words.data)
     for (const std::filesystem::path& input : data_inputs(parse_named_folder(word).folder))
       wanted.inputs.push_back(input);
-  plan.out = std::make_shared<base::OutputFolder>(std::move(wanted));
+  plan.out = std::make_shared<outputs::OutputFolder>(std::move(wanted));
   plan.sequences = open_all(words, plan);
   return plan;
 }

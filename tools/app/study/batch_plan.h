@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/study/run_outcome.h"
@@ -44,7 +44,7 @@ struct BatchPlan {
   std::vector<vio::Assignment> workload;  ///< of every run
   std::optional<traces::FrameRange> frames;
   Measure measure;
-  std::shared_ptr<base::OutputFolder> out;  ///< for the results
+  std::shared_ptr<outputs::OutputFolder> out;  ///< for the results
   RunnerOptions runner;
 };
 

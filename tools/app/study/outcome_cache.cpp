@@ -6,8 +6,8 @@
 #include <cerrno>
 
 #include "sim/base/error.h"
-#include "sim/base/new_file.h"
 #include "sim/base/sha256.h"
+#include "sim/outputs/new_file.h"
 #include "tools/app/cli/cache_folder.h"
 
 namespace leviosim::tools {
@@ -33,7 +33,7 @@ fs::path OutcomeCache::file_of(const std::string& key) const {
 }
 
 std::optional<std::string> OutcomeCache::find_text(const std::string& key) const {
-  const std::optional<std::string> bytes = base::try_read_file(file_of(key), kLargestFile);
+  const std::optional<std::string> bytes = outputs::try_read_file(file_of(key), kLargestFile);
   if (!bytes) return std::nullopt;
   const std::size_t end = bytes->find('\n');
   if (end == std::string::npos) return std::nullopt;
@@ -51,12 +51,13 @@ void OutcomeCache::store(const std::string& key, const Outcome& outcome) const {
   const std::string text = to_text(outcome);
   const fs::path file = file_of(key);
   const auto fail = [&](int error) {
-    throw InputError(fmt::format("{}: cannot be written: {}", file.string(), base::reason(error)));
+    throw InputError(
+        fmt::format("{}: cannot be written: {}", file.string(), outputs::reason(error)));
   };
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error) fail(error.value());
-  base::NewFile fresh(file.parent_path() / fmt::format(".{}.{}", key, ::getpid()));
+  outputs::NewFile fresh(file.parent_path() / fmt::format(".{}.{}", key, ::getpid()));
   if (const int fault = fresh.write(header_of(key, text) + text)) fail(fault);
   int fault = fresh.place(file);
   if (fault == EEXIST && !find_text(key)) {  // damaged, or of another key

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "sim/base/error.h"
-#include "sim/base/file_system.h"
+#include "sim/outputs/file_system.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/timeline/perfetto_timeline.h"
 #include "tools/app/timeline/timeline_picture.h"
@@ -24,10 +24,10 @@ std::optional<traces::FrameRange> range_of(const std::string& text) {
 }
 
 /// A folder of results appears as a whole; a file in it would be lost or in its way.
-void refuse_within(const base::OutputRequest& results, const std::string& file) {
+void refuse_within(const outputs::OutputRequest& results, const std::string& file) {
   std::error_code error;
-  const std::filesystem::path folder = base::resolved(results.path, error);
-  const std::filesystem::path path = base::resolved(file, error);
+  const std::filesystem::path folder = outputs::resolved(results.path, error);
+  const std::filesystem::path path = outputs::resolved(file, error);
   if (*path.lexically_relative(folder).begin() != "..")
     throw InputError(
         fmt::format("--timeline {}: lies in the folder of {}; choose a place beside it", file,
@@ -45,7 +45,8 @@ void refuse_other_formats(const std::string& file) {
           file));
 }
 
-base::OutputRequest file_request(const std::string& file, const base::OutputRequest& results) {
+outputs::OutputRequest file_request(const std::string& file,
+                                    const outputs::OutputRequest& results) {
   refuse_other_formats(file);
   refuse_within(results, file);
   return {
@@ -68,7 +69,8 @@ void add_timeline_options(CLI::App& command, TimelineOptions& options) {
 }
 
 RequestedTimeline::RequestedTimeline(const TimelineOptions& options,
-                                     const base::OutputRequest& results, const RunRequest& request)
+                                     const outputs::OutputRequest& results,
+                                     const RunRequest& request)
     : name_(options.file),
       is_picture_(std::filesystem::path(name_).extension() == ".svg"),
       chosen_(is_picture_ && options.frames.empty()),
@@ -89,7 +91,7 @@ void RequestedTimeline::publish(const RunResult& run, bool prints_name) {
 }
 
 std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& options,
-                                                    const base::OutputRequest& results,
+                                                    const outputs::OutputRequest& results,
                                                     const RunRequest& request) {
   if (options.file.empty()) {
     if (!options.frames.empty())

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/base/output_file.h"
+#include "sim/outputs/output_file.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/timeline/timeline_collector.h"
 
@@ -27,7 +27,7 @@ class RequestedTimeline {
   /// Claims the file.
   /// @param results  what the command was asked to write else: a folder, in which the file is not
   /// @throws InputError for options that contradict the request, or a file that cannot be written
-  RequestedTimeline(const TimelineOptions& options, const base::OutputRequest& results,
+  RequestedTimeline(const TimelineOptions& options, const outputs::OutputRequest& results,
                     const RunRequest& request);
 
   /// To look on while the run happens.
@@ -41,13 +41,13 @@ class RequestedTimeline {
   bool is_picture_;
   bool chosen_;  ///< its frames, since the user named none
   TimelineCollector collector_;
-  std::optional<base::OutputFile> file_;
+  std::optional<outputs::OutputFile> file_;
 };
 
 /// None without --timeline. @throws InputError as RequestedTimeline, and for --timeline-frames
 /// alone
 std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& options,
-                                                    const base::OutputRequest& results,
+                                                    const outputs::OutputRequest& results,
                                                     const RunRequest& request);
 
 }  // namespace leviosim::tools

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "sim/base/error.h"
-#include "sim/base/file_system.h"
 #include "sim/base/interruption.h"
+#include "sim/outputs/file_system.h"
 
 namespace leviosim::tools {
 namespace {
@@ -35,7 +35,7 @@ int try_again(void*, int tries) {
   return 1;
 }
 
-std::string bytes_at(const base::Descriptor& file, off_t place, std::size_t size) {
+std::string bytes_at(const outputs::Descriptor& file, off_t place, std::size_t size) {
   std::string bytes(size, '\0');
   const ssize_t got = ::pread(file.get(), bytes.data(), size, place);
   bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
@@ -44,28 +44,28 @@ std::string bytes_at(const base::Descriptor& file, off_t place, std::size_t size
 
 /// What SQLite would open or play back unasked. @returns why it is not let to; empty if it may
 std::string fault_beside(const std::string& file) {
-  const std::optional<struct stat> base = base::status_of(file);
+  const std::optional<struct stat> base = outputs::status_of(file);
   if (!base) return {};
   if (!S_ISREG(base->st_mode) || base->st_nlink != 1)
     return "is no regular file with one name; expected the data base of a sweep";
   for (const char* end : {"-wal", "-shm"})
-    if (base::status_of(file + end))
+    if (outputs::status_of(file + end))
       return fmt::format("has {}{} beside it, which no sweep makes; remove it by hand", file, end);
   constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  const base::Descriptor data(::open(file.c_str(), kFlags));
+  const outputs::Descriptor data(::open(file.c_str(), kFlags));
   // File format, section 1.3.3: 1 is a rollback journal.
   const std::string versions = bytes_at(data, 18, 2);
   if (!versions.empty() && versions != "\1\1")
     return "has another journal than a sweep's, or is no data base; expected that of a sweep";
   const std::string journal = file + "-journal";
-  const std::optional<struct stat> status = base::status_of(journal);
+  const std::optional<struct stat> status = outputs::status_of(journal);
   if (!status) return {};
   const std::string by_hand = fmt::format("; if it is not yours, remove {}", journal);
   if (!S_ISREG(status->st_mode) || status->st_nlink != 1)
     return "has a journal that is no regular file with one name" + by_hand;
   // Section 3: a journal that ends with its magic number names another one before it.
   static constexpr std::string_view kMagic("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7");
-  const base::Descriptor opened(::open(journal.c_str(), kFlags));
+  const outputs::Descriptor opened(::open(journal.c_str(), kFlags));
   if (!opened && errno == ENOENT) return {};  // another process is done
   if (!opened) return "has a journal that cannot be read" + by_hand;
   if (status->st_size >= 8 && bytes_at(opened, status->st_size - 8, 8) == kMagic)
@@ -105,7 +105,7 @@ void Database::confine() {
 
 int Database::is_to_stop(void* database) {
   Database& self = *static_cast<Database*>(database);
-  const std::optional<struct stat> status = base::status_of(self.file_);
+  const std::optional<struct stat> status = outputs::status_of(self.file_);
   const std::uint64_t size = status ? static_cast<std::uint64_t>(status->st_size) : 0;
   self.steps_ += kStepsPerPoll;
   return pending_interrupt() != 0 || self.steps_ > kSteps + kStepsPerByte * size ? 1 : 0;

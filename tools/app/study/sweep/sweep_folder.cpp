@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_regular(const fs::path& file) {
-  const std::optional<struct stat> status = base::status_of(file);
+  const std::optional<struct stat> status = outputs::status_of(file);
   return status && S_ISREG(status->st_mode);
 }
 
@@ -31,9 +31,9 @@ bool is_of_sqlite(const std::string& name) {
 
 SweepFolder::SweepFolder(const Request& request) {
   std::error_code error;
-  path_ = base::resolved(request.path, error);
+  path_ = outputs::resolved(request.path, error);
   if (error) refuse(request, "cannot be used: " + error.message());
-  const std::optional<struct stat> status = base::status_of(path_);
+  const std::optional<struct stat> status = outputs::status_of(path_);
   if (status && S_ISLNK(status->st_mode)) refuse(request, "is a symbolic link that leads nowhere");
   if (status && !S_ISDIR(status->st_mode)) refuse(request, "is a file; expected a folder");
   std::set<std::string> names;
@@ -42,16 +42,16 @@ SweepFolder::SweepFolder(const Request& request) {
       names.insert(entry.path().filename().string());
   if (error) refuse(request, "cannot be listed: " + error.message());
   for (const fs::path& input : request.inputs)
-    if (status && base::lies_in(input, path_))
+    if (status && outputs::lies_in(input, path_))
       refuse(request,
              fmt::format("holds {}, which is read; choose another folder", input.string()));
   for (const std::string& name : names) check_entry(request, name);
   fs::create_directories(path_, error);
   if (error) refuse(request, "cannot be created: " + error.message());
-  csv_.emplace(base::OutputRequest{.option = request.option,
-                                   .path = (fs::path(request.path) / kSweepCsv).string(),
-                                   .replace = true});
-  if (!is_regular(path_ / kSweepFile)) base::add_to_record(path_, kSweepFile, {});
+  csv_.emplace(outputs::OutputRequest{.option = request.option,
+                                      .path = (fs::path(request.path) / kSweepCsv).string(),
+                                      .replace = true});
+  if (!is_regular(path_ / kSweepFile)) outputs::add_to_record(path_, kSweepFile, {});
 }
 
 void SweepFolder::check_entry(const Request& request, const std::string& name) const {
@@ -60,12 +60,12 @@ void SweepFolder::check_entry(const Request& request, const std::string& name) c
                                 "folder",
                                 name));
   };
-  if (!base::status_of(path_ / name)) return;  // of another process, and gone by now
+  if (!outputs::status_of(path_ / name)) return;  // of another process, and gone by now
   std::error_code error;
   if (fs::equivalent(path_ / name, request.cache, error)) return;
   if (!is_regular(path_ / name)) foreign();
-  if (name == base::kRecordName || name == kSweepCsv) return;  // its OutputFile looks at that
-  const std::optional<base::OutputRecord> record = base::OutputRecord::read(path_);
+  if (name == outputs::kRecordName || name == kSweepCsv) return;  // its OutputFile looks at that
+  const std::optional<outputs::OutputRecord> record = outputs::OutputRecord::read(path_);
   if (name == kSweepFile) {
     if (!is_sweep(path_, record && record->names(kSweepFile))) foreign();
     return;

@@ -1,13 +1,13 @@
 // The folder of a sweep. Unlike other results it is added to, by several processes at a time, so it
-// is no folder that appears whole (sim/base/output_folder.h): the data base in it is never removed,
-// and sweep.csv is a single file that only replaces what leviosim wrote.
+// is no folder that appears whole (sim/outputs/output_folder.h): the data base in it is never
+// removed, and sweep.csv is a single file that only replaces what leviosim wrote.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "sim/base/output_file.h"
+#include "sim/outputs/output_file.h"
 
 namespace leviosim::tools {
 
@@ -26,7 +26,7 @@ class SweepFolder {
 
   const std::filesystem::path& path() const { return path_; }
   /// To be published when all is done.
-  base::OutputFile& csv() { return *csv_; }
+  outputs::OutputFile& csv() { return *csv_; }
   /// Begins anew: takes all out of the data base, in one transaction.
   void empty();
 
@@ -34,7 +34,7 @@ class SweepFolder {
   void check_entry(const Request& request, const std::string& name) const;
 
   std::filesystem::path path_;
-  std::optional<base::OutputFile> csv_;
+  std::optional<outputs::OutputFile> csv_;
 };
 
 }  // namespace leviosim::tools

@@ -386,7 +386,7 @@ std::set<int> SweepStore::front() {
   return points;
 }
 
-std::optional<std::string> SweepStore::publish(base::OutputFile& file) {
+std::optional<std::string> SweepStore::publish(outputs::OutputFile& file) {
   Transaction transaction(database_);  // of several processes, the last sees what all have done
   make_views(parameter_names(), figure_names());
   write_front();

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/output_file.h"
+#include "sim/outputs/output_file.h"
 #include "tools/app/study/sweep/point_run.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sqlite.h"
@@ -73,7 +73,7 @@ class SweepStore {
   /// Brings views, front and sweep.csv up to date: a row per finished point, a column per parameter
   /// and figure, in an order that does not depend on which was finished first.
   /// @returns nothing, or why sweep.csv has another name now
-  [[nodiscard]] std::optional<std::string> publish(base::OutputFile& file);
+  [[nodiscard]] std::optional<std::string> publish(outputs::OutputFile& file);
   /// The text of sweep.csv as of the last publish().
   std::string csv();
 

@@ -183,7 +183,7 @@ TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
   if (!words.fps.empty()) plan.fps = parse_rates(words.fps);
   plan.runner = runner_options(words.runner, "run", words.run.quiet);
   if (!words.run.out.empty())
-    plan.out = std::make_shared<base::OutputFolder>(out_request(words.run));
+    plan.out = std::make_shared<outputs::OutputFolder>(out_request(words.run));
   plan.request.data = data_folder(words.run, plan.runner.progress);
   plan.recorded_hz = checked_recorded_rate(plan.request, plan.fps);
   if (plan.fps.empty()) plan.fps = {plan.recorded_hz};

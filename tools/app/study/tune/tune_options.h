@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/run/run_options.h"
 #include "tools/app/study/run_outcome.h"
 #include "tools/app/study/sequence.h"
@@ -53,7 +53,7 @@ struct TunePlan {
   double ate_m = 0;      ///< error that is allowed
   Measure measure;
   RunnerOptions runner;
-  std::shared_ptr<base::OutputFolder> out;  ///< if results are to be written
+  std::shared_ptr<outputs::OutputFolder> out;  ///< if results are to be written
 };
 
 void add_tune_options(CLI::App& command, TuneWords& words);

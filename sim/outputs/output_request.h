@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 struct OutputRequest {
   std::string option;                              ///< that names it, for messages; may be empty
@@ -19,4 +19,4 @@ struct OutputRequest {
   std::string shown() const { return option.empty() ? path : option + ' ' + path; }
 };
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -9,11 +9,11 @@
 #include <string>
 #include <string_view>
 
-#include "sim/base/new_file.h"
-#include "sim/base/output_record.h"
-#include "sim/base/output_request.h"
+#include "sim/outputs/new_file.h"
+#include "sim/outputs/output_record.h"
+#include "sim/outputs/output_request.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 class HeldRecord;
 
@@ -50,4 +50,4 @@ class OutputFile {
 void add_to_record(const std::filesystem::path& folder, const std::string& name,
                    const FileState& state);
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -1,11 +1,11 @@
-#include "sim/base/output_record.h"
+#include "sim/outputs/output_record.h"
 
 #include <gtest/gtest.h>
 
 #include "sim/base/error.h"
 #include "tests/support/scratch.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,4 +137,4 @@ TEST(OutputRecord, RemovesWhatItNamesAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 /// An open file; -1 if there is none.
 class Descriptor {
@@ -67,8 +67,8 @@ int rename_new(const std::filesystem::path& from, const std::filesystem::path& t
 /// Exchanges the names of two files or of two folders, in one step where the file system can.
 /// @returns 0, or the error
 int exchange(const std::filesystem::path& a, const std::filesystem::path& b);
-/// Exchanges two files in three steps, for file systems that cannot do it at once. Stopped in between, what b was has a name
-/// beside it, free_name(b, …).
+/// Exchanges two files in three steps, for file systems that cannot do it at once. Stopped in
+/// between, what b was has a name beside it, free_name(b, …).
 int exchange_by_steps(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// "results-2" or "figures-2.json" beside the file: the k-th of its names.
@@ -83,4 +83,4 @@ std::filesystem::path resolved(const std::string& path, std::error_code& error);
 /// exist.
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -1,4 +1,4 @@
-#include "sim/base/file_system.h"
+#include "sim/outputs/file_system.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -12,7 +12,7 @@
 
 #include "sim/base/sha256.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,13 +56,13 @@ bool is_same_file(const struct stat& a, const struct stat& b) {
   return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-FileState state_of_bytes(std::string_view bytes) { return {sha256_of(bytes), bytes.size()}; }
+FileState state_of_bytes(std::string_view bytes) { return {base::sha256_of(bytes), bytes.size()}; }
 
 std::optional<FileState> state_of_file(const fs::path& path) {
   FileState state;
   const Descriptor file = open_regular(path, state.size);
   if (!file) return std::nullopt;
-  Sha256 digest;
+  base::Sha256 digest;
   std::array<char, 1 << 16> buffer;
   state.size = 0;
   for (;;) {
@@ -165,4 +165,4 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   }
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

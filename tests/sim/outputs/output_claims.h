@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim/base/error.h"
-#include "sim/base/output_request.h"
+#include "sim/outputs/output_request.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 /// Claiming an `Output` (OutputFile, OutputFolder) throws an InputError that contains all parts.
 template <class Output>
@@ -23,4 +23,4 @@ void expect_claim_refused(const OutputRequest& wanted, const std::vector<std::st
   }
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -1,13 +1,13 @@
-#include "sim/base/output_file.h"
+#include "sim/outputs/output_file.h"
 
 #include <gtest/gtest.h>
 
 #include "sim/base/error.h"
-#include "sim/base/held_record.h"
-#include "tests/sim/base/output_claims.h"
+#include "sim/outputs/held_record.h"
+#include "tests/sim/outputs/output_claims.h"
 #include "tests/support/scratch.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,4 +123,4 @@ TEST(OutputFile, ARecordIsAddedToNotReplaced) {
 }
 
 }  // namespace
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -1,4 +1,4 @@
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -8,10 +8,10 @@
 #include <functional>
 
 #include "sim/base/error.h"
-#include "tests/sim/base/output_claims.h"
+#include "tests/sim/outputs/output_claims.h"
 #include "tests/support/scratch.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -237,4 +237,4 @@ TEST(OutputFolder, AFullDiskIsToldAtOnce) {
 }
 
 }  // namespace
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

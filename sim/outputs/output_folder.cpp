@@ -1,4 +1,4 @@
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_folder.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -8,7 +8,7 @@
 
 #include "sim/base/error.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,4 +189,4 @@ std::string OutputFolder::publish_aside(int error) {
                      shown_path_);
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

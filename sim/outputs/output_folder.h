@@ -19,11 +19,11 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/base/file_system.h"
-#include "sim/base/output_record.h"
-#include "sim/base/output_request.h"
+#include "sim/outputs/file_system.h"
+#include "sim/outputs/output_record.h"
+#include "sim/outputs/output_request.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 /// The hidden folder beside the target, held until the end of its life. Removes what was written
 /// into it unless it was renamed.
@@ -96,4 +96,4 @@ class OutputFolder {
   std::optional<StagingFolder> staging_;
 };
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string_view>
 
-#include "sim/base/file_system.h"
+#include "sim/outputs/file_system.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 class NewFile {
  public:
@@ -39,4 +39,4 @@ class NewFile {
   bool is_hidden_ = false;
 };
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

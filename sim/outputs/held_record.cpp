@@ -1,4 +1,4 @@
-#include "sim/base/held_record.h"
+#include "sim/outputs/held_record.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -8,7 +8,7 @@
 
 #include "sim/base/error.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 HeldRecord::HeldRecord(const std::filesystem::path& folder) : file_(folder / kRecordName) {
   for (bool is_held = false; !is_held;) {
@@ -42,4 +42,4 @@ void HeldRecord::fail(int error) const {
   throw InputError(fmt::format("{}: cannot be written: {}", file_.string(), reason(error)));
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

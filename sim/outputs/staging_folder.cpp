@@ -5,16 +5,16 @@
 #include <cerrno>
 
 #include "sim/base/error.h"
-#include "sim/base/output_folder.h"
+#include "sim/outputs/output_folder.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// The record while it is written, and a file that is never seen, which holds disk space.
 constexpr const char* kNewRecord = ".leviosim-files.new";
-constexpr const char* kReserve = ".leviosim-reserve";
+constexpr const char* kReserveFile = ".leviosim-reserve";
 
 bool is_still_at(int descriptor, const fs::path& path) {
   struct stat held {};
@@ -71,7 +71,7 @@ bool StagingFolder::acquire(const std::string& shown) {
 /// Of a process that died: its lock is free.
 void StagingFolder::remove_leftovers(const std::string& shown) const {
   OutputRecord left = OutputRecord::read(path_).value_or(OutputRecord());
-  for (const char* name : {kNewRecord, kReserve})
+  for (const char* name : {kNewRecord, kReserveFile})
     if (left.process() > 0) left.add(name, {});
   if (const std::string foreign = left.first_foreign(path_); !foreign.empty())
     throw InputError(fmt::format(
@@ -108,7 +108,7 @@ int StagingFolder::write(const std::string& name, std::string_view bytes) {
 
 int StagingFolder::reserve(std::uint64_t bytes) {
   if (!reserve_) {
-    const fs::path file = path_ / kReserve;
+    const fs::path file = path_ / kReserveFile;
     reserve_ = Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
     if (!reserve_) return errno;
     ::unlink(file.c_str());
@@ -133,4 +133,4 @@ int StagingFolder::finish() {
   return fault;
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

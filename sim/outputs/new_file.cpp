@@ -1,4 +1,4 @@
-#include "sim/base/new_file.h"
+#include "sim/outputs/new_file.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ int NewFile::place(const fs::path& name) {
   return done == 0 ? 0 : errno;
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

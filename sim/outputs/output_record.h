@@ -19,9 +19,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/base/file_system.h"
+#include "sim/outputs/file_system.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 inline constexpr const char* kRecordName = ".leviosim-files";
 
@@ -69,4 +69,4 @@ class OutputRecord {
   int process_ = 0;
 };
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -1,4 +1,4 @@
-#include "sim/base/output_file.h"
+#include "sim/outputs/output_file.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -6,9 +6,9 @@
 #include <cerrno>
 
 #include "sim/base/error.h"
-#include "sim/base/held_record.h"
+#include "sim/outputs/held_record.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -128,4 +128,4 @@ void add_to_record(const fs::path& folder, const std::string& name, const FileSt
   HeldRecord(folder).add(name, state);
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -1,4 +1,4 @@
-#include "sim/base/output_record.h"
+#include "sim/outputs/output_record.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 
 #include "sim/base/error.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -229,4 +229,4 @@ std::vector<std::string> OutputRecord::paths() const {
   return all;
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

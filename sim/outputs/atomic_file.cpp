@@ -1,4 +1,4 @@
-#include "sim/base/atomic_file.h"
+#include "sim/outputs/atomic_file.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 #include "sim/base/error.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,4 +42,4 @@ void write_file_atomically(const fs::path& file, std::string_view contents) {
   throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "sim/base/output_record.h"
+#include "sim/outputs/output_record.h"
 
-namespace leviosim::base {
+namespace leviosim::outputs {
 
 class HeldRecord {
  public:
@@ -26,4 +26,4 @@ class HeldRecord {
   OutputRecord record_;
 };
 
-}  // namespace leviosim::base
+}  // namespace leviosim::outputs
