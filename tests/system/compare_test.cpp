@@ -41,6 +41,7 @@ class Compare : public tests::ProgramSuite {
     const std::string copy = path("changed");
     fs::remove_all(copy);
     fs::copy(path("run"), copy);
+    fs::remove(copy + "/.leviosim-files");
     std::string text = base::read_text_file(copy + '/' + file);
     const auto at = text.find(before);
     EXPECT_NE(at, std::string::npos) << before;

@@ -60,6 +60,7 @@ TEST_F(Report, RefusesBeforeAnythingIsWritten) {
 
 TEST_F(Report, OfAnOlderFolderSaysWhatItLacks) {
   fs::copy(path("a"), path("old"));
+  fs::remove(path("old/.leviosim-files"));
   Json frames = csv_json("frames.csv", base::read_text_file(path("old/frames.csv")));
   std::string csv =
       "frame,t_ns,source,keyframe,arrival_ns,start_ns,end_ns,latency_ns,"

@@ -30,9 +30,10 @@ struct Frames {
   double single = 0;
   std::int64_t arrived = 0;
   std::int64_t dropped = 0;
+  bool has_times = false;
 };
 
-std::optional<Frames> read_frames(const std::filesystem::path& file, const std::string& csv) {
+Frames read_frames(const std::filesystem::path& file, const std::string& csv) {
   const std::vector<std::string> titles = titles_of(csv);
   const auto column = [&](const char* title) {
     return static_cast<std::size_t>(std::find(titles.begin(), titles.end(), title) -
@@ -41,12 +42,15 @@ std::optional<Frames> read_frames(const std::filesystem::path& file, const std::
   const std::size_t latency = column("latency_ns");
   const std::size_t parallel = column("parallel_cycles");
   const std::size_t single = column("single_cycles");
-  if (std::max({latency, parallel, single}) >= titles.size()) return std::nullopt;
+  if (csv.empty() || csv.back() != '\n')
+    throw InputError(fmt::format("{}: ends within a line: it was cut off", file.string()));
   base::CsvReader reader(file, base::Separator::comma, titles, csv);
   reader.next();  // the titles
   Frames frames;
+  frames.has_times = std::max({latency, parallel, single}) < titles.size();
   while (const base::CsvRow* row = reader.next()) {
     ++frames.arrived;
+    if (!frames.has_times) continue;
     if (row->text(latency).empty()) {
       ++frames.dropped;
       continue;
@@ -60,11 +64,11 @@ std::optional<Frames> read_frames(const std::filesystem::path& file, const std::
 
 }  // namespace
 
-void add_frame_statistics(const std::filesystem::path& file, const std::string& frames_csv,
-                          RunRecord& record) {
-  std::optional<Frames> frames = read_frames(file, frames_csv);
-  if (!frames || frames->arrived == 0) return;
-  std::vector<std::int64_t>& sorted = frames->latencies;
+std::int64_t add_frame_statistics(const std::filesystem::path& file, const std::string& frames_csv,
+                                  RunRecord& record) {
+  Frames frames = read_frames(file, frames_csv);
+  if (!frames.has_times || frames.arrived == 0) return frames.arrived;
+  std::vector<std::int64_t>& sorted = frames.latencies;
   std::sort(sorted.begin(), sorted.end());
   const auto n = static_cast<double>(sorted.size());
   const auto add = [&](const char* name, const char* unit, const char* description, double value) {
@@ -81,8 +85,8 @@ void add_frame_statistics(const std::filesystem::path& file, const std::string& 
   add("frame.latency.p95", "ns", "that 95 % of the frames do not exceed", at(0.95));
   add("frame.latency.p99", "ns", "that 99 % of the frames do not exceed", at(0.99));
   add("frame.latency.worst", "ns", "longest from the camera's frame to its pose", at(1));
-  add("frame.cycles.single.mean", "cycles", "of the front end on one core", frames->single / n);
-  add("frame.cycles.parallel.mean", "cycles", "of the front end on N cores", frames->parallel / n);
+  add("frame.cycles.single.mean", "cycles", "of the front end on one core", frames.single / n);
+  add("frame.cycles.parallel.mean", "cycles", "of the front end on N cores", frames.parallel / n);
   const double period = record.value("run.frame_period").value_or(0);
   const double rate = record.value("camera.rate").value_or(0);
   const double deadline = rate > 0 ? 1e9 / rate : period;
@@ -90,10 +94,11 @@ void add_frame_statistics(const std::filesystem::path& file, const std::string& 
     return static_cast<double>(latency) > deadline;
   });
   const double missed = record.value("camera.missed_share")
-                            .value_or(static_cast<double>(frames->dropped + late) /
-                                      static_cast<double>(frames->arrived));
+                            .value_or(static_cast<double>(frames.dropped + late) /
+                                      static_cast<double>(frames.arrived));
   record.statistics.push_back(
       {"frame.missed_share", "1", "frames without a pose within a period of the camera", missed});
+  return frames.arrived;
 }
 
 void add_operations(RunRecord& record) {

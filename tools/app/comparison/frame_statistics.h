@@ -11,9 +11,10 @@
 namespace leviosim::tools {
 
 /// frame.latency.*, frame.missed_share and frame.cycles.* from the table of frames (frames.csv).
-/// Nothing of a native run, which has no times. @throws InputError for a table that is none
-void add_frame_statistics(const std::filesystem::path& file, const std::string& frames_csv,
-                          RunRecord& record);
+/// Nothing of a native run, which has no times. @returns the number of frames, with the dropped
+/// @throws InputError for a table that is none, or that was cut off
+std::int64_t add_frame_statistics(const std::filesystem::path& file, const std::string& frames_csv,
+                                  RunRecord& record);
 
 /// stages.*.operations: of all kinds.
 void add_operations(RunRecord& record);

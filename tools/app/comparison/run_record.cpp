@@ -6,6 +6,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "sim/outputs/output_record.h"
 #include "tools/app/comparison/frame_statistics.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/summary.h"
@@ -108,6 +109,23 @@ void name_stages(RunRecord& record) {
       if (key_of(parts.stage) == stage.key) stage.name = parts.stage;
 }
 
+/// @param bytes  of the file; null if it is missing
+void check_recorded(const std::filesystem::path& file, const outputs::OutputRecord& record,
+                    const std::string* bytes) {
+  const std::string name = file.filename().string();
+  const auto fail = [&](const std::string& found) {
+    throw InputError(fmt::format("{}: {}; expected what {} says the run wrote", file.string(),
+                                 found, outputs::kRecordName));
+  };
+  if (bytes == nullptr) {
+    if (record.names(name)) fail("is missing");
+    return;
+  }
+  const outputs::FileState state = outputs::state_of_bytes(*bytes);
+  if (!record.says(name, state))
+    fail(fmt::format("holds {} bytes of SHA-256 {:.12}...", state.size, state.sha256));
+}
+
 }  // namespace
 
 const Statistic* RunRecord::find(std::string_view statistic) const {
@@ -148,7 +166,10 @@ RunRecord record_of(const std::string& where, const Json& manifest, const Json& 
   });
   record.cycles = std::move(cycles);
   name_stages(record);
-  add_frame_statistics(where + "/frames.csv", frames_csv, record);
+  const std::int64_t rows = add_frame_statistics(where + "/frames.csv", frames_csv, record);
+  if (rows != record.facts.frames)
+    throw InputError(fmt::format("{}/frames.csv: has {} frames; expected {}, as manifest.json says",
+                                 where, rows, record.facts.frames));
   add_memory_statistics(record);
   add_operations(record);
   return record;
@@ -166,13 +187,18 @@ RunFiles read_run_files(const std::filesystem::path& folder) {
         "{}: no run folder; expected a folder that run or replay left, with manifest.json and "
         "stats.json",
         folder.string()));
+  std::optional<outputs::OutputRecord> record = outputs::OutputRecord::read(folder);
+  // Of other files that were written here later, such as a report.
+  if (record && !record->names("manifest.json")) record.reset();
   RunFiles files;
-  const auto read = [&](const char* name) {
-    files[name] = base::read_file(folder / name, base::InputKind::run_file);
+  const auto read = [&](const char* name, bool needed) {
+    const bool is_there = needed || base::exists(folder / name);
+    if (is_there) files[name] = base::read_file(folder / name, base::InputKind::run_file);
+    if (record) check_recorded(folder / name, *record, is_there ? &files[name] : nullptr);
   };
-  for (const char* name : {"manifest.json", "stats.json", kFramesFile}) read(name);
+  for (const char* name : {"manifest.json", "stats.json", kFramesFile}) read(name, true);
   for (const char* name : {kCyclesFile, kStagesFile, kMemoryFile, kEnergyFile, kErrorsFile})
-    if (base::exists(folder / name)) read(name);
+    read(name, false);
   return files;
 }
 
