@@ -53,6 +53,12 @@ int fail(const std::exception& error) {
   return kBadInput;
 }
 
+/// Takes none.
+int fail_without_memory() {
+  std::fputs("leviosim: out of memory\n", stderr);
+  return kBadInput;
+}
+
 /// What was printed may be refused only now.
 int end_after_report() {
   try {
@@ -119,6 +125,8 @@ int run_program(const Words& words) {
     return fail(error);
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(error);
+  } catch (const std::bad_alloc&) {
+    return fail_without_memory();
   } catch (const LimitNotMet&) {
     return end_after_report();
   } catch (const Interrupted& stop) {
@@ -131,6 +139,7 @@ int run_program(const Words& words) {
 
 int main(int argc, char** argv) {
   const leviosim::tools::DeferredInterrupts deferred;
+  std::signal(SIGXFSZ, SIG_IGN);  // writing fails then, as on a full disk
   if (const auto width = leviosim::tools::terminal_width())
     leviosim::tools::set_table_width(*width);
   return leviosim::tools::run_program(leviosim::tools::Words(argv + 1, argv + argc));

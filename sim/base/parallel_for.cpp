@@ -32,7 +32,12 @@ void parallel_for(std::size_t count, unsigned threads,
   const std::size_t wanted =
       threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::thread> helpers;
-  for (std::size_t i = 1; i < std::min(wanted, count); ++i) helpers.emplace_back(work);
+  helpers.reserve(std::min(wanted, count));
+  try {
+    for (std::size_t i = 1; i < std::min(wanted, count); ++i) helpers.emplace_back(work);
+  } catch (const std::exception&) {
+    // No memory for another one: those that there are do it.
+  }
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);

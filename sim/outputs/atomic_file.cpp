@@ -1,45 +1,33 @@
 #include "sim/outputs/atomic_file.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <string>
-#include <system_error>
+#include <cerrno>
 
 #include "sim/base/error.h"
+#include "sim/outputs/file_system.h"
 
 namespace leviosim::outputs {
-namespace {
 
-namespace fs = std::filesystem;
-
-/// A name beside `target` that no other process uses.
-fs::path sibling(const fs::path& target, std::string_view kind) {
-  return target.parent_path() /
-         fmt::format(".{}.{}-{}", target.filename().string(), kind, ::getpid());
-}
-
-}  // namespace
-
-void write_file_atomically(const fs::path& file, std::string_view contents) {
-  const fs::path staging = sibling(file, "partial");
-  {
-    std::ofstream out(staging, std::ios::binary);
-    out.write(contents.data(), static_cast<std::streamsize>(contents.size()));
-    out.close();
-    if (!out) {
-      std::error_code ignored;
-      fs::remove(staging, ignored);
-      throw InputError(fmt::format("{}: cannot be written", file.string()));
-    }
+void write_file_atomically(const std::filesystem::path& file, std::string_view contents) {
+  const std::string shown = file.string();
+  std::filesystem::path staging;
+  Descriptor out;
+  for (int k = 0; !out && (k == 0 || errno == EEXIST); ++k) {
+    staging = file.parent_path() /
+              fmt::format(".{}.partial-{}-{}", file.filename().string(), ::getpid(), k);
+    out = Descriptor(::open(staging.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   }
-  std::error_code error;
-  fs::rename(staging, file, error);
-  if (!error) return;
-  std::error_code ignored;
-  fs::remove(staging, ignored);
-  throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+  int error = out ? 0 : errno;
+  if (out) {
+    error = write_all(out.get(), contents);
+    if (const int fault = out.close(); error == 0) error = fault;
+    if (error == 0 && ::rename(staging.c_str(), file.c_str()) != 0) error = errno;
+    if (error != 0) ::unlink(staging.c_str());
+  }
+  if (error != 0) throw InputError(fmt::format("{}: cannot be written: {}", shown, reason(error)));
 }
 
 }  // namespace leviosim::outputs

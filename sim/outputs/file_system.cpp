@@ -9,13 +9,18 @@
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
+#include <thread>
 
+#include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
 
 namespace leviosim::outputs {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// As much as a work trace may have (sim/base/input_file.h), the largest of leviosim's files.
+constexpr std::uint64_t kLargestFile = std::uint64_t{4} << 30;
 
 /// For reading. Links are not followed, and pipes not waited for.
 Descriptor open_regular(const fs::path& path, std::uint64_t& size) {
@@ -40,8 +45,9 @@ int result_of(int returned) { return returned == 0 ? 0 : errno; }
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-  if (number_ >= 0) ::close(number_);
+int Descriptor::close() {
+  const int number = std::exchange(number_, -1);
+  return number < 0 || ::close(number) == 0 ? 0 : errno;
 }
 
 std::string reason(int error) { return std::generic_category().message(error); }
@@ -59,13 +65,14 @@ bool is_same_file(const struct stat& a, const struct stat& b) {
 FileState state_of_bytes(std::string_view bytes) { return {base::sha256_of(bytes), bytes.size()}; }
 
 std::optional<FileState> state_of_file(const fs::path& path) {
+  std::uint64_t expected = 0;
+  const Descriptor file = open_regular(path, expected);
+  if (!file || expected > kLargestFile) return std::nullopt;
   FileState state;
-  const Descriptor file = open_regular(path, state.size);
-  if (!file) return std::nullopt;
   base::Sha256 digest;
   std::array<char, 1 << 16> buffer;
-  state.size = 0;
-  for (;;) {
+  while (state.size <= expected) {  // it may grow meanwhile
+    throw_if_interrupted();
     const ssize_t got = read_some(file.get(), buffer.data(), buffer.size());
     if (got < 0) return std::nullopt;
     if (got == 0) break;
@@ -103,11 +110,17 @@ int write_all(int descriptor, std::string_view bytes) {
   return 0;
 }
 
-bool lock(int descriptor, bool wait) {
-  int returned = 0;
-  do returned = ::flock(descriptor, wait ? LOCK_EX : LOCK_EX | LOCK_NB);
-  while (returned != 0 && errno == EINTR);
-  return returned == 0 || errno != EWOULDBLOCK;
+bool lock(int descriptor, std::chrono::milliseconds patience) {
+  constexpr std::chrono::milliseconds kBetweenTries{20};
+  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno != EWOULDBLOCK) return true;
+    throw_if_interrupted();
+    if (patience <= kBetweenTries) return false;
+    std::this_thread::sleep_for(kBetweenTries);
+    patience -= kBetweenTries;
+  }
+  return true;
 }
 
 int rename_new(const fs::path& from, const fs::path& to) {

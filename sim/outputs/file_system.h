@@ -1,9 +1,11 @@
 // What std::filesystem lacks: descriptors that close themselves, files that are opened without
-// following links or waiting for pipes, and renames that replace nothing.
+// following links or waiting for pipes, locks that keep nobody waiting, and renames that replace
+// nothing.
 #pragma once
 
 #include <sys/stat.h>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -25,10 +27,12 @@ class Descriptor {
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor();
+  ~Descriptor() { close(); }
 
   int get() const { return number_; }
   explicit operator bool() const { return number_ >= 0; }
+  /// Some file systems say only now that a write failed. @returns 0, or the error
+  int close();
 
  private:
   int number_ = -1;
@@ -48,7 +52,8 @@ struct FileState {
   bool operator==(const FileState&) const = default;
 };
 FileState state_of_bytes(std::string_view bytes);
-/// Nothing for what is no regular file or cannot be read.
+/// Nothing for what is no regular file, larger than leviosim's files are, or cannot be read.
+/// @throws Interrupted
 std::optional<FileState> state_of_file(const std::filesystem::path& path);
 
 /// @returns nothing if it is not there, no regular file, larger than `most` or cannot be read
@@ -58,8 +63,9 @@ std::optional<std::string> try_read_file(const std::filesystem::path& path, std:
 int write_all(int descriptor, std::string_view bytes);
 
 /// Takes an exclusive flock(2); where the file system knows none, nobody is excluded.
-/// @returns false if another process has it and `wait` is false
-bool lock(int descriptor, bool wait);
+/// @returns false if another process has it for longer than `patience`
+/// @throws Interrupted while it waits
+bool lock(int descriptor, std::chrono::milliseconds patience);
 
 /// Renames a file or a folder to a name that does not exist. @returns 0, or EEXIST or another error
 int rename_new(const std::filesystem::path& from, const std::filesystem::path& to);

@@ -1,5 +1,6 @@
 #include "sim/outputs/output_record.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -15,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kLargestRecord = 64 << 20;
+/// Ten times as many files as the longest flight has.
+constexpr std::uint64_t kLargestRecord = 16 << 20;
 constexpr std::string_view kHeader = "leviosim files 1";
-constexpr std::string_view kJournal = "leviosim journal 1 ";
 
 std::string escaped(const std::string& path) {
   std::string text;
@@ -84,23 +85,10 @@ bool parse_line(std::string_view line, OutputRecord& record) {
   return true;
 }
 
-/// The process that a journal's first line names.
-std::optional<int> parse_journal_header(std::string_view line) {
-  if (!line.starts_with(kJournal)) return std::nullopt;
-  int process = 0;
-  const char* const end = line.data() + line.size();
-  const auto [stop, error] = std::from_chars(line.data() + kJournal.size(), end, process);
-  if (error != std::errc() || stop != end || process <= 0) return std::nullopt;
-  return process;
-}
-
-/// "mav0" and "mav0/cam0" of "mav0/cam0/data.csv".
-std::set<std::string> folders_of(const std::vector<std::string>& paths) {
-  std::set<std::string> folders;
-  for (const std::string& path : paths)
-    for (std::size_t end = path.find('/'); end != std::string::npos; end = path.find('/', end + 1))
-      folders.insert(path.substr(0, end));
-  return folders;
+/// @param name  of an entry of a folder
+bool is_unfinished(const std::string& name, const struct stat& status) {
+  if (!S_ISREG(status.st_mode) || status.st_nlink != 1) return false;
+  return name == unfinished_name(status) || (name == kUnnumbered && status.st_size == 0);
 }
 
 }  // namespace
@@ -117,13 +105,11 @@ OutputRecord OutputRecord::parse(std::string_view text, const std::string& name)
         throw InputError(fmt::format("{}:{}: expected '<SHA-256> <size> <path>'", name, number));
       continue;
     }
-    const std::optional<int> process = parse_journal_header(line);
-    if (line != kHeader && !process)
+    if (line != kHeader)
       throw InputError(
           fmt::format("{}:1: expected '{}': this is no record of files that leviosim "
                       "wrote, or one of another version",
                       name, kHeader));
-    record.process_ = process.value_or(0);
   }
   return record;
 }
@@ -143,8 +129,6 @@ std::string OutputRecord::text() const {
   return text;
 }
 
-std::string OutputRecord::journal_header() { return fmt::format("{}{}\n", kJournal, ::getpid()); }
-
 std::string OutputRecord::line(const std::string& path, const FileState& state) {
   if (state.sha256.empty()) return fmt::format("- - {}\n", escaped(path));
   return fmt::format("{} {} {}\n", state.sha256, state.size, escaped(path));
@@ -155,15 +139,16 @@ bool OutputRecord::says(const std::string& path, const FileState& state) const {
   return std::any_of(begin, end, [&](const auto& file) { return file.second == state; });
 }
 
-bool OutputRecord::describes(const fs::path& folder, const std::string& path) const {
+bool OutputRecord::describes(const fs::path& folder, const std::string& path,
+                             bool any_bytes) const {
   const std::optional<struct stat> status = status_of(folder / path);
   if (!status || !S_ISREG(status->st_mode)) return false;
   const auto [begin, end] = files_.equal_range(path);
-  const bool digested =
-      std::any_of(begin, end, [](const auto& file) { return !file.second.sha256.empty(); });
-  if (!digested) return begin != end && process_ != 0;
+  if (any_bytes) return begin != end;
   const auto size = static_cast<std::uint64_t>(status->st_size);
-  if (std::none_of(begin, end, [&](const auto& file) { return file.second.size == size; }))
+  if (std::none_of(begin, end, [&](const auto& file) {
+        return file.second.size == size && !file.second.sha256.empty();
+      }))
     return false;
   const std::optional<FileState> state = state_of_file(folder / path);
   return state && says(path, *state);
@@ -174,52 +159,10 @@ bool OutputRecord::leads_through(const std::string& folder) const {
   return next != files_.end() && next->first.starts_with(folder + '/');
 }
 
-std::string OutputRecord::first_foreign(const fs::path& folder, bool any_bytes) const {
-  std::vector<fs::path> open{fs::path()};
-  while (!open.empty()) {
-    const fs::path at = open.back();
-    open.pop_back();
-    std::set<std::string> entries;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder / at, error), end; !error && entry != end;
-         entry.increment(error))
-      entries.insert((at / entry->path().filename()).string());
-    if (error) return at.empty() ? "what cannot be listed" : at.string();
-    for (const std::string& name : entries) {
-      if (name == kRecordName) continue;
-      const std::optional<struct stat> status = status_of(folder / name);
-      if (!status) continue;  // gone meanwhile
-      if (S_ISDIR(status->st_mode) && leads_through(name))
-        open.emplace_back(name);
-      else if (!(any_bytes && S_ISREG(status->st_mode) && names(name)) && !describes(folder, name))
-        return name;
-    }
-  }
-  return {};
-}
-
 bool OutputRecord::is_complete(const fs::path& folder) const {
   const std::vector<std::string> all = paths();
   return std::all_of(all.begin(), all.end(),
                      [&](const std::string& path) { return describes(folder, path); });
-}
-
-void OutputRecord::remove_files_from(const fs::path& folder) const {
-  const std::vector<std::string> all = paths();
-  for (const std::string& path : all) ::unlink((folder / path).c_str());
-  const std::set<std::string> folders = folders_of(all);
-  for (auto name = folders.rbegin(); name != folders.rend(); ++name)
-    ::rmdir((folder / *name).c_str());
-}
-
-void OutputRecord::drop_states_without_digest() {
-  std::erase_if(files_, [](const auto& file) { return file.second.sha256.empty(); });
-}
-
-void OutputRecord::remove_from(const fs::path& folder) const {
-  remove_files_from(folder);
-  ::unlink((folder / kRecordName).c_str());
-  ::rmdir(folder.c_str());
 }
 
 std::vector<std::string> OutputRecord::paths() const {
@@ -227,6 +170,116 @@ std::vector<std::string> OutputRecord::paths() const {
   for (auto file = files_.begin(); file != files_.end(); file = files_.upper_bound(file->first))
     all.push_back(file->first);
   return all;
+}
+
+void OutputRecord::remove_files(const Descriptor& folder) const {
+  for (const auto& [path, state] : files_) ::unlinkat(folder.get(), path.c_str(), 0);
+}
+
+std::string unfinished_name(const struct stat& file) {
+  return fmt::format(".leviosim-{}", file.st_ino);
+}
+
+FolderContents contents_of(const fs::path& folder, bool any_bytes) {
+  FolderContents found{
+      .record = OutputRecord::read(folder), .files = {}, .folders = {}, .foreign = {}};
+  const OutputRecord record = found.record.value_or(OutputRecord());
+  std::vector<fs::path> open{fs::path()};
+  while (!open.empty()) {
+    const fs::path at = open.back();
+    open.pop_back();
+    std::set<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder / at, error), end; !error && entry != end;
+         entry.increment(error))
+      names.insert((at / entry->path().filename()).string());
+    if (error) {
+      found.foreign = at.empty() ? "what cannot be listed" : at.string();
+      return found;
+    }
+    for (const std::string& name : names) {
+      const std::optional<struct stat> status = status_of(folder / name);
+      if (!status || name == kRecordName) continue;  // gone meanwhile
+      if (S_ISDIR(status->st_mode) && record.leads_through(name)) {
+        open.emplace_back(name);
+        found.folders.push_back(name);
+      } else if (is_unfinished(name, *status) || record.describes(folder, name, any_bytes)) {
+        found.files.push_back(name);
+      } else {
+        found.foreign = name;
+        return found;
+      }
+    }
+  }
+  return found;
+}
+
+void FolderContents::remove(const Descriptor& folder) const {
+  for (const std::string& file : files) ::unlinkat(folder.get(), file.c_str(), 0);
+  for (auto name = folders.rbegin(); name != folders.rend(); ++name)
+    ::unlinkat(folder.get(), name->c_str(), AT_REMOVEDIR);
+}
+
+HeldRecord::HeldRecord(const fs::path& folder, std::chrono::milliseconds patience)
+    : path_(folder / kRecordName) {
+  for (;;) {
+    constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+    file_ = Descriptor(::open(path_.c_str(), kFlags, 0666));
+    if (!file_ && (errno == EACCES || errno == EPERM || errno == EROFS || errno == ENOENT)) break;
+    if (!file_) fail(errno);
+    state_ = lock(file_.get(), patience) ? State::held : State::busy;
+    struct stat held {};
+    const std::optional<struct stat> there = status_of(path_);
+    if (::fstat(file_.get(), &held) != 0) fail(errno);
+    if (!there || !is_same_file(held, *there)) continue;
+    if (!S_ISREG(held.st_mode) || held.st_nlink != 1)
+      throw InputError(fmt::format(
+          "{}: is no regular file with one name, and so is not written to; remove it by hand",
+          path_.string()));
+    break;
+  }
+  // What was only just made is not read, so that nothing can fail which would leave it.
+  if (state_ == State::unwritable || (state_ == State::held && !is_empty()))
+    record_ = OutputRecord::read(folder).value_or(OutputRecord());
+}
+
+bool HeldRecord::is_empty() const {
+  struct stat status {};
+  return ::fstat(file_.get(), &status) == 0 && status.st_size == 0;
+}
+
+void HeldRecord::add(const std::string& path, const FileState& state) {
+  if (state_ != State::held || record_.says(path, state)) return;
+  struct stat before {};
+  if (::fstat(file_.get(), &before) != 0) fail(errno);
+  const std::string line = OutputRecord::line(path, state);
+  record_.add(path, state);
+  const int error =
+      write_all(file_.get(), before.st_size == 0 ? OutputRecord::header() + line : line);
+  if (error == 0) return;
+  if (::ftruncate(file_.get(), before.st_size) != 0) fail(errno);
+  fail(error);
+}
+
+void HeldRecord::clear() {
+  if (::ftruncate(file_.get(), 0) != 0) fail(errno);
+  record_ = {};
+}
+
+void HeldRecord::fail(int error) const {
+  throw InputError(fmt::format("{}: cannot be written: {}", path_.string(), reason(error)));
+}
+
+HeldRecord shared_record(const fs::path& folder) {
+  HeldRecord record(folder, kPatience);
+  if (record.state() == HeldRecord::State::busy)
+    throw InputError(fmt::format("{}: another process holds it; try again when that has ended",
+                                 (folder / kRecordName).string()));
+  return record;
+}
+
+void add_to_record(const fs::path& folder, const std::string& name, const FileState& state) {
+  shared_record(folder).add(name, state);
 }
 
 }  // namespace leviosim::outputs

@@ -1,3 +1,5 @@
+#include "sim/outputs/staging_folder.h"
+
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
@@ -5,113 +7,112 @@
 #include <cerrno>
 
 #include "sim/base/error.h"
-#include "sim/outputs/output_folder.h"
 
 namespace leviosim::outputs {
-namespace {
 
 namespace fs = std::filesystem;
 
-/// The record while it is written, and a file that is never seen, which holds disk space.
-constexpr const char* kNewRecord = ".leviosim-files.new";
-constexpr const char* kReserveFile = ".leviosim-reserve";
-
-bool is_still_at(int descriptor, const fs::path& path) {
-  struct stat held {};
-  const std::optional<struct stat> there = status_of(path);
-  return ::fstat(descriptor, &held) == 0 && there && is_same_file(held, *there);
+fs::path StagingFolder::place_of(const fs::path& target) {
+  return target.parent_path() / fmt::format(".{}.leviosim", target.filename().string());
 }
 
-}  // namespace
-
-StagingFolder::StagingFolder(fs::path path, const std::string& shown) : path_(std::move(path)) {
+// The first constructor is over when the body begins, so the destructor runs for what is thrown.
+StagingFolder::StagingFolder(const fs::path& target, const std::string& shown,
+                             std::chrono::milliseconds patience)
+    : StagingFolder(place_of(target)) {
   constexpr int kMostTrials = 100;
-  for (int trial = 0; !held_ && trial < kMostTrials; ++trial) held_ = acquire(shown);
-  if (!held_) throw InputError(fmt::format("{}: others keep writing it", shown));
-  // The destructor does not run for what throws here.
-  try {
-    remove_leftovers(shown);
-    if (::ftruncate(journal_.get(), 0) != 0 ||
-        write_all(journal_.get(), OutputRecord::journal_header()) != 0)
-      throw InputError(fmt::format("{}: cannot be written: {}", shown, reason(errno)));
-  } catch (...) {
-    struct stat status {};
-    if (::fstat(journal_.get(), &status) == 0 && status.st_size == 0)
-      OutputRecord().remove_from(path_);
-    throw;
-  }
-}
-
-/// @returns false if it has to be tried again
-bool StagingFolder::acquire(const std::string& shown) {
-  const auto fail = [&](int error) {
-    throw InputError(fmt::format("{}: cannot be created: {}", shown, reason(error)));
-  };
-  if (::mkdir(path_.c_str(), 0777) != 0 && errno != EEXIST) fail(errno);
-  const Descriptor folder(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
-  if (!folder && errno == ENOENT) return false;
-  if (!folder)
-    throw InputError(fmt::format(
-        "{}: {} is in the way, where the results are written first: {}; remove it by hand", shown,
-        path_.string(), reason(errno)));
-  constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  journal_ = Descriptor(::openat(folder.get(), kRecordName, kFlags, 0666));
-  if (!journal_ && errno == ENOENT) return false;
-  if (!journal_) fail(errno);
-  if (!lock(journal_.get(), false)) {
-    const std::optional<OutputRecord> other = OutputRecord::read(path_);
-    throw InputError(fmt::format("{}: another leviosim{} is writing it", shown,
-                                 other && other->process() > 0
-                                     ? fmt::format(" (process {})", other->process())
-                                     : std::string()));
-  }
-  return is_still_at(folder.get(), path_) && is_still_at(journal_.get(), path_ / kRecordName);
-}
-
-/// Of a process that died: its lock is free.
-void StagingFolder::remove_leftovers(const std::string& shown) const {
-  OutputRecord left = OutputRecord::read(path_).value_or(OutputRecord());
-  for (const char* name : {kNewRecord, kReserveFile})
-    if (left.process() > 0) left.add(name, {});
-  if (const std::string foreign = left.first_foreign(path_); !foreign.empty())
+  bool is_held = false;
+  for (int trial = 0; !is_held && trial < kMostTrials; ++trial) is_held = acquire(shown, patience);
+  if (!is_held) throw InputError(fmt::format("{}: others keep writing it", shown));
+  const FolderContents left = contents_of(path_);
+  if (!left.is_ours())
     throw InputError(fmt::format(
         "{}: {}, where the results are written first, holds {}, which leviosim did not write; "
         "remove it by hand",
-        shown, path_.string(), foreign));
-  left.remove_files_from(path_);
+        shown, path_.string(), left.foreign));
+  left.remove(folder_);
+  record_->clear();
+  is_clean_ = true;
+}
+
+/// @returns false if it has to be tried again
+bool StagingFolder::acquire(const std::string& shown, std::chrono::milliseconds patience) {
+  if (::mkdir(path_.c_str(), 0777) != 0 && errno != EEXIST)
+    throw InputError(fmt::format("{}: cannot be created: {}", shown, reason(errno)));
+  folder_ = Descriptor(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (!folder_ && errno == ENOENT) return false;
+  if (!folder_)
+    throw InputError(fmt::format(
+        "{}: {} is in the way, where the results are written first: {}; remove it by hand", shown,
+        path_.string(), reason(errno)));
+  record_.emplace(path_, patience);
+  if (record_->state() == HeldRecord::State::busy)
+    throw InputError(fmt::format("{}: another leviosim is writing it: it holds {}", shown,
+                                 (path_ / kRecordName).string()));
+  struct stat held {};
+  const std::optional<struct stat> there = status_of(path_);
+  return record_->state() == HeldRecord::State::held && ::fstat(folder_.get(), &held) == 0 &&
+         there && is_same_file(held, *there);
 }
 
 StagingFolder::~StagingFolder() {
-  if (held_) record_.remove_from(path_);
+  if (let_go_) return;
+  if (is_clean_) {
+    if (!unfinished_.empty()) ::unlinkat(folder_.get(), unfinished_.c_str(), 0);
+    record_->record().remove_files(folder_);
+    for (auto name = folders_.rbegin(); name != folders_.rend(); ++name)
+      ::unlinkat(folder_.get(), name->c_str(), AT_REMOVEDIR);
+  }
+  if (is_clean_ || (record_ && record_->state() == HeldRecord::State::held && record_->is_empty()))
+    ::unlinkat(folder_.get(), kRecordName, 0);
+  ::rmdir(path_.c_str());
 }
 
 int StagingFolder::write(const std::string& name, std::string_view bytes) {
-  const fs::path file = path_ / name;
-  std::error_code error;
-  {
-    const std::lock_guard<std::mutex> guard(mutex_);
-    reserve_ = Descriptor();
-    if (const int fault = write_all(journal_.get(), OutputRecord::line(name, {}))) return fault;
-    record_.add(name, {});
-    fs::create_directories(file.parent_path(), error);
-  }
-  if (error) return error.value();
-  const Descriptor out(
-      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
-  if (!out) return errno;
-  if (const int fault = write_all(out.get(), bytes)) return fault;
   const FileState state = state_of_bytes(bytes);
   const std::lock_guard<std::mutex> guard(mutex_);
-  record_.add(name, state);
-  return write_all(journal_.get(), OutputRecord::line(name, state));
+  reserve_ = Descriptor();
+  if (const int error = make_folders(name)) return error;
+  Descriptor file;
+  if (const int error = begin_file(file)) return error;
+  if (const int error = write_all(file.get(), bytes)) return error;
+  if (const int error = file.close()) return error;
+  record_->add(name, state);
+  return end_file(name.c_str());
+}
+
+int StagingFolder::make_folders(const std::string& name) {
+  for (std::size_t end = name.find('/'); end != std::string::npos; end = name.find('/', end + 1)) {
+    const auto [folder, is_new] = folders_.insert(name.substr(0, end));
+    if (is_new && ::mkdirat(folder_.get(), folder->c_str(), 0777) != 0) return errno;
+  }
+  return 0;
+}
+
+int StagingFolder::begin_file(Descriptor& file) {
+  if (!unfinished_.empty()) ::unlinkat(folder_.get(), unfinished_.c_str(), 0);
+  unfinished_ = kUnnumbered;
+  file = Descriptor(::openat(folder_.get(), kUnnumbered,
+                             O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+  struct stat status {};
+  if (!file || ::fstat(file.get(), &status) != 0) return errno;
+  std::string numbered = unfinished_name(status);
+  if (::renameat(folder_.get(), kUnnumbered, folder_.get(), numbered.c_str()) != 0) return errno;
+  unfinished_ = std::move(numbered);
+  return 0;
+}
+
+int StagingFolder::end_file(const char* name) {
+  if (::renameat(folder_.get(), unfinished_.c_str(), folder_.get(), name) != 0) return errno;
+  unfinished_.clear();
+  return 0;
 }
 
 int StagingFolder::reserve(std::uint64_t bytes) {
   if (!reserve_) {
-    const fs::path file = path_ / kReserveFile;
-    reserve_ = Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
-    if (!reserve_) return errno;
-    ::unlink(file.c_str());
+    if (const int error = begin_file(reserve_)) return error;
+    ::unlinkat(folder_.get(), unfinished_.c_str(), 0);  // it is never seen
+    unfinished_.clear();
   }
   // The call of Linux: posix_fallocate(3) writes zeros where the file system cannot.
   if (::fallocate(reserve_.get(), 0, 0, static_cast<off_t>(bytes)) == 0) return 0;
@@ -119,18 +120,14 @@ int StagingFolder::reserve(std::uint64_t bytes) {
 }
 
 int StagingFolder::finish() {
-  record_.drop_states_without_digest();
-  const fs::path file = path_ / kNewRecord;
-  Descriptor record(::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
-  if (!record) return errno;
-  lock(record.get(), false);
-  int fault = write_all(record.get(), record_.text());
-  if (fault == 0 && ::rename(file.c_str(), (path_ / kRecordName).c_str()) != 0) fault = errno;
-  if (fault == 0)
-    journal_ = std::move(record);  // locked, as the journal was
-  else
-    ::unlink(file.c_str());
-  return fault;
+  reserve_ = Descriptor();
+  Descriptor file;
+  if (const int error = begin_file(file)) return error;
+  lock(file.get(), {});
+  if (const int error = write_all(file.get(), record_->record().text())) return error;
+  if (const int error = end_file(kRecordName)) return error;
+  record_->become(std::move(file));
+  return 0;
 }
 
 }  // namespace leviosim::outputs

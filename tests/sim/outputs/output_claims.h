@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/base/error.h"
-#include "sim/outputs/output_request.h"
+#include "sim/outputs/output_place.h"
 
 namespace leviosim::outputs {
 

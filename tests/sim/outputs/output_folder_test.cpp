@@ -54,7 +54,7 @@ TEST(OutputFolder, AppearsWholeOrNotAtAll) {
     EXPECT_FALSE(out.commit());
   }
   EXPECT_EQ(read_text(folder / "new/out/a"), "1");
-  EXPECT_EQ(OutputRecord::read(folder / "new/out")->first_foreign(folder / "new/out"), "");
+  EXPECT_TRUE(contents_of(folder / "new/out").is_ours());
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "new"), {}), 1);
   {
     OutputFolder out(folder_request(folder / "other/deep/out"));
@@ -139,7 +139,7 @@ TEST(OutputFolder, OneProcessAtATime) {
   const Scratch folder;
   const OutputFolder out(folder_request(folder / "out"));
   expect_folder_refused(folder_request(folder / "out"),
-                        {fmt::format("another leviosim (process {}) is writing it", ::getpid())});
+                        {"another leviosim is writing it", ".out.leviosim/.leviosim-files"});
   EXPECT_NO_THROW(OutputFolder(folder_request(folder / "other")));
 }
 

@@ -1,5 +1,6 @@
 #include "sim/outputs/output_record.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
 #include "sim/base/error.h"
@@ -31,7 +32,6 @@ TEST(OutputRecord, IsReadAsItWasWritten) {
   const OutputRecord again = OutputRecord::parse(text, "f");
   EXPECT_EQ(again.text(), text);
   EXPECT_EQ(again.paths(), record.paths());
-  EXPECT_EQ(OutputRecord::parse(OutputRecord::journal_header(), "f").process(), ::getpid());
 }
 
 TEST(OutputRecord, WhatAKillCutOffDoesNotCount) {
@@ -44,8 +44,7 @@ TEST(OutputRecord, WhatAKillCutOffDoesNotCount) {
 
 TEST(OutputRecord, RefusesWhatIsNoRecord) {
   for (const std::string& text : {std::string("{}\n"), std::string("leviosim files 2\n"),
-                                  std::string("leviosim journal 1 x\n"),
-                                  std::string("leviosim journal 1 -3\n"), std::string("\n")})
+                                  std::string("leviosim journal 1 5\n"), std::string("\n")})
     EXPECT_THROW(OutputRecord::parse(text, "f"), InputError) << text;
   const std::vector<std::string> lines{"a",
                                        "D 12",
@@ -75,18 +74,23 @@ TEST(OutputRecord, RefusesWhatIsNoRecord) {
   }
 }
 
-TEST(OutputRecord, NamesWhatIsForeign) {
+/// Writes the record, too.
+void record_all(const fs::path& folder, const std::vector<std::string>& names) {
+  write_text(folder / kRecordName, record_of(folder, names).text());
+}
+
+TEST(FolderContents, NameWhatIsForeign) {
   const Scratch folder;
   write_text(folder / "a", "1");
   write_text(folder / "deep/er/b", "2");
-  const OutputRecord record = record_of(folder.path(), {"a", "deep/er/b"});
-  write_text(folder / kRecordName, record.text());
-  EXPECT_EQ(record.first_foreign(folder.path()), "");
+  record_all(folder.path(), {"a", "deep/er/b"});
+  const auto foreign = [&] { return contents_of(folder.path()).foreign; };
+  EXPECT_EQ(foreign(), "");
   const auto expect_foreign = [&](const std::string& name, auto make) {
     make(folder / name);
-    EXPECT_EQ(record.first_foreign(folder.path()), name);
+    EXPECT_EQ(foreign(), name);
     fs::remove_all(folder / name);
-    EXPECT_EQ(record.first_foreign(folder.path()), "");
+    EXPECT_EQ(foreign(), "");
   };
   expect_foreign("thesis.tex", [](const fs::path& p) { write_text(p, "x"); });
   expect_foreign("deep/thesis.tex", [](const fs::path& p) { write_text(p, "x"); });
@@ -96,44 +100,79 @@ TEST(OutputRecord, NamesWhatIsForeign) {
   fs::remove(folder / "a");  // a link to what it was is not what was written
   write_text(folder.path().string() + "-a", "1");
   fs::create_symlink(folder.path().string() + "-a", folder / "a");
-  EXPECT_EQ(record.first_foreign(folder.path()), "a");
+  EXPECT_EQ(foreign(), "a");
   fs::remove(folder.path().string() + "-a");
 }
 
-TEST(OutputRecord, AnEditedFileIsNotLeviosimsAnyMore) {
+TEST(FolderContents, AnEditedFileIsNotLeviosimsAnyMore) {
   const Scratch folder;
   write_text(folder / "a", "1");
   const OutputRecord record = record_of(folder.path(), {"a"});
+  record_all(folder.path(), {"a"});
   write_text(folder / "a", "2");  // of the same size
   EXPECT_FALSE(record.describes(folder.path(), "a"));
-  EXPECT_EQ(record.first_foreign(folder.path()), "a");
-  EXPECT_EQ(record.first_foreign(folder.path(), true), "");
+  EXPECT_EQ(contents_of(folder.path()).foreign, "a");
+  EXPECT_TRUE(contents_of(folder.path(), true).is_ours());
   EXPECT_FALSE(record.is_complete(folder.path()));
   OutputRecord later = record;  // leviosim wrote both
   later.add("a", state_of_bytes("2"));
   EXPECT_TRUE(later.describes(folder.path(), "a"));
 }
 
-TEST(OutputRecord, WhatHasNoDigestIsOnlyRemovedFromAJournal) {
+TEST(FolderContents, WhatHasNoDigestIsNotLeviosims) {
   const Scratch folder;
   write_text(folder / "sweep.sqlite", "1");
-  const OutputRecord record = OutputRecord::parse("leviosim files 1\n- - sweep.sqlite\n", "f");
-  EXPECT_TRUE(record.names("sweep.sqlite"));
-  EXPECT_EQ(record.first_foreign(folder.path()), "sweep.sqlite");
-  const OutputRecord journal = OutputRecord::parse("leviosim journal 1 5\n- - sweep.sqlite\n", "f");
-  EXPECT_EQ(journal.first_foreign(folder.path()), "");
+  write_text(folder / kRecordName, "leviosim files 1\n- - sweep.sqlite\n");
+  EXPECT_TRUE(OutputRecord::read(folder.path())->names("sweep.sqlite"));
+  EXPECT_EQ(contents_of(folder.path()).foreign, "sweep.sqlite");
 }
 
-TEST(OutputRecord, RemovesWhatItNamesAndNothingElse) {
+TEST(FolderContents, UnfinishedFilesHaveTheirInodeForAName) {
+  const Scratch folder;
+  record_all(folder.path(), {});
+  write_text(folder / "x", "half");
+  const std::string name = unfinished_name(status_of(folder / "x").value());
+  fs::rename(folder / "x", folder / name);
+  write_text(folder / kUnnumbered, "");
+  EXPECT_TRUE(contents_of(folder.path()).is_ours());
+  write_text(folder / kUnnumbered, "mine");
+  EXPECT_EQ(contents_of(folder.path()).foreign, kUnnumbered);
+  fs::remove(folder / kUnnumbered);
+  fs::copy(folder / name, folder / "copy");
+  fs::rename(folder / "copy", folder / name);
+  EXPECT_EQ(contents_of(folder.path()).foreign, name);
+}
+
+TEST(FolderContents, OfALargerSizeThanLeviosimWritesAreForeign) {
+  const Scratch folder;
+  write_text(folder / "a", "1");
+  fs::resize_file(folder / "a", 100'000'000'000);
+  write_text(folder / kRecordName,
+             OutputRecord::header() + OutputRecord::line("a", {kDigest, 100'000'000'000}));
+  EXPECT_EQ(contents_of(folder.path()).foreign, "a");
+}
+
+TEST(FolderContents, RemovesWhatIsOursAndNothingElse) {
   const Scratch folder;
   write_text(folder / "out/a", "1");
   write_text(folder / "out/deep/b", "2");
-  const OutputRecord record = record_of(folder / "out", {"a", "deep/b"});
+  record_all(folder / "out", {"a", "deep/b"});
+  const FolderContents ours = contents_of(folder / "out");
   write_text(folder / "out/deep/mine", "3");
-  record.remove_from(folder / "out");
+  ours.remove(Descriptor(::open((folder / "out").c_str(), O_RDONLY | O_DIRECTORY)));
+  fs::remove(folder / "out" / kRecordName);
   EXPECT_EQ(tests::picture_of(folder.path()),
             (std::map<std::string, std::string>{
                 {"out", "folder"}, {"out/deep", "folder"}, {"out/deep/mine", "file: 3"}}));
+}
+
+TEST(HeldRecord, IsNotWrittenThroughAnotherName) {
+  const Scratch folder;
+  write_text(folder / "mine", OutputRecord::header());
+  fs::create_directory(folder / "out");
+  fs::create_hard_link(folder / "mine", folder / "out" / kRecordName);
+  EXPECT_THROW(add_to_record(folder / "out", "x", {kDigest, 1}), InputError);
+  EXPECT_EQ(tests::read_text(folder / "mine"), OutputRecord::header());
 }
 
 }  // namespace

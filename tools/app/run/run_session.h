@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "sim/outputs/output_request.h"
+#include "sim/outputs/output_place.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/progress_line.h"
 #include "tools/app/run/manifest.h"

@@ -1,13 +1,11 @@
 #include "tools/app/study/outcome_cache.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
-
-#include <cerrno>
 
 #include "sim/base/error.h"
 #include "sim/base/sha256.h"
-#include "sim/outputs/new_file.h"
+#include "sim/outputs/atomic_file.h"
+#include "sim/outputs/file_system.h"
 #include "tools/app/cli/cache_folder.h"
 
 namespace leviosim::tools {
@@ -48,23 +46,14 @@ std::optional<Outcome> OutcomeCache::find(const std::string& key) const {
 }
 
 void OutcomeCache::store(const std::string& key, const Outcome& outcome) const {
+  if (find_text(key)) return;  // another process was faster
   const std::string text = to_text(outcome);
   const fs::path file = file_of(key);
-  const auto fail = [&](int error) {
-    throw InputError(
-        fmt::format("{}: cannot be written: {}", file.string(), outputs::reason(error)));
-  };
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  if (error) fail(error.value());
-  outputs::NewFile fresh(file.parent_path() / fmt::format(".{}.{}", key, ::getpid()));
-  if (const int fault = fresh.write(header_of(key, text) + text)) fail(fault);
-  int fault = fresh.place(file);
-  if (fault == EEXIST && !find_text(key)) {  // damaged, or of another key
-    ::unlink(file.c_str());
-    fault = fresh.place(file);
-  }
-  if (fault != 0 && fault != EEXIST) fail(fault);  // another process was faster
+  if (error)
+    throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+  outputs::write_file_atomically(file, header_of(key, text) + text);
 }
 
 }  // namespace leviosim::tools

@@ -63,8 +63,10 @@ void SweepFolder::check_entry(const Request& request, const std::string& name) c
   if (!outputs::status_of(path_ / name)) return;  // of another process, and gone by now
   std::error_code error;
   if (fs::equivalent(path_ / name, request.cache, error)) return;
+  // Its OutputFile looks at these.
+  if (name == outputs::StagingFolder::place_of(path_ / kSweepCsv).filename()) return;
   if (!is_regular(path_ / name)) foreign();
-  if (name == outputs::kRecordName || name == kSweepCsv) return;  // its OutputFile looks at that
+  if (name == outputs::kRecordName || name == kSweepCsv) return;
   const std::optional<outputs::OutputRecord> record = outputs::OutputRecord::read(path_);
   if (name == kSweepFile) {
     if (!is_sweep(path_, record && record->names(kSweepFile))) foreign();
