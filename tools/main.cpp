@@ -123,14 +123,14 @@ int run_program(const Words& words) {
     return status;
   } catch (const InputError& error) {
     return fail(error);
-  } catch (const std::filesystem::filesystem_error& error) {
-    return fail(error);
-  } catch (const std::bad_alloc&) {
-    return fail_without_memory();
   } catch (const LimitNotMet&) {
     return end_after_report();
   } catch (const Interrupted& stop) {
     return end_interrupted(stop, words);
+  } catch (const std::bad_alloc&) {
+    return fail_without_memory();
+  } catch (const std::exception& error) {  // of a library or the system
+    return fail(error);
   }
 }
 
@@ -142,5 +142,9 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // writing fails then, as on a full disk
   if (const auto width = leviosim::tools::terminal_width())
     leviosim::tools::set_table_width(*width);
-  return leviosim::tools::run_program(leviosim::tools::Words(argv + 1, argv + argc));
+  try {
+    return leviosim::tools::run_program(leviosim::tools::Words(argv + 1, argv + argc));
+  } catch (const std::bad_alloc&) {  // while it was begun, or a message was made
+    return leviosim::tools::fail_without_memory();
+  }
 }

@@ -6,8 +6,6 @@ namespace leviosim::tests {
 
 std::filesystem::path source_folder() { return LEVIOSIM_SOURCE_DIR; }
 
-std::string fault_injector_path() { return LEVIOSIM_FAULT_INJECTOR; }
-
 std::filesystem::path rooms_file() { return LEVIOSIM_ROOMS; }
 
 std::string program_path() {

@@ -14,9 +14,6 @@ std::filesystem::path source_folder();
 /// one, such as that of an older commit.
 std::string program_path();
 
-/// The library by which calls of the system fail (tests/support/fault_injector.cpp).
-std::string fault_injector_path();
-
 /// What each room may include, as the build knows it: lines "room: rooms and libraries".
 std::filesystem::path rooms_file();
 

@@ -70,7 +70,7 @@ class FaultInjection : public tests::ProgramSuite {
                                   std::uint64_t number, Counts& counts) {
     const fs::path file = place.log / "counts";
     write_text(file, std::string(sizeof(Counts), '\0'));
-    ::setenv("LD_PRELOAD", tests::fault_injector_path().c_str(), 1);
+    ::setenv("LD_PRELOAD", LEVIOSIM_FAULT_INJECTOR, 1);
     ::setenv("LEVIOSIM_FAULT", fmt::format("{}:{}", kind, number).c_str(), 1);
     ::setenv("LEVIOSIM_FAULT_COUNT", file.c_str(), 1);
     const ProgramResult result = testing::run_program(place.log.path(), words);
