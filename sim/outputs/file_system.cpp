@@ -1,5 +1,6 @@
 #include "sim/outputs/file_system.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/file.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <memory>
 #include <system_error>
 #include <thread>
 
@@ -97,6 +99,18 @@ std::optional<std::string> try_read_file(const fs::path& path, std::uint64_t mos
   }
   text.resize(have);
   return text;
+}
+
+std::optional<std::set<std::string>> names_in(const fs::path& folder) {
+  const std::unique_ptr<DIR, int (*)(DIR*)> open(::opendir(folder.c_str()), ::closedir);
+  if (!open) return std::nullopt;
+  std::set<std::string> names;
+  errno = 0;
+  while (const dirent* const entry = ::readdir(open.get())) names.insert(entry->d_name);
+  if (errno != 0) return std::nullopt;
+  names.erase(".");
+  names.erase("..");
+  return names;
 }
 
 int write_all(int descriptor, std::string_view bytes) {

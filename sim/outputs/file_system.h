@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,6 +59,10 @@ std::optional<FileState> state_of_file(const std::filesystem::path& path);
 
 /// @returns nothing if it is not there, no regular file, larger than `most` or cannot be read
 std::optional<std::string> try_read_file(const std::filesystem::path& path, std::uint64_t most);
+
+/// What a folder holds; nothing if it cannot be listed. (Those of std::filesystem end the program
+/// where there is no memory.)
+std::optional<std::set<std::string>> names_in(const std::filesystem::path& folder);
 
 /// Writes all bytes. @returns 0, or the error
 int write_all(int descriptor, std::string_view bytes);

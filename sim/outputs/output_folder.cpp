@@ -17,9 +17,8 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kLeastReserve = 256 << 10;
 
 bool is_empty_folder(const fs::path& path) {
-  std::error_code error;
-  const fs::directory_iterator entries(path, error);
-  return !error && entries == fs::directory_iterator();
+  const auto names = names_in(path);
+  return names && names->empty();
 }
 
 }  // namespace

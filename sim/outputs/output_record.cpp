@@ -188,16 +188,13 @@ FolderContents contents_of(const fs::path& folder, bool any_bytes) {
   while (!open.empty()) {
     const fs::path at = open.back();
     open.pop_back();
-    std::set<std::string> names;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder / at, error), end; !error && entry != end;
-         entry.increment(error))
-      names.insert((at / entry->path().filename()).string());
-    if (error) {
+    const std::optional<std::set<std::string>> entries = names_in(folder / at);
+    if (!entries) {
       found.foreign = at.empty() ? "what cannot be listed" : at.string();
       return found;
     }
-    for (const std::string& name : names) {
+    for (const std::string& entry : *entries) {
+      const std::string name = (at / entry).string();
       const std::optional<struct stat> status = status_of(folder / name);
       if (!status || name == kRecordName) continue;  // gone meanwhile
       if (S_ISDIR(status->st_mode) && record.leads_through(name)) {

@@ -33,6 +33,7 @@ std::uint64_t number = 0;
 Counts none;
 Counts* counts = &none;
 std::atomic<bool> has_begun{false};
+std::atomic<bool> has_output{false};
 thread_local bool is_inside = false;
 
 /// Hashes of the sites that were seen.
@@ -66,7 +67,7 @@ bool fails(const char* what) {
 }
 
 bool allocation_fails() {
-  if (!has_begun || is_inside) return false;
+  if (!has_output || is_inside) return false;
   bool result = fails("allocation");
   if (kind[0] == 's') {
     is_inside = true;  // the walk may allocate
@@ -161,9 +162,12 @@ ssize_t write(int d, const void* p, std::size_t n)
     FAULT_CALL("rename", EIO, renameat, (c, a, d, b)) int renameat2(int c, const char* a, int d,
                                                                     const char* b,
                                                                     unsigned f) noexcept
-    FAULT_CALL("rename", EIO, renameat2, (c, a, d, b, f)) int mkdir(const char* a,
-                                                                    mode_t m) noexcept
-    FAULT_CALL("mkdir", ENOSPC, mkdir, (a, m)) int mkdirat(int d, const char* a, mode_t m) noexcept
+    FAULT_CALL("rename", EIO, renameat2, (c, a, d, b, f)) 
+int mkdir(const char* a, mode_t m) noexcept {
+  has_output = has_begun.load();
+  FAULT_CALL("mkdir", ENOSPC, mkdir, (a, m))
+}
+int mkdirat(int d, const char* a, mode_t m) noexcept
     FAULT_CALL("mkdir", ENOSPC, mkdirat, (d, a, m))
 
         int close(int descriptor) {

@@ -36,16 +36,13 @@ SweepFolder::SweepFolder(const Request& request) {
   const std::optional<struct stat> status = outputs::status_of(path_);
   if (status && S_ISLNK(status->st_mode)) refuse(request, "is a symbolic link that leads nowhere");
   if (status && !S_ISDIR(status->st_mode)) refuse(request, "is a file; expected a folder");
-  std::set<std::string> names;
-  if (status)
-    for (const fs::directory_entry& entry : fs::directory_iterator(path_, error))
-      names.insert(entry.path().filename().string());
-  if (error) refuse(request, "cannot be listed: " + error.message());
+  const auto names = status ? outputs::names_in(path_) : std::set<std::string>();
+  if (!names) refuse(request, "cannot be listed");
   for (const fs::path& input : request.inputs)
     if (status && outputs::lies_in(input, path_))
       refuse(request,
              fmt::format("holds {}, which is read; choose another folder", input.string()));
-  for (const std::string& name : names) check_entry(request, name);
+  for (const std::string& name : *names) check_entry(request, name);
   fs::create_directories(path_, error);
   if (error) refuse(request, "cannot be created: " + error.message());
   csv_.emplace(outputs::OutputRequest{.option = request.option,
