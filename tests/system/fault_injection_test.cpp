@@ -10,6 +10,7 @@
 
 #include "tests/support/program_suite.h"
 #include "tests/support/scratch.h"
+#include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
 namespace {
@@ -35,17 +36,13 @@ class FaultInjection : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
     make_folder("faults");
-    flight_ = new traces::testing::AslFolder;
-    expect_done({"run", "--platform", "gap9", "--data", flight_->root().string(), "--size", "32x24",
+    traces::write_synthetic_flight(path("flight"), {.duration_s = 0.5, .texel_m = 0.05});
+    expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--size", "32x24",
                  "--record", "--quiet", "--out", path("recorded")});
     write_text(path("budgets.yaml"), "budgets: [{ limits: [L1 peak <= 1 MB] }]\n");
     write_text(path("plan.yaml"),
                "base: { trace: recorded }\n"
                "points: { grid: { platform.cluster.clock: [200, 370] } }\n");
-  }
-  static void TearDownTestSuite() {
-    delete flight_;
-    ProgramSuite::TearDownTestSuite();
   }
 
   /// Where a command writes, with files of others and what leviosim wrote before.
@@ -56,8 +53,8 @@ class FaultInjection : public tests::ProgramSuite {
   };
   static std::map<std::string, Words> commands(const Place& place) {
     return {{"run",
-             {"run", "--native", "--data", flight_->root().string(), "--size", "32x24", "--frames",
-              "0:3", "--force", "--quiet", "--out", place / "out"}},
+             {"run", "--native", "--data", path("flight"), "--size", "32x24", "--frames", "0:3",
+              "--force", "--quiet", "--out", place / "out"}},
             {"sweep",
              {"sweep", path("plan.yaml"), "--jobs", "1", "--quiet", "--cache", place / "cache",
               "--out", place / "sweep"}},
@@ -154,8 +151,6 @@ class FaultInjection : public tests::ProgramSuite {
     for (const char* kind : {"write", "rename", "open", "mkdir", "close", "site"})
       try_all(name, kind);
   }
-
-  inline static traces::testing::AslFolder* flight_ = nullptr;
 };
 
 TEST_F(FaultInjection, Run) { try_all("run"); }

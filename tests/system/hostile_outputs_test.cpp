@@ -10,6 +10,7 @@
 #include "sim/outputs/output_record.h"
 #include "tests/support/program_suite.h"
 #include "tests/support/scratch.h"
+#include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
 namespace {
@@ -28,21 +29,17 @@ class HostileOutputs : public tests::ProgramSuite {
  protected:
   static void SetUpTestSuite() {
     make_folder("hostile-outputs");
-    flight_ = new traces::testing::AslFolder;
+    traces::write_synthetic_flight(path("flight"), {.duration_s = 0.5, .texel_m = 0.05});
     expect_done(run(path("ready")));
-    expect_done({"run", "--platform", "gap9", "--data", flight_->root().string(), "--size", "32x24",
+    expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--size", "32x24",
                  "--record", "--quiet", "--out", path("recorded")});
     write_text(path("budgets.yaml"), "budgets: [{ limits: [L1 peak <= 1 MB] }]\n");
     write_text(path("plan.yaml"),
                "base: { trace: recorded }\n"
                "points: { grid: { platform.cluster.clock: [200, 370] } }\n");
   }
-  static void TearDownTestSuite() {
-    delete flight_;
-    ProgramSuite::TearDownTestSuite();
-  }
   static Words run(const std::string& out, const Words& further = {}) {
-    Words words{"run",     "--native", "--data", flight_->root().string(), "--size", "32x24",
+    Words words{"run",     "--native", "--data", path("flight"), "--size", "32x24",
                 "--quiet", "--out",    out};
     words.insert(words.end(), further.begin(), further.end());
     return words;
@@ -93,7 +90,6 @@ class HostileOutputs : public tests::ProgramSuite {
       fs::remove_all(entry.path());
   }
 
-  inline static traces::testing::AslFolder* flight_ = nullptr;
   Scratch place_;
   Scratch log_;
 };
