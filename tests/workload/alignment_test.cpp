@@ -91,11 +91,10 @@ struct MovingScene {
   }
   /// @param afresh  the first of the iterations forgets what was found before
   void iterate(int iterations, bool afresh) {
-    LmState<Native> lm(optimiser);
-    lm.lambda = alignment.initial_lambda;
+    AlignmentState<Native> state{alignment.initial_lambda, inverse_depth};
     for (int i = 0; i < iterations; ++i) {
       const auto stage = fc.stage("initialisation");
-      report = align_once<Native>(fc, window, lm, optimiser, alignment, afresh && i == 0);
+      report = align_once<Native>(fc, window, state, optimiser, alignment, afresh && i == 0);
     }
   }
 
@@ -106,7 +105,9 @@ struct MovingScene {
       add_keyframe(k);
       if (k + 1 < alignment.min_keyframes) continue;
       take_snapshot<Native>(graph, ImuNoise{}, fc.local(), window);
-      iterate(15, !report.converged);
+      AlignmentState<Native> state{alignment.initial_lambda, inverse_depth};
+      report = align_from_all<Native>(fc, window, state, optimiser, alignment);
+      inverse_depth = state.inverse_depth;
       if (report.determined) return k + 1;
       for (int i = 0; i < window.landmarks; ++i) window.lost[i] = 0;
       publish<Native>(window, graph);
@@ -145,7 +146,7 @@ struct MovingScene {
     if (random.uniform(0, 1) < options.outliers) u += 15 * 64;
     if (u < 0 || v < 0 || u > 160 * 64 || v > 120 * 64) return;
     if (point.slot < 0) {
-      const float depth = 1 / alignment.inverse_depth;
+      const float depth = 1 / inverse_depth;
       const Vec3<Native> seen{static_cast<float>(x.x() / x.z()) * depth,
                               static_cast<float>(x.y() / x.z()) * depth, depth};
       const std::vector<Native::U32> no_descriptor(8);
@@ -164,6 +165,7 @@ struct MovingScene {
   Vector3d gyro_bias{0.05, -0.03, 0.06}, accel_bias{0.05, 0.08, -0.04};
   OptimiserOptions optimiser;
   AlignmentOptions alignment;
+  float inverse_depth = alignment.inverse_depth;  ///< mean, as the last alignment has it
   work::Machine fc;
   PoseGraph<Native> graph;
   Window<Native> window;

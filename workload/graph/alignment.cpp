@@ -1,5 +1,8 @@
 #include "workload/graph/alignment.h"
 
+#include <algorithm>
+#include <array>
+
 #include "workload/graph/anchored_landmarks.h"
 #include "workload/graph/carried_poses.h"
 #include "workload/inertial/initialisation.h"
@@ -18,15 +21,6 @@ CarriedFrom<P> start_of(const Window<P>& window) {
   const KeyframeState<P> first = window.state.keyframe(0);
   const Mat3<P> R_camera_world = transpose(first.T_world_camera.R);
   return {R_camera_world * first.velocity, R_camera_world * window.gravity, window.bias};
-}
-
-/// Nothing is known but the vertical.
-template <class P>
-void forget(Window<P>& window) {
-  KeyframeState<P> first = window.state.keyframe(0);
-  first.velocity = {0.0f, 0.0f, 0.0f};
-  window.state.set_keyframe(0, first);
-  window.bias = window.bias_prior.mean;
 }
 
 /// The keyframes of the window where they were carried to. The first one is turned so that gravity
@@ -50,6 +44,20 @@ Vec3<P> mean_force_of(const CarriedPoses<P>& poses, const CarriedFrom<P>& from, 
   using F = typename P::F32;
   const CarriedPose<P> end = poses[last];
   return (end.velocity - from.velocity) * F(F(1.0f) / end.time) - from.gravity;
+}
+
+/// Nothing is known: no velocity, no biases but those of the prior, and gravity opposes the mean
+/// force.
+template <class P>
+CarriedFrom<P> forgotten(const Window<P>& window, const CarriedPoses<P>& scratch) {
+  using F = typename P::F32;
+  CarriedFrom<P> from = start_of<P>(window);
+  from.velocity = {0.0f, 0.0f, 0.0f};
+  from.bias = window.bias_prior.mean;
+  carry<P>(window, from, scratch);
+  const Vec3<P> force = mean_force_of<P>(scratch, from, window.keyframes - 1);
+  from.gravity = force * F(F(-kGravity) / norm(force));
+  return from;
 }
 
 /// What is known apart from the images, at `from`.
@@ -153,6 +161,18 @@ typename P::F32 uncertainty_of_positions(const CarriedPoses<P>& poses, int keyfr
   return work::sqrt(F(variance / work::max(F(square), F(1e-6f))));
 }
 
+/// RMS distance of the keyframes from the first one, m.
+template <class P>
+typename P::F32 length_of(const CarriedPoses<P>& poses, int keyframes) {
+  using F = typename P::F32;
+  F square = 0.0f;
+  for (int k : P::range(1, keyframes)) {
+    const CarriedPose<P> at = poses[k];
+    square += dot(at.p, at.p);
+  }
+  return work::sqrt(F(square / F(static_cast<float>(keyframes))));
+}
+
 /// Whether it is near its minimum, and can be true.
 /// @param knowledge  the cost of what is known apart from the images
 template <class P>
@@ -174,17 +194,23 @@ bool is_determined(const Window<P>& window, const AlignmentReport& report,
          report.uncertainty < limit && report.landmarks >= options.min_landmarks;
 }
 
-}  // namespace
+/// What an iteration begins from.
+enum class Begin {
+  here,               ///< the window's state
+  without_landmarks,  ///< that of the first keyframe and the biases, with landmarks at the mean
+  afresh              ///< nothing but landmarks at the mean
+};
 
 template <class P>
-AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
-                           const OptimiserOptions& optimiser, const AlignmentOptions& options,
-                           bool afresh) {
+AlignmentReport iterate(work::Machine& fc, Window<P>& window, AlignmentState<P>& state,
+                        const OptimiserOptions& optimiser, const AlignmentOptions& options,
+                        Begin begin) {
   using F = typename P::F32;
   using Span = typename P::template Span<F>;
   const typename P::Function function("align_once");
+  const bool afresh = begin == Begin::afresh;
   AlignmentReport report;
-  report.lambda = work::value(lm.lambda);
+  report.lambda = work::value(state.lambda);
   if (window.keyframes < 2) return report;
   work::Arena& arena = fc.local();
   const work::Arena::Frame frame(arena);
@@ -195,16 +221,16 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   const auto slope = arena.alloc<Span>("slope of the alignment", kAlignmentUnknowns);
   const auto column = arena.alloc<Span>("column of the alignment", kAlignmentUnknowns);
   const bool first = afresh || window.keyframes <= options.few_keyframes;
-  const LandmarkPrior prior{
-      options.inverse_depth,
-      information(first ? options.first_inverse_depth_stddev : options.inverse_depth_stddev)};
-  const AnchoredLandmarks<P> landmarks(arena, window, PixelModel<P>(optimiser.visual), prior);
+  AnchoredLandmarks<P> landmarks(arena, window, PixelModel<P>(optimiser.visual),
+                                 state.inverse_depth,
+                                 first ? options.first_spread : options.spread);
   const auto trial = arena.alloc<Span>("trial landmarks", 3 * window.landmarks);
 
-  if (afresh) forget<P>(window);
-  const CarriedFrom<P> from = start_of<P>(window);
-  landmarks.anchor(window);
-  if (afresh) landmarks.forget_distances();
+  const CarriedFrom<P> from = afresh ? forgotten<P>(window, poses) : start_of<P>(window);
+  if (begin == Begin::here)
+    landmarks.anchor(window);
+  else
+    landmarks.aim(window);
   carry<P>(window, from, poses);
   landmarks.settle(window, poses, landmarks.all());
   system.clear();
@@ -213,12 +239,16 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   hold_length<P>(from.gravity, system);
   copy<P>(factor, system.matrix());
   for (int i : P::range(0, kAlignmentUnknowns)) slope[i] = F(system.vector()[i]);
-  system.damp(lm.lambda);
+  system.damp(state.lambda);
+  const F mean = landmarks.mean();
   F trial_cost = cost;
   CarriedFrom<P> to = from;
   report.positive_definite = system.solve();
   if (report.positive_definite) {
     to = stepped<P>(from, system);
+    // Half of it at least: a mean is not negative.
+    landmarks.set_mean(
+        work::max(F(mean + F(system.vector()[kMeanInverseDepth])), F(mean * F(0.5f))));
     carry<P>(window, to, trial_poses);
     for (int i : P::range(0, 3 * window.landmarks)) trial[i] = F(landmarks.all()[i]);
     trial_cost = landmarks.settle(window, trial_poses, trial);
@@ -228,11 +258,13 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   if (report.accepted) {
     for (int i : P::range(0, 3 * window.landmarks)) landmarks.all()[i] = F(trial[i]);
     place_keyframes<P>(trial_poses, to, window);
-    lm.lambda = work::max(F(lm.lambda * optimiser.lambda_down), F(optimiser.min_lambda));
+    state.lambda = work::max(F(state.lambda * optimiser.lambda_down), F(optimiser.min_lambda));
   } else {
     place_keyframes<P>(poses, from, window);
-    lm.lambda = work::min(F(lm.lambda * optimiser.lambda_up), F(optimiser.max_lambda));
+    landmarks.set_mean(mean);
+    state.lambda = work::min(F(state.lambda * optimiser.lambda_up), F(optimiser.max_lambda));
   }
+  state.inverse_depth = landmarks.mean();
   const CarriedPoses<P>& best = report.accepted ? trial_poses : poses;
   const auto verdict = landmarks.judge(window, best);
   report.landmarks = verdict.told;
@@ -244,6 +276,7 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   report.distance = work::value(work::sqrt(square_by_covariance<P>(factor, slope)));
   report.uncertainty =
       work::value(uncertainty_of_positions<P>(best, window.keyframes, factor, column));
+  report.length = work::value(length_of<P>(best, window.keyframes));
   const F knowledge = add_knowledge<P>(window, best, report.accepted ? to : from, optimiser,
                                        options, first, nullptr);
   report.converged = has_converged<P>(window, report, work::value(knowledge), options);
@@ -251,10 +284,114 @@ AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   return report;
 }
 
-template AlignmentReport align_once(work::Machine&, Window<work::Native>&, LmState<work::Native>&,
-                                    const OptimiserOptions&, const AlignmentOptions&, bool);
-template AlignmentReport align_once(work::Machine&, Window<work::Counting>&,
-                                    LmState<work::Counting>&, const OptimiserOptions&,
+/// Some landmarks of a window, evenly over all, with a state of their own: enough to compare
+/// starts.
+template <class P>
+Window<P> share_of(work::Arena& arena, const Window<P>& window) {
+  constexpr int kMost = 100;
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  using U16 = typename P::U16;
+  using Byte = typename P::Byte;
+  using Floats = typename P::template Span<F>;
+  const int step = std::max(1, (window.landmarks + kMost - 1) / kMost);
+  Window<P> share = window;
+  share.landmarks = (window.landmarks + step - 1) / step;
+  const auto numbers =
+      arena.alloc<typename P::template Span<U16>>("share: first observations", share.landmarks);
+  const auto bytes = arena.alloc<typename P::template Span<Byte>>("share: numbers and losses",
+                                                                  2 * share.landmarks);
+  share.state = {arena.alloc<Floats>("share: poses", kPoseFloats * window.keyframes),
+                 arena.alloc<Floats>("share: velocities", 3 * window.keyframes),
+                 arena.alloc<Floats>("share: points", 3 * share.landmarks)};
+  share.first_observations = numbers;
+  share.observation_numbers = bytes.subspan(0, share.landmarks);
+  share.lost = bytes.subspan(share.landmarks, share.landmarks);
+  for (int k : P::range(0, window.keyframes)) share.state.set_keyframe(k, window.state.keyframe(k));
+  for (int i : P::range(0, share.landmarks)) {
+    const int of = step * i;
+    numbers[i] = work::narrow<U16>(I32(window.first_observations[of]));
+    share.observation_numbers[i] = work::narrow<Byte>(I32(window.observation_numbers[of]));
+    store_vec3<P>(share.state.points, 3 * i, load_vec3<P>(window.state.points, 3 * of));
+  }
+  return share;
+}
+
+/// Inverse depths to begin from, 1/m: what is seen is 0.3 to 30 m away.
+constexpr std::array kStarts = {3.0f, 1.0f, 0.3f, 0.1f, 0.03f};
+
+/// Whether the two are one solution, but for what is left to iterate.
+bool same_scale(const AlignmentReport& a, const AlignmentReport& b,
+                const AlignmentOptions& options) {
+  return a.length < options.same_scale * b.length && b.length < options.same_scale * a.length;
+}
+
+}  // namespace
+
+template <class P>
+AlignmentReport align_once(work::Machine& fc, Window<P>& window, AlignmentState<P>& state,
+                           const OptimiserOptions& optimiser, const AlignmentOptions& options,
+                           bool afresh) {
+  return iterate<P>(fc, window, state, optimiser, options, afresh ? Begin::afresh : Begin::here);
+}
+
+template <class P>
+AlignmentReport align_from_all(work::Machine& fc, Window<P>& window, AlignmentState<P>& state,
+                               const OptimiserOptions& optimiser, const AlignmentOptions& options) {
+  using F = typename P::F32;
+  const typename P::Function function("align_from_all");
+  constexpr float kArrived = 0.1f;  // standard deviations from the minimum
+  std::array<AlignmentReport, kStarts.size() + 1> reports;
+  std::size_t best = 0;
+  const auto cost = [&](std::size_t of) {
+    return std::min(reports[of].cost_before, reports[of].cost_after);
+  };
+  AlignmentState<P> found = state;
+  KeyframeState<P> first = window.state.keyframe(0);
+  ImuBias<P> bias = window.bias;
+  {
+    const work::Arena::Frame frame(fc.local());
+    Window<P> share = share_of<P>(fc.local(), window);
+    for (std::size_t s = 0; s < reports.size(); ++s) {
+      AlignmentState<P> trial{options.initial_lambda,
+                              s > 0 ? F(kStarts[s - 1]) : state.inverse_depth};
+      for (int i = 0; i < options.start_iterations; ++i) {
+        const Begin begin = s > 0 && i == 0 ? Begin::afresh : Begin::here;
+        reports[s] = iterate<P>(fc, share, trial, optimiser, options, begin);
+        if (i > 0 && reports[s].distance < kArrived) break;
+      }
+      if (s > 0 && !(cost(s) < cost(best))) continue;
+      best = s;
+      found = trial;
+      first = share.state.keyframe(0);
+      bias = share.bias;
+    }
+  }
+  if (best > 0) {
+    window.state.set_keyframe(0, first);
+    window.bias = bias;
+    state = {options.initial_lambda, found.inverse_depth};
+  }
+  AlignmentReport report = iterate<P>(fc, window, state, optimiser, options,
+                                      best > 0 ? Begin::without_landmarks : Begin::here);
+  for (std::size_t s = 0; s < reports.size(); ++s)
+    report.ambiguous = report.ambiguous || (!same_scale(reports[s], reports[best], options) &&
+                                            cost(s) < cost(best) + options.min_advantage);
+  report.determined = report.determined && !report.ambiguous;
+  return report;
+}
+
+template AlignmentReport align_once(work::Machine&, Window<work::Native>&,
+                                    AlignmentState<work::Native>&, const OptimiserOptions&,
                                     const AlignmentOptions&, bool);
+template AlignmentReport align_once(work::Machine&, Window<work::Counting>&,
+                                    AlignmentState<work::Counting>&, const OptimiserOptions&,
+                                    const AlignmentOptions&, bool);
+template AlignmentReport align_from_all(work::Machine&, Window<work::Native>&,
+                                        AlignmentState<work::Native>&, const OptimiserOptions&,
+                                        const AlignmentOptions&);
+template AlignmentReport align_from_all(work::Machine&, Window<work::Counting>&,
+                                        AlignmentState<work::Counting>&, const OptimiserOptions&,
+                                        const AlignmentOptions&);
 
 }  // namespace leviosim::vio

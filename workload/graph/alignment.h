@@ -1,10 +1,14 @@
 // Visual-inertial initialisation: what a map needs that begins in motion. Over a window of
 // keyframes with tracked features and pre-integrated IMU it finds velocity, gravity, both biases
 // and with them the scale, all at once: the IMU carries the first keyframe through the window
-// (carried_poses.h), so that twelve numbers and the landmarks explain all observations. Minimised
+// (carried_poses.h), so that thirteen numbers and the landmarks explain all observations. Minimised
 // are reprojection errors, as the optimiser does it (Huber loss), with landmarks as a direction and
 // an inverse depth in the keyframe that saw them first, by Levenberg-Marquardt, the landmarks
 // eliminated.
+//
+// How far away the landmarks are is not assumed: their inverse depths lie about a mean that is an
+// unknown too, with a spread that is a share of it. So the scale of the whole costs nothing, and
+// motion and gravity decide it.
 //
 // No structure from motion comes first, for which two views at a base line of a few pixels are a
 // poor start: rotation comes from the gyro but for its bias, and translation is linear in what is
@@ -25,11 +29,11 @@ namespace leviosim::vio {
 /// What is assumed before anything is known, in standard deviations, and when enough is known.
 struct AlignmentOptions {
   bool enabled = false;
-  float inverse_depth = 0.15f;        ///< of any landmark, 1/m
-  float inverse_depth_stddev = 1.0f;  ///< of any landmark, 1/m
-  /// In place of inverse_depth_stddev while the window has few keyframes: with all landmarks about
-  /// equally far away the problem is nearly linear, and what it finds is near enough to begin with.
-  float first_inverse_depth_stddev = 0.05f;
+  float inverse_depth = 3;  ///< of landmarks of which nothing is known, to begin with, 1/m
+  float spread = 1;         ///< of inverse depths, a standard deviation, as a share of their mean
+  /// In place of spread while the window has few keyframes: with all landmarks about equally far
+  /// away the problem is nearly linear, and what it finds is near enough to begin with.
+  float first_spread = 0.33f;
   float velocity = 3;             ///< m/s
   float acceleration = 2;         ///< mean over the window, m/s²
   float first_gyro_bias = 0.03f;  ///< instead of the optimiser's, with few keyframes, rad/s
@@ -43,6 +47,11 @@ struct AlignmentOptions {
   float max_surprise = 3;         ///< standard deviations of velocity, biases and gravity in all
   float min_explained = 0.7f;     ///< share of the landmarks that agree with the alignment
   int min_landmarks = 30;         ///< that do and whose distance is told
+  // Of the starts that are compared.
+  float same_scale = 1.2f;  ///< ratio of the lengths of two paths below which they are one solution
+  /// Half a chi-square: of two solutions whose costs differ by less, neither is known to be right.
+  float min_advantage = 4.5f;
+  int start_iterations = 12;  ///< of each start, at most
 };
 
 struct AlignmentReport : IterationReport {
@@ -51,16 +60,35 @@ struct AlignmentReport : IterationReport {
   int explained = 0;       ///< landmarks that agree with the alignment
   bool converged = false;  ///< it is near its minimum, and can be true
   bool determined = false;  ///< it has converged, and tells enough
+  bool ambiguous = false;   ///< another scale explains the window about as well
+  float length = 0;         ///< RMS distance of the keyframes from the first one, m
+};
+
+/// What carries over from one iteration to the next.
+template <class P>
+struct AlignmentState {
+  typename P::F32 lambda;         ///< damping
+  typename P::F32 inverse_depth;  ///< mean over the landmarks, 1/m
 };
 
 /// One iteration on a snapshot of at least two keyframes; changes poses, velocities and points of
 /// `window.state`, and `window.bias`. Position and heading of the first keyframe stay. Landmarks
 /// that no place explains, or whose distance is not told, are marked as lost.
-/// @param afresh  forgets what has been found: no velocity, no biases, landmarks equally far away
+/// @param afresh  forgets what has been found: no velocity, no biases, gravity opposes the mean
+///                force, all landmarks at the mean inverse depth
 /// Must run in a stage of `fc`, whose local memory it uses for some tens of kB, freed on return.
 template <class P>
-AlignmentReport align_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
+AlignmentReport align_once(work::Machine& fc, Window<P>& window, AlignmentState<P>& state,
                            const OptimiserOptions& optimiser, const AlignmentOptions& options,
                            bool afresh);
+
+/// Iterates from the present state and from landmarks at several distances, and keeps what explains
+/// the window best. From one start alone the scale may end in another minimum, since distances and
+/// velocity can be traded for each other and the gyro's bias.
+/// @return as of the iteration that is kept; not determined if a solution of another scale explains
+///         the window about as well
+template <class P>
+AlignmentReport align_from_all(work::Machine& fc, Window<P>& window, AlignmentState<P>& state,
+                               const OptimiserOptions& optimiser, const AlignmentOptions& options);
 
 }  // namespace leviosim::vio

@@ -6,7 +6,7 @@ namespace leviosim::vio {
 namespace {
 
 /// 1/m: beyond 100 m, and nearer than 10 cm, no landmark is looked for.
-constexpr float kLeastInverseDepth = 0.01f, kMostInverseDepth = 10.0f;
+constexpr float kLeastInverseDepth = 0.001f, kMostInverseDepth = 10.0f;
 
 template <class P>
 Vec3<P> within_limits(Vec3<P> landmark) {
@@ -32,8 +32,42 @@ void AnchoredLandmarks<P>::anchor(const Window<P>& window) const {
 }
 
 template <class P>
-void AnchoredLandmarks<P>::forget_distances() const {
-  for (int i : P::range(0, all_.size() / 3)) all_[3 * i + 2] = F(prior_.inverse_depth);
+void AnchoredLandmarks<P>::aim(const Window<P>& window) const {
+  const typename P::Function function("aim_landmarks");
+  const F by_fx = F(1.0f) / model_.fx, by_fy = F(1.0f) / model_.fy;
+  for (int i : P::range(0, window.landmarks)) {
+    const Vec2<P> seen = observed_pixel<P>(window, work::value(I32(window.first_observations[i])));
+    store_vec3<P>(all_, 3 * i, {(seen.x - model_.cx) * by_fx, (seen.y - model_.cy) * by_fy, mean_});
+  }
+}
+
+/// The spread is a share of the mean, so that the scale of the whole costs nothing.
+template <class P>
+typename AnchoredLandmarks<P>::Prior AnchoredLandmarks<P>::prior_of(const Vec3<P>& landmark) const {
+  constexpr float kFar = 3;  // standard deviations, from which on a landmark says little
+  const F by_landmark = inverse_spread_ / mean_;
+  const F residual = landmark.z * by_landmark - inverse_spread_;
+  const F square = residual * residual;
+  const F root = F(1.0f) / (F(1.0f) + square * F(1.0f / (kFar * kFar)));
+  return {residual, by_landmark, -(landmark.z * by_landmark / mean_), root * root,
+          F(0.5f) * square * root};
+}
+
+/// To the normal equations of one landmark.
+template <class P>
+void AnchoredLandmarks<P>::add_prior(const Prior& prior, Normal& normal) {
+  const F weighted = prior.weight * prior.by_landmark;
+  normal.H.m[2][2] += weighted * prior.by_landmark;
+  normal.b.z -= weighted * prior.residual;
+  normal.cost += prior.cost;
+}
+
+template <class P>
+void AnchoredLandmarks<P>::add_mean(const Prior& prior, const ReducedSystem<P>& system) const {
+  const F weighted = prior.weight * prior.by_mean;
+  system.matrix()(kMeanInverseDepth, kMeanInverseDepth) += weighted * prior.by_mean;
+  system.vector()[kMeanInverseDepth] -= weighted * prior.residual;
+  by_landmark_[3 * kMeanInverseDepth + 2] += weighted * prior.by_landmark;
 }
 
 template <class P>
@@ -98,11 +132,24 @@ typename AnchoredLandmarks<P>::Normal AnchoredLandmarks<P>::normal_of(
   for (int o : P::range(first, first + number))
     linearise(anchor, poses[window.observation_keyframes[o]], landmark,
               observed_pixel<P>(window, o), term, normal);
-  const F off = landmark.z - prior_.inverse_depth;
-  normal.H.m[2][2] += prior_.information;
-  normal.b.z -= off * prior_.information;
-  normal.cost += F(0.5f) * off * off * prior_.information;
+  add_prior(prior_of(landmark), normal);
   return normal;
+}
+
+/// A lost observation says nothing of where its landmark is. So the landmark is looked for at the
+/// mean, and far away, where nothing but rotation shows.
+template <class P>
+void AnchoredLandmarks<P>::retry(const Window<P>& window, const CarriedPoses<P>& poses, int i,
+                                 Vec3<P>& landmark, Normal& normal) const {
+  for (const float share : {1.0f, 0.1f}) {
+    Vec3<P> other = landmark;
+    other.z = mean_ * F(share);
+    other = within_limits<P>(other);
+    const Normal there = normal_of(window, poses, i, other);
+    if (!(there.cost < normal.cost)) continue;
+    landmark = other;
+    normal = there;
+  }
 }
 
 template <class P>
@@ -111,8 +158,10 @@ typename P::F32 AnchoredLandmarks<P>::settle(const Window<P>& window, const Carr
   const typename P::Function function("settle_landmarks");
   F cost = 0.0f;
   for (int i : P::range(0, window.landmarks)) {
-    const Vec3<P> before = load_vec3<P>(landmarks, 3 * i);
-    const Normal normal = normal_of(window, poses, i, before);
+    Vec3<P> before = load_vec3<P>(landmarks, 3 * i);
+    Normal normal = normal_of(window, poses, i, before);
+    if (normal.worst_sq >= model_.lost_sq) retry(window, poses, i, before, normal);
+    store_vec3<P>(landmarks, 3 * i, before);
     F best = normal.cost;
     Mat3<P> inverse;
     if (invert_spd3<P>(normal.H, inverse)) {
@@ -128,7 +177,7 @@ typename P::F32 AnchoredLandmarks<P>::settle(const Window<P>& window, const Carr
   return cost;
 }
 
-/// The derivatives by the twelve unknowns; those by the landmark are in the term.
+/// The derivatives by all unknowns but the mean; those by the landmark are in the term.
 template <class P>
 void AnchoredLandmarks<P>::add_observation(const CarriedPose<P>& anchor,
                                            const CarriedPose<P>& camera, const Vec3<P>& landmark,
@@ -153,7 +202,7 @@ void AnchoredLandmarks<P>::add_observation(const CarriedPose<P>& anchor,
     store_vec3<P>(row_, 9, transpose(by_accel) * by_position);
     const F residual = term.residual[r];
     const Vec3<P>& d = term.by_landmark[r];
-    for (int i : P::range(0, kAlignmentUnknowns)) {
+    for (int i : P::range(0, kMeanInverseDepth)) {
       const F of = row_[i];
       for (int j : P::range(0, i + 1)) H(i, j) += of * F(row_[j]);
       system.vector()[i] -= of * residual;
@@ -194,10 +243,10 @@ typename P::F32 AnchoredLandmarks<P>::add(const Window<P>& window, const Carried
       if (linearise(anchor, camera, landmark, observed_pixel<P>(window, o), term, normal))
         add_observation(anchor, camera, landmark, term, system);
     }
-    const F off = landmark.z - prior_.inverse_depth;
-    normal.H.m[2][2] += prior_.information;
-    normal.b.z -= off * prior_.information;
-    cost += normal.cost + F(0.5f) * off * off * prior_.information;
+    const Prior prior = prior_of(landmark);
+    add_prior(prior, normal);
+    add_mean(prior, system);
+    cost += normal.cost;
     eliminate(normal, system);
   }
   return cost;

@@ -8,14 +8,11 @@
 
 namespace leviosim::vio {
 
-/// Velocity, gravity, biases of gyro and accelerometer.
-inline constexpr int kAlignmentUnknowns = 12;
-
-/// What is known of the inverse depth of any landmark.
-struct LandmarkPrior {
-  float inverse_depth;  ///< 1/m
-  float information;    ///< m²
-};
+/// Velocity, gravity, biases of gyro and accelerometer, and the mean inverse depth of the
+/// landmarks.
+inline constexpr int kAlignmentUnknowns = 13;
+/// Place of the mean.
+inline constexpr int kMeanInverseDepth = 12;
 
 template <class P>
 class AnchoredLandmarks {
@@ -24,10 +21,13 @@ class AnchoredLandmarks {
   using I32 = typename P::I32;
   using Span = typename P::template Span<F>;
 
-  AnchoredLandmarks(work::Arena& arena, const Window<P>& window, const PixelModel<P>& model,
-                    const LandmarkPrior& prior)
+  /// @param spread  of the inverse depths about their mean, a standard deviation, as a share of it
+  /// @param mean    to begin with, 1/m
+  AnchoredLandmarks(work::Arena& arena, const Window<P>& window, const PixelModel<P>& model, F mean,
+                    float spread)
       : model_(model),
-        prior_(prior),
+        mean_(mean),
+        inverse_spread_(1.0f / spread),
         all_(arena.alloc<Span>("anchored landmarks", 3 * window.landmarks)),
         row_(arena.alloc<Span>("alignment row", kAlignmentUnknowns)),
         by_landmark_(arena.alloc<Span>("alignment by landmark", 3 * kAlignmentUnknowns)) {}
@@ -39,8 +39,14 @@ class AnchoredLandmarks {
   /// poses.
   void anchor(const Window<P>& window) const;
   void release(const Window<P>& window) const;
-  /// All are as far away as any may be, in the directions that they have.
-  void forget_distances() const;
+  /// All are at the mean, where the keyframes saw them first.
+  void aim(const Window<P>& window) const;
+
+  /// The mean about which the inverse depths are taken to lie, 1/m. It is an unknown: how far away
+  /// the landmarks are is not known, only that their distances are alike. A landmark far from it
+  /// says nothing of it (Geman and McClure), since wrong matches end anywhere.
+  F mean() const { return mean_; }
+  void set_mean(F mean) { mean_ = mean; }
 
   /// Moves each landmark one step to where it explains its observations best.
   /// @return the cost then
@@ -83,10 +89,24 @@ class AnchoredLandmarks {
   void add_observation(const CarriedPose<P>& anchor, const CarriedPose<P>& camera,
                        const Vec3<P>& landmark, const Term& term,
                        const ReducedSystem<P>& system) const;
+  void retry(const Window<P>& window, const CarriedPoses<P>& poses, int i, Vec3<P>& landmark,
+             Normal& normal) const;
+  /// What the mean says of a landmark, and it of the mean.
+  struct Prior {
+    F residual;     ///< standard deviations
+    F by_landmark;  ///< derivatives of it
+    F by_mean;
+    F weight;
+    F cost;
+  };
+  Prior prior_of(const Vec3<P>& landmark) const;
+  static void add_prior(const Prior& prior, Normal& normal);
+  void add_mean(const Prior& prior, const ReducedSystem<P>& system) const;
   void eliminate(const Normal& normal, const ReducedSystem<P>& system) const;
 
   PixelModel<P> model_;
-  LandmarkPrior prior_;
+  F mean_;
+  F inverse_spread_;
   Span all_;
   Span row_;
   Span by_landmark_;

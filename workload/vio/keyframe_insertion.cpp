@@ -69,19 +69,16 @@ std::optional<Vec3<P>> point_of(const FrontEndState<P>& state, const Pose<P>& T_
   return point.point;
 }
 
-/// A point where a view sees it, as far away as any may be.
+/// A point where a view sees it.
 template <class P>
-Vec3<P> any_point_of(const FrontEndState<P>& state, const Pose<P>& T_camera_world,
-                     const Vec2<P>& seen) {
-  using F = typename P::F32;
-  const F depth = 1.0f / state.profile.alignment.inverse_depth;
+Vec3<P> any_point_of(const Pose<P>& T_camera_world, const Vec2<P>& seen, typename P::F32 depth) {
   return inverse(T_camera_world) * Vec3<P>{seen.x * depth, seen.y * depth, depth};
 }
 
 /// Matches that show no landmark yet become one.
 template <class P>
 void add_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, const PoseGraph<P>& graph,
-                   typename P::I32 previous_slot, typename P::I32 slot, bool aligned) {
+                   typename P::I32 previous_slot, typename P::I32 slot, float any_depth) {
   using I32 = typename P::I32;
   using U16 = typename P::U16;
   const typename P::Function function("triangulate_landmarks");
@@ -97,8 +94,9 @@ void add_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, const P
     const I32 old_u = frame.matches.u(old), old_v = frame.matches.v(old);
     const Vec2<P> now = state.camera.normalised(u, v),
                   before = state.camera.normalised(old_u, old_v);
-    const std::optional<Vec3<P>> point = aligned ? point_of<P>(state, T_old, T_now, before, now)
-                                                 : any_point_of<P>(state, T_old, before);
+    const std::optional<Vec3<P>> point = any_depth == 0
+                                             ? point_of<P>(state, T_old, T_now, before, now)
+                                             : any_point_of<P>(T_old, before, any_depth);
     if (!point) continue;
     const auto words = frame.features.list.descriptors.subspan(I32(feature * I32(kDescriptorWords)),
                                                                kDescriptorWords);
@@ -127,7 +125,7 @@ Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera
 }
 
 template <class P>
-void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, bool aligned) {
+void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, float any_depth) {
   using I32 = typename P::I32;
   using Floats = typename P::template Span<typename P::F32>;
   work::Machine& machine = state.machine;
@@ -144,8 +142,8 @@ void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, bool aligned) {
   const I32 previous = graph.newest_keyframe();
   graph.age_landmarks();
   const I32 slot = graph.add_keyframe(newest, interval);
-  register_observations(state, frame, graph, slot, aligned);
-  add_landmarks(state, frame, graph, previous, slot, aligned);
+  register_observations(state, frame, graph, slot, any_depth == 0);
+  add_landmarks(state, frame, graph, previous, slot, any_depth);
 
   Preintegration<P>(interval).reset(graph.bias());
   machine.copy_out(state.keyframe.interval, interval);
@@ -169,8 +167,8 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
   state.time_since_keyframe = 0;
 }
 
-template void insert_keyframe(FrontEndState<work::Native>&, Frame<work::Native>&, bool);
-template void insert_keyframe(FrontEndState<work::Counting>&, Frame<work::Counting>&, bool);
+template void insert_keyframe(FrontEndState<work::Native>&, Frame<work::Native>&, float);
+template void insert_keyframe(FrontEndState<work::Counting>&, Frame<work::Counting>&, float);
 template Vec3<work::Native> velocity_at(const FrontEndState<work::Native>&,
                                         const Pose<work::Native>&, const PoseGraph<work::Native>&,
                                         work::Native::Span<work::Native::F32>);

@@ -8,10 +8,11 @@ namespace leviosim::vio {
 
 /// Puts the frame, whose pose is known, into the graph, and its features into the place of the last
 /// keyframe's.
-/// @param aligned  poses can tell where landmarks are; else those that are new get a distance that
-///                 any may have, and all matches are believed
+/// @param any_depth  0 if poses can tell where landmarks are; else those that are new get this
+/// depth
+///                   (m), and all matches are believed
 template <class P>
-void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, bool aligned = true);
+void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, float any_depth);
 
 /// Velocity of the camera in the world: the last keyframe's, carried on by the IMU; without an IMU,
 /// the mean since the last keyframe.

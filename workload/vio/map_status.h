@@ -9,6 +9,8 @@ struct MapStatus {
   bool aligned = false;
   /// The initialisation has once converged to what can be true, though it may be uncertain.
   bool converged = false;
+  /// Of what is seen, 1/m, as the alignment has it; 0 before there is one.
+  float inverse_depth = 0;
 };
 
 }  // namespace leviosim::vio

@@ -197,7 +197,10 @@ void align_patches(work::Machine& machine, const PatchView<P>& before, const Pat
     Patch<P> patch(core.scratch, options.radius);
     const auto [begin, end] = core.share(matches.count);
     for (int m : P::range(begin, end)) {
-      aligned[m] = work::narrow<typename P::Byte>(I32(0));
+      const auto judge = [&](PatchVerdict verdict) {
+        aligned[m] = work::narrow<typename P::Byte>(I32(static_cast<int>(verdict)));
+      };
+      judge(PatchVerdict::Unknown);
       const I32 feature = matches.query[m], old = matches.reference[m];
       const Place<P> from(work::to_f32(I32(before.x[old])) * to_px,
                           work::to_f32(I32(before.y[old])) * to_px);
@@ -205,8 +208,9 @@ void align_patches(work::Machine& machine, const PatchView<P>& before, const Pat
       if (!take_patch<P>(before.image, from, options.radius, patch)) continue;
       Vec2<P> at{work::to_f32(I32(now.x[feature])) * to_px,
                  work::to_f32(I32(now.y[feature])) * to_px};
+      judge(PatchVerdict::Disagrees);
       if (!follow_patch<P>(now.image, patch, max_shift, options, at)) continue;
-      aligned[m] = work::narrow<typename P::Byte>(I32(1));
+      judge(PatchVerdict::Agrees);
       now.x[feature] = work::narrow<U16>(work::to_i32(F(at.x * unit + F(0.5f))));
       now.y[feature] = work::narrow<U16>(work::to_i32(F(at.y * unit + F(0.5f))));
     }

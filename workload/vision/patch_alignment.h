@@ -25,7 +25,15 @@ struct PatchAlignmentOptions {
   /// Of the grey levels of two patches that agree, in squares about their means, as a share of
   /// those of the patch.
   float max_difference = 0.3f;
-  float reach = 3.0f;  ///< as max_shift, from where a landmark is predicted, px
+  bool required = true;  ///< a match whose patches do not agree is none
+  float reach = 3.0f;    ///< as max_shift, from where a landmark is predicted, px
+};
+
+/// What became of a match.
+enum class PatchVerdict : std::int8_t {
+  Unknown,   ///< the patch does not lie in the image as a whole, or tells no place
+  Agrees,    ///< the feature has been moved to where the patches agree
+  Disagrees  ///< nowhere near the feature
 };
 
 /// An image and the features in it that are matched, in local memory. Coordinates are in units of
@@ -43,7 +51,7 @@ struct PatchView {
 /// to where their patches agree. Features that do not agree within max_shift (px) stay.
 /// One team fork, "align". The caller opens the stage.
 /// Local memory while it runs: 12 bytes per pixel of a patch and core.
-/// @param aligned  for each match, 1 if its patches agree, else 0
+/// @param aligned  what became of each match, a PatchVerdict
 template <class P>
 void align_patches(work::Machine& machine, const PatchView<P>& before, const PatchView<P>& now,
                    int steps, float max_shift, const PatchAlignmentOptions& options,

@@ -79,6 +79,24 @@ void predict_landmarks(const FrontEndState<P>& state, const Frame<P>& frame,
   to.pairs.count = n;
 }
 
+/// Takes the matches off the list whose patches disagree: corners that slid along an edge, or were
+/// taken for others. What is left keeps its order.
+template <class P>
+void drop_disagreeing(Flags<P> verdicts, MatchList<P>& matches) {
+  using I32 = typename P::I32;
+  using U16 = typename P::U16;
+  const typename P::Function function("drop_disagreeing");
+  int kept = 0;
+  for (int i : P::range(0, matches.count)) {
+    if (I32(verdicts[i]) == I32(static_cast<int>(PatchVerdict::Disagrees))) continue;
+    matches.query[kept] = work::narrow<U16>(I32(matches.query[i]));
+    matches.reference[kept] = work::narrow<U16>(I32(matches.reference[i]));
+    matches.distance[kept] = work::narrow<U16>(I32(matches.distance[i]));
+    ++kept;
+  }
+  matches.count = kept;
+}
+
 /// Those that were found become features and matches.
 template <class P>
 void adopt_found(const FrontEndState<P>& state, const Predictions<P>& predictions, Flags<P> found,
@@ -89,7 +107,9 @@ void adopt_found(const FrontEndState<P>& state, const Predictions<P>& prediction
   FeatureList<P>& features = frame.features.list;
   MatchList<P>& matches = frame.matches.list;
   for (int i : P::range(0, predictions.pairs.count)) {
-    if (I32(found[i]) == I32(0) || matches.count == matches.capacity) continue;
+    if (I32(found[i]) != I32(static_cast<int>(PatchVerdict::Agrees)) ||
+        matches.count == matches.capacity)
+      continue;
     const int at = features.count++;
     const I32 old = predictions.pairs.reference[i];
     features.x[at] = work::narrow<U16>(I32(predictions.x[i]));
@@ -125,6 +145,7 @@ void align_features(const FrontEndState<P>& state, Frame<P>& frame,
   const auto aligned = local.alloc<Flags<P>>("aligned", n);
   align_patches<P>(machine, before, {image, frame.features.list.x, frame.features.list.y}, steps,
                    options.max_shift, options, matches.list, aligned);
+  if (options.required) drop_disagreeing<P>(aligned, frame.matches.list);
   if (!T_predicted || !(options.reach > 0)) return;
   const auto matched = local.alloc<Flags<P>>("matched", n);
   mark_matched<P>(matches.list, state.keyframe.features.list.count, matched);

@@ -55,7 +55,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
     } else {
       report.keyframe = is_keyframe(frame, report);
       if (loop_ && !initialises()) loop_->follow(frame, report);
-      if (report.keyframe) insert_keyframe<P>(state_, frame, !initialises());
+      if (report.keyframe) insert_keyframe<P>(state_, frame, any_depth());
     }
   }
   if (initialises()) path_.remember();
@@ -101,7 +101,14 @@ void NextFrontEnd<P>::start_anew(TrackedFrame<P>& frame) {
   const Vec3<P>& force = inertial_.recent().accel_mean;
   if (dot(force, force) > F(0.0f)) R = levelled<P>(R, force);
   begin_map<P>(state_, frame, record, ImuBias<P>::zero(), {0.0f, 0.0f, -kGravity});
-  map_.aligned = map_.converged = false;
+  map_ = {};
+}
+
+/// Of landmarks that are new while the map waits for its alignment, m; else 0.
+template <class P>
+float NextFrontEnd<P>::any_depth() const {
+  if (!initialises()) return 0;
+  return 1 / (map_.inverse_depth > 0 ? map_.inverse_depth : state_.profile.alignment.inverse_depth);
 }
 
 /// Whether the map waits for its alignment.

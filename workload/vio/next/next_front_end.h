@@ -29,6 +29,7 @@ class NextFrontEnd : public FrontEnd<P> {
   bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);
   bool initialises() const;
+  float any_depth() const;
   void hold_position(TrackedFrame<P>& frame) const;
   void follow(TrackedFrame<P>& frame, FrameReport& report);
   void locate(TrackedFrame<P>& frame, FrameReport& report);

@@ -17,7 +17,8 @@ BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& contr
       graph_(graph),
       map_(map),
       window_(controller.local(), graph.capacity),
-      damping_(options_) {
+      damping_(options_),
+      alignment_{profile.alignment.initial_lambda, profile.alignment.inverse_depth} {
   if (!options_.joint) return;
   prior_ = WindowPrior<P>(controller.local(), graph.capacity.keyframes);
   window_.lever_arm = {rig.p_camera_body[0], rig.p_camera_body[1], rig.p_camera_body[2]};
@@ -43,13 +44,14 @@ bool BackEnd<P>::begin() {
     start_prior<P>(window_, options_.prior, prior_);
   if (!aligns_) {
     damping_ = LmState<P>(options_);
-  } else if (snapshots_ == 1) {
-    // With as much damping as there is curvature no step gains any more: another start may do
-    // better.
-    constexpr float kStuck = 1.0f;
-    afresh_ = !converged_ && bool(damping_.lambda >= F(kStuck));
-    map_.converged = map_.converged && !afresh_;
-    damping_.lambda = profile_.alignment.initial_lambda;
+  } else {
+    // Not twice in a row: a comparison takes a few frames, in which the newest keyframe becomes
+    // another one.
+    compares_ = snapshots_ == 1 && !compared_;
+    compared_ = compares_;
+    if (snapshots_ == 1)
+      alignment_ = {profile_.alignment.initial_lambda,
+                    map_.inverse_depth > 0 ? map_.inverse_depth : profile_.alignment.inverse_depth};
   }
   solved_ = false;
   return true;
@@ -85,11 +87,15 @@ template <class P>
 OptimiserReport BackEnd<P>::optimise() {
   if (aligns_) {
     const auto stage = machine_.stage(stages::kInitialisation);
-    const AlignmentReport report = align_once<P>(machine_, window_, damping_, options_,
-                                                 profile_.alignment, std::exchange(afresh_, false));
+    const bool compares = std::exchange(compares_, false);
+    const AlignmentReport report =
+        compares
+            ? align_from_all<P>(machine_, window_, alignment_, options_, profile_.alignment)
+            : align_once<P>(machine_, window_, alignment_, options_, profile_.alignment, false);
     solved_ = solved_ || report.positive_definite;
     converged_ = report.converged;
-    determined_ = report.determined;
+    if (compares) ambiguous_ = report.ambiguous;
+    determined_ = report.determined && !ambiguous_;
     return {true, report.accepted, report.cost_before, report.cost_after};
   }
   const auto stage = machine_.stage(stages::kOptimiser);
@@ -122,6 +128,7 @@ template <class P>
 void BackEnd<P>::publish_alignment() {
   const int last = window_.keyframes - 1;
   map_.converged = map_.converged || converged_;
+  map_.inverse_depth = work::value(alignment_.inverse_depth);
   const I32 newest = graph_.keyframe_ids[graph_.newest_keyframe()];
   const bool aligned = determined_ && bool(newest == I32(window_.keyframe_ids[last]));
   if (!aligned)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/work/machine.h"
+#include "workload/graph/alignment.h"
 #include "workload/graph/marginalisation.h"
 #include "workload/graph/optimiser.h"
 #include "workload/graph/pose_graph.h"
@@ -42,11 +43,14 @@ class BackEnd {
   Window<P> window_;
   WindowPrior<P> prior_;  ///< only if the optimiser works jointly
   LmState<P> damping_;
+  AlignmentState<P> alignment_;
   int newest_ = -1;          ///< serial number of the newest keyframe
   int snapshots_ = 0;        ///< that were taken of it
   bool solved_ = false;      ///< the system of this snapshot could be solved
   bool aligns_ = false;      ///< this snapshot is of a map that is not aligned yet
-  bool afresh_ = false;      ///< its alignment forgets what it found before
+  bool ambiguous_ = false;   ///< when it last began from several starts, two scales were left
+  bool compares_ = false;    ///< its alignment is to begin from several starts
+  bool compared_ = false;    ///< this snapshot's does, or did
   bool converged_ = false;   ///< its alignment is near its minimum
   bool determined_ = false;  ///< its alignment has converged, and tells enough
 };
