@@ -20,6 +20,7 @@ struct Options {
   int keyframes = 12;
   double interval_s = 0.15;
   double outliers = 0;      ///< share of observations that are 15 px off
+  double distance = 1;      ///< of the points, times 2 to 8 m
   bool accelerates = true;  ///< otherwise the camera flies on at the speed that it has at first
 };
 
@@ -45,7 +46,7 @@ struct MovingScene {
     for (int i = 0; i < 150; ++i) {
       const int first = static_cast<int>(scatter.uniform(0, options.keyframes - 3));
       const Vector3d ray(scatter.uniform(-0.5, 0.5), scatter.uniform(-0.4, 0.4), 1);
-      const Vector3d in_camera = ray * scatter.uniform(2, 8);
+      const Vector3d in_camera = ray * (scatter.uniform(2, 8) * options.distance);
       points.push_back({rotation(time(first)) * in_camera + position(time(first)), first,
                         first + 2 + i % 6, -1});
     }
@@ -140,7 +141,7 @@ struct MovingScene {
   void observe(int k, Point& point, const Pose<Native>& T_world_camera) {
     const PinholeCamera& c = optimiser.visual.camera;
     const Vector3d x = rotation(time(k)).transpose() * (point.at - position(time(k)));
-    if (x.z() < 0.5) return;
+    if (x.z() < 0.1) return;
     double u = static_cast<double>(c.fx) * x.x() / x.z() + static_cast<double>(c.cx);
     double v = static_cast<double>(c.fy) * x.y() / x.z() + static_cast<double>(c.cy);
     if (random.uniform(0, 1) < options.outliers) u += 15 * 64;
@@ -178,6 +179,15 @@ TEST(Alignment, FindsVelocityGravityAndBiasesOfAFlight) {
   EXPECT_LT(scene.tilt_error(), 0.02);
   EXPECT_LT(scene.velocity_error(), 0.1);
   EXPECT_LT((to_eigen<Native>(scene.window.bias.gyro) - scene.gyro_bias).norm(), 0.01);
+}
+
+/// No distance is assumed: what is seen may be half a metre or twenty metres away.
+TEST(Alignment, FindsTheScaleOfNearAndFarScenes) {
+  for (const double distance : {0.25, 0.5, 2.5}) {
+    MovingScene scene({.distance = distance});
+    EXPECT_GT(scene.align(), 0) << distance;
+    EXPECT_NEAR(scene.scale(), 1, 0.1) << distance;
+  }
 }
 
 TEST(Alignment, IsRobustAgainstWrongMatches) {
