@@ -1,5 +1,5 @@
-// `next-loop` on drawn flights: nothing changes until a loop is closed, loops are closed, and all of
-// it fits its memory and the time between frames.
+// `next-loop` on drawn flights: nothing changes until a loop is closed, loops are closed, and all
+// of it fits its memory and the time between frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,14 +34,16 @@ TEST(NextLoop, IsNextUntilALoopIsClosed) {
         << i;
 }
 
+/// A flight that drifts by less than a view tells its place has nothing to gain from a closure.
 TEST(NextLoop, ClosesLoopsAndIsNoWorseForIt) {
+  constexpr double kPlace = 0.05;  // m, of a view of 160×120 px (ACCURACY.md)
   const Flown next = vio::test::fly(rounds(), vio::profile_named("next", 1));
   const Flown loop = vio::test::fly(rounds(), vio::profile_named("next-loop", 1));
   EXPECT_NE(next.trajectory.back().T_world_body.matrix(),
             loop.trajectory.back().T_world_body.matrix());
   EXPECT_TRUE(loop.finite);
   EXPECT_LT(loop.skew, 1e-5);
-  EXPECT_LT(loop.ate, 1.05 * next.ate);
+  EXPECT_LT(loop.ate, std::max(1.05 * next.ate, kPlace));
 }
 
 constexpr double kCyclesPerMs = 370e3;

@@ -49,6 +49,7 @@ bool BackEnd<P>::begin() {
     // another one.
     compares_ = snapshots_ == 1 && !compared_;
     compared_ = compares_;
+    arrived_ = false;
     if (snapshots_ == 1)
       alignment_ = {profile_.alignment.initial_lambda,
                     map_.inverse_depth > 0 ? map_.inverse_depth : profile_.alignment.inverse_depth};
@@ -86,6 +87,7 @@ void BackEnd<P>::update_prior() {
 template <class P>
 OptimiserReport BackEnd<P>::optimise() {
   if (aligns_) {
+    if (arrived_) return {true, false, 0, 0};
     const auto stage = machine_.stage(stages::kInitialisation);
     const bool compares = std::exchange(compares_, false);
     const AlignmentReport report =
@@ -94,6 +96,8 @@ OptimiserReport BackEnd<P>::optimise() {
             : align_once<P>(machine_, window_, alignment_, options_, profile_.alignment, false);
     solved_ = solved_ || report.positive_definite;
     converged_ = report.converged;
+    constexpr float kArrived = 0.1f;  // standard deviations from the minimum
+    arrived_ = !compares && report.distance < kArrived;
     if (compares) ambiguous_ = report.ambiguous;
     determined_ = report.determined && !ambiguous_;
     return {true, report.accepted, report.cost_before, report.cost_after};
@@ -122,20 +126,19 @@ void BackEnd<P>::publish() {
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
 }
 
-/// A map is aligned as a whole, with its newest keyframe; landmarks that the alignment had no place
-/// for are given up then.
+/// A map is aligned as a whole: keyframes that are newer than the snapshot follow its last one.
+/// Landmarks that the alignment had no place for are given up then.
 template <class P>
 void BackEnd<P>::publish_alignment() {
   const int last = window_.keyframes - 1;
   map_.converged = map_.converged || converged_;
   map_.inverse_depth = work::value(alignment_.inverse_depth);
-  const I32 newest = graph_.keyframe_ids[graph_.newest_keyframe()];
-  const bool aligned = determined_ && bool(newest == I32(window_.keyframe_ids[last]));
+  const I32 slot = window_.keyframe_slots[last];
+  const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
+  const bool aligned = determined_ && still_there;
   if (!aligned)
     for (int i : P::range(0, window_.landmarks))
       window_.lost[i] = work::narrow<typename P::Byte>(I32(0));
-  const I32 slot = window_.keyframe_slots[last];
-  const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
   const Pose<P> before = graph_.keyframe(slot).T_world_camera;
   vio::publish<P>(window_, graph_);
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));

@@ -51,6 +51,7 @@ class BackEnd {
   bool ambiguous_ = false;   ///< when it last began from several starts, two scales were left
   bool compares_ = false;    ///< its alignment is to begin from several starts
   bool compared_ = false;    ///< this snapshot's does, or did
+  bool arrived_ = false;     ///< its alignment is at its minimum: more iterations gain nothing
   bool converged_ = false;   ///< its alignment is near its minimum
   bool determined_ = false;  ///< its alignment has converged, and tells enough
 };
