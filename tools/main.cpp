@@ -88,7 +88,19 @@ int end_interrupted(const Interrupted& stop, const Words& words) {
   return kSignalled + stop.signal();
 }
 
-int run_program(const Words& words) {
+/// As results record them: none depends on how many are computed at a time.
+Words without_jobs(const Words& typed) {
+  Words words;
+  for (std::size_t i = 0; i < typed.size(); ++i)
+    if (typed[i] == "--jobs")
+      ++i;
+    else if (!typed[i].starts_with("--jobs="))
+      words.push_back(typed[i]);
+  return words;
+}
+
+int run_program(const Words& typed) {
+  const Words words = without_jobs(typed);
   CLI::App app("Runs visual-inertial odometry on models of ultra-low-power multicore chips.",
                "leviosim");
   app.footer("leviosim help COMMAND: its options, with examples");
@@ -117,7 +129,7 @@ int run_program(const Words& words) {
                                          add_check_command(app),
                                          add_budget_command(app),
                                          add_report_command(app)},
-                                        words);
+                                        typed);
     flush_results();
     throw_if_interrupted();
     return status;

@@ -69,12 +69,29 @@ void append_escaped(std::string& out, std::string_view bytes) {
   }
 }
 
+/// Nothing but blanks since the last line break, and what may be a blank beyond ASCII.
+bool begins_line(std::string_view text) {
+  for (; !text.empty() && text.back() != '\n'; text.remove_suffix(1))
+    if (text.back() > ' ' && text.back() < '\x7f') return false;
+  return true;
+}
+
+/// Whether `next` would make a command of CI servers of what is printed: "::error::", "##[error]",
+/// "##vso[task.complete]".
+bool makes_command(const std::string& printed, char next) {
+  const bool is_letter = (next >= 'a' && next <= 'z') || (next >= 'A' && next <= 'Z');
+  if (is_letter || next == '[') return printed.ends_with("##");
+  return next == ':' && printed.ends_with(':') &&
+         begins_line(std::string_view(printed).substr(0, printed.size() - 1));
+}
+
 std::string escaped(std::string_view text, std::string_view kept) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
     const Character c = first_character(text);
     const std::string_view bytes = text.substr(0, c.length);
+    if (makes_command(out, bytes[0])) out += ' ';
     if (!is_escaped(c) || kept.find(bytes) != std::string_view::npos)
       out += bytes;
     else

@@ -10,7 +10,8 @@ namespace leviosim {
 
 /// One line of text. Escaped are control characters (C0, DEL, C1), the separators of lines and
 /// paragraphs, the characters that change the direction of writing, U+FFFE, U+FFFF, and bytes that
-/// are no UTF-8: "\n", "\t", "\r" and else "\x1b" for each byte.
+/// are no UTF-8: "\n", "\t", "\r" and else "\x1b" for each byte. What servers of CI would obey gets a
+/// blank: "::" where a line begins, and "##" before a letter or '['.
 std::string printable(std::string_view text);
 
 /// Printable form of a text of several lines, such as tables: newlines and tabs stay.

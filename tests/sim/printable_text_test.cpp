@@ -50,6 +50,21 @@ TEST(PrintableText, LinesKeepNewlinesAndTabs) {
   EXPECT_EQ(printable_lines(std::string("\0", 1)), "\\x00");
 }
 
+TEST(PrintableText, NoLineIsACommandOfAServer) {
+  for (const Case& c : std::vector<Case>{{"::error::x", ": :error::x"},
+                                         {" \t::stop-commands::x", " \t: :stop-commands::x"},
+                                         {"a\n::x", "a\n: :x"},
+                                         {"\xc2\xa0::x", "\xc2\xa0: :x"},
+                                         {":::", ": ::"},
+                                         {"std::string, a ::b", "std::string, a ::b"},
+                                         {"a ##[error]b", "a ## [error]b"},
+                                         {"###[x]", "### [x]"},
+                                         {"##vso[task.complete]", "## vso[task.complete]"},
+                                         {"### 2 stages", "### 2 stages"}})
+    EXPECT_EQ(printable_lines(c.text), c.printed);
+  EXPECT_EQ(printable("a\n::x"), "a\\n::x");
+}
+
 /// Decoded here anew, by the table of well-formed byte sequences of the Unicode standard (3-7).
 bool is_plain(const std::string& text) {
   const auto in = [&](std::size_t i, int low, int high) {

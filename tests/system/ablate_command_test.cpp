@@ -260,6 +260,20 @@ TEST_F(BatchCommands, ExplorationsResume) {
   EXPECT_NE(picture.find("30 of 30 marks"), std::string::npos);
 }
 
+TEST_F(BatchCommands, ManifestsDoNotDependOnTheNumberOfJobs) {
+  std::string one;
+  for (const char* jobs : {"--jobs=1", "--jobs=2"}) {
+    const ProgramResult result =
+        run_program(folder_.path(), words("ablate", {"--profile", "levio", "--seed", "1", jobs}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string manifest = base::read_text_file(folder_ / "out/manifest.json");
+    if (one.empty()) one = manifest;
+    EXPECT_EQ(manifest, one);
+    fs::remove_all(folder_ / "out");
+  }
+  EXPECT_EQ(one.find("jobs"), std::string::npos);
+}
+
 TEST(AblateCommand, ResumesAfterAKillAndComparesProfiles) {
   const TempFolder folder;
   traces::write_synthetic_flight(folder / "flight", {.duration_s = 2, .texel_m = 0.01});

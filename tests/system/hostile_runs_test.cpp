@@ -1,8 +1,10 @@
-// Run folders that a stranger made: what a gate reads is what the run wrote.
+// Run folders, budgets and baselines that a stranger made: what a gate reads is what the run wrote,
+// and what it prints obeys nobody.
 #include <gtest/gtest.h>
 
 #include "tests/support/program_suite.h"
 #include "tests/support/scratch.h"
+#include "tools/app/report/statistic_list.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -96,6 +98,103 @@ TEST_F(HostileRuns, RecordsOfOtherFilesSayNothingOfTheRun) {
   expect_done({"report", path("run"), "--out", path("run/r.html")});
   ASSERT_TRUE(fs::exists(path("run/.leviosim-files")));
   expect_read_by_all();
+}
+
+/// Lines that a server of CI would obey.
+std::vector<std::string> commands_in(const std::string& text) {
+  std::vector<std::string> commands;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("##[") != std::string::npos || line.find("##vso[") != std::string::npos ||
+        line.find("::") == line.find_first_not_of(" \t"))
+      commands.push_back(line);
+  std::erase(commands, "");
+  return commands;
+}
+
+TEST_F(HostileRuns, LinesOfOthersAreNoCommandsOfServers) {
+  const std::string words = std::string(65, 'x') + " ::stop-commands::x ##[error]y ##vso[z]";
+  write_text(
+      path("hostile.yaml"),
+      "budgets:\n  - limits:\n      - limit: L1 peak <= 1 kB\n        reason: \"a\\n::error::b " +
+          words + "\"\n        owner: \"\\n::set-env name=x::y\\n##[group]z " + words +
+          "\"\n      - { stage: \"*\", limit: cycles <= 1 cycles }\n    name: \"::warning::x\"\n");
+  fs::remove(path("run/.leviosim-files"));
+  for (const char* name : {"cycles.csv", "stages.csv", "memory.csv", "energy.csv"}) {
+    std::string text = read_text(path("run") + '/' + name);
+    for (const auto& [stage, other] : {std::pair{"feature extraction", "::feature::extraction"},
+                                       std::pair{"frame matching", "##[frame]matching"}})
+      for (std::size_t at = 0; (at = text.find(stage, at)) != std::string::npos;)
+        text.replace(at, std::string(stage).size(), other);
+    write_text(path("run") + '/' + name, text);
+  }
+  const std::vector<std::string> check{"check", path("run"), "--budget", path("hostile.yaml")};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), check.begin(), check.end());
+    return more;
+  };
+  const std::vector<std::string> github = with({"--annotations", "github"});
+  for (const std::vector<std::string>& line : std::vector<std::vector<std::string>>{
+           check,
+           github,
+           with({"--annotations", "gitlab"}),
+           with({"--json"}),
+           {"compare", path("clean"), path("run")},
+           {"compare", path("clean"), path("run"), "--format", "markdown"},
+           {"compare", path("clean"), path("run"), "--format", "csv"},
+           {"check", "::error::x", "--budget", "##[error]y"},
+           {"check", path("run"), "--budget", "x ##vso[task.complete result=Succeeded;]"},
+           {"report", path("run"), "--out", path("##[error]/x")}}) {
+    const ProgramResult result = program(line);
+    std::vector<std::string> commands = commands_in(result.out + result.err);
+    if (line == github)
+      std::erase_if(commands, [](const std::string& c) { return c.starts_with("::error file="); });
+    EXPECT_EQ(commands, std::vector<std::string>()) << line[0] << ' ' << line.back();
+  }
+  EXPECT_NE(program(github).out.find("\n::error file="), std::string::npos);
+  const std::string json = program(with({"--json"})).out;
+  EXPECT_NE(Json::parse(json).dump().find("##[group]z"), std::string::npos) << "is data as it was";
+}
+
+TEST_F(HostileRuns, BarsDoNotSplitCellsOfMarkdown) {
+  fs::remove(path("run/.leviosim-files"));
+  std::string text = read_text(path("run/cycles.csv"));
+  for (std::size_t at = 0; (at = text.find("feature extraction", at)) != std::string::npos;)
+    text.replace(at, 18, "feature|extraction\\|");
+  write_text(path("run/cycles.csv"), text);
+  const ProgramResult result =
+      program({"compare", path("run"), path("run"), "--format", "markdown"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("| feature\\|extraction\\\\\\| |"), std::string::npos) << result.out;
+}
+
+TEST_F(HostileRuns, BaselinesHaveWholeNumbersAndNothingBehindTheirEnd) {
+  const std::string good = program({"budget", "record", path("run")}).out;
+  const auto check = [&](const std::string& baseline) {
+    write_text(path("baseline.json"), baseline);
+    return program({"check", path("run"), "--budget", path("budgets.yaml"), "--baseline",
+                    path("baseline.json")});
+  };
+  EXPECT_EQ(check(good).status, 0);
+  for (const char* seed : {"1.5", "1.0", "4294967297", "-1", "\"1\""}) {
+    std::string other = good;
+    expect_refused(
+        check(other.replace(other.find("\"seed\":1"), 8, std::string("\"seed\":") + seed)),
+        {"baseline.json"});
+  }
+  expect_refused(check(good + '\0'), {"baseline.json"});
+  expect_refused(check(good + '\0' + "x"), {"baseline.json"});
+}
+
+TEST_F(HostileRuns, TwoOutputsHaveTwoNames) {
+  for (const char* other : {"x", "./x", "../hostile-twin/x"}) {
+    fs::create_directory_symlink(folder_->path(), path("../hostile-twin"));
+    expect_refused(program({"check", path("run"), "--budget", path("budgets.yaml"), "--report",
+                            path("x"), "--junit", path(other)}),
+                   {"--report", "--junit", "x", "two files"});
+    fs::remove(path("../hostile-twin"));
+    EXPECT_FALSE(fs::exists(path("x")));
+  }
 }
 
 }  // namespace

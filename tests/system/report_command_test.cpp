@@ -146,6 +146,7 @@ class InBrowser : public Report {
       drawn: [...document.querySelectorAll("canvas")].filter((c) => Chart.getChart(c)).length,
       tables: document.querySelectorAll("figure details").length,
       verdict: document.querySelectorAll(".verdict, [aria-label=Runs]").length,
+      colours: [...document.querySelectorAll("i")].every((i) => i.style.length > 0),
       evil: document.title === "evil",
       ink: getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()}, "*"));
       </script></body>)";
@@ -190,6 +191,7 @@ class InBrowser : public Report {
         EXPECT_EQ(seen.page["tables"], seen.page["canvases"]);
         EXPECT_EQ(seen.page["verdict"], verdicts);
         EXPECT_EQ(seen.page["evil"], false);
+        EXPECT_EQ(seen.page["colours"], true);
         EXPECT_EQ(seen.page["ink"], dark ? "#e4e9ef" : "#1b2430");
       }
   }
@@ -200,6 +202,26 @@ TEST_F(InBrowser, APageOfARunIsDrawnWithoutErrorsRequestsOrOverflow) { expect_fi
 TEST_F(InBrowser, APageOfSeveralRunsIsToo) {
   expect_done({"report", path("a"), path(kEvilRun), "-o", path("both.html")});
   expect_fine("both.html");
+}
+
+/// Stages may be called as what every object of a script has.
+TEST_F(InBrowser, APageOfStagesWithNamesOfScriptsIsToo) {
+  fs::copy(path("a"), path("names"));
+  fs::remove(path("names/.leviosim-files"));
+  for (const char* name : {"frames.csv", "stages.csv", "cycles.csv", "memory.csv", "energy.csv",
+                           "stats.json"}) {
+    std::string text = base::read_text_file(path("names") + '/' + name);
+    for (const auto& [stage, other] : {std::pair{"feature extraction", "constructor"},
+                                       std::pair{"feature_extraction", "constructor"},
+                                       std::pair{"frame matching", "__proto__"},
+                                       std::pair{"frame_matching", "proto"},
+                                       std::pair{",cores,", ",__proto__,"}})
+      for (std::size_t at = 0; (at = text.find(stage, at)) != std::string::npos;)
+        text.replace(at, std::string(stage).size(), other);
+    std::ofstream(path("names") + '/' + name) << text;
+  }
+  expect_done({"report", path("names"), "-o", path("names.html")});
+  expect_fine("names.html");
 }
 
 TEST_F(InBrowser, APageOfABudgetThatIsNotMetIsToo) {

@@ -62,6 +62,14 @@ TEST(FlightStarts, NeverTakeAFrameTwice) {
   EXPECT_EQ(starts.frames, (std::vector<std::size_t>{1, 2, 3}));
 }
 
+TEST(FlightStarts, TakeAsLongAsThereAreFrames) {
+  std::vector<std::int64_t> apart = stamps(4, 0);
+  apart.back() = 9'000'000'000'000'000'000;
+  const Starts starts = starts_in_motion(apart, moving_between(0, 100, 1), 0.01);
+  EXPECT_EQ(starts.frames, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(starts.at_rest, 1u);
+}
+
 TEST(FlightStarts, PathsAreThoseOfTheTruth) {
   const traces::Trajectory truth = moving_between(10, 20, 0.5);
   EXPECT_NEAR(true_path_m(truth, 0, 100'000'000'000), 5, 1e-9);
@@ -142,7 +150,11 @@ TEST(FlightPlans, RefuseFaultsWithTheirPlace) {
     expect_input_error([&] { parse_flight_plan("p.yaml", kPlan + line); }, parts);
   };
   refuse_more("every: 0", {"p.yaml:4: every", "'0'", "above 0"});
-  refuse_more("every: 0.001", {"p.yaml:4: every", "too short", "0.01"});
+  for (const char* every : {"0.001", "86401", "1e10", "1e300"})
+    refuse_more(fmt::format("every: {}", every),
+                {"p.yaml:4: every", every, "expected 0.01 to 86400 s"});
+  for (const char* every : {"nan", "-1", "1e999"})
+    refuse_more(fmt::format("every: {}", every), {"p.yaml:4: every", every});
   refuse_more("seeds: [x]", {"p.yaml:4: seeds", "'x'"});
   refuse_more("size: 32", {"p.yaml:4: size", "32"});
   refuse_more("variants: []", {"p.yaml:4: variants", "is empty"});

@@ -39,7 +39,6 @@ void check_options(const CLI::App& command, const CheckOptions& options) {
 
 std::string text_report(const CheckOptions& options, const CheckResult& result) {
   if (options.annotations == "gitlab") return gitlab_report(result);
-  if (options.annotations == "github") return check_text(result) + github_annotations(result);
   return check_text(result);
 }
 
@@ -53,15 +52,17 @@ void run(const CLI::App& command, const CheckOptions& options) {
                     .inputs = {options.run, options.gate.budget, options.gate.baseline}});
   std::optional<outputs::OutputFile> page = claimed_report(
       options.report, options.force, {options.run, options.gate.budget, options.gate.baseline});
+  expect_different(junit, "--junit", page, "--report");
   RunFiles files;
   const RunRecord record = read_record(options.run, options, &files);
   const CheckResult result = gate.check(record);
   std::string html;
   if (page) html = html_page(runs_report({{record, files}}, {}, &result));
-  publish({{junit, junit_xml(result), ""}, {page, html, ""}},
-          printout(
-              options.json, [&] { return text_report(options, result); },
-              [&] { return json_text(check_json(result), 2) + '\n'; }));
+  Printout report = printout(
+      options.json, [&] { return text_report(options, result); },
+      [&] { return json_text(check_json(result), 2) + '\n'; });
+  if (options.annotations == "github") report.ci_commands = github_annotations(result);
+  publish({{junit, junit_xml(result), ""}, {page, html, ""}}, report);
   if (result.missed() > 0) throw LimitNotMet();
 }
 

@@ -208,6 +208,7 @@ void systems(const PlatformsOptions& options) {
   wanted.option = "--svg";
   wanted.path = options.svg;
   std::optional<outputs::OutputFile> svg = claimed_file(wanted);
+  expect_different(csv, "--csv", svg, "--svg");
   const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
   request.data = data_folder(run, style);
   ProgressLine line(style);

@@ -18,8 +18,9 @@ constexpr int kWidth = 80;
 constexpr int kIndent = 9;
 constexpr int kWidest = 44;  // limit in the table
 
-std::string wrapped(const std::string& label, const std::string& words) {
-  if (words.empty()) return {};
+std::string wrapped(const std::string& label, const std::string& raw) {
+  if (raw.empty()) return {};
+  const std::string words = printable(raw);
   std::vector<std::string> items{label};
   for (std::size_t begin = 0; begin <= words.size();) {
     const std::size_t end = std::min(words.find(' ', begin), words.size());
@@ -61,7 +62,7 @@ std::string check_text(const CheckResult& result) {
   for (const Finding& f : result.findings)
     if (!f.met)
       text += fmt::format("\nNOT MET  {}: {}\n", printable(place(f)), printable(f.title())) +
-              printable_lines(details(f));
+              details(f);
   return text;
 }
 

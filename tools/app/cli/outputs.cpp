@@ -40,6 +40,13 @@ std::optional<outputs::OutputFile> claimed_file(const outputs::OutputRequest& re
   return std::optional<outputs::OutputFile>(std::in_place, request);
 }
 
+void expect_different(const std::optional<outputs::OutputFile>& first, const char* first_option,
+                      const std::optional<outputs::OutputFile>& second, const char* option) {
+  if (first && second && first->path() == second->path())
+    throw InputError(fmt::format("{} {}: is the file of {} too; expected two files", option,
+                                 second->shown_path(), first_option));
+}
+
 void publish(std::initializer_list<FileOutput> files, const Printout& report) {
   std::string lines;
   std::optional<std::string> first_fault;

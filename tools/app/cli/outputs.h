@@ -22,6 +22,10 @@ void publish(outputs::OutputFolder& out, const Printout& report, const std::func
 /// The file of an option; none if the option is empty. @throws InputError if it cannot be written
 std::optional<outputs::OutputFile> claimed_file(const outputs::OutputRequest& request);
 
+/// @throws InputError if the second option names the file of the first
+void expect_different(const std::optional<outputs::OutputFile>& first, const char* first_option,
+                      const std::optional<outputs::OutputFile>& second, const char* option);
+
 struct FileOutput {
   std::optional<outputs::OutputFile>& file;
   std::string bytes;

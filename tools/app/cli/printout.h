@@ -20,6 +20,7 @@ struct Printout {
 
   std::string text;
   bool is_whole = false;
+  std::string ci_commands;  ///< lines behind the text that a server of CI obeys
 };
 
 /// Declares --json.

@@ -46,12 +46,17 @@ bool stdout_has_colours() {
       fmt::format("stdout: cannot be written: {}", std::generic_category().message(error)));
 }
 
+void write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size()) fail(errno);
+}
+
 }  // namespace
 
+void print_ci_commands(std::string_view lines) { write(lines); }
+
 void print_result_text(std::string_view text) {
-  std::string safe = printable_lines(text);
-  if (stdout_has_colours()) safe = coloured_lines(safe);
-  if (std::fwrite(safe.data(), 1, safe.size(), stdout) < safe.size()) fail(errno);
+  const std::string safe = printable_lines(text);
+  write(stdout_has_colours() ? coloured_lines(safe) : safe);
 }
 
 std::optional<int> terminal_width() {

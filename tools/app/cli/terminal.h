@@ -2,7 +2,7 @@
 // progress_line.h. Results are coloured on a terminal only, and not where NO_COLOR is set
 // (no-color.org). Nothing raw leaves: control characters and bytes that are no UTF-8 are escaped
 // (sim/base/printable_text.h). Newlines and tabs of results stay, so texts from outside are made
-// printable() where they enter a result.
+// printable() where they enter a result. No line is a command for a server of CI.
 #pragma once
 
 #include <fmt/core.h>
@@ -18,6 +18,9 @@ namespace leviosim::tools {
 
 /// To stdout. @throws InputError if it cannot be written, Interrupted if nobody reads it any more
 void print_result_text(std::string_view text);
+
+/// Lines that a server of CI obeys, as they are: only leviosim's own, of parts that are printable().
+void print_ci_commands(std::string_view lines);
 
 template <class... Args>
 void print_result(fmt::format_string<Args...> format, Args&&... args) {

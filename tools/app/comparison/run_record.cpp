@@ -19,9 +19,16 @@ template <class F>
 auto reading(const std::string& where, const char* what, F&& f) {
   try {
     return f();
-  } catch (const nlohmann::json::exception&) {
+  } catch (const std::exception&) {
     throw InputError(fmt::format("{}: does not hold {} as leviosim writes it", where, what));
   }
+}
+
+/// JSON would round fractions and cut off digits.
+template <class Whole>
+void whole(const Json& number, Whole& value) {
+  number.get_to(value);
+  if (!number.is_number_integer() || number != value) throw std::out_of_range("no whole number");
 }
 
 void check_format(const std::string& where, const Json& document, const char* format, int newest) {
@@ -54,17 +61,17 @@ RunFacts facts_of_manifest(const Json& m) {
                               program.at("revision").get<std::string>());
   m.at("profile").get_to(facts.profile);
   if (m.contains("workload")) m.at("workload").get_to(facts.workload);
-  m.at("seed").get_to(facts.seed);
+  whole(m.at("seed"), facts.seed);
   if (const Json& platform = m.at("platform"); !platform.is_null()) {
     platform.at("name").get_to(facts.platform);
     platform.at("overrides").get_to(facts.overrides);
-    platform.at("cores").get_to(facts.cores);
+    whole(platform.at("cores"), facts.cores);
   }
   if (m.contains("camera")) facts.camera = camera_text(m.at("camera"));
-  m.at("image").at("width").get_to(facts.image_width);
-  m.at("image").at("height").get_to(facts.image_height);
-  m.at("data").at("first_frame").get_to(facts.first_frame);
-  m.at("data").at("frames").get_to(facts.frames);
+  whole(m.at("image").at("width"), facts.image_width);
+  whole(m.at("image").at("height"), facts.image_height);
+  whole(m.at("data").at("first_frame"), facts.first_frame);
+  whole(m.at("data").at("frames"), facts.frames);
   // The work of a replay came from the data of its recording.
   facts.inputs = digests(m.contains("recording") ? m.at("recording").at("inputs") : m.at("inputs"));
   return facts;
@@ -146,8 +153,8 @@ const StageParts* RunRecord::stage_parts(std::string_view stage) const {
 }
 
 Json parse_json(const std::string& where, const std::string& text) {
-  Json document = Json::parse(text, nullptr, false);
-  if (document.is_discarded() || !document.is_object())
+  Json document = Json::parse(text, nullptr, false);  // takes a NUL for the end
+  if (text.find('\0') != std::string::npos || document.is_discarded() || !document.is_object())
     throw InputError(fmt::format("{}: no JSON document", where));
   return document;
 }
@@ -239,15 +246,15 @@ RunFacts facts_of_json(const std::string& where, const Json& json) {
     json.at("program").get_to(facts.program);
     json.at("profile").get_to(facts.profile);
     if (json.contains("workload")) json.at("workload").get_to(facts.workload);
-    json.at("seed").get_to(facts.seed);
+    whole(json.at("seed"), facts.seed);
     json.at("platform").get_to(facts.platform);
     json.at("overrides").get_to(facts.overrides);
-    json.at("cores").get_to(facts.cores);
+    whole(json.at("cores"), facts.cores);
     facts.camera = json.value("camera", "");
-    json.at("image").at(0).get_to(facts.image_width);
-    json.at("image").at(1).get_to(facts.image_height);
-    json.at("first_frame").get_to(facts.first_frame);
-    json.at("frames").get_to(facts.frames);
+    whole(json.at("image").at(0), facts.image_width);
+    whole(json.at("image").at(1), facts.image_height);
+    whole(json.at("first_frame"), facts.first_frame);
+    whole(json.at("frames"), facts.frames);
     for (const auto& [name, sha256] : json.at("inputs").items())
       facts.inputs.emplace_back(name, sha256.get<std::string>());
     return facts;

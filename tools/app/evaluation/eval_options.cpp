@@ -54,8 +54,7 @@ void claim_outputs(const EvalOptions& options, EvalRequest& request) {
         fmt::format("--plot {}: draws one estimate; expected no --also", options.plot));
   request.json = claimed_file(output(options, "--json", options.json));
   request.plot = claimed_file(output(options, "--plot", options.plot));
-  if (request.json && request.plot && request.json->path() == request.plot->path())
-    throw InputError(fmt::format("--json {}: is the file of --plot too", options.json));
+  expect_different(request.plot, "--plot", request.json, "--json");
 }
 
 }  // namespace

@@ -71,7 +71,11 @@ std::string TextTable::line(const std::vector<std::string>& cells,
 std::string TextTable::markdown() const {
   const auto row = [](const std::vector<std::string>& cells) {
     std::string text = "|";
-    for (const std::string& cell : cells) text += ' ' + cell + " |";
+    for (const std::string& cell : cells) {
+      text += ' ';
+      for (const char c : cell) text += c == '|' || c == '\\' ? std::string{'\\', c} : std::string{c};
+      text += " |";
+    }
     return text + '\n';
   };
   std::vector<std::string> titles;

@@ -40,7 +40,7 @@ class TextTable {
   /// titles then end in "…". Before that, columns of long text, which are aligned to the left, are
   /// cut.
   std::string str(int width = table_width()) const;
-  /// A table for Markdown files. Cells must hold no bars.
+  /// A table for Markdown files, in which bars and backslashes of cells are escaped.
   std::string markdown() const;
 
  private:

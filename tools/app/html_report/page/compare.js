@@ -1,6 +1,6 @@
 // What differs between two runs, and why: by stage and mechanism, by function, by block, by energy.
 
-const kMechanismColours = {};
+const kMechanismColours = {__proto__: null};
 for (const [, colour, parts] of kGroups)
   for (const part of parts) kMechanismColours[part] = colour;
 const kMoreColours = new Colours();

@@ -62,6 +62,7 @@ const stageColours = new Colours();
 const kWaiting = 'waiting for the front end';
 const kOther = 'offload and return';
 const kSpecialColours = {
+  __proto__: null,
   [kWaiting]: '#c5ccd4',
   [kOther]: '#5f6b7a'
 };

@@ -1,6 +1,7 @@
 // Energy and power of a run by stage and domain, with their bands.
 
 const kDomainColours = {
+  __proto__: null,
   cores: '#4477aa',
   fpu: '#ddaa33',
   l1: '#66ccee',
@@ -17,7 +18,7 @@ function energyOf(run, quantity) {
   const stages = new Map();
   table.stage.forEach((stage, i) => {
     if (table.quantity[i] !== quantity) return;
-    if (!stages.has(stage)) stages.set(stage, {});
+    if (!stages.has(stage)) stages.set(stage, {__proto__: null});
     stages.get(
         stage)[table.domain[i]] = {value: table.value[i], low: table.low[i], high: table.high[i]};
   });

@@ -1,6 +1,7 @@
 // The frames of a run: how long each took and with what, and single frames stage by stage.
 
 const kKinds = {
+  __proto__: null,
   first: 'first frame',
   epnp: 'EPnP',
   eight_point: '8-point',
@@ -10,6 +11,7 @@ const kKinds = {
   dropped: 'dropped'
 };
 const kKindColours = {
+  __proto__: null,
   first: '#8c99a8',
   epnp: '#ee7755',
   eight_point: '#ddaa33',

@@ -26,6 +26,7 @@ using platform::YamlNode;
 
 constexpr std::int64_t kMostFrames = 1'000'000;
 constexpr double kLeastEvery = 0.01;
+constexpr double kMostEvery = 86'400;
 
 /// A value of a list and where it stands.
 struct Item {
@@ -147,9 +148,9 @@ class PlanReader {
   static double seconds(const Item& item) {
     double value = 0;
     checked(item.place, [&] { value = parse_positive("a time in seconds", item.text); });
-    if (value < kLeastEvery)
+    if (value < kLeastEvery || value > kMostEvery)
       item.place.fail(
-          fmt::format("{} s is too short; expected at least {:g}", item.text, kLeastEvery));
+          fmt::format("{} s; expected {:g} to {:g} s", item.text, kLeastEvery, kMostEvery));
     return value;
   }
 

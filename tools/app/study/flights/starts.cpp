@@ -39,17 +39,18 @@ Starts starts_in_motion(const std::vector<std::int64_t>& stamps_ns, const Trajec
                         double every_s) {
   check(!stamps_ns.empty() && !truth.empty() && every_s > 0, "a flight, and a time between starts");
   Starts starts;
-  for (std::int64_t k = 1;; ++k) {
-    const std::int64_t t_ns =
-        stamps_ns.front() + std::llround(static_cast<double>(k) * every_s * 1e9);
-    const auto frame = std::lower_bound(stamps_ns.begin(), stamps_ns.end(), t_ns);
-    if (frame == stamps_ns.end()) return starts;
-    const auto number = static_cast<std::size_t>(frame - stamps_ns.begin());
-    if (mean_speed(truth, *frame) < kLeastSpeed)
+  const double every_ns = every_s * 1e9;
+  double multiple = 1;
+  for (std::size_t number = 1; number < stamps_ns.size(); ++number) {
+    const auto since_ns = static_cast<double>(stamps_ns[number] - stamps_ns.front());
+    if (since_ns < std::round(multiple * every_ns)) continue;
+    if (mean_speed(truth, stamps_ns[number]) < kLeastSpeed)
       ++starts.at_rest;
-    else if (starts.frames.empty() || number > starts.frames.back())
+    else
       starts.frames.push_back(number);
+    multiple = std::max(multiple, std::floor(since_ns / every_ns)) + 1;
   }
+  return starts;
 }
 
 std::vector<FrameRange> merged(std::vector<FrameRange> ranges) {
