@@ -39,6 +39,7 @@
 #include "tools/commands/trace_command.h"
 #include "tools/commands/tune_command.h"
 #include "tools/commands/validate_command.h"
+#include "tools/commands/whatif_command.h"
 #include "tools/commands/workload_command.h"
 
 namespace leviosim::tools {
@@ -122,6 +123,7 @@ int run_program(const Words& typed) {
                                          add_microbench_command(app),
                                          add_replay_command(app, words),
                                          add_trace_command(app),
+                                         add_whatif_command(app, words),
                                          add_tune_command(app, words),
                                          add_sweep_command(app),
                                          add_flow_command(app, words),

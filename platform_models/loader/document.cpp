@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <utility>
 
 #include "platform_models/loader/instruction_set.h"
+#include "platform_models/loader/override.h"
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/nearest.h"
 
@@ -46,6 +48,7 @@ class DocumentReader {
   void read_sources(const YamlEntry& entry);
   void read_section(const std::vector<YamlEntry>& entries, const std::string& path);
   void read_record(const YamlEntry& entry, const std::string& path);
+  void read_bare(const YamlEntry& entry, const std::string& path);
   Provenance read_provenance(const std::vector<YamlEntry>& entries, const std::string& path,
                              const Place& record) const;
   void check_keys(const std::vector<YamlEntry>& entries, const std::string& path) const;
@@ -61,11 +64,15 @@ class DocumentReader {
   const Schema& schema_;
   std::string file_;
   std::vector<std::string> users_;
+  bool extends_ = false;
   std::map<std::string, std::string> sources_of_base_;
   std::map<std::string, int> section_lines_;
   Document document_;
 };
 
+/// The source of what a file changes without a word about it.
+constexpr const char* kWhatIfKey = "what if";
+constexpr const char* kWhatIfMeaning = "assumed, to see what would follow";
 constexpr const char* kIsa = "isa";
 constexpr const char* kBase = "base";
 
@@ -85,6 +92,7 @@ Document DocumentReader::read_platform(const std::string& text,
                                        std::vector<std::string> users) {
   users_ = std::move(users);
   const std::vector<YamlEntry> root = entries_of(parse_yaml(file_, text), file_, "");
+  extends_ = find(root, kParentPath) != nullptr;
   read_header(root);
   if (const YamlEntry* extends = find(root, kParentPath))
     read_parent(*extends, root, base);
@@ -177,16 +185,20 @@ Document DocumentReader::finish() {
 }
 
 void DocumentReader::read_header(const std::vector<YamlEntry>& root) {
-  const auto text = [&](const std::string& key, std::string_view example) {
+  const auto text = [&](const std::string& key, std::string_view example,
+                        const std::string& otherwise) {
     const YamlEntry* entry = find(root, key);
+    if (entry == nullptr && extends_) return otherwise;
     if (entry == nullptr)
       place_of(file_, 1, key).fail(fmt::format("missing key; expected {}: {}", key, example));
     const std::string value = scalar(entry->value, place(*entry, key));
     if (trim(value).empty()) place(*entry, key).fail("is empty");
     return value;
   };
-  document_.name = text("name", "the name of the chip");
-  document_.description = text("description", "one line about the chip");
+  document_.name =
+      text("name", "the name of the chip", std::filesystem::path(file_).stem().string());
+  document_.description =
+      text("description", "one line about the chip", "what if: another platform, changed");
   const YamlEntry* sources = find(root, "sources");
   if (sources != nullptr)
     read_sources(*sources);
@@ -216,6 +228,7 @@ void DocumentReader::read_section(const std::vector<YamlEntry>& entries, const s
 }
 
 void DocumentReader::read_record(const YamlEntry& entry, const std::string& path) {
+  if (extends_ && entry.value.is_scalar()) return read_bare(entry, path);
   const Place record = place(entry, path);
   const std::vector<std::size_t> indices = schema_.record(path);
   if (!entry.value.is_mapping())
@@ -238,6 +251,23 @@ void DocumentReader::read_record(const YamlEntry& entry, const std::string& path
   if (!any)
     record.fail(
         fmt::format("gives no value; expected '{}'", schema_.fields()[indices.front()].name));
+}
+
+/// "workers: 16", "clock: 300MHz": what if it were so. Only where another platform is changed.
+void DocumentReader::read_bare(const YamlEntry& entry, const std::string& path) {
+  const Place record = place(entry, path);
+  const std::vector<std::size_t> indices = schema_.record(path);
+  if (indices.size() > 1)
+    record.fail(fmt::format("is a single value; expected a map {{ {}: …, unit: …, source: …, "
+                            "confidence: … }}",
+                            schema_.fields()[indices.front()].name));
+  std::optional<Setting>& setting = document_.settings[indices.front()];
+  setting =
+      read_override(schema_.fields()[indices.front()], setting, scalar(entry.value, record), record);
+  setting->where = fmt::format("{}:{}", file_, entry.line);
+  setting->parameter.source = kWhatIfKey;
+  setting->parameter.confidence = "assumed";
+  document_.sources.try_emplace(kWhatIfKey, kWhatIfMeaning);
 }
 
 /// Every key of a record must be a column, the range of one, or one of the general keys.

@@ -14,7 +14,8 @@
 //
 // `extends: NAME` takes everything of another platform, sources included, and adds to it in the
 // same way: a chip at another operating point, with an accelerator. Such a file names no
-// instruction set.
+// instruction set, needs neither name nor description, and may give bare values, `workers: 16`,
+// whose source is "what if".
 #pragma once
 
 #include <map>

@@ -26,7 +26,8 @@ std::vector<std::string> platform_names();
 
 /// Loads a platform and applies overrides ("cluster.workers=4", "cluster.clock=240MHz").
 /// @param name_or_path  name of a built-in platform, or path of a file: what contains a '/' or ends
-///                      in .yaml or .yml is a path
+///                      in .yaml or .yml is a path. With ":PATH=VALUE,PATH=VALUE" it is a variant
+///                      of that platform
 ResolvedPlatform resolve_platform(const std::string& name_or_path,
                                   const std::vector<std::string>& overrides = {});
 

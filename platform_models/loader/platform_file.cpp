@@ -42,13 +42,37 @@ std::vector<std::pair<std::string, std::string>> cited_only(
 
 }  // namespace
 
-PlatformFile PlatformFile::named(const std::string& name_or_path) {
-  if (is_path(name_or_path))
-    return {name_or_path, base::read_file(name_or_path, base::InputKind::platform)};
+NamedPlatform parse_platform_name(const std::string& text) {
+  const std::size_t colon = text.rfind(':', text.find('='));
+  if (text.find('=') == std::string::npos || colon == std::string::npos || base::is_file(text))
+    return {text, {}};
+  NamedPlatform named{text.substr(0, colon), {}};
+  for (std::size_t begin = colon + 1; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    named.overrides.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return named;
+}
+
+PlatformFile PlatformFile::named(const std::string& text, const std::filesystem::path& folder) {
+  NamedPlatform named = parse_platform_name(text);
+  if (is_path(named.name)) {
+    const std::string path =
+        folder.empty() ? named.name : (folder / named.name).lexically_normal().string();
+    return {path, base::read_file(path, base::InputKind::platform), std::move(named.overrides)};
+  }
   for (const base::BuiltinFile& platform : builtin_platforms())
-    if (platform.name == name_or_path)
-      return {fmt::format("{}.yaml", platform.name), std::string(platform.text)};
-  unknown_platform(name_or_path);
+    if (platform.name == named.name)
+      return {fmt::format("{}.yaml", platform.name), std::string(platform.text),
+              std::move(named.overrides)};
+  unknown_platform(named.name);
+}
+
+std::vector<std::string> PlatformFile::with_own(const std::vector<std::string>& overrides) const {
+  std::vector<std::string> all = overrides_;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return all;
 }
 
 const Document& PlatformFile::document(const std::optional<BaseOverride>& base) {
@@ -59,7 +83,7 @@ const Document& PlatformFile::document(const std::optional<BaseOverride>& base) 
 }
 
 ResolvedPlatform PlatformFile::resolve(const std::vector<std::string>& overrides) {
-  const Document& read = document(split_overrides(overrides).base);
+  const Document& read = document(split_overrides(with_own(overrides)).base);
   const Settings settings = settings_with(overrides);
   ResolvedPlatform platform;
   platform.config = configure(schema_, read.name, settings);
@@ -69,13 +93,13 @@ ResolvedPlatform PlatformFile::resolve(const std::vector<std::string>& overrides
   for (const auto& setting : settings)
     if (setting) platform.parameters.push_back(setting->parameter);
   std::map<std::string, std::string> sources = read.sources;
-  if (!overrides.empty()) sources[kOverrideKey] = kOverrideMeaning;
+  if (!with_own(overrides).empty()) sources[kOverrideKey] = kOverrideMeaning;
   platform.sources = cited_only(sources, platform.parameters);
   return platform;
 }
 
 Settings PlatformFile::settings_with(const std::vector<std::string>& overrides) {
-  const SplitOverrides split = split_overrides(overrides);
+  const SplitOverrides split = split_overrides(with_own(overrides));
   Settings settings = document(split.base).settings;
   for (const std::string& override : split.parameters) apply_override(schema_, settings, override);
   return settings;
@@ -84,7 +108,7 @@ Settings PlatformFile::settings_with(const std::vector<std::string>& overrides) 
 const Parameter* PlatformFile::find(const std::string& path) {
   const std::size_t index = schema_.find(path);
   if (index == Schema::kNone) return nullptr;
-  const std::optional<Setting>& setting = document({}).settings[index];
+  const std::optional<Setting>& setting = document(split_overrides(overrides_).base).settings[index];
   return setting ? &setting->parameter : nullptr;
 }
 

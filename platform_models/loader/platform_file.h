@@ -2,6 +2,7 @@
 // thousands of variants of one chip.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,13 +13,23 @@
 
 namespace leviosim::platform {
 
+/// A platform in the words of a user, and what of it is to be otherwise:
+/// "gap9:cluster.workers=4,cluster.clock=240MHz". A file whose name is all of that is that file.
+struct NamedPlatform {
+  std::string name;  ///< or path
+  std::vector<std::string> overrides;
+};
+NamedPlatform parse_platform_name(const std::string& text);
+
 class PlatformFile {
  public:
-  /// @param name_or_path  as resolve_platform() takes it
-  static PlatformFile named(const std::string& name_or_path);
+  /// @param name    as resolve_platform() takes it
+  /// @param folder  that paths are relative to
+  static PlatformFile named(const std::string& name, const std::filesystem::path& folder = {});
   /// @param file  its name for messages
-  PlatformFile(std::string file, std::string text)
-      : file_(std::move(file)), text_(std::move(text)) {}
+  /// @param overrides  part of the platform: those of resolve() come on top
+  PlatformFile(std::string file, std::string text, std::vector<std::string> overrides = {})
+      : file_(std::move(file)), text_(std::move(text)), overrides_(std::move(overrides)) {}
 
   /// @throws InputError as resolve_platform() does
   ResolvedPlatform resolve(const std::vector<std::string>& overrides);
@@ -34,9 +45,11 @@ class PlatformFile {
  private:
   /// As read with the instruction set that an override names, "" for the file's own.
   const Document& document(const std::optional<BaseOverride>& base);
+  std::vector<std::string> with_own(const std::vector<std::string>& overrides) const;
 
   std::string file_;
   std::string text_;
+  std::vector<std::string> overrides_;
   Schema schema_;
   std::map<std::string, Document> documents_;
 };

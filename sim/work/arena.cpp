@@ -44,7 +44,8 @@ Bytes Arena::place(std::string_view name, Bytes size) {
         fmt::format("{}: block '{}' of {} bytes does not fit in {}: {} of {} bytes are in use, {} "
                     "bytes are missing",
                     user_.empty() ? "set-up" : user_, name, size.count(), name_, used_.count(),
-                    capacity_.count(), (end - capacity_).count()));
+                    capacity_.count(), (end - capacity_).count()),
+        std::string(name_));
   }
   live_.push_back({name, offset, size});
   used_ = end;

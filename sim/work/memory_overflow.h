@@ -2,13 +2,22 @@
 // bytes.
 #pragma once
 
+#include <string>
+#include <utility>
+
 #include "sim/base/error.h"
 
 namespace leviosim::work {
 
 class MemoryOverflow : public InputError {
  public:
-  using InputError::InputError;
+  /// @param memory  that is too small: "L1", "L2", or "scratch", a core's part of L1
+  MemoryOverflow(const std::string& what, std::string memory)
+      : InputError(what), memory_(std::move(memory)) {}
+  const std::string& memory() const { return memory_; }
+
+ private:
+  std::string memory_;
 };
 
 }  // namespace leviosim::work

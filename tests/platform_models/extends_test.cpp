@@ -40,6 +40,42 @@ TEST(Extends, AddsSources) {
                {"other.yaml:3", "'MLP' stands for something else in gap9.yaml"});
 }
 
+TEST(Extends, BareValuesNeedNoMoreThanTheOther) {
+  const ResolvedPlatform mine = resolve_platform_text(
+      "chips/mine.yaml", "extends: gap9\ncluster: { workers: 4, clock: 240MHz }\n");
+  EXPECT_EQ(mine.name, "mine");
+  EXPECT_EQ(mine.config.cluster.workers, 4);
+  EXPECT_EQ(mine.config.cluster.clock.count(), 240'000'000);
+  for (const Parameter& p : mine.parameters)
+    if (p.path == "cluster.workers") {
+      EXPECT_EQ(p.source, "what if");
+      EXPECT_EQ(p.confidence, "assumed");
+      EXPECT_FALSE(p.range);
+    }
+  const ResolvedPlatform again = resolve_platform_text("again.yaml", to_yaml(mine));
+  EXPECT_EQ(numbers_of(again.config), numbers_of(mine.config));
+  expect_parts(fault_of([&] { extended("cluster: { workers: 0 }\n"); }),
+               {"other.yaml:4: cluster.workers"});
+  expect_parts(fault_of([&] { extended("isa: { ops: { f32_add: 2 } }\n"); }),
+               {"other.yaml:4: isa.ops.f32_add", "single value"});
+  expect_parts(fault_of([&] {
+                 resolve_platform_text("alone.yaml", replaced(gap9_text(), "  workers: {", "  workers: 8 # {"));
+               }),
+               {"cluster.workers", "expected a map"});
+}
+
+TEST(Platforms, VariantsAreNamedInLine) {
+  const sim::ChipConfig two = load_platform("gap9:cluster.workers=2,cluster.clock=240MHz");
+  EXPECT_EQ(two.cluster.workers, 2);
+  EXPECT_EQ(two.cluster.clock.count(), 240'000'000);
+  EXPECT_EQ(load_platform("gap9:cluster.workers=2", {"cluster.fpu.units=1"}).cluster.workers, 2);
+  expect_parts(fault_of([] { load_platform("gap7:cluster.workers=2"); }), {"'gap7'", "gap8"});
+  expect_parts(fault_of([] { load_platform("gap9:cluster.wokers=2"); }),
+               {"cluster.wokers", "cluster.workers"});
+  expect_parts(fault_of([] { load_platform("gap9:cluster.workers"); }), {"unknown platform"});
+  expect_parts(fault_of([] { load_platform("gap9:cluster.workers=2,"); }), {"expected path=value"});
+}
+
 TEST(Extends, OverridesApplyToTheWhole) {
   EXPECT_EQ(extended("", {"cluster.workers=3"}).config.cluster.workers, 3);
   const sim::ChipConfig plain = extended("", {"isa.base=rv32imfc"}).config;

@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/html_report/page.h"
@@ -17,9 +16,9 @@
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
-#include "tools/app/run/replay.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/study/whatif/whatif_report.h"
 
 namespace leviosim::tools {
 namespace {
@@ -128,44 +127,29 @@ std::string error(const RunResult& run) {
              : "–";
 }
 
-struct WhatIf {
+/// What is asked, and its name on the screen.
+struct Question {
   const char* name;
-  std::vector<std::string> overrides;
+  const char* change;
 };
+constexpr std::array<Question, 3> kQuestions{
+    {{"one FPU", "cluster.fpu.units=1"},
+     {"16 KiB shared I-cache", "cluster.icache.shared_size=16KiB"},
+     {"240 MHz at 0.65 V", "cluster.clock=240MHz,controller.clock=240MHz,supply.voltage=0.65V"}}};
 
-/// The recorded work on other chips: cycles of a frame's front end, and what they take.
-std::string what_ifs(const Flown& recorded) {
-  const std::array<WhatIf, 4> chips{{
-      {"as it is", {}},
-      {"one FPU", {"cluster.fpu.units=1"}},
-      {"16 KiB shared I-cache", {"cluster.icache.shared_size=16KiB"}},
-      {"240 MHz at 0.65 V",
-       {"cluster.clock=240MHz", "controller.clock=240MHz", "supply.voltage=0.65V"}},
-  }};
-  const traces::WorkTrace trace("levio/work.trace", recorded.trace);
-  std::vector<double> times, joules;
-  for (const WhatIf& chip : chips) {
-    RunRequest request;
-    request.platform = platform::resolve_platform(kChip, chip.overrides);
-    request.cores = recorded.result.cores;
-    const Replay again = replay(trace, request, [](const Progress&) { throw_if_interrupted(); });
-    Cycles cycles;
-    for (const Scenario& kind : scenarios(again.run)) cycles += kind.parallel;
-    times.push_back(
-        milliseconds(*mean(cycles, std::ssize(again.run.frames)), again.run.cluster_clock));
-    const auto of_run = energy_of(again.run);
-    joules.push_back(of_run && of_run->per_frame() ? of_run->per_frame()->value.count() * 1e3 : 0);
-  }
-  constexpr double kBar = 34;
-  const double longest = *std::max_element(times.begin(), times.end());
-  std::string text;
-  for (std::size_t i = 0; i < chips.size(); ++i) {
-    std::string bar;
-    for (int n = static_cast<int>(kBar * times[i] / longest + 0.5); n > 0; --n) bar += "█";
-    text +=
-        fmt::format("{:<22}{:6.2f} ms {:5.2f} mJ {}\n", chips[i].name, times[i], joules[i], bar);
-  }
-  return text;
+/// The recorded work on other chips: a frame's front end, and what it takes.
+std::string what_ifs(const std::string& trace, ProgressLine::Style style) {
+  const std::string run = "levio/work.trace";
+  SweepInputs inputs(std::filesystem::current_path(), style);
+  inputs.keep_trace(run, trace);
+  WhatIf what_if(inputs, run, {});
+  std::vector<Variant> variants;
+  for (const Question& question : kQuestions)
+    for (Variant& variant : what_if.variants(question.change)) {
+      variant.name = question.name;
+      variants.push_back(std::move(variant));
+    }
+  return whatif_bars(what_if.results(variants, {.noun = "variant", .progress = style}));
 }
 
 std::string screen(const Flown& levio, const Flown& next, const std::string& what_ifs,
@@ -201,7 +185,7 @@ void run(RunOptions options, const Words& words) {
   outputs::OutputFolder out(out_request(options));
   const Flown levio = fly(options, "levio", true, words, style);
   const Flown next = fly(options, "next", false, words, style);
-  const std::string text = screen(levio, next, what_ifs(levio), options, options.out);
+  const std::string text = screen(levio, next, what_ifs(levio.trace, style), options, options.out);
   const Allowed allowed = parse_allowed("profile");
   const std::string page = html_page(runs_report(
       {levio.reported, next.reported},

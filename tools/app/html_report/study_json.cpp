@@ -49,6 +49,7 @@ Json study_report(const StudyPage& page) {
       (page.curves->series.empty() || known(page.curves->series)))
     study["curves"] = {
         {"x", page.curves->x}, {"series", page.curves->series}, {"y", page.curves->y}};
+  if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
   return data;
 }
 

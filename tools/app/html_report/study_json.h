@@ -27,12 +27,19 @@ struct StudyCurves {
   std::vector<std::string> y;
 };
 
+/// A bar for each row.
+struct StudyBars {
+  std::string of;  ///< names the rows
+  std::vector<std::string> figures;
+};
+
 struct StudyPage {
   std::string title;
   std::string summary;               ///< lines
   std::string points;                ///< CSV, a row per point
   std::vector<StudyColumn> columns;  ///< those that the table lacks are left out
   std::optional<StudyCurves> curves = {};
+  std::optional<StudyBars> bars = {};
   std::map<std::string, double> limits = {};  ///< column → what it should not exceed
   std::string x;                              ///< of the scatter
   std::string y;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "platform_models/loader/platform_file.h"
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "sim/energy/model.h"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 outputs::OutputRequest out_request(const RunOptions& options, const char* option) {
   outputs::OutputRequest request{.option = option, .path = options.out, .replace = options.force};
   request.inputs = data_inputs(options.data);
-  request.inputs.emplace_back(options.platform);
+  request.inputs.emplace_back(platform::parse_platform_name(options.platform).name);
   return request;
 }
 

@@ -144,7 +144,10 @@ RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progres
     recorded.finish();
     return result;
   } catch (const work::MemoryOverflow& overflow) {
-    throw InputError(overflow.what() + advice_on_size(request));
+    throw InputError(fmt::format("{}; {} has more{}", overflow.what(),
+                                 overflow.memory() == "L2" ? "a larger l2.size"
+                                                           : "a larger cluster.l1.size",
+                                 advice_on_size(request)));
   }
 }
 

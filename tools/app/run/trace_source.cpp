@@ -78,9 +78,10 @@ void TraceSource::check_fits(const work::Job& job, const char* memory, Bytes siz
     if (stage.memory.parallel > size)
       throw InputError(fmt::format(
           "{}: frame {}, {}: the recorded work occupies {} bytes of {}, which has {}: {} bytes are "
-          "missing",
+          "missing; a larger {} has them",
           trace_.name(), number_, stage.stage, stage.memory.parallel.count(), memory, size.count(),
-          (stage.memory.parallel - size).count()));
+          (stage.memory.parallel - size).count(),
+          std::string_view(memory) == "L2" ? "l2.size" : "cluster.l1.size"));
 }
 
 std::vector<StageResult> TraceSource::empty_stages() const {

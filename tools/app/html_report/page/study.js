@@ -105,6 +105,41 @@ function curveFigure(study, yName) {
   });
 }
 
+function barFigure(study, name) {
+  const column = study.columns.find((c) => c.name === name);
+  const labels = study.table[study.bars.of];
+  const values = study.table[name];
+  return chartFigure({
+    title: capital(column.title),
+    hint: 'A bar for each row. Rows without a bar cannot run, or have no such figure.',
+    height: () => 60 + 23 * labels.length,
+    config: () => ({
+      type: 'bar',
+      data: {
+        labels,
+        datasets: [{
+          label: axisTitle(column),
+          data: values,
+          backgroundColor: labels.map((_, i) => (i === 0 ? style('--soft') : paletteColour(1))),
+          barPercentage: 0.85,
+          categoryPercentage: 0.95
+        }]
+      },
+      options: {
+        indexAxis: 'y',
+        scales: {
+          x: {title: {display: true, text: axisTitle(column)}, beginAtZero: true},
+          y: stackedRows()
+        }
+      },
+    }),
+    table: () => ({
+      columns: [{title: study.bars.of, text: true}, {title: axisTitle(column)}],
+      rows: labels.map((label, i) => [label, values[i]])
+    }),
+  });
+}
+
 function scatterFigure(study) {
   const {columns, table} = study;
   const count = table[columns[0].name].length;
@@ -245,6 +280,11 @@ function studySections(study, top) {
       ...study.summary.trim().split('\n').map((line) => element('p', {}, line))));
   if (count === 0) return [element('p', {class: 'card'}, 'No point is finished.')];
   const sections = [];
+  if (study.bars)
+    sections.push(section(
+        'bars', 'Side by side',
+        ...study.bars.figures.filter((name) => study.table[name])
+            .map((name) => barFigure(study, name))));
   if (study.curves)
     sections.push(section(
         'curves', 'Curves',

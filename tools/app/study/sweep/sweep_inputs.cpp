@@ -2,7 +2,6 @@
 
 #include <functional>
 
-#include "platform_models/loader/instruction_set.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/sha256.h"
@@ -35,8 +34,7 @@ platform::PlatformFile& SweepInputs::platform(const std::string& name,
   const auto known = platforms_.find(name);
   if (known != platforms_.end()) return known->second;
   return opened_at(place, [&]() -> std::reference_wrapper<platform::PlatformFile> {
-    platform::PlatformFile file =
-        platform::PlatformFile::named(platform::is_path(name) ? beside(name).string() : name);
+    platform::PlatformFile file = platform::PlatformFile::named(name, folder_);
     file.resolve({});  // refuses what is wrong with the file itself
     return platforms_.emplace(name, std::move(file)).first->second;
   });
@@ -48,13 +46,16 @@ SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::
   return opened_at(place, [&]() -> std::reference_wrapper<Trace> {
     std::filesystem::path file = beside(name);
     if (base::is_folder(file)) file /= kWorkTraceFile;
-    std::string bytes = base::read_file(file, base::InputKind::work_trace);
-    const std::string digest = base::sha256_of(bytes);
     // Called as in the plan: what a point says must not depend on where the plan lies.
-    auto work = std::make_unique<traces::WorkTrace>(name, std::move(bytes), memory_);
-    platform::PlatformFile chip(name + ", platform of the recording", work->info().platform_yaml);
-    return traces_.emplace(name, Trace{std::move(work), digest, std::move(chip)}).first->second;
+    return keep_trace(name, base::read_file(file, base::InputKind::work_trace));
   });
+}
+
+SweepInputs::Trace& SweepInputs::keep_trace(const std::string& name, std::string bytes) {
+  const std::string digest = base::sha256_of(bytes);
+  auto work = std::make_unique<traces::WorkTrace>(name, std::move(bytes), memory_);
+  platform::PlatformFile chip(name + ", platform of the recording", work->info().platform_yaml);
+  return traces_.emplace(name, Trace{std::move(work), digest, std::move(chip)}).first->second;
 }
 
 const SweepInputs::Data& SweepInputs::data(const std::string& name, const std::string& frames,

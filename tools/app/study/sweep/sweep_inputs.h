@@ -42,6 +42,8 @@ class SweepInputs {
   /// @throws InputError, which begins with `place`, for what cannot be opened
   platform::PlatformFile& platform(const std::string& name, const platform::Place& place);
   Trace& trace(const std::string& name, const platform::Place& place);
+  /// A trace that is at hand, and has no file.
+  Trace& keep_trace(const std::string& name, std::string bytes);
   const Data& data(const std::string& name, const std::string& frames,
                    const platform::Place& place);
 

@@ -1,0 +1,166 @@
+// What if, as users ask: variants of the chip, chips of their own, other numbers of cores, advice.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "tests/support/program_suite.h"
+#include "tools/app/report/statistic_list.h"
+#include "tools/app/report/text_table.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+using testing::expect_refused;
+using testing::ProgramResult;
+
+class WhatIfCommand : public tests::ProgramSuite {
+ protected:
+  static void SetUpTestSuite() {
+    make_folder("whatif");
+    traces::write_synthetic_flight(path("flight"), {.duration_s = 3.2, .texel_m = 0.02});
+    expect_done({"run", "--data", path("flight"), "--out", path("run"), "--record", "--quiet"});
+  }
+
+  static ProgramResult what_if(std::vector<std::string> words) {
+    words.insert(words.begin(), {"whatif", path("run")});
+    words.emplace_back("--quiet");
+    return program(words);
+  }
+  /// The rows of --json.
+  static Json rows(std::vector<std::string> words, int status = 0) {
+    words.emplace_back("--json");
+    const ProgramResult result = what_if(std::move(words));
+    EXPECT_EQ(result.status, status) << result.err;
+    return Json::parse(result.out).at("rows");
+  }
+  static double mean_ms(const Json& row) { return row.at("frame_mean_ms").get<double>(); }
+};
+
+TEST_F(WhatIfCommand, TriesSeveralValuesInOneCommand) {
+  const Json table = rows({"cluster.fpu.units=1,8"});
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[1].at("variant"), "cluster.fpu.units=1");
+  EXPECT_GT(mean_ms(table[1]), mean_ms(table[0]));
+  EXPECT_LE(mean_ms(table[2]), mean_ms(table[0]));
+  EXPECT_GT(table[2].at("area_mm2").get<double>(), table[0].at("area_mm2").get<double>());
+  EXPECT_NE(table[1].at("why").get<std::string>().find("waiting for an FPU +"), std::string::npos)
+      << table[1];
+  EXPECT_EQ(table[0].at("frames"), 64);
+}
+
+TEST_F(WhatIfCommand, TimesTheRunAsItIsLikeTheRun) {
+  const Json frames = rows({"cluster.fpu.units=4"});
+  EXPECT_EQ(mean_ms(frames[0]), mean_ms(frames[1])) << "4 are those of gap9";
+  EXPECT_EQ(frames[1].at("why"), "no frame waits for it");
+}
+
+TEST_F(WhatIfCommand, TakesAChipOfThreeLinesAndOneInline) {
+  std::ofstream(path("mine.yaml")) << "extends: gap9\ncluster:\n  fpu: { units: 1 }\n";
+  const Json table = rows({path("mine.yaml"), "gap9:cluster.fpu.units=1", "cluster.fpu.units=1"});
+  ASSERT_EQ(table.size(), 4u);
+  EXPECT_EQ(mean_ms(table[1]), mean_ms(table[2]));
+  EXPECT_EQ(mean_ms(table[1]), mean_ms(table[3]));
+}
+
+TEST_F(WhatIfCommand, OtherNumbersOfCoresSayWhichKeyHelpsUntilTheyRun) {
+  const std::string both = "cluster.workers=16,cluster.max_workers=16";
+  const Json table =
+      rows({"cluster.workers=16", both + ",cluster.l1.size=64KiB", both + ",cluster.l1.size=256KiB",
+            "gap9:" + both + ",cluster.l1.size=64KiB", "cluster.workers=4"},
+           1);
+  ASSERT_EQ(table.size(), 6u);
+  const auto failure = [&](std::size_t row) { return table[row].at("failure").get<std::string>(); };
+  EXPECT_NE(failure(1).find("a larger cluster.max_workers"), std::string::npos) << failure(1);
+  for (const std::size_t row : {2u, 4u})
+    EXPECT_NE(failure(row).find("a larger cluster.l1.size"), std::string::npos) << failure(row);
+  EXPECT_TRUE(table[3].at("failure").is_null()) << table[3];
+  EXPECT_LT(mean_ms(table[3]), mean_ms(table[0]));
+  EXPECT_NE(table[3].at("why").get<std::string>().find("divided among more cores -"),
+            std::string::npos)
+      << table[3];
+  EXPECT_GT(mean_ms(table[5]), mean_ms(table[0]));
+  EXPECT_EQ(table[5].at("computed"), "run again");
+}
+
+TEST_F(WhatIfCommand, SaysWhatIsOffloadedAndWhatNothingUses) {
+  const Json table = rows({"gap9-hamming", "gap9:controller.accelerators.hamming.units=1,"
+                                           "controller.accelerators.hamming.start_up=10,"
+                                           "controller.accelerators.hamming.latency=10,"
+                                           "controller.accelerators.hamming.items_per_cycle=1,"
+                                           "controller.accelerators.hamming.energy=1nJ"});
+  EXPECT_NE(table[1].at("why").get<std::string>().find("offloaded to hamming -"), std::string::npos)
+      << table[1];
+  EXPECT_NE(table[2].at("why").get<std::string>().find("nothing of this run uses hamming"),
+            std::string::npos)
+      << table[2];
+}
+
+TEST_F(WhatIfCommand, AdvisesTheLargestLever) {
+  const ProgramResult result = what_if({});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::istringstream in(result.out);
+  std::string line;
+  std::vector<std::string> lines;
+  while (std::getline(in, line)) {
+    if (!lines.empty()) {
+      EXPECT_LE(display_width(line), 80) << line;
+    }
+    lines.push_back(line);
+  }
+  const auto at = [&](const std::string& part) {
+    return std::find_if(lines.begin(), lines.end(), [&](const std::string& l) {
+             return l.find(part) != std::string::npos;
+           }) -
+           lines.begin();
+  };
+  EXPECT_LT(at("cluster.icache.shared_size="), at("By time gained per area")) << result.out;
+  EXPECT_LT(at("waiting for code -"), at("By time gained per area")) << result.out;
+  EXPECT_LT(at("Cannot run:"), static_cast<std::ptrdiff_t>(lines.size())) << result.out;
+}
+
+TEST_F(WhatIfCommand, TableAndPageHoldAllRows) {
+  const ProgramResult result =
+      what_if({"cluster.fpu.units=2", "cluster.l1.size=1KiB", "--report", path("page.html")});
+  EXPECT_EQ(result.status, 1) << "a row cannot run";
+  for (const char* part : {"as it is", "cluster.fpu.units=2", "1340 bytes of L1", "mean ms",
+                           "p99 ms", "fps", "mm2", "report: "})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in:\n" << result.out;
+  const std::string page = base::read_text_file(path("page.html"));
+  EXPECT_NE(page.find("\"bars\""), std::string::npos);
+  EXPECT_NE(page.find("cluster.fpu.units=2"), std::string::npos);
+}
+
+TEST_F(WhatIfCommand, TypingErrorsAreRefusedBeforeWork) {
+  expect_refused(what_if({"cluster.fpu.unit=2"}), {"cluster.fpu.unit", "cluster.fpu.units"});
+  expect_refused(what_if({"gap9-eign"}), {"gap9-eign", "gap9-eigen"});
+  expect_refused(what_if({"cluster.fpu.units="}), {"expected a value"});
+  expect_refused(what_if({"gap9:cluster.fpu.unit=2"}), {"cluster.fpu.unit", "cluster.fpu.units"});
+  expect_refused(program({"whatif", path("flight")}), {"flight", "run with --record"});
+}
+
+TEST_F(WhatIfCommand, InlineVariantsArePlatformsEverywhere) {
+  const std::string chip = "gap9:cluster.fpu.units=1";
+  expect_done({"replay", path("run"), "--platform", chip, "--out", path("one"), "--quiet"});
+  expect_done({"replay", path("run"), "-p", "cluster.fpu.units=1", "--out", path("same"),
+               "--quiet"});
+  EXPECT_EQ(base::read_text_file(path("one/stats.json")),
+            base::read_text_file(path("same/stats.json")));
+  std::ofstream(path("plan.yaml"))
+      << "base: { trace: run }\npoints: { grid: { platform: [gap9, \"" << chip << "\"] } }\n";
+  const ProgramResult swept =
+      program({"sweep", path("plan.yaml"), "--out", path("swept"), "--quiet", "--json"});
+  ASSERT_EQ(swept.status, 0) << swept.err;
+  const Json points = Json::parse(swept.out).at("rows");
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_LT(points[0].at("objective.latency").get<double>(),
+            points[1].at("objective.latency").get<double>());
+  expect_refused(program({"replay", path("run"), "--platform", "gap9:cluster.fpu.unit=1", "--out",
+                          path("none")}),
+                 {"cluster.fpu.unit", "did you mean"});
+}
+
+}  // namespace
+}  // namespace leviosim::tools

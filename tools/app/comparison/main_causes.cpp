@@ -1,0 +1,154 @@
+#include "tools/app/comparison/main_causes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace leviosim::tools {
+namespace {
+
+struct Words {
+  std::string_view mechanism;
+  std::string_view words;
+};
+constexpr std::array kWords{
+    Words{"issue", "instructions"},
+    Words{"load_use", "waiting for loaded values"},
+    Words{"control", "refilling pipelines"},
+    Words{"memory", "L2 latency, straddling words"},
+    Words{"arithmetic", "latency of divisions, floats"},
+    Words{"fetch", "waiting for code"},
+    Words{"fetch_contention", "waiting for code"},
+    Words{"accelerator", "waiting for accelerators"},
+    Words{"accelerator_contention", "waiting for accelerators"},
+    Words{"fpu", "waiting for an FPU"},
+    Words{"divider", "waiting for a divider"},
+    Words{"banks", "waiting for L1 banks"},
+    Words{"imbalance", "waiting for the slowest core"},
+    Words{"rounding", "waiting for the slowest core"},
+    Words{"synchronisation", "forks and barriers"},
+    Words{"transfer", "waiting for the DMA"},
+    Words{"offload", "calling the cluster"},
+};
+
+std::string words_of(std::string_view mechanism) {
+  for (const Words& w : kWords)
+    if (w.mechanism == mechanism) return std::string(w.words);
+  return std::string(mechanism);
+}
+
+bool is_kernel(std::string_view operation) {
+  return std::any_of(work::kOffloadKinds.begin(), work::kOffloadKinds.end(),
+                     [&](const work::OffloadKindInfo& kind) { return kind.name == operation; });
+}
+
+std::set<std::string> kernels_at(const StageParts& stage, const std::string& where) {
+  std::set<std::string> kernels;
+  for (const CyclePart& part : stage.parts)
+    if (part.where == where && part.count > 0 && is_kernel(part.operation))
+      kernels.insert(part.operation);
+  return kernels;
+}
+
+/// Cycles of a mean frame by cause and stage.
+class CauseSum {
+ public:
+  CauseSum(const TimedParts& a, const TimedParts& b) : a_(a), b_(b) {
+    const double seconds_per_cycle = 1.0 / static_cast<double>(b.clock.count());
+    ms_ = 1e3 * seconds_per_cycle;
+    clock_ms_ = 1e3 * (seconds_per_cycle - 1.0 / static_cast<double>(a.clock.count()));
+    static const StageParts kNone;
+    for (const StageParts& stage : a.stages)
+      if (!stage.on_controller) add(stage.stage, stage, find(b, stage.stage, kNone));
+    for (const StageParts& stage : b.stages)
+      if (!stage.on_controller && &find(a, stage.stage, kNone) == &kNone)
+        add(stage.stage, kNone, stage);
+  }
+
+  std::vector<MainCause> list() const {
+    std::vector<MainCause> causes;
+    for (const auto& [what, stages] : causes_) {
+      MainCause cause{what, 0, {}, 0};
+      for (const auto& [stage, ms] : stages) {
+        cause.ms += ms;
+        if (std::abs(ms) > std::abs(cause.stage_ms)) cause.stage = stage, cause.stage_ms = ms;
+      }
+      if (cause.ms != 0) causes.push_back(std::move(cause));
+    }
+    std::stable_sort(causes.begin(), causes.end(), [](const MainCause& x, const MainCause& y) {
+      return std::abs(x.ms) > std::abs(y.ms);
+    });
+    return causes;
+  }
+
+ private:
+  using Key = std::tuple<std::string, std::string, std::string>;
+
+  static const StageParts& find(const TimedParts& run, const std::string& stage,
+                                const StageParts& otherwise) {
+    for (const StageParts& s : run.stages)
+      if (s.stage == stage) return s;
+    return otherwise;
+  }
+
+  void put(const std::string& what, const std::string& stage, double ms) {
+    if (ms != 0) causes_[what][stage] += ms;
+  }
+
+  /// What a difference at a place is called: that of its mechanism, unless work moved.
+  std::string cause_of(const std::string& where, const std::string& mechanism,
+                       const StageParts& in_a, const StageParts& in_b) const {
+    if (!where.empty()) {
+      const std::set<std::string> before = kernels_at(in_a, where);
+      const std::set<std::string> after = kernels_at(in_b, where);
+      for (const std::string& kernel : after)
+        if (before.count(kernel) == 0) return "offloaded to " + kernel;
+      for (const std::string& kernel : before)
+        if (after.count(kernel) == 0) return "no longer offloaded to " + kernel;
+    }
+    return words_of(mechanism);
+  }
+
+  void add(const std::string& stage, const StageParts& in_a, const StageParts& in_b) {
+    std::map<Key, std::pair<double, double>> cycles;
+    const auto gather = [&](const StageParts& parts, double frames, auto side) {
+      if (frames == 0) return;
+      double rest = parts.cycles / frames;
+      for (const CyclePart& p : parts.parts) {
+        side(cycles[{p.where, p.mechanism, p.operation}]) += p.cycles / frames;
+        rest -= p.cycles / frames;
+      }
+      side(cycles[{"", "rounding", ""}]) += rest;
+    };
+    gather(in_a, a_.frames, [](auto& pair) -> double& { return pair.first; });
+    gather(in_b, b_.frames, [](auto& pair) -> double& { return pair.second; });
+    const double other_cores = static_cast<double>(a_.cores) / b_.cores;
+    for (const auto& [key, pair] : cycles) {
+      const auto& [where, mechanism, operation] = key;
+      const bool is_divided = !where.empty() && where != kSerialPlace;
+      const double divided = is_divided ? pair.first * (other_cores - 1) : 0;
+      put("another clock", stage, pair.first * clock_ms_);
+      put(b_.cores > a_.cores ? "divided among more cores" : "divided among fewer cores", stage,
+          divided * ms_);
+      put(cause_of(where, mechanism, in_a, in_b), stage,
+          (pair.second - pair.first - divided) * ms_);
+    }
+  }
+
+  const TimedParts& a_;
+  const TimedParts& b_;
+  double ms_ = 0;
+  double clock_ms_ = 0;
+  std::map<std::string, std::map<std::string, double>> causes_;
+};
+
+}  // namespace
+
+std::vector<MainCause> main_causes(const TimedParts& a, const TimedParts& b) {
+  return CauseSum(a, b).list();
+}
+
+}  // namespace leviosim::tools

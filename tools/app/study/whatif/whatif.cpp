@@ -1,0 +1,240 @@
+#include "tools/app/study/whatif/whatif.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/base/error.h"
+#include "sim/energy/area.h"
+#include "sim/work/offload_regions.h"
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
+#include "tools/app/run/replay.h"
+#include "tools/app/run/simulate.h"
+#include "traces/work_traces/work_trace.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kAsItIs = "as it is";
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(at, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+struct Choice {
+  std::string path;
+  std::vector<std::string> values;
+};
+
+/// "a=1,2,b=3": a is 1 or 2, b is 3.
+std::vector<Choice> choices_of(const std::string& text) {
+  std::vector<Choice> choices;
+  for (const std::string& item : split(text, ',')) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos)
+      choices.back().values.push_back(item);
+    else
+      choices.push_back({item.substr(0, equals), {item.substr(equals + 1)}});
+  }
+  return choices;
+}
+
+std::vector<std::string> unused_accelerators(const sim::ChipConfig& chip,
+                                             const std::vector<StageParts>& stages) {
+  std::vector<std::string> unused;
+  for (const bool on_controller : {false, true})
+    for (const work::OffloadKindInfo& kind : work::kOffloadKinds) {
+      const sim::Accelerators& units =
+          on_controller ? chip.controller.accelerators : chip.cluster.accelerators;
+      if (units[work::index(kind.kernel)].units == 0) continue;
+      const bool serves =
+          std::any_of(stages.begin(), stages.end(), [&](const StageParts& stage) {
+            return stage.on_controller == on_controller &&
+                   std::any_of(stage.parts.begin(), stage.parts.end(), [&](const CyclePart& p) {
+                     return p.operation == kind.name && p.count > 0;
+                   });
+          });
+      if (!serves)
+        unused.push_back(fmt::format("{} ({})", kind.name, on_controller ? "controller" : "cluster"));
+    }
+  return unused;
+}
+
+void take_times(VariantResult& result, const RunResult& run) {
+  std::vector<std::int64_t> cycles;
+  Cycles sum;
+  for (const FrameResult& frame : run.frames) {
+    cycles.push_back(frame.cycles.count());
+    sum += frame.cycles;
+  }
+  std::sort(cycles.begin(), cycles.end());
+  const auto ms = [&](std::int64_t n) {
+    return milliseconds(static_cast<double>(n), run.cluster_clock);
+  };
+  result.frames = cycles.size();
+  result.period_ms = static_cast<double>(run.frame_period_ns) * 1e-6;
+  if (cycles.empty()) return;
+  result.mean_ms = milliseconds(*mean(sum, std::ssize(cycles)), run.cluster_clock);
+  result.p99_ms = ms(percentile(cycles, 0.99));
+  result.worst_ms = ms(cycles.back());
+  result.late = static_cast<std::size_t>(std::count_if(
+      cycles.begin(), cycles.end(), [&](std::int64_t n) { return ms(n) > result.period_ms; }));
+}
+
+void take_costs(VariantResult& result, const RunResult& run) {
+  if (const std::optional<RunEnergy> energy = energy_of(run))
+    if (const auto frame = energy->per_frame())
+      result.energy_mj = {frame->value.count() * 1e3, frame->low().count() * 1e3,
+                          frame->high().count() * 1e3};
+  if (!sim::knows_area(run.chip)) return;
+  const sim::AreaItem chip = sim::total_area(run.chip);
+  result.area_mm2 = chip.area.count() * 1e-6;
+  result.is_whole_area = chip.known;
+}
+
+VariantResult timed(const std::string& name, const ResolvedPoint& point) {
+  RunRequest request = point.request;
+  CycleParts parts(request.platform.config, request.cores);
+  request.observer = &parts;
+  const auto progress = [](const Progress&) { throw_if_interrupted(); };
+  const RunResult run = point.trace != nullptr ? replay(*point.trace, request, progress).run
+                                               : simulate(request, progress);
+  VariantResult result;
+  result.name = name;
+  result.is_run = point.trace == nullptr;
+  take_times(result, run);
+  take_costs(result, run);
+  result.parts = {parts.stages(), request.cores, static_cast<double>(run.frames.size()),
+                  run.cluster_clock};
+  result.unused = unused_accelerators(request.platform.config, result.parts.stages);
+  return result;
+}
+
+}  // namespace
+
+std::string VariantResult::verdict() const {
+  if (late == 0) return "fits";
+  return mean_ms > period_ms ? "too slow" : fmt::format("{} late", late);
+}
+
+WhatIf::WhatIf(SweepInputs& inputs, std::string trace, SweepRow again)
+    : inputs_(inputs), trace_(std::move(trace)), again_(std::move(again)) {
+  plan_.file = "whatif";
+  plan_.reference = &inputs_.trace(trace_, {trace_}).platform;
+}
+
+void WhatIf::expect_known(const std::string& change, const SweepRow& settings) {
+  for (const auto& [name, value] : settings) {
+    if (name == "platform") {
+      inputs_.platform(value, {change});
+    } else if (const SweepKey key = find_key(name, plan_.reference->schema(), {change});
+               value.empty()) {
+      throw InputError(fmt::format("{}: {} is empty; expected a value", change, key.name));
+    }
+  }
+}
+
+std::vector<Variant> WhatIf::variants(const std::string& change) {
+  const std::size_t equals = change.find('=');
+  const std::size_t colon = equals == std::string::npos ? equals : change.rfind(':', equals);
+  SweepRow chip;
+  std::string prefix;
+  std::string changes = change;
+  if (equals == std::string::npos || colon != std::string::npos) {
+    prefix = change.substr(0, colon);
+    chip["platform"] = prefix;
+    changes = colon == std::string::npos ? "" : change.substr(colon + 1);
+    if (!changes.empty()) prefix += ':';
+  }
+  std::vector<Variant> all{{prefix, chip}};
+  if (!changes.empty())
+    for (const Choice& choice : choices_of(changes)) {
+      const std::vector<Variant> before = std::exchange(all, {});
+      for (const Variant& variant : before)
+        for (const std::string& value : choice.values) {
+          Variant next = variant;
+          const bool first = next.settings.size() == chip.size();
+          next.name += fmt::format("{}{}={}", first ? "" : ",", choice.path, value);
+          next.settings[std::string(kChipSettings) + choice.path] = value;
+          all.push_back(std::move(next));
+        }
+    }
+  for (const Variant& variant : all) expect_known(change, variant.settings);
+  return all;
+}
+
+ResolvedPoint WhatIf::resolved(const Variant& variant) {
+  SweepRow settings = variant.settings;
+  settings["trace"] = trace_;
+  const traces::WorkTrace& trace = *inputs_.trace(trace_, {trace_}).work;
+  const std::string where = variant.name;
+  platform::PlatformFile& chip = settings.count("platform") > 0
+                                     ? inputs_.platform(settings["platform"], {where})
+                                     : inputs_.trace(trace_, {where}).platform;
+  std::vector<std::string> overrides;
+  for (const auto& [name, value] : settings)
+    if (name.starts_with(kChipSettings)) overrides.push_back(name.substr(kChipSettings.size()) + '=' + value);
+  const platform::ResolvedPlatform platform = chip.resolve(overrides);
+  const int workers = platform.config.cluster.workers;
+  if (workers == trace.info().cores || (variant.settings.empty() && workers >= trace.info().cores)) {
+    settings["cores"] = fmt::format("{}", trace.info().cores);
+    return resolve(plan_, settings, inputs_, where);
+  }
+  if (again_.empty())
+    throw InputError(
+        fmt::format("its work was divided among {} cores, and how it is among {} is not in the "
+                    "trace; expected the folder of a run, whose data are there",
+                    trace.info().cores, workers));
+  SweepRow run = again_;
+  run.insert(settings.begin(), settings.end());
+  run.erase("trace");
+  if (run.count("platform") == 0) {  // the recorded chip has no name that could be looked up
+    ResolvedPoint point;
+    run["platform"] = "gap9";
+    SweepRow plain = run;
+    std::erase_if(plain, [](const auto& item) { return item.first.starts_with(kChipSettings); });
+    point = resolve(plan_, plain, inputs_, where);
+    point.chip = &chip;
+    point.overrides = overrides;
+    point.request.platform = platform;
+    point.request.cores = workers;
+    return point;
+  }
+  return resolve(plan_, run, inputs_, where);
+}
+
+std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
+                                           const RunnerOptions& options) {
+  std::vector<Variant> all{{kAsItIs, {}}};
+  all.insert(all.end(), variants.begin(), variants.end());
+  std::vector<VariantResult> results(all.size());
+  std::vector<std::optional<ResolvedPoint>> points(all.size());
+  const auto may_fail = [&](std::size_t i, const auto& act) {
+    try {
+      act();
+    } catch (const InputError& error) {
+      if (i == 0) throw;
+      results[i].name = all[i].name;
+      results[i].failure = error.what();
+    }
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    throw_if_interrupted();
+    may_fail(i, [&] { points[i] = resolved(all[i]); });
+  }
+  run_all(all.size(), options, [&](std::size_t i) {
+    if (points[i]) may_fail(i, [&] { results[i] = timed(all[i].name, *points[i]); });
+  });
+  return results;
+}
+
+}  // namespace leviosim::tools

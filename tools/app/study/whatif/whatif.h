@@ -1,0 +1,77 @@
+// A recorded run on other chips: each variant is a replay of the one trace, or, where its work
+// would be divided among another number of cores, the run again.
+//
+// Left out: what another timing changes in the computation of a replay (../../run/trace_source.h).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/app/comparison/main_causes.h"
+#include "tools/app/study/run_outcome.h"
+#include "tools/app/study/runner.h"
+#include "tools/app/study/sweep/points.h"
+
+namespace leviosim::tools {
+
+/// Begins the keys of settings that change the chip.
+inline constexpr std::string_view kChipSettings = "platform.";
+
+struct Variant {
+  std::string name;   ///< as asked for: "cluster.fpu.units=2"
+  SweepRow settings;  ///< "platform", "platform.…"; the rest is the run's
+};
+
+/// What became of a variant.
+struct VariantResult {
+  std::string name;
+  std::string failure;  ///< why it cannot run; then there are no figures
+  double mean_ms = 0;   ///< a frame's own time, without the time it waits for the one before
+  double p99_ms = 0;
+  double worst_ms = 0;
+  std::size_t frames = 0;
+  std::size_t late = 0;     ///< whose own time exceeds the camera's period
+  double period_ms = 0;     ///< of the camera
+  std::optional<Banded> energy_mj;
+  std::optional<double> area_mm2;
+  bool is_whole_area = true;  ///< else parts are unknown
+  bool is_run = false;        ///< computed again, not replayed
+  TimedParts parts;
+  std::vector<std::string> unused;  ///< accelerators that served nothing: "hamming of the cluster"
+
+  /// At which frames do not pile up.
+  double sustainable_fps() const { return 1e3 / mean_ms; }
+  std::string verdict() const;
+};
+
+/// A run that is asked what if.
+class WhatIf {
+ public:
+  /// @param trace   as inputs.trace() takes it, or has been given
+  /// @param again   the settings that compute the run again, "data" and so on; empty if not known
+  /// @param inputs  outlives this
+  WhatIf(SweepInputs& inputs, std::string trace, SweepRow again);
+
+  /// "cluster.fpu.units=2,4,8": three; "gap9-eigen", "mine.yaml"; "gap9:cluster.workers=4"; "A=1,B=2":
+  /// both at once. @throws InputError for names that do not exist
+  std::vector<Variant> variants(const std::string& change);
+  /// A standard set, made of what the platform has: each resource halved and doubled, both clocks
+  /// halved, other numbers of cores, accelerators of built-in platforms.
+  std::vector<Variant> standard_variants();
+
+  /// The run as it is, then the variants in their order. @throws Interrupted
+  std::vector<VariantResult> results(const std::vector<Variant>& variants,
+                                     const RunnerOptions& options);
+
+ private:
+  void expect_known(const std::string& change, const SweepRow& settings);
+  ResolvedPoint resolved(const Variant& variant);
+
+  SweepInputs& inputs_;
+  std::string trace_;
+  SweepRow again_;
+  SweepPlan plan_;
+};
+
+}  // namespace leviosim::tools

@@ -1,0 +1,275 @@
+#include "tools/app/study/whatif/whatif_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "sim/base/csv_table.h"
+#include "sim/base/printable_text.h"
+#include "tools/app/report/text_table.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr int kWidth = 80;
+constexpr int kIndent = 4;
+constexpr int kNameWidth = 28;
+/// Per cent of the time; less is no change.
+constexpr double kNoChange = 0.05;
+/// Of the whole difference: a cause with less goes without saying.
+constexpr double kLeastCause = 0.2;
+
+std::optional<double> percent(double value, double base) {
+  if (base == 0) return std::nullopt;
+  return 100 * (value / base - 1);
+}
+
+struct Changes {
+  double time = 0;
+  std::optional<double> energy;
+  std::optional<double> area;
+};
+
+Changes changes_of(const VariantResult& base, const VariantResult& variant) {
+  Changes changes{percent(variant.mean_ms, base.mean_ms).value_or(0), {}, {}};
+  if (base.energy_mj && variant.energy_mj)
+    changes.energy = percent(variant.energy_mj->value, base.energy_mj->value);
+  if (base.area_mm2 && variant.area_mm2) changes.area = percent(*variant.area_mm2, *base.area_mm2);
+  return changes;
+}
+
+std::string wrapped(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return std::string(kIndent, ' ') + wrap(words, " ", kIndent, kWidth) + '\n';
+}
+
+std::string below(const VariantResult& base, const VariantResult& variant) {
+  std::string text;
+  if (display_width(printable(variant.name)) > kNameWidth) text = printable(variant.name) + ": ";
+  if (!variant.failure.empty()) return wrapped(text + printable(variant.failure));
+  const Changes changes = changes_of(base, variant);
+  text += std::abs(changes.time) < kNoChange ? "same time"
+                                             : fmt::format("{:+.1f} % time", changes.time);
+  if (changes.energy) text += fmt::format(", {:+.1f} % energy", *changes.energy);
+  if (!variant.is_whole_area)
+    text += ", area of some parts unknown";
+  else if (changes.area)
+    text += fmt::format(", {:+.1f} % area", *changes.area);
+  return wrapped(text + ": " + reason_of(base, variant));
+}
+
+std::string number(std::optional<double> value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "–";
+}
+
+std::vector<std::string> cells_of(const VariantResult& result) {
+  const std::string name = shortened(printable(result.name), kNameWidth);
+  if (!result.failure.empty()) return {name, "–", "–", "–", "cannot run", "–", "–"};
+  std::optional<double> energy;
+  if (result.energy_mj) energy = result.energy_mj->value;
+  return {name,
+          number(result.mean_ms, 2),
+          number(result.p99_ms, 2),
+          number(result.sustainable_fps(), 1),
+          result.verdict(),
+          number(energy, 3),
+          (result.is_whole_area ? "" : ">") + number(result.area_mm2, 2)};
+}
+
+/// Rows with a line of reasons below each but the first.
+std::string table_of(const VariantResult& base, const std::vector<const VariantResult*>& rows) {
+  TextTable table({{"", kLeft},
+                   {"mean ms", kRight},
+                   {"p99 ms", kRight, 2},
+                   {"fps", kRight, 3},
+                   {"time", kLeft},
+                   {"mJ", kRight, 1},
+                   {"mm2", kRight, 1}});
+  table.add(cells_of(base));
+  for (const VariantResult* row : rows) table.add(cells_of(*row));
+  const std::string lines = table.str(std::min(table_width(), kWidth));
+  std::string text;
+  std::size_t begin = 0;
+  constexpr std::size_t kBefore = 3;  // titles, rule, the run as it is
+  for (std::size_t line = 0; begin < lines.size(); ++line) {
+    const std::size_t end = lines.find('\n', begin) + 1;
+    text += lines.substr(begin, end - begin);
+    if (line >= kBefore) text += below(base, *rows[line - kBefore]);
+    begin = end;
+  }
+  return text;
+}
+
+/// Time gained per area. What needs no area comes first, what needs an unknown one last; of both
+/// the fastest first.
+std::pair<int, double> worth(const VariantResult& base, const VariantResult& variant) {
+  const Changes changes = changes_of(base, variant);
+  if (!changes.area || !variant.is_whole_area) return {0, -changes.time};
+  return *changes.area > 0 ? std::pair(1, -changes.time / *changes.area)
+                           : std::pair(2, -changes.time);
+}
+
+std::string list_of(const std::string& title, const std::vector<std::string>& items) {
+  if (items.empty()) return {};
+  return title + '\n' + wrapped(fmt::format("{}", fmt::join(items, "; ")));
+}
+
+}  // namespace
+
+std::string reason_of(const VariantResult& base, const VariantResult& variant) {
+  if (!variant.failure.empty()) return variant.failure;
+  std::vector<std::string> unused;
+  for (const std::string& unit : variant.unused)
+    if (std::find(base.unused.begin(), base.unused.end(), unit) == base.unused.end())
+      unused.push_back(unit);
+  const double difference = variant.mean_ms - base.mean_ms;
+  std::vector<std::string> parts;
+  if (std::abs(difference) >= kNoChange * 1e-2 * base.mean_ms)
+    for (const MainCause& cause : main_causes(base.parts, variant.parts)) {
+      if (parts.size() == 2 || std::abs(cause.ms) < kLeastCause * std::abs(difference)) break;
+      std::string part = fmt::format("{} {:+.2f} ms", cause.what, cause.ms);
+      if (!cause.stage.empty() && std::abs(cause.stage_ms) < std::abs(cause.ms))
+        part += fmt::format(", most in {}", cause.stage);
+      else if (!cause.stage.empty())
+        part += fmt::format(" in {}", cause.stage);
+      parts.push_back(std::move(part));
+    }
+  if (!unused.empty())
+    parts.push_back(fmt::format("nothing of this run uses {}, because its work has no region for "
+                                "it there",
+                                fmt::join(unused, ", ")));
+  if (parts.empty()) return "no frame waits for it";
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string whatif_table(const std::vector<VariantResult>& results) {
+  std::vector<const VariantResult*> rows;
+  for (std::size_t i = 1; i < results.size(); ++i) rows.push_back(&results[i]);
+  return table_of(results.front(), rows);
+}
+
+std::string whatif_bars(const std::vector<VariantResult>& results) {
+  constexpr double kBar = 34;
+  double longest = 0;
+  for (const VariantResult& r : results) longest = std::max(longest, r.mean_ms);
+  std::string text;
+  for (const VariantResult& r : results) {
+    text += fmt::format("{:<22}{:6.2f} ms {:5.2f} mJ ", r.name, r.mean_ms,
+                        r.energy_mj ? r.energy_mj->value : 0);
+    for (int n = static_cast<int>(longest > 0 ? kBar * r.mean_ms / longest + 0.5 : 0); n > 0; --n)
+      text += "█";
+    text += '\n';
+  }
+  return text;
+}
+
+std::string advice_text(const std::vector<VariantResult>& results) {
+  const VariantResult& base = results.front();
+  std::vector<const VariantResult*> gains;
+  std::vector<std::string> spared, same, slower, impossible;
+  for (std::size_t i = 1; i < results.size(); ++i) {
+    const VariantResult& result = results[i];
+    if (!result.failure.empty()) {
+      impossible.push_back(fmt::format("{} ({})", printable(result.name), printable(result.failure)));
+      continue;
+    }
+    const Changes changes = changes_of(base, result);
+    if (changes.time <= -kNoChange)
+      gains.push_back(&result);
+    else if (changes.time >= kNoChange)
+      slower.push_back(fmt::format("{} {:+.1f} %", result.name, changes.time));
+    else if (changes.area.value_or(0) < 0)
+      spared.push_back(fmt::format("{} ({:+.1f} % area)", result.name, *changes.area));
+    else
+      same.push_back(result.name);
+  }
+  std::stable_sort(gains.begin(), gains.end(), [&](const VariantResult* a, const VariantResult* b) {
+    return worth(base, *a) > worth(base, *b);
+  });
+  std::string text = table_of(base, gains);
+  const auto frugal = [&](const VariantResult* a, const VariantResult* b) {
+    const auto of = [&](const VariantResult& r) {
+      return changes_of(base, r).energy.value_or(std::numeric_limits<double>::max());
+    };
+    return of(*a) < of(*b);
+  };
+  std::vector<const VariantResult*> by_energy = gains;
+  std::stable_sort(by_energy.begin(), by_energy.end(), frugal);
+  std::vector<std::string> least;
+  for (const VariantResult* r : by_energy)
+    if (const auto energy = changes_of(base, *r).energy; energy && least.size() < 3)
+      least.push_back(fmt::format("{} {:+.1f} %", r->name, *energy));
+  text += list_of("\nBy time gained per area, unknown areas last. Least energy per frame:", least);
+  text += list_of("Costs no time:", spared);
+  text += list_of("Changes nothing:", same);
+  text += list_of("Takes longer:", slower);
+  return text + list_of("Cannot run:", impossible);
+}
+
+std::string whatif_csv(const std::vector<VariantResult>& results) {
+  using R = const VariantResult&;
+  const auto of = [](R r, double value, int decimals) {
+    return base::fixed(r.failure.empty() ? std::optional(value) : std::nullopt, decimals);
+  };
+  const auto energy = [](double Banded::*part) {
+    return [part](R r) {
+      return base::fixed(r.energy_mj ? std::optional((*r.energy_mj).*part) : std::nullopt, 6);
+    };
+  };
+  base::CsvTable<VariantResult> table{
+      {"variant", [](R r) { return r.name; }},
+      {"frame_mean_ms", [&](R r) { return of(r, r.mean_ms, 4); }},
+      {"frame_p99_ms", [&](R r) { return of(r, r.p99_ms, 4); }},
+      {"frame_worst_ms", [&](R r) { return of(r, r.worst_ms, 4); }},
+      {"sustainable_fps",
+       [&](R r) { return of(r, r.mean_ms > 0 ? r.sustainable_fps() : 0, 3); }},
+      {"frames", [](R r) { return fmt::format("{}", r.frames); }},
+      {"late", [](R r) { return fmt::format("{}", r.late); }},
+      {"time", [](R r) { return r.failure.empty() ? r.verdict() : std::string("cannot run"); }},
+      {"energy_mj", energy(&Banded::value)},
+      {"energy_mj_low", energy(&Banded::low)},
+      {"energy_mj_high", energy(&Banded::high)},
+      {"area_mm2", [](R r) { return base::fixed(r.area_mm2, 4); }},
+      {"area", [](R r) { return std::string(r.is_whole_area ? "whole" : "at least"); }},
+      {"computed", [](R r) { return std::string(r.is_run ? "run again" : "replayed"); }},
+      {"why", [&](R r) {
+         return &r == &results.front() || !r.failure.empty() ? std::string()
+                                                             : reason_of(results.front(), r);
+       }},
+      {"failure", [](R r) { return r.failure; }}};
+  return table.text(results);
+}
+
+Json whatif_page(const std::string& title, const std::string& summary,
+                 const std::vector<VariantResult>& results) {
+  StudyPage page;
+  page.title = title;
+  page.summary = summary;
+  page.points = whatif_csv(results);
+  page.columns = {{"variant", "variant", "", true},
+                  {"frame_mean_ms", "mean frame", "ms"},
+                  {"frame_p99_ms", "frame time of 99 %", "ms"},
+                  {"frame_worst_ms", "worst frame", "ms"},
+                  {"sustainable_fps", "sustainable rate", "frames/s", false, true},
+                  {"late", "late frames", ""},
+                  {"time", "time", ""},
+                  {"energy_mj", "energy per frame", "mJ"},
+                  {"area_mm2", "area", "mm2"},
+                  {"why", "why", ""},
+                  {"failure", "failure", ""}};
+  page.bars = {"variant", {"frame_mean_ms", "energy_mj", "area_mm2"}};
+  page.x = "area_mm2";
+  page.y = "frame_mean_ms";
+  return study_report(page);
+}
+
+}  // namespace leviosim::tools
