@@ -42,26 +42,29 @@ std::string clock_text(const ClockSetting& setting) {
   return setting.voltage ? text + fmt::format(", {:g} V", setting.voltage->count()) : text;
 }
 
-std::string choice_line(const TunePlan& plan, const Choice& choice) {
+/// "300 MHz (6.0 %, 0.100)".
+std::string short_text(const TunePoint& point) {
+  return fmt::format("{:g} MHz ({} %, {})", megahertz(point.setting.clock),
+                     percent(point.miss_rate()), ate(point.ate().median));
+}
+
+std::string choice_line(const Choice& choice) {
   std::string text = fmt::format("  {:g} frames/s: ", choice.fps);
-  if (choice.lowest == nullptr) return text + "none of these clocks\n";
-  const TunePoint& point = *choice.lowest;
-  text += fmt::format("{}: {} % missed, ATE {} m", clock_text(point.setting),
-                      percent(point.miss_rate()), ate(point.ate().median));
-  if (const auto power = point.median(&LoopOutcome::power_w))
-    text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
-                        milli(point.median(&LoopOutcome::frame_j), 3));
-  std::vector<std::string> failing;
-  for (const TunePoint* higher : choice.higher_failing)
-    failing.push_back(fmt::format("{:g} ({} %, {})", megahertz(higher->setting.clock),
-                                  percent(higher->miss_rate()), ate(higher->ate().median)));
-  if (!failing.empty())
-    text += fmt::format(
-        "\n    but not at {} of {} higher clocks: {}", failing.size(),
-        std::count_if(plan.clocks.begin(), plan.clocks.end(),
-                      [&](const ClockSetting& s) { return s.clock > point.setting.clock; }),
-        fmt::join(failing, ", "));
-  return text + '\n';
+  if (choice.lowest == nullptr) {
+    text += "none of these clocks";
+  } else {
+    const TunePoint& point = *choice.lowest;
+    text += fmt::format("{}: {} % missed, ATE {} m", clock_text(point.setting),
+                        percent(point.miss_rate()), ate(point.ate().median));
+    if (const auto power = point.median(&LoopOutcome::power_w))
+      text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
+                          milli(point.median(&LoopOutcome::frame_j), 3));
+  }
+  if (choice.lucky.empty()) return text + '\n';
+  std::vector<std::string> lucky;
+  for (const TunePoint* lower : choice.lucky) lucky.push_back(short_text(*lower));
+  return text + fmt::format("\n    lower ones that meet the limits by chance: {}; {} does not\n",
+                            fmt::join(lucky, ", "), short_text(*choice.highest_failing));
 }
 
 Json banded_json(const std::optional<Banded>& figure) {
@@ -201,9 +204,10 @@ std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points)
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
   std::string text =
-      fmt::format("the lowest of these clocks with at most {:g} % missed and an ATE of {:g} m:\n",
+      fmt::format("the lowest clocks from which on all have at most {:g} % missed and an ATE of {:g} "
+                  "m:\n",
                   100 * plan.miss_rate, plan.ate_m);
-  for (const Choice& choice : choices) text += choice_line(plan, choice);
+  for (const Choice& choice : choices) text += choice_line(choice);
   const TunePoint* best = chosen(choices);
   if (best == nullptr) return text + "no point meets the limits\n";
   return text + fmt::format("the lowest of all: {} at {:g} frames/s\n  {}\n",

@@ -105,12 +105,16 @@ bool is_enough(const TunePoint& point, const TunePlan& plan) {
 std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& points) {
   std::vector<Choice> all;
   for (const double fps : plan.fps) {
-    Choice choice{fps, nullptr, {}};
-    for (const TunePoint& point : points) {
-      if (point.fps != fps) continue;
-      const bool enough = is_enough(point, plan);
-      if (choice.lowest == nullptr && enough) choice.lowest = &point;
-      if (choice.lowest != nullptr && !enough) choice.higher_failing.push_back(&point);
+    Choice choice{fps, nullptr, {}, nullptr};
+    for (auto point = points.rbegin(); point != points.rend(); ++point) {  // clocks fall
+      if (point->fps != fps) continue;
+      if (!is_enough(*point, plan)) {
+        if (choice.highest_failing == nullptr) choice.highest_failing = &*point;
+      } else if (choice.highest_failing == nullptr) {
+        choice.lowest = &*point;
+      } else {
+        choice.lucky.push_back(&*point);
+      }
     }
     all.push_back(std::move(choice));
   }

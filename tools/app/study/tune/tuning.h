@@ -45,13 +45,16 @@ bool is_enough(const TunePoint& point, const TunePlan& plan);
 /// What the plan's limits come to at a frame rate.
 struct Choice {
   double fps = 0;
-  const TunePoint* lowest = nullptr;             ///< of the points that are enough; none if none is
-  std::vector<const TunePoint*> higher_failing;  ///< clocks above that are not enough
+  /// The lowest clock that is enough, as all higher ones are; none if the highest is not.
+  const TunePoint* lowest = nullptr;
+  /// Lower clocks that are enough, but below one that is not: no clocks to build on.
+  std::vector<const TunePoint*> lucky;
+  const TunePoint* highest_failing = nullptr;
 };
 /// By frame rate. @param points  outlive the choices
 std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& points);
 
-/// The lowest clock of all; of equal clocks, that of the higher frame rate. nullptr if none is
+/// The lowest of these clocks; of equal clocks, that of the higher frame rate. nullptr if none is
 /// enough.
 const TunePoint* chosen(const std::vector<Choice>& choices);
 
