@@ -43,15 +43,24 @@ Service service_of(const work::OffloadWork& calls, const Accelerators& accelerat
           busy * accelerator.l1_words};
 }
 
-Demand price(const work::Segment& segment, const CoreConfig& core, const Accelerators& accelerators,
-             const CodeFetcher& code) {
+Demand demand_of(const work::Segment& segment, const CoreConfig& core,
+                 const Accelerators& accelerators, const CodeFetcher& code,
+                 OperationAccounts* by_operation) {
   if (segment.offload.empty() || !has_accelerators(accelerators))
-    return price(static_cast<const work::Counts&>(segment), core, code);
-  Demand demand = price(left_to_core(segment, accelerators), core, code);
+    return demand_of(static_cast<const work::Counts&>(segment), core, code, by_operation);
+  Demand demand = demand_of(left_to_core(segment, accelerators), core, code, by_operation);
   for (const work::OffloadWork& calls : segment.offload) {
+    if (accelerators[work::index(calls.kernel)].units == 0) continue;
     const Service service = service_of(calls, accelerators);
-    demand.alone.issue += service.instructions;
-    demand.alone.accelerator += service.waiting;
+    LoneCycles alone;
+    alone[Mechanism::Issue] = service.instructions;
+    alone[Mechanism::Accelerator] = service.waiting;
+    demand.alone += alone;
+    if (by_operation != nullptr) {
+      OperationAccount& account = (*by_operation)[operation_of(calls.kernel)];
+      account.count += static_cast<double>(calls.items);
+      account.cycles += alone;
+    }
     demand.scattered += service.l1_words;
     UnitDemand& unit = demand.units[static_cast<std::size_t>(accelerator_of(calls.kernel))];
     if (service.busy > 0) unit = {static_cast<double>(calls.calls), service.busy};

@@ -35,8 +35,9 @@ struct Service {
 /// None if there is no accelerator for them.
 Service service_of(const work::OffloadWork& calls, const Accelerators& accelerators);
 
-/// As price() of cost.h, with the calls that accelerators serve.
-Demand price(const work::Segment& segment, const CoreConfig& core, const Accelerators& accelerators,
-             const CodeFetcher& code = {});
+/// As demand_of() of cost.h, with the calls that accelerators serve.
+Demand demand_of(const work::Segment& segment, const CoreConfig& core,
+                 const Accelerators& accelerators, const CodeFetcher& code = {},
+                 OperationAccounts* by_operation = nullptr);
 
 }  // namespace leviosim::sim

@@ -23,8 +23,13 @@ class Chip {
   const Timebase& timebase() const { return timebase_; }
   Cluster& cluster() { return cluster_; }
   Controller& controller() { return controller_; }
+  /// Whether accounts of jobs are by fork and kind of operation, too.
+  void keep_forks(bool keep) {
+    cluster_.keep_forks(keep);
+    controller_.keep_forks(keep);
+  }
 
-  /// co_await: the controller sends the job to the cluster and is told when it is done.
+  /// co_await: the controller sends the job to the cluster and hears when it is done.
   Task<JobTiming> offload(const work::Job& job);
   /// co_await: the controller runs the job itself.
   Task<JobTiming> control(const work::Job& job);

@@ -21,15 +21,19 @@ int checked_workers(const ClusterConfig& config, int workers) {
   return workers;
 }
 
-/// What a share took.
-void book(CycleBreakdown& breakdown, const SegmentTime& time) {
-  breakdown.useful += time.alone;
-  breakdown.fpu += time.fpu;
-  breakdown.divider += time.divider;
-  breakdown.banks += time.banks;
-  breakdown.fetch += time.fetch;
-  breakdown.accelerator += time.accelerator;
-  breakdown.rounding += time.rounding;
+OperationAccounts* operations_of(ForkAccount* fork) {
+  return fork == nullptr ? nullptr : &fork->operations;
+}
+
+/// Books what a share took, or what the team waited for.
+void book(CycleAccount& account, ForkAccount* fork, const MechanismCycles& cycles) {
+  account.team += cycles;
+  if (fork != nullptr) fork->cycles += cycles;
+}
+
+void book(CycleAccount& account, ForkAccount* fork, Mechanism mechanism, double core_cycles) {
+  account.team[mechanism] += core_cycles;
+  if (fork != nullptr) fork->cycles[mechanism] += core_cycles / fork->weight;
 }
 
 }  // namespace
@@ -66,13 +70,13 @@ Task<JobTiming> Cluster::run(const work::Job& job) {
       begin_step(variant, s);
       // Not std::visit: a coroutine must not be awaited inside a plain lambda.
       if (const auto* serial = std::get_if<work::Serial>(&variant))
-        co_await step(*serial, s.breakdown);
+        co_await step(*serial, s.account);
       else if (const auto* fork = std::get_if<work::Fork>(&variant))
-        co_await step(*fork, s.breakdown);
+        co_await step(*fork, s.account);
       else if (const auto* transfer = std::get_if<work::Transfer>(&variant))
-        co_await step(*transfer, s.breakdown);
+        co_await step(*transfer, s.account);
       else
-        co_await step(std::get<work::TransferWait>(variant), s.breakdown);
+        co_await step(std::get<work::TransferWait>(variant), s.account);
       end_step();
       after_fork_ = std::holds_alternative<work::Fork>(variant);
     }
@@ -92,18 +96,24 @@ void Cluster::end_step() {
   if (StepTiming* ended = std::exchange(step_, nullptr)) ended->end = kernel_.now();
 }
 
-void Cluster::note(int core, Time begin, const SegmentTime& time) {
+void Cluster::note(int core, Time begin, const MechanismCycles& time) {
   if (step_ != nullptr) step_->cores.push_back({core, begin, kernel_.now(), time});
 }
 
-Task<> Cluster::step(const work::Serial& serial, CycleBreakdown& breakdown) {
-  const Time begin = kernel_.now();
-  const SegmentTime time = co_await team_.execute(workers_, serial.counts);
-  note(workers_, begin, time);
-  breakdown.serial += accounted() * cycles_since(begin, kernel_.now());
+ForkAccount* Cluster::fork_in(CycleAccount& account, std::string_view name, double weight) const {
+  return keep_forks_ ? &account.fork(name, weight) : nullptr;
 }
 
-Task<> Cluster::step(const work::Transfer& transfer, CycleBreakdown& breakdown) {
+Task<> Cluster::step(const work::Serial& serial, CycleAccount& account) {
+  const Time begin = kernel_.now();
+  ForkAccount* const fork = fork_in(account, kSerialFork, accounted());
+  const MechanismCycles time = co_await team_.execute(workers_, serial.counts, operations_of(fork));
+  note(workers_, begin, time);
+  account.team[Mechanism::Serial] += accounted() * cycles_since(begin, kernel_.now());
+  if (fork != nullptr) fork->cycles += time;
+}
+
+Task<> Cluster::step(const work::Transfer& transfer, CycleAccount& account) {
   const Time begin = kernel_.now();
   if (const Time room = dma_.room(); room > begin) co_await kernel_.at(room);
   co_await kernel_.delay(cycles(config_.dma.programming));
@@ -113,13 +123,18 @@ Task<> Cluster::step(const work::Transfer& transfer, CycleBreakdown& breakdown) 
     background_.push_back(data.end);
   else
     co_await until_arrived(data.end);
-  breakdown.transfer += accounted() * cycles_since(begin, kernel_.now());
+  book_transfer(account, begin);
 }
 
-Task<> Cluster::step(const work::TransferWait& wait, CycleBreakdown& breakdown) {
+Task<> Cluster::step(const work::TransferWait& wait, CycleAccount& account) {
   const Time begin = kernel_.now();
   co_await until_arrived(background_.at(static_cast<std::size_t>(wait.number)));
-  breakdown.transfer += accounted() * cycles_since(begin, kernel_.now());
+  book_transfer(account, begin);
+}
+
+void Cluster::book_transfer(CycleAccount& account, Time begin) {
+  book(account, fork_in(account, "", accounted()), Mechanism::Transfer,
+       accounted() * cycles_since(begin, kernel_.now()));
 }
 
 /// A core sleeps on the wait instruction even if the event is there already
@@ -129,21 +144,23 @@ Task<> Cluster::until_arrived(Time arrival) {
   co_await kernel_.delay(cycles(config_.dma.completion));
 }
 
-Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
+Task<> Cluster::step(const work::Fork& fork, CycleAccount& account) {
   if (workers_ == 0) {
-    co_await run_alone(fork, breakdown);
+    co_await run_alone(fork, account);
     co_return;
   }
   const Time begin = kernel_.now();
+  ForkAccount* const of_fork = fork_in(account, fork.name, 1);
   arrivals_ = 0;
   const double share = after_fork_ ? config_.events.fork_again : 1;
   const Duration of_master = cycles(share * config_.events.fork_master);
   const Duration of_worker = cycles(share * config_.events.fork_worker);
   co_await kernel_.delay(of_master);
-  for (auto& channel : dispatch_) co_await channel->push({&fork, &breakdown, begin, of_worker});
+  for (auto& channel : dispatch_)
+    co_await channel->push({&fork, &account, of_fork, begin, of_worker});
   if (fork.master_takes_part) {
     const Time share_begin = kernel_.now();
-    const SegmentTime time = co_await team_.execute(workers_, fork.shares.back());
+    const MechanismCycles time = co_await team_.execute(workers_, fork.shares.back());
     note(workers_, share_begin, time);
   }
   co_await end_of_fork_.arrive();
@@ -151,17 +168,18 @@ Task<> Cluster::step(const work::Fork& fork, CycleBreakdown& breakdown) {
   const double start_up = cycles_since(begin, begin + of_master + of_worker);
   const double after = cycles_since(last_arrival_, kernel_.now());
   const double barrier = std::min(after, config_.events.barrier);
-  breakdown.imbalance += workers_ * (last + after - barrier) - arrivals_;
-  breakdown.synchronisation += workers_ * (start_up + barrier);
+  book(account, of_fork, Mechanism::Imbalance, workers_ * (last + after - barrier) - arrivals_);
+  book(account, of_fork, Mechanism::Synchronisation, workers_ * (start_up + barrier));
   if (step_ != nullptr) step_->synchronisation = start_up + barrier;
 }
 
-Task<> Cluster::run_alone(const work::Fork& fork, CycleBreakdown& breakdown) {
+Task<> Cluster::run_alone(const work::Fork& fork, CycleAccount& account) {
   const Time begin = kernel_.now();
   const work::Segment sum = work::shares_on_one_core(fork);
-  const SegmentTime time = co_await team_.execute(workers_, sum);
+  ForkAccount* const of_fork = fork_in(account, fork.name, 1);
+  const MechanismCycles time = co_await team_.execute(workers_, sum, operations_of(of_fork));
   note(workers_, begin, time);
-  book(breakdown, time);
+  book(account, of_fork, time);
 }
 
 Process Cluster::worker(int id) {
@@ -170,9 +188,10 @@ Process Cluster::worker(int id) {
     const Dispatch dispatch = co_await dispatch_[static_cast<std::size_t>(id)]->pop();
     co_await kernel_.delay(dispatch.start_up);
     const Time begin = kernel_.now();
-    const SegmentTime time = co_await team_.execute(id, shares_of(id, *dispatch.fork, sum));
+    const MechanismCycles time = co_await team_.execute(id, shares_of(id, *dispatch.fork, sum),
+                                                        operations_of(dispatch.of_fork));
     note(id, begin, time);
-    book(*dispatch.breakdown, time);
+    book(*dispatch.account, dispatch.of_fork, time);
     last_arrival_ = kernel_.now();
     arrivals_ += cycles_since(dispatch.begin, last_arrival_);
     co_await end_of_fork_.arrive();

@@ -32,6 +32,8 @@ class Cluster {
 
   /// Whether the timings of jobs hold their steps, for who wants to see what each core did when.
   void keep_steps(bool keep) { keep_steps_ = keep; }
+  /// Whether their accounts are by fork and kind of operation, too.
+  void keep_forks(bool keep) { keep_forks_ = keep; }
 
   const ClockDomain& clock() const { return clock_; }
   int workers() const { return workers_; }
@@ -40,26 +42,31 @@ class Cluster {
   /// What a worker is sent: its shares, and where it reports to.
   struct Dispatch {
     const work::Fork* fork;
-    CycleBreakdown* breakdown;
-    Time begin;         ///< of the fork
-    Duration start_up;  ///< until the share begins
+    CycleAccount* account;
+    ForkAccount* of_fork;  ///< in it; null where forks are not asked for
+    Time begin;            ///< of the fork
+    Duration start_up;     ///< until the share begins
   };
 
   Process worker(int id);
-  Task<> run_alone(const work::Fork& fork, CycleBreakdown& breakdown);
-  /// Cores whose cycles a breakdown adds up.
+  Task<> run_alone(const work::Fork& fork, CycleAccount& account);
+  /// Cores whose cycles an account adds up.
   int accounted() const { return workers_ > 0 ? workers_ : 1; }
-  Task<> step(const work::Serial& serial, CycleBreakdown& breakdown);
-  Task<> step(const work::Fork& fork, CycleBreakdown& breakdown);
-  Task<> step(const work::Transfer& transfer, CycleBreakdown& breakdown);
-  Task<> step(const work::TransferWait& wait, CycleBreakdown& breakdown);
+  Task<> step(const work::Serial& serial, CycleAccount& account);
+  Task<> step(const work::Fork& fork, CycleAccount& account);
+  Task<> step(const work::Transfer& transfer, CycleAccount& account);
+  Task<> step(const work::TransferWait& wait, CycleAccount& account);
   Task<> until_arrived(Time arrival);
+  /// What the team waited for a transfer since `begin`.
+  void book_transfer(CycleAccount& account, Time begin);
   /// The worker's share; where it has several, their sum, which is put into `sum`.
   const work::Segment& shares_of(int id, const work::Fork& fork, work::Segment& sum) const;
+  /// Null where forks are not asked for.
+  ForkAccount* fork_in(CycleAccount& account, std::string_view name, double weight) const;
   void begin_step(const work::Step& step, StageTiming& stage);
   void end_step();
   /// Of a core that has done its work.
-  void note(int core, Time begin, const SegmentTime& time);
+  void note(int core, Time begin, const MechanismCycles& time);
   Duration cycles(double n) const;
   double cycles_since(Time begin, Time end) const;
 
@@ -73,6 +80,7 @@ class Cluster {
   Barrier end_of_fork_;
   std::vector<std::unique_ptr<Channel<Dispatch>>> dispatch_;
   bool keep_steps_ = false;
+  bool keep_forks_ = false;
   bool after_fork_ = false;     ///< the step before was a fork
   StepTiming* step_ = nullptr;  ///< that runs, if steps are kept
   Time last_arrival_;

@@ -16,6 +16,24 @@ constexpr double kSettled = 1e-9;
 
 constexpr std::size_t index(Unit unit) { return static_cast<std::size_t>(unit); }
 
+/// That waiting for a unit is.
+Mechanism mechanism_of(Unit unit) {
+  switch (unit) {
+    case Unit::Divider:
+      return Mechanism::Divider;
+    case Unit::Bank:
+    case Unit::L1:
+      return Mechanism::Banks;
+    case Unit::Refill:
+      return Mechanism::FetchContention;
+    case Unit::Fpu:
+    case Unit::Int64:
+      return Mechanism::Fpu;
+    default:
+      return Mechanism::AcceleratorContention;
+  }
+}
+
 /// The request rate to which units of the given number hold their requesters back: infinite if they
 /// serve everybody. Water filling from the smallest demand upwards.
 double fair_rate(std::vector<UnitRequest>& requests, double units) {
@@ -175,31 +193,16 @@ void Contention::meet() {
 
 /// Books the time that a runner loses on what it waits for.
 void Contention::blame(std::size_t i, Progress& p) const {
-  p.banks = p.rate * l1_delay(i);
-  p.fetch = p.rate * fetch_delay(i);
-  p.fpu = p.rate * met_[i];
-  const double lost = std::max(0.0, 1.0 - p.rate - p.banks - p.fetch - p.fpu);
+  CoreCycles& on = p.lost;
+  on[Mechanism::Banks] = p.rate * l1_delay(i);
+  on[Mechanism::FetchContention] = p.rate * fetch_delay(i);
+  on[Mechanism::Fpu] = p.rate * met_[i];
+  const double lost = std::max(0.0, 1.0 - p.rate - on[Mechanism::Banks] -
+                                        on[Mechanism::FetchContention] - on[Mechanism::Fpu]);
   const auto tightest = std::min_element(shared_.begin(), shared_.end(), [&](Unit a, Unit b) {
     return limits_[index(a)][i] < limits_[index(b)][i];
   });
-  switch (*tightest) {
-    case Unit::Divider:
-      p.divider = lost;
-      break;
-    case Unit::Bank:
-    case Unit::L1:
-      p.banks += lost;
-      break;
-    case Unit::Refill:
-      p.fetch += lost;
-      break;
-    case Unit::Fpu:
-    case Unit::Int64:
-      p.fpu += lost;
-      break;
-    default:
-      p.accelerator = lost;
-  }
+  on[mechanism_of(*tightest)] += lost;
 }
 
 void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,

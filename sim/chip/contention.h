@@ -37,12 +37,8 @@ namespace leviosim::sim {
 
 /// What slows a core down while it runs beside others, per cycle of its running time.
 struct Progress {
-  double rate = 1;         ///< cycles of lone progress per cycle
-  double fpu = 0;          ///< share of the time lost to floating-point and 64-bit integer units
-  double divider = 0;      ///< … to the divider
-  double banks = 0;        ///< … to L1 bank conflicts
-  double fetch = 0;        ///< … to the shared instruction cache and its refills
-  double accelerator = 0;  ///< … to accelerators
+  double rate = 1;  ///< cycles of lone progress per cycle
+  CoreCycles lost;  ///< shares of the time lost to shared units
 };
 
 /// One running segment as the solver sees it.

@@ -14,25 +14,39 @@ namespace leviosim::sim {
 Task<JobTiming> Controller::run(const work::Job& job) {
   JobTiming timing{kernel_.now(), kernel_.now(), {}};
   for (const work::StageRun& stage : job.stages) {
-    const Demand demand = demand_of(stage);
     StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
-    const double transfer = transfer_cycles(stage);
-    s.cycles = counted_cycles(std::ceil(demand.cycles() + transfer));
-    s.breakdown.useful = demand.alone;
-    s.breakdown.transfer = transfer;
-    s.breakdown.rounding = static_cast<double>(s.cycles.count()) - demand.cycles() - transfer;
+    book(s, stage);
     co_await kernel_.delay(clock_.duration(s.cycles));
     s.end = kernel_.now();
-    timing.stages.push_back(s);
+    timing.stages.push_back(std::move(s));
   }
   timing.end = kernel_.now();
   co_return timing;
 }
 
-Demand Controller::demand_of(const work::StageRun& stage) const {
+/// Cycles of a stage, and its account.
+void Controller::book(StageTiming& stage, const work::StageRun& run) const {
+  ForkAccount* const fork = keep_forks_ ? &stage.account.fork(kSerialFork) : nullptr;
+  const Demand demand = demand_of_stage(run, fork == nullptr ? nullptr : &fork->operations);
+  const double transfer = transfer_cycles(run);
+  stage.cycles = counted_cycles(std::ceil(demand.cycles() + transfer));
+  MechanismCycles worked;
+  worked += demand.alone;
+  worked[Mechanism::Rounding] =
+      static_cast<double>(stage.cycles.count()) - demand.cycles() - transfer;
+  stage.account.team += worked;
+  stage.account.team[Mechanism::Transfer] = transfer;
+  if (fork == nullptr) return;
+  fork->cycles += worked;
+  if (transfer != 0) stage.account.fork("").cycles[Mechanism::Transfer] = transfer;
+}
+
+Demand Controller::demand_of_stage(const work::StageRun& stage,
+                                   OperationAccounts* by_operation) const {
   if (!has_accelerators(config_.accelerators))
-    return price(work::counts_of(stage), config_.core, code_);
-  return price(work::segments_of(stage), config_.core, config_.accelerators, code_);
+    return demand_of(work::counts_of(stage), config_.core, code_, by_operation);
+  return demand_of(work::segments_of(stage), config_.core, config_.accelerators, code_,
+                   by_operation);
 }
 
 /// Only external memory is far from a controller.

@@ -23,16 +23,21 @@ class Controller {
   /// since the controller works where the data lies, except for those from and to external memory.
   Task<JobTiming> run(const work::Job& job);
 
+  /// As of Cluster.
+  void keep_forks(bool keep) { keep_forks_ = keep; }
+
   const ClockDomain& clock() const { return clock_; }
 
  private:
-  Demand demand_of(const work::StageRun& stage) const;
+  Demand demand_of_stage(const work::StageRun& stage, OperationAccounts* by_operation) const;
+  void book(StageTiming& stage, const work::StageRun& run) const;
   double transfer_cycles(const work::StageRun& stage) const;
 
   Kernel& kernel_;
   const ClockDomain& clock_;
   ControllerConfig config_;
   CodeFetcher code_;
+  bool keep_forks_ = false;
 };
 
 }  // namespace leviosim::sim

@@ -1,13 +1,15 @@
 #include "sim/chip/cost.h"
 
+#include <numeric>
+
 namespace leviosim::sim {
 namespace {
 
 using work::Compiled;
 using work::Op;
 
-/// The breakdown that an operation's stall cycles are booked on.
-double UsefulCycles::*stall_breakdown(Op op) {
+/// That an operation's stall cycles are booked on.
+Mechanism stall_mechanism(Op op) {
   switch (op) {
     case Op::BranchTaken:
     case Op::BranchNotTaken:
@@ -16,7 +18,7 @@ double UsefulCycles::*stall_breakdown(Op op) {
     case Op::LoopJump:
     case Op::Call:
     case Op::JumpRegister:
-      return &UsefulCycles::control;
+      return Mechanism::Control;
     case Op::LoadStream:
     case Op::LoadIndexed:
     case Op::StoreStream:
@@ -26,31 +28,11 @@ double UsefulCycles::*stall_breakdown(Op op) {
     case Op::LoadShared:
     case Op::StoreShared:
     case Op::Straddle:
-      return &UsefulCycles::memory;
+      return Mechanism::Memory;
     default:
-      return &UsefulCycles::arithmetic;
+      return Mechanism::Arithmetic;
   }
 }
-
-}  // namespace
-
-UsefulCycles& UsefulCycles::operator+=(const UsefulCycles& o) {
-  issue += o.issue;
-  load_use += o.load_use;
-  control += o.control;
-  memory += o.memory;
-  arithmetic += o.arithmetic;
-  fetch += o.fetch;
-  accelerator += o.accelerator;
-  return *this;
-}
-
-UsefulCycles operator*(const UsefulCycles& b, double k) {
-  return {b.issue * k,      b.load_use * k, b.control * k,    b.memory * k,
-          b.arithmetic * k, b.fetch * k,    b.accelerator * k};
-}
-
-namespace {
 
 double part_of(const work::CompiledWork& work, Compiled part) {
   return static_cast<double>(work[static_cast<std::size_t>(part)]);
@@ -85,28 +67,38 @@ CompiledRatios::CompiledRatios(const work::CompiledWork& work)
       loads_measured_(work[static_cast<std::size_t>(Compiled::Loads)] > 0),
       used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
 
-void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKind& operations,
-               const CoreConfig& core) {
+OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operations,
+                      const CoreConfig& core) {
   const OpCost& cost = core[info.op];
+  OperationCost result;
   // A routine was counted with its moves and spills.
-  to.issue +=
+  result.issue =
       cost.issue *
       (cost.routine ? operations.count
                     : (operations.emitted + operations.unmeasured * core.unmeasured_instructions) *
                           core.instruction_overhead);
-  to.*stall_breakdown(info.op) += operations.stalled * cost.stall;
+  result.stall = operations.stalled * cost.stall;
+  result.stall_mechanism = stall_mechanism(info.op);
   if (info.op == Op::LoadStream || info.op == Op::LoadIndexed)
-    to.load_use += core.load_use_stall *
-                   (operations.used_at_once + operations.unmeasured_loads * core.load_use_fraction);
+    result.load_use = core.load_use_stall * (operations.used_at_once +
+                                             operations.unmeasured_loads * core.load_use_fraction);
+  return result;
 }
 
-Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code) {
+Demand demand_of(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code,
+                 OperationAccounts* by_operation) {
   Demand demand;
   const CompiledRatios ratios(counts, core.code);
   for (const work::OpInfo& info : work::kOps) {
     if (counts[info.op] == 0) continue;  // as most are in a short segment
     const auto n = static_cast<double>(counts[info.op]);
-    add_price(demand.alone, info, ratios.apply(info.op, n), core);
+    const OperationCost alone = cost_of(info, ratios.apply(info.op, n), core);
+    alone.add_to(demand.alone);
+    if (by_operation != nullptr) {
+      OperationAccount& account = (*by_operation)[work::index(info.op)];
+      account.count += n;
+      alone.add_to(account.cycles);
+    }
     const OpCost& cost = core[info.op];
     if (cost.unit == Unit::Core) continue;
     UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];
@@ -114,8 +106,13 @@ Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetch
     unit.cycles += n * cost.busy;
   }
   const CodeFetch fetch = code.fetch(counts.code);
-  demand.alone.fetch = fetch.stall;
-  demand.fetches = fetch.requests + code.lines_executed(demand.alone.issue);
+  demand.alone[Mechanism::Fetch] = fetch.stall;
+  if (by_operation != nullptr) {
+    OperationAccount& account = (*by_operation)[kCodeOperation];
+    account.count += std::accumulate(counts.code.begin(), counts.code.end(), 0.0);
+    account.cycles[Mechanism::Fetch] += fetch.stall;
+  }
+  demand.fetches = fetch.requests + code.lines_executed(demand.alone[Mechanism::Issue]);
   demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   // The second half of a straddling access follows the first.

@@ -5,28 +5,12 @@
 // segment.
 #pragma once
 
+#include "sim/chip/account.h"
 #include "sim/chip/config.h"
 #include "sim/chip/instruction_cache.h"
 #include "sim/work/counts.h"
 
 namespace leviosim::sim {
-
-/// Where the cycles of a core that runs alone go. All in cycles of its clock.
-struct UsefulCycles {
-  double issue = 0;        ///< instructions
-  double load_use = 0;     ///< waiting for a loaded value
-  double control = 0;      ///< refilling the pipeline after branches, calls and loop entries
-  double memory = 0;       ///< L2 latency and words that straddle
-  double arithmetic = 0;   ///< integer divisions and floating-point latencies
-  double fetch = 0;        ///< instructions that the private cache lacks
-  double accelerator = 0;  ///< offload regions that an accelerator serves
-
-  double total() const {
-    return issue + load_use + control + memory + arithmetic + fetch + accelerator;
-  }
-  UsefulCycles& operator+=(const UsefulCycles& o);
-  friend UsefulCycles operator*(const UsefulCycles& b, double k);
-};
 
 /// What a segment asks of one kind of shared unit.
 struct UnitDemand {
@@ -36,7 +20,7 @@ struct UnitDemand {
 
 /// Demands of one segment.
 struct Demand {
-  UsefulCycles alone;
+  LoneCycles alone;
   std::array<UnitDemand, kUnitCount> units;  ///< by Unit; none of Unit::Core
   double streamed = 0;                       ///< accesses of local memory by streams
   double scattered = 0;                      ///< … at addresses that are computed from data
@@ -95,11 +79,25 @@ class CompiledRatios {
   double used_at_once_;
 };
 
-/// Adds what operations of one kind cost a core that runs alone.
-void add_price(UsefulCycles& to, const work::OpInfo& info, const OperationsOfKind& operations,
-               const CoreConfig& core);
+/// Cycles that operations of one kind cost a core that runs alone.
+struct OperationCost {
+  double issue = 0;
+  double load_use = 0;
+  double stall = 0;
+  Mechanism stall_mechanism = Mechanism::Arithmetic;
+
+  void add_to(LoneCycles& cycles) const {
+    cycles[Mechanism::Issue] += issue;
+    cycles[Mechanism::LoadUse] += load_use;
+    cycles[stall_mechanism] += stall;
+  }
+};
+OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operations,
+                      const CoreConfig& core);
 
 /// @param code  the caches through which the core fetches; by default unlimited ones
-Demand price(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code = {});
+/// @param by_operation  gets what of `alone` each kind of operation has; may be null
+Demand demand_of(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code = {},
+                 OperationAccounts* by_operation = nullptr);
 
 }  // namespace leviosim::sim

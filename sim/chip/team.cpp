@@ -31,11 +31,13 @@ Team::Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config
   kernel_.spawn_server("contention", settle());
 }
 
-Task<SegmentTime> Team::execute(int id, const work::Segment& segment) {
+Task<MechanismCycles> Team::execute(int id, const work::Segment& segment,
+                                    OperationAccounts* by_operation) {
   Core& core = *cores_.at(static_cast<std::size_t>(id));
   check(!core.running, "a core runs one work segment at a time");
   const bool master = static_cast<std::size_t>(id) + 1 == cores_.size();
-  core.demand = price(segment, core_config_, accelerators_, master ? master_code_ : worker_code_);
+  core.demand = demand_of(segment, core_config_, accelerators_,
+                          master ? master_code_ : worker_code_, by_operation);
   core.runner = Runner::of(id, core.demand);
   core.remaining = core.demand.cycles();
   core.time = {};
@@ -48,9 +50,9 @@ Task<SegmentTime> Team::execute(int id, const work::Segment& segment) {
   advance();
   core.running = false;
   note_change();
-  core.time.alone = core.demand.alone;
   const auto elapsed = static_cast<double>(clock_.whole_cycles(kernel_.now() - begin).count());
-  core.time.rounding = elapsed - core.demand.cycles() - core.time.waiting();
+  core.time[Mechanism::Rounding] = elapsed - core.demand.cycles() - core.time.waiting();
+  core.time += core.demand.alone;
   co_return core.time;
 }
 
@@ -86,11 +88,7 @@ void Team::advance() {
     // The last, partial cycle of a work segment is not lost to anybody: it is rounding.
     const double worked = std::min(cycles, core->remaining / core->progress.rate);
     core->remaining -= worked * core->progress.rate;
-    core->time.fpu += worked * core->progress.fpu;
-    core->time.divider += worked * core->progress.divider;
-    core->time.banks += worked * core->progress.banks;
-    core->time.fetch += worked * core->progress.fetch;
-    core->time.accelerator += worked * core->progress.accelerator;
+    core->time.add(core->progress.lost, worked);
   }
 }
 

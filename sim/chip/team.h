@@ -24,7 +24,10 @@ class Team {
   Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
 
   /// co_await: core `id` runs the work segment; at most one per core at a time.
-  Task<SegmentTime> execute(int id, const work::Segment& segment);
+  /// @param by_operation  gets what of it each kind of operation has; may be null
+  /// @returns what the core's cycles were spent on; they add up to the cycles it took
+  Task<MechanismCycles> execute(int id, const work::Segment& segment,
+                                OperationAccounts* by_operation = nullptr);
 
   /// The DMA moves so many words of L1 per cycle more (or less) from now on.
   void change_traffic(double words_per_cycle);
@@ -38,7 +41,7 @@ class Team {
     Runner runner;         ///< the segment as the contention solver sees it
     double remaining = 0;  ///< lone cycles still to do
     Progress progress;
-    SegmentTime time;
+    MechanismCycles time;
   };
 
   Process settle();

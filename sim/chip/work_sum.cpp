@@ -14,16 +14,10 @@ WorkSum& WorkSum::operator+=(const WorkSum& other) {
   return *this;
 }
 
-UsefulCycles WorkSum::price(work::Op op, const CoreConfig& core) const {
-  UsefulCycles cycles;
-  add_price(cycles, work::kOps[work::index(op)], kinds_[work::index(op)], core);
-  return cycles;
-}
-
-UsefulCycles WorkSum::price(const CoreConfig& core) const {
-  UsefulCycles cycles;
+LoneCycles WorkSum::cost(const CoreConfig& core) const {
+  LoneCycles cycles;
   for (const work::OpInfo& info : work::kOps)
-    add_price(cycles, info, kinds_[work::index(info.op)], core);
+    cost_of(info, kinds_[work::index(info.op)], core).add_to(cycles);
   return cycles;
 }
 

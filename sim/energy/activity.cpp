@@ -30,10 +30,10 @@ double l2_accesses(const work::Counts& counts, const Demand& demand,
 }
 
 /// With code fetched as cores do that are alike; caches without lines answer at once.
-Demand demand_of(const work::Counts& counts, const CoreConfig& core,
-                 const InstructionCacheConfig& icache, int sharers) {
-  if (icache.line == Bytes(0)) return price(counts, core);
-  return price(counts, core, CodeFetcher(icache, icache.worker, sharers));
+Demand team_demand(const work::Counts& counts, const CoreConfig& core,
+                   const InstructionCacheConfig& icache, int sharers) {
+  if (icache.line == Bytes(0)) return demand_of(counts, core);
+  return demand_of(counts, core, CodeFetcher(icache, icache.worker, sharers));
 }
 
 /// The workers, used or not, and the master.
@@ -42,10 +42,12 @@ double cores_of(const ChipConfig& chip, int workers) {
 }
 
 /// Core-cycles in which cores worked or stalled; in all others they wait for an event. While the
-/// master works alone, the breakdown holds a cycle of every worker for each of his.
-double working(const CycleBreakdown& breakdown, int workers) {
-  return breakdown.total() - breakdown.imbalance - breakdown.synchronisation - breakdown.transfer -
-         breakdown.serial + breakdown.serial / static_cast<double>(workers);
+/// master works alone, the account holds a cycle of every worker for each of his.
+double working(const MechanismCycles& team, int workers) {
+  double cycles = team.total();
+  for (const MechanismInfo& info : kMechanisms)
+    if (info.sleeps) cycles -= team[info.mechanism];
+  return cycles + team[Mechanism::Serial] / static_cast<double>(workers);
 }
 
 }  // namespace
@@ -77,14 +79,14 @@ Seconds seconds(double cycles, Hertz clock) {
 }
 
 Activity cluster_activity(const ChipConfig& chip, int workers, const work::Counts& counts,
-                          const work::Transferred& transfers, const CycleBreakdown& breakdown,
+                          const work::Transferred& transfers, const MechanismCycles& team,
                           Cycles cycles, const std::vector<work::OffloadWork>& served) {
-  const Demand demand = demand_of(counts, chip.cluster.core, chip.cluster.icache, workers);
+  const Demand demand = team_demand(counts, chip.cluster.core, chip.cluster.icache, workers);
   const DmaConfig& dma = chip.cluster.dma;
   const auto bytes = static_cast<double>(transfers.bytes.count());
   const auto elapsed = static_cast<double>(cycles.count());
   Activity a;
-  a.instructions = demand.alone.issue;
+  a.instructions = demand.alone[Mechanism::Issue];
   a.f32_operations = f32_operations(demand);
   a.l1_accesses = local_accesses(demand) + bytes / kWord;
   const auto external = static_cast<double>(transfers.external.count());
@@ -101,7 +103,7 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
   a.cluster_cycles = elapsed;
   a.time = seconds(elapsed, chip.cluster.clock);
   a.soc_cycles = a.time.count() * static_cast<double>(chip.controller.clock.count());
-  a.cores_working = seconds(working(breakdown, workers), chip.cluster.clock);
+  a.cores_working = seconds(working(team, workers), chip.cluster.clock);
   a.cores_gated = a.time * cores_of(chip, workers) - a.cores_working;
   return a;
 }
@@ -109,9 +111,9 @@ Activity cluster_activity(const ChipConfig& chip, int workers, const work::Count
 Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
                              const work::Transferred& transfers, Cycles cycles,
                              const std::vector<work::OffloadWork>& served) {
-  const Demand demand = demand_of(counts, chip.controller.core, chip.controller.icache, 1);
+  const Demand demand = team_demand(counts, chip.controller.core, chip.controller.icache, 1);
   Activity a;
-  a.controller_instructions = demand.alone.issue;
+  a.controller_instructions = demand.alone[Mechanism::Issue];
   a.controller_f32_operations = f32_operations(demand);
   a.l2_accesses = local_accesses(demand) + l2_accesses(counts, demand, chip.controller.icache) +
                   static_cast<double>(transfers.external.count()) / kWord;

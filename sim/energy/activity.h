@@ -48,10 +48,10 @@ Seconds seconds(double cycles, Hertz clock);
 
 /// Executions of a stage on the cluster, with a team of `workers`.
 /// @param counts   what cores executed
-/// @param breakdown  core-cycles of the team
+/// @param team     its core-cycles
 /// @param served   calls that accelerators served
 Activity cluster_activity(const ChipConfig& chip, int workers, const work::Counts& counts,
-                          const work::Transferred& transfers, const CycleBreakdown& breakdown,
+                          const work::Transferred& transfers, const MechanismCycles& team,
                           Cycles cycles, const std::vector<work::OffloadWork>& served = {});
 
 /// Executions of a stage on the fabric controller, whose memory is L2.

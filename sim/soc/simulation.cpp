@@ -15,8 +15,9 @@ Simulation::Simulation(const Setup& setup, JobSource& source, Observer& observer
       single_core_(setup.chip, sim::Cluster::kMasterAlone),
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(source.frames())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
-      book_(source.empty_stages(), setup.chip) {
+      account_(source.empty_stages(), setup.chip) {
   chip_.cluster().keep_steps(observer.wants_steps());
+  chip_.keep_forks(true);
   // A flight that is too long for the chip's timebase is refused before its first frame.
   if (source.frames() > 0)
     chip_.timebase().from_nanoseconds(source.arrival_ns(source.frames() - 1));
@@ -33,7 +34,8 @@ Outcome Simulation::run() {
   const std::size_t blocked = chip_.kernel().run();
   check_equal(blocked, std::size_t{0}, "processes that wait for ever");
   check_equal(in_flight_, 0, "frames without a result");
-  outcome_.stages = book_.stages();
+  outcome_.stages = account_.stages();
+  outcome_.offload = account_.offload();
   return std::move(outcome_);
 }
 
@@ -77,15 +79,16 @@ sim::Process Simulation::front_end() {
       snapshot_taken_.notify();
     }
     const work::Job& job = source_.process_frame();
-    book_.add_work(job);
+    account_.add_work(job);
     const sim::JobTiming timing = co_await chip_.offload(job);
     --in_flight_;
-    book_.add_parallel(timing);
+    account_.add_parallel(timing);
     const sim::JobTiming single = single_core_.front_end(job);
-    book_.add_single(single);
+    account_.add_single(single);
 
     times.end_ns = now_ns();
     times.cycles = chip_.cluster().clock().whole_cycles(timing.end - timing.begin);
+    account_.add_offload(times.cycles, timing);
     times.single_cycles = single_core_.front_end_cycles(single);
     observer_.on_front_end({i, begun, times, job, timing, single});
     progress_({i + 1, source_.frames(), times.end_ns});
@@ -98,10 +101,10 @@ sim::Process Simulation::optimiser() {
     const int iterations = source_.iterations();
     for (int k = 0; k < iterations; ++k) {
       const work::Job& job = source_.optimise();
-      book_.add_work(job);
+      account_.add_work(job);
       const sim::JobTiming timing = co_await chip_.control(job);
-      book_.add_parallel(timing);
-      book_.add_single(timing);  // the controller is one core
+      account_.add_parallel(timing);
+      account_.add_single(timing);  // the controller is one core
       observer_.on_optimiser({snapshot_frame_, k, k + 1 == iterations, job, timing});
     }
     source_.publish();

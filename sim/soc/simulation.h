@@ -18,11 +18,11 @@
 
 #include "sim/chip/chip.h"
 #include "sim/events/channel.h"
+#include "sim/soc/account.h"
 #include "sim/soc/camera.h"
 #include "sim/soc/job_source.h"
 #include "sim/soc/job_timer.h"
 #include "sim/soc/observer.h"
-#include "sim/soc/stage_book.h"
 
 namespace leviosim::soc {
 
@@ -42,6 +42,7 @@ struct Setup {
 
 struct Outcome {
   std::vector<StageResult> stages;
+  Cycles offload;                        ///< of the cluster's jobs, outside of stages
   std::optional<CameraRecord> camera;    ///< of a closed loop; its rate is not filled in
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
@@ -75,7 +76,7 @@ class Simulation {
   bool optimiser_busy_ = false;
   int snapshot_frame_ = 0;    ///< at whose start the optimiser's snapshot was taken
   int published_frame_ = -1;  ///< the snapshot frame of the result that was published last
-  StageBook book_;
+  RunAccount account_;
   Outcome outcome_;
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/platform_models/timing_jobs.h"
+#include "tests/support/account_checks.h"
 
 namespace leviosim::platform::testing {
 namespace {
@@ -75,15 +76,32 @@ TEST_P(Account, TheTimeOfACoreIsItsWorkAndItsWaits) {
   for (const sim::StepTiming& step : stage.steps)
     for (const sim::CoreTiming& core : step.cores) {
       const double took = static_cast<double>((core.end - core.begin).count()) / ticks;
-      EXPECT_NEAR(core.time.alone.total() + core.time.waiting() + core.time.rounding, took, 1);
+      EXPECT_NEAR(core.time.total(), took, 1);
     }
+}
+
+TEST_P(Account, EveryCoreCycleHasItsForkMechanismAndOperation) {
+  const Job job = job_of({transfer(20'000, true), serial(some_work(7)), fork(uneven()), wait_for(0),
+                          team(workers(), some_work(20, 1)), serial(some_work(5))});
+  const sim::JobTiming on_team = timing_of(chip_, workers(), job, true);
+  for (const sim::StageTiming& stage : on_team.stages) {
+    EXPECT_GE(stage.account.forks.size(), 3u);
+    EXPECT_NEAR(stage.account.total(), static_cast<double>(workers() * stage.cycles.count()),
+                1e-9 * stage.account.total());
+    sim::testing::expect_adds_up(stage.account, false);
+  }
+  for (const sim::StageTiming& stage : controlled(chip_, job).stages) {
+    EXPECT_NEAR(stage.account.total(), static_cast<double>(stage.cycles.count()),
+                1e-9 * stage.account.total());
+    sim::testing::expect_adds_up(stage.account, true);
+  }
 }
 
 TEST_P(Account, NoCoreIsFasterThanAlone) {
   const sim::JobTiming timing = timing_of(chip_, workers(), job_of({fork(uneven())}), true);
   for (const sim::CoreTiming& core : timing.stages[0].steps[0].cores) {
     EXPECT_GE(core.time.waiting(), -1e-6);
-    EXPECT_GE(core.time.rounding, -1e-3);
+    EXPECT_GE(core.time[sim::Mechanism::Rounding], -1e-3);
   }
 }
 
@@ -137,9 +155,9 @@ TEST_P(Account, WaitsAreNoneWhereNothingIsShared) {
   generous.cluster.icache.line = Bytes(0);
   Segment work = plain_work(100);
   work[Op::LoadShared] = work[Op::StoreShared] = 0;
-  const sim::CycleBreakdown b =
-      timing_of(generous, workers(), job_of({team(workers(), work)})).stages[0].breakdown;
-  EXPECT_LE(b.fpu + b.divider + b.banks + b.fetch + b.accelerator, 1e-3 * b.useful.total());
+  const sim::MechanismCycles b =
+      timing_of(generous, workers(), job_of({team(workers(), work)})).stages[0].account.team;
+  EXPECT_LE(b.waiting(), 1e-3 * b.alone());
 }
 
 }  // namespace

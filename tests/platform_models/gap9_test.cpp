@@ -12,7 +12,7 @@ using work::Counts;
 using work::Op;
 
 double cycles(const Counts& counts, const sim::CoreConfig& core) {
-  return sim::price(counts, core).cycles();
+  return sim::demand_of(counts, core).cycles();
 }
 
 Counts once(Op op) {

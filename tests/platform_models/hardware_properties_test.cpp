@@ -165,7 +165,7 @@ TEST_P(Hardware, MoreWorkersThanSharesDoNotMatterToTheWork) {
   if (all.cluster.workers < 2) return;
   const std::vector<Segment> two = {plain_work(50), plain_work(50)};
   const auto useful = [&](int workers) {
-    return timing_of(all, workers, job_of({fork(two)})).stages[0].breakdown.useful.total();
+    return timing_of(all, workers, job_of({fork(two)})).stages[0].account.team.alone();
   };
   EXPECT_NEAR(useful(2), useful(all.cluster.workers), 1e-6);
 }

@@ -33,7 +33,7 @@ INSTANTIATE_TEST_SUITE_P(All, SingleCoreChip,
 double cycles_of(const char* chip, work::Op op) {
   work::Counts counts;
   counts[op] = 1;
-  return sim::price(counts, load_platform(chip).cluster.core).cycles();
+  return sim::demand_of(counts, load_platform(chip).cluster.core).cycles();
 }
 
 // FACTS.md#cortex-m7: 16 cycles; dual issue makes nothing slower.

@@ -79,9 +79,10 @@ inline Job job_of(std::vector<work::Step> steps) {
 }
 
 inline sim::JobTiming timing_of(const ChipConfig& config, int workers, const Job& job,
-                                bool keep_steps = false) {
+                                bool keep_details = false) {
   sim::Chip chip(config, workers);
-  chip.cluster().keep_steps(keep_steps);
+  chip.cluster().keep_steps(keep_details);
+  chip.keep_forks(keep_details);
   sim::JobTiming timing;
   const auto body = [&]() -> sim::Process { timing = co_await chip.cluster().run(job); };
   chip.kernel().spawn("test", body());
@@ -91,6 +92,7 @@ inline sim::JobTiming timing_of(const ChipConfig& config, int workers, const Job
 
 inline sim::JobTiming controlled(const ChipConfig& config, const Job& job) {
   sim::Chip chip(config, 1);
+  chip.keep_forks(true);
   sim::JobTiming timing;
   const auto body = [&]() -> sim::Process { timing = co_await chip.controller().run(job); };
   chip.kernel().spawn("test", body());

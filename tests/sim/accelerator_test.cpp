@@ -84,8 +84,8 @@ TEST(Accelerator, WithoutOneTheCoreDoesTheWork) {
 
 TEST(Accelerator, WithoutOneTheDemandIsThatOfTheCounts) {
   const Segment work = segment(100, 900, 3, 64);
-  const Demand a = price(work, unit_cost_core(), Accelerators{});
-  const Demand b = price(static_cast<const Counts&>(work), unit_cost_core());
+  const Demand a = demand_of(work, unit_cost_core(), Accelerators{});
+  const Demand b = demand_of(static_cast<const Counts&>(work), unit_cost_core());
   EXPECT_EQ(a.cycles(), b.cycles());
   for (std::size_t u = 0; u < kUnitCount; ++u) EXPECT_EQ(a.units[u].requests, b.units[u].requests);
 }
@@ -107,10 +107,10 @@ TEST(Accelerator, QueueingBeginsWhenTheUnitIsSaturated) {
   for (const int cores : {1, 2, 3, 4, 8}) {
     const StageTiming timing = together(config, segment(0, 5000, 100, 100), cores);
     EXPECT_NEAR(stage_cycles(timing), 100 * std::max(s + l + b, cores * b), 2) << cores;
-    EXPECT_NEAR(timing.breakdown.useful.accelerator, cores * 100 * (l + b), 1);
-    EXPECT_NEAR(timing.breakdown.accelerator, cores * 100 * std::max(0.0, cores * b - s - l - b),
-                20);
-    EXPECT_NEAR(timing.breakdown.total(), cores * static_cast<double>(timing.cycles.count()), 1e-6);
+    EXPECT_NEAR(timing.account.team[Mechanism::Accelerator], cores * 100 * (l + b), 1);
+    EXPECT_NEAR(timing.account.team[Mechanism::AcceleratorContention],
+                cores * 100 * std::max(0.0, cores * b - s - l - b), 20);
+    EXPECT_NEAR(timing.account.total(), cores * static_cast<double>(timing.cycles.count()), 1e-6);
   }
 }
 
@@ -137,7 +137,7 @@ TEST(Accelerator, TakesBanksOfL1) {
   const auto cycles = [&](double words) {
     return time_of(cluster_with(unit(1, 0, 0, 0.1, words)),
                    {work::Fork{"f", {segment(0, 1, 100, 200), other}}}, 2)
-        .breakdown.banks;
+        .account.team[Mechanism::Banks];
   };
   EXPECT_EQ(cycles(0), 0);
   EXPECT_GT(cycles(2), 0);
@@ -178,10 +178,10 @@ TEST(Accelerator, TakesItsWorkFromTheCoresEnergyAndAddsItsOwn) {
   const Counts left = left_to_core(work, chip.cluster.accelerators);
   EXPECT_EQ(left, alu(100));
   const Activity with =
-      cluster_activity(chip, 8, left, {}, CycleBreakdown{}, Cycles(0), work.offload);
+      cluster_activity(chip, 8, left, {}, MechanismCycles{}, Cycles(0), work.offload);
   EXPECT_EQ(with.instructions, 100 + 3 * 30);
   EXPECT_EQ(with.l1_accesses, 64 * 4);
-  const Activity without = cluster_activity(chip, 8, left, {}, CycleBreakdown{}, Cycles(0));
+  const Activity without = cluster_activity(chip, 8, left, {}, MechanismCycles{}, Cycles(0));
   const double scale = chip.supply.voltage.count() / chip.energy.value.voltage.count();
   const auto cluster_of = [&](const Activity& a) {
     return energy_of(a, chip)[Domain::Cluster].value.count();

@@ -29,7 +29,7 @@ constexpr std::int64_t kForkCost = 40 + 20 + 10;  // fork_master, fork_worker, b
 TEST(Cluster, SerialWorkTakesItsCycles) {
   const JobTiming t = run(one_stage({work::Serial{alu(1234)}}));
   EXPECT_EQ(t.stages[0].cycles.count(), 1234);
-  EXPECT_EQ(t.stages[0].breakdown.serial, 8 * 1234);
+  EXPECT_EQ(t.stages[0].account.team[Mechanism::Serial], 8 * 1234);
 }
 
 /// When the last of two jobs of 1000 cycles ends, one on the cluster and one on the controller.
@@ -64,7 +64,7 @@ TEST(Cluster, AForkRightAfterAnotherTakesLess) {
   EXPECT_EQ(cycles({empty, empty, empty}), kForkCost + 2 * (20 + 10 + 10));
   EXPECT_EQ(cycles({empty, work::Serial{alu(7)}, empty}), 2 * kForkCost + 7);
   const JobTiming timing = run(one_stage({empty, empty}), 8, config);
-  EXPECT_EQ(timing.stages[0].breakdown.synchronisation, 8 * (kForkCost + 40));
+  EXPECT_EQ(timing.stages[0].account.team[Mechanism::Synchronisation], 8 * (kForkCost + 40));
 }
 
 TEST(Cluster, TransferOfNBytes) {
@@ -115,7 +115,7 @@ TEST(Cluster, TheDmaTakesBanksFromTheCores) {
   work::Fork fork{"fork", std::vector<work::Segment>(8, work)};
   const JobTiming t = run(one_stage({in, fork, work::TransferWait{0}}));
   // Two words per cycle on 16 banks: an access waits 2/(2·16) cycles.
-  EXPECT_NEAR(t.stages[0].breakdown.banks, 8 * 10'000 * 2.0 / 32, 8 * 3);
+  EXPECT_NEAR(t.stages[0].account.team[Mechanism::Banks], 8 * 10'000 * 2.0 / 32, 8 * 3);
 }
 
 TEST(Cluster, AMasterThatTakesPartIsOneMoreCore) {
@@ -123,8 +123,8 @@ TEST(Cluster, AMasterThatTakesPartIsOneMoreCore) {
   fork.shares.back() = alu(1000);
   const JobTiming t = run(one_stage({fork}));
   EXPECT_EQ(t.stages[0].cycles.count(), 40 + 1000 + 10) << "the master needs no wake-up";
-  EXPECT_EQ(t.stages[0].breakdown.useful.total(), 800) << "of the workers";
-  EXPECT_NEAR(t.stages[0].breakdown.total(), 8 * 1050, 1e-6);
+  EXPECT_EQ(t.stages[0].account.team.alone(), 800) << "of the workers";
+  EXPECT_NEAR(t.stages[0].account.total(), 8 * 1050, 1e-6);
 }
 
 TEST(Cluster, ABarrierReleasesOnTheLastArrival) {
@@ -132,8 +132,9 @@ TEST(Cluster, ABarrierReleasesOnTheLastArrival) {
   for (std::uint64_t k = 1; k <= 8; ++k) fork.shares.push_back(alu(100 * k));
   const JobTiming t = run(one_stage({fork}));
   EXPECT_EQ(t.stages[0].cycles.count(), 800 + kForkCost);
-  EXPECT_EQ(t.stages[0].breakdown.imbalance, 100 + 200 + 300 + 400 + 500 + 600 + 700);
-  EXPECT_EQ(t.stages[0].breakdown.useful.total(), 3600);
+  EXPECT_EQ(t.stages[0].account.team[Mechanism::Imbalance],
+            100 + 200 + 300 + 400 + 500 + 600 + 700);
+  EXPECT_EQ(t.stages[0].account.team.alone(), 3600);
 }
 
 TEST(Cluster, OneWorkerRunsAllSharesOfEight) {
@@ -148,9 +149,9 @@ TEST(Cluster, AMasterAloneRunsAllSharesOneAfterTheOther) {
   const JobTiming t =
       run(one_stage({work::Serial{alu(7)}, fork, work::Serial{alu(5)}}), Cluster::kMasterAlone);
   EXPECT_EQ(t.stages[0].cycles.count(), 7 + 450 + 5);
-  EXPECT_EQ(t.stages[0].breakdown.serial, 12);
-  EXPECT_EQ(t.stages[0].breakdown.useful.issue, 450);
-  EXPECT_EQ(t.stages[0].breakdown.total(), 462);
+  EXPECT_EQ(t.stages[0].account.team[Mechanism::Serial], 12);
+  EXPECT_EQ(t.stages[0].account.team[Mechanism::Issue], 450);
+  EXPECT_EQ(t.stages[0].account.total(), 462);
 }
 
 /// Its scratch begins where that of the first of a team does.
@@ -200,12 +201,12 @@ TEST(Cluster, TheBreakdownOfAStageAddsUpToItsCoreCycles) {
   }
   const StageTiming stage = run(one_stage(steps)).stages[0];
   const double core_cycles = 8.0 * static_cast<double>(stage.cycles.count());
-  EXPECT_NEAR(stage.breakdown.total(), core_cycles, 1e-9 * core_cycles);
-  EXPECT_GT(stage.breakdown.fpu, 0);
-  EXPECT_GT(stage.breakdown.divider, 0);
-  EXPECT_GT(stage.breakdown.banks, 0);
-  EXPECT_GE(stage.breakdown.rounding, 0);
-  EXPECT_LT(stage.breakdown.rounding, 8 * 40);
+  EXPECT_NEAR(stage.account.total(), core_cycles, 1e-9 * core_cycles);
+  EXPECT_GT(stage.account.team[Mechanism::Fpu], 0);
+  EXPECT_GT(stage.account.team[Mechanism::Divider], 0);
+  EXPECT_GT(stage.account.team[Mechanism::Banks], 0);
+  EXPECT_GE(stage.account.team[Mechanism::Rounding], 0);
+  EXPECT_LT(stage.account.team[Mechanism::Rounding], 8 * 40);
 }
 
 TEST(Cluster, EveryTeamSizeUpToTheEventUnitsLimit) {

@@ -75,9 +75,9 @@ Counts counted() {
 TEST(CompiledWork, ScalesInstructionsAndLoadStallsButNoRoutines) {
   Counts counts = counted();
   counts.compiled = of_visit(120, 100, 50, 30);
-  const UsefulCycles alone = price(counts, core()).alone;
-  EXPECT_DOUBLE_EQ(alone.issue, 1000 * 1.5 * 1.2 + 3 * 200);
-  EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.6 * 2);
+  const LoneCycles alone = demand_of(counts, core()).alone;
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 1.5 * 1.2 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 400 * 0.6 * 2);
 }
 
 TEST(CompiledWork, OfAnotherInstructionSetChangesItsCoresOnly) {
@@ -85,11 +85,12 @@ TEST(CompiledWork, OfAnotherInstructionSetChangesItsCoresOnly) {
   counts.compiled = of_visit(120, 100, 50, 30, work::CompiledFor::Thumb2);
   CoreConfig arm = core();
   arm.code = work::CompiledFor::Thumb2;
-  const UsefulCycles alone = price(counts, arm).alone;
-  EXPECT_DOUBLE_EQ(alone.issue, 1000 * 1.5 * 1.2 + 3 * 200);
-  EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.6 * 2);
-  EXPECT_DOUBLE_EQ(price(counts, core()).alone.issue, price(counted(), core()).alone.issue);
-  EXPECT_DOUBLE_EQ(WorkSum(counts, arm.code).price(arm).issue, alone.issue);
+  const LoneCycles alone = demand_of(counts, arm).alone;
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 1.5 * 1.2 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 400 * 0.6 * 2);
+  EXPECT_DOUBLE_EQ(demand_of(counts, core()).alone[Mechanism::Issue],
+                   demand_of(counted(), core()).alone[Mechanism::Issue]);
+  EXPECT_DOUBLE_EQ(WorkSum(counts, arm.code).cost(arm)[Mechanism::Issue], alone[Mechanism::Issue]);
 }
 
 /// Half of the repetitions are left of loops that the compiler writes out, and all of the rest.
@@ -103,25 +104,27 @@ TEST(CompiledWork, LoopsHaveARatioOfTheirOwn) {
   counts.compiled[static_cast<std::size_t>(work::Compiled::PricedLoops)] = 40 * 16;
   CoreConfig with_hardware_loops = core();
   with_hardware_loops.ops[work::index(Op::LoopJump)] = {.issue = 2, .stall = 3};
-  const UsefulCycles alone = price(counts, with_hardware_loops).alone;
-  EXPECT_DOUBLE_EQ(alone.issue, (600 * 1.0 + 10 * 2 * 0.5) * 1.5);
-  EXPECT_DOUBLE_EQ(alone.control, 10 * 3 * 0.5);  // what is written out has no branch to wait for
+  const LoneCycles alone = demand_of(counts, with_hardware_loops).alone;
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], (600 * 1.0 + 10 * 2 * 0.5) * 1.5);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Control],
+                   10 * 3 * 0.5);  // what is written out has no branch to wait for
   CoreConfig without = core();
   without.ops[work::index(Op::LoopIteration)] = {.issue = 2};
-  EXPECT_DOUBLE_EQ(price(counts, without).alone.issue, (600 * 1.0 + 400 * 2 * 0.5) * 1.5);
+  EXPECT_DOUBLE_EQ(demand_of(counts, without).alone[Mechanism::Issue],
+                   (600 * 1.0 + 400 * 2 * 0.5) * 1.5);
 }
 
 TEST(CompiledWork, OfCodeThatWasNotMeasuredIsWhatThePlatformSays) {
-  const UsefulCycles alone = price(counted(), core()).alone;
-  EXPECT_DOUBLE_EQ(alone.issue, 1000 * 0.9 * 1.5 + 3 * 200);
-  EXPECT_DOUBLE_EQ(alone.load_use, 400 * 0.25 * 2);
+  const LoneCycles alone = demand_of(counted(), core()).alone;
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 0.9 * 1.5 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 400 * 0.25 * 2);
 }
 
 TEST(CompiledWork, OfTwoSegmentsTogetherIsTheirSum) {
   Counts a = counted(), b = counted();
   a.compiled = of_visit(300, 100, 10, 0);
   b.compiled = of_visit(100, 100, 10, 10);
-  EXPECT_DOUBLE_EQ(price(a + b, core()).alone.load_use, 800 * 0.5 * 2);
+  EXPECT_DOUBLE_EQ(demand_of(a + b, core()).alone[Mechanism::LoadUse], 800 * 0.5 * 2);
 }
 
 }  // namespace

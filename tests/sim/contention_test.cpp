@@ -30,7 +30,7 @@ TEST(Contention, ALightUserOfTheDividerIsServedAndTheOthersShareTheRest) {
   EXPECT_NEAR(progress[0].rate, 1, 1e-9);  // a tenth of the divider
   for (const std::size_t i : {1, 2}) {
     EXPECT_NEAR(progress[i].rate, 0.45, 1e-9);  // of the nine tenths that are left, a half each
-    EXPECT_NEAR(progress[i].divider, 0.55, 1e-9);
+    EXPECT_NEAR(progress[i].lost[Mechanism::Divider], 0.55, 1e-9);
   }
 }
 
@@ -50,7 +50,7 @@ TEST(Contention, AWaitForABankAddsToThatForBanksOnAverage) {
   contention.solve({a, b}, progress);
   for (const Progress& p : progress) {
     EXPECT_NEAR(p.rate, 1 / 1.6, 1e-6);
-    EXPECT_NEAR(p.rate + p.banks, 1, 1e-6);
+    EXPECT_NEAR(p.rate + p.lost[Mechanism::Banks], 1, 1e-6);
   }
 }
 
@@ -73,7 +73,7 @@ TEST(Contention, TwoCoresInRandomOrderCollideAtTheirUnit) {
       Contention(with_collisions(1)).solve(runners, progress);
       for (const std::size_t i : {0, 2}) {
         EXPECT_NEAR(progress[i].rate, 1 / (1 + lost), 1e-6) << density;
-        EXPECT_NEAR(progress[i].rate + progress[i].fpu, 1, 1e-6);
+        EXPECT_NEAR(progress[i].rate + progress[i].lost[Mechanism::Fpu], 1, 1e-6);
       }
       EXPECT_NEAR(progress[1].rate, 1, 1e-9);
       Contention(with_collisions(0.5)).solve(runners, progress);
@@ -145,7 +145,7 @@ TEST(Contention, StreamsConflictAsAShareOfScatteredAccesses) {
     const double rate = k == 0 ? 1 : (-1 + std::sqrt(1 + 4 * k)) / (2 * k);
     for (const Progress& p : progress) {
       EXPECT_NEAR(p.rate, rate, 1e-6);
-      EXPECT_NEAR(p.banks, 1 - rate, 1e-6);
+      EXPECT_NEAR(p.lost[Mechanism::Banks], 1 - rate, 1e-6);
     }
   }
 }

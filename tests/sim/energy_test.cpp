@@ -17,10 +17,10 @@ Counts counts_of(Op op, std::uint64_t n) {
   return counts;
 }
 
-/// A breakdown in which the team did nothing but work of its own.
-CycleBreakdown busy(double core_cycles) {
-  CycleBreakdown breakdown;
-  breakdown.useful.issue = core_cycles;
+/// An account in which the team did nothing but work of its own.
+MechanismCycles busy(double core_cycles) {
+  MechanismCycles breakdown;
+  breakdown[Mechanism::Issue] = core_cycles;
   return breakdown;
 }
 
@@ -34,8 +34,8 @@ DomainEnergies mixed_stage(const ChipConfig& chip) {
   counts[Op::LoadStream] = 2'000'000;
   counts[Op::F32Fma] = 1'000'000;
   counts[Op::LoadL2] = 50'000;
-  CycleBreakdown breakdown = busy(11'000'000);
-  breakdown.imbalance = 1'000'000;
+  MechanismCycles breakdown = busy(11'000'000);
+  breakdown[Mechanism::Imbalance] = 1'000'000;
   return energy_of(
       cluster_activity(chip, 8, counts, {3, Bytes(4000), Bytes(0)}, breakdown, Cycles(1'500'000)),
       chip);
@@ -76,7 +76,7 @@ TEST(Energy, FloatingPointUnitsAddToTheInstruction) {
   counts[Op::F32Div] = 300;
   counts[Op::F64Add] = 500;  // by instructions, on the core
   const DomainEnergies e =
-      energy_of(cluster_activity(chip, 8, counts, {}, CycleBreakdown{}, Cycles(0)), chip);
+      energy_of(cluster_activity(chip, 8, counts, {}, MechanismCycles{}, Cycles(0)), chip);
   EXPECT_DOUBLE_EQ(joules(e, Domain::Fpu), 1000 * 4e-12);
   EXPECT_DOUBLE_EQ(joules(e, Domain::Cores), 1500 * 5e-12);
 }
@@ -84,7 +84,7 @@ TEST(Energy, FloatingPointUnitsAddToTheInstruction) {
 TEST(Energy, TransfersAccessBothMemories) {
   const ChipConfig chip = energy_chip();
   const DomainEnergies e = energy_of(
-      cluster_activity(chip, 8, {}, {2, Bytes(8000), Bytes(400)}, CycleBreakdown{}, Cycles(0)),
+      cluster_activity(chip, 8, {}, {2, Bytes(8000), Bytes(400)}, MechanismCycles{}, Cycles(0)),
       chip);
   EXPECT_DOUBLE_EQ(joules(e, Domain::L1), 2000 * 2e-12);
   EXPECT_DOUBLE_EQ(joules(e, Domain::L2), 2100 * 10e-12);
@@ -98,7 +98,7 @@ TEST(Energy, AccessesOfCoresGoWhereTheirDataAre) {
   counts[Op::Straddle] = 5;
   counts[Op::LoadShared] = 7;
   counts[Op::LoadL2] = 3;
-  const auto cluster = cluster_activity(chip, 8, counts, {}, CycleBreakdown{}, Cycles(0));
+  const auto cluster = cluster_activity(chip, 8, counts, {}, MechanismCycles{}, Cycles(0));
   EXPECT_EQ(cluster.l1_accesses, 42);
   EXPECT_EQ(cluster.l2_accesses, 3);
   const auto controller = controller_activity(chip, counts, {}, Cycles(100));
@@ -111,21 +111,21 @@ TEST(Energy, RefillsOfInstructionCachesAccessL2) {
   chip.cluster.icache = {Bytes(16), Bytes(512), Bytes(2048), Bytes(4096), 2, 2, 20, 1};
   Counts counts;
   counts.code[work::kNeverFetched] = 1600;
-  const auto one = cluster_activity(chip, 1, counts, {}, CycleBreakdown{}, Cycles(0));
+  const auto one = cluster_activity(chip, 1, counts, {}, MechanismCycles{}, Cycles(0));
   EXPECT_DOUBLE_EQ(one.l2_accesses, 400);  // 100 lines of four words
 }
 
 TEST(Energy, WhileTheMasterWorksAloneTheWorkersAreGated) {
   const ChipConfig chip = energy_chip();
-  CycleBreakdown breakdown;
-  breakdown.serial = 8 * 1000;
+  MechanismCycles breakdown;
+  breakdown[Mechanism::Serial] = 8 * 1000;
   const auto serial = cluster_activity(chip, 8, {}, {}, breakdown, Cycles(1000));
   EXPECT_DOUBLE_EQ(serial.cores_working.count(), 1000 / 1e8);
   EXPECT_DOUBLE_EQ(serial.cores_gated.count(), 8 * 1000 / 1e8);
   breakdown = {};
-  breakdown.imbalance = 500;
-  breakdown.synchronisation = 300;
-  breakdown.transfer = 200;
+  breakdown[Mechanism::Imbalance] = 500;
+  breakdown[Mechanism::Synchronisation] = 300;
+  breakdown[Mechanism::Transfer] = 200;
   EXPECT_NEAR(cluster_activity(chip, 1, {}, {}, breakdown, Cycles(1000)).cores_working.count(), 0,
               1e-18);
 }
@@ -219,7 +219,7 @@ TEST(EnergyBand, OneSourceAddsUpAndSourcesCombineAsRootSumSquare) {
   Counts counts = counts_of(Op::LoadStream, 1000);
   counts[Op::LoadL2] = 500;
   const Estimate<Joules> total =
-      energy_of(cluster_activity(chip, 8, counts, {}, CycleBreakdown{}, Cycles(0)), chip).total();
+      energy_of(cluster_activity(chip, 8, counts, {}, MechanismCycles{}, Cycles(0)), chip).total();
   EXPECT_NEAR(total.value.count() - total.low().count(), 1500 * 1e-12, 1e-20);
   EXPECT_NEAR(total.high().count() - total.value.count(),
               std::hypot(1500 * 2e-12 + 1000 * 1e-12, 500 * 6e-12), 1e-20);

@@ -170,8 +170,8 @@ double modelled_stall(const Loop& loop, int cores) {
   const auto body = [&]() -> Process { timing = co_await chip.cluster().run(job); };
   chip.kernel().spawn("test", body());
   chip.kernel().run();
-  const CycleBreakdown& b = timing.stages[0].breakdown;
-  return (b.useful.fetch + b.fetch) / cores;
+  const MechanismCycles& b = timing.stages[0].account.team;
+  return (b[Mechanism::Fetch] + b[Mechanism::FetchContention]) / cores;
 }
 
 /// Near the capacity few functions decide how many lines fall on a set, and the model's mean over

@@ -24,7 +24,7 @@ Counts counts(std::initializer_list<std::pair<Op, std::uint64_t>> list) {
 
 struct Outcome {
   std::vector<std::int64_t> cycles;
-  std::vector<SegmentTime> time;
+  std::vector<MechanismCycles> time;
 };
 
 /// Runs work[i] on core i, all starting at cycle start[i], and returns how long each took.
@@ -33,7 +33,7 @@ Outcome run_together(const std::vector<Counts>& work, ClusterConfig config = tes
   const Timebase timebase({{"cluster", config.clock}});
   const ClockDomain& clock = timebase.clock("cluster");
   start.resize(work.size(), 0);
-  Outcome out{std::vector<std::int64_t>(work.size()), std::vector<SegmentTime>(work.size())};
+  Outcome out{std::vector<std::int64_t>(work.size()), std::vector<MechanismCycles>(work.size())};
   Kernel kernel;
   Team team(kernel, clock, config, static_cast<int>(work.size()));
   const auto body = [&](std::size_t i) -> Process {
@@ -61,9 +61,9 @@ double per_slot(int cores, const Counts& stream, double slots) {
 TEST(Team, OneCoreAloneTakesItsLoneTime) {
   const Outcome o = run_together({counts({{Op::IntAlu, 100}, {Op::F32Fma, 50}, {Op::F32Div, 3}})});
   EXPECT_EQ(o.cycles[0], 100 + 50 + 3 * 14);
-  EXPECT_EQ(o.time[0].fpu, 0);
-  EXPECT_EQ(o.time[0].divider, 0);
-  EXPECT_EQ(o.time[0].rounding, 0);
+  EXPECT_EQ(o.time[0][Mechanism::Fpu], 0);
+  EXPECT_EQ(o.time[0][Mechanism::Divider], 0);
+  EXPECT_EQ(o.time[0][Mechanism::Rounding], 0);
 }
 
 TEST(Team, NoWorkTakesNoTime) { EXPECT_EQ(run_together({Counts{}}).cycles[0], 0); }
@@ -75,7 +75,7 @@ TEST(Team, TwoCoresOnOneFpuTakeTurns) {
   const Outcome same = run_together(work);
   EXPECT_EQ(same.cycles[0], 2 * static_cast<std::int64_t>(kN));
   EXPECT_EQ(same.cycles[4], 2 * static_cast<std::int64_t>(kN));
-  EXPECT_DOUBLE_EQ(same.time[0].fpu, static_cast<double>(kN));
+  EXPECT_DOUBLE_EQ(same.time[0][Mechanism::Fpu], static_cast<double>(kN));
   work[4] = Counts{};
   work[1] = stream;  // unit 1
   const Outcome apart = run_together(work);
@@ -102,8 +102,8 @@ TEST(Team, TheEndOfAShareIsRoundedNotWaitedFor) {
   work[0] = work[4] = counts({{Op::F32Add, 1001}});
   const Outcome o = run_together(work, config);
   EXPECT_EQ(o.cycles[0], 2603);
-  EXPECT_NEAR(o.time[0].fpu, 2602.6 - 1001, 1e-6);
-  EXPECT_NEAR(o.time[0].rounding, 0.4, 1e-6);
+  EXPECT_NEAR(o.time[0][Mechanism::Fpu], 2602.6 - 1001, 1e-6);
+  EXPECT_NEAR(o.time[0][Mechanism::Rounding], 0.4, 1e-6);
 }
 
 TEST(Team, DynamicMappingUsesAnyFreeUnit) {
@@ -172,7 +172,7 @@ TEST(Team, BankConflictsDelayEachAccessByTheOthersDemand) {
   const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadIndexed, kN}})));
   const double r = (-1 + std::sqrt(1 + 4 * 7.0 / 32)) / (2 * 7.0 / 32);  // r = 1/(1 + 7 r/32)
   EXPECT_NEAR(static_cast<double>(o.cycles[0]), kN / r, 2);
-  EXPECT_NEAR(o.time[0].banks, kN / r - kN, 2);
+  EXPECT_NEAR(o.time[0][Mechanism::Banks], kN / r - kN, 2);
 }
 
 TEST(Team, StreamsGetOutOfEachOthersWay) {
@@ -188,7 +188,7 @@ TEST(Team, StreamsTakeNoMoreThanTheBanksServe) {
   config.l1.banks = 2;
   const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadStream, kN}})), config);
   for (const std::int64_t cycles : o.cycles) EXPECT_NEAR(static_cast<double>(cycles), 4.0 * kN, 2);
-  EXPECT_NEAR(o.time[0].banks, 3.0 * kN, 2);
+  EXPECT_NEAR(o.time[0][Mechanism::Banks], 3.0 * kN, 2);
   // Two cores that load every other cycle leave each other alone.
   const Counts light = counts({{Op::LoadStream, kN}, {Op::IntAlu, kN}});
   EXPECT_EQ(run_together({light, light}, config).cycles[0], static_cast<std::int64_t>(2 * kN));
@@ -197,11 +197,11 @@ TEST(Team, StreamsTakeNoMoreThanTheBanksServe) {
 TEST(Team, CoresOnOneWordTakeTurns) {
   const Outcome o = run_together(std::vector<Counts>(8, counts({{Op::LoadShared, kN}})));
   EXPECT_NEAR(static_cast<double>(o.cycles[0]), 8.0 * kN, 2);
-  EXPECT_NEAR(o.time[0].banks, 7.0 * kN, 2);
+  EXPECT_NEAR(o.time[0][Mechanism::Banks], 7.0 * kN, 2);
 }
 
 /// Cycles per line that the cores wait for code of which each byte is `farther` than their caches.
-SegmentTime fetching(int cores, std::size_t reuse_class) {
+MechanismCycles fetching(int cores, std::size_t reuse_class) {
   ClusterConfig config = test_cluster();
   config.icache = {Bytes(16), Bytes(512), Bytes(2048), Bytes(4096), 2, 2.0, 20.0, 1.0};
   Counts work = counts({{Op::IntAlu, 10 * kN}});
@@ -211,14 +211,14 @@ SegmentTime fetching(int cores, std::size_t reuse_class) {
 
 TEST(Team, CodeThatTheSharedCacheHoldsCostsEachCoreItsPrivateMisses) {
   const std::size_t class_of_2k = work::reuse_class(2048);
-  const SegmentTime alone = fetching(1, class_of_2k);
+  const MechanismCycles alone = fetching(1, class_of_2k);
   // One line in a hundred misses there, too, as lines collide by chance.
-  EXPECT_NEAR(alone.alone.fetch, 2.0 * kN, 0.2 * kN);
-  EXPECT_EQ(alone.fetch, 0);
+  EXPECT_NEAR(alone[Mechanism::Fetch], 2.0 * kN, 0.2 * kN);
+  EXPECT_EQ(alone[Mechanism::FetchContention], 0);
   // Seven others with a line per 12 cycles on two banks: 7/12/(2·2) cycles a line, or a little
   // less.
-  const SegmentTime together = fetching(8, class_of_2k);
-  EXPECT_NEAR(together.fetch, 7.0 / 12 / 4 * kN, 0.02 * kN);
+  const MechanismCycles together = fetching(8, class_of_2k);
+  EXPECT_NEAR(together[Mechanism::FetchContention], 7.0 / 12 / 4 * kN, 0.02 * kN);
 }
 
 TEST(Team, WithoutPrivateCachesTheSharedOneDeliversEachLine) {
@@ -228,19 +228,19 @@ TEST(Team, WithoutPrivateCachesTheSharedOneDeliversEachLine) {
   // A line for four instructions: r = 1 / (1 + 7 r / 4 / 4 / (2 * 8)).
   const double k = 7.0 / 16 / 16;
   const double rate = (-1 + std::sqrt(1 + 4 * k)) / (2 * k);
-  EXPECT_NEAR(run_together(work, config).time[0].fetch, kN / rate - kN, 2);
+  EXPECT_NEAR(run_together(work, config).time[0][Mechanism::FetchContention], kN / rate - kN, 2);
   EXPECT_EQ(run_together({work[0]}, config).cycles[0], static_cast<std::int64_t>(kN));
   config.icache.worker = Bytes(512);
-  EXPECT_EQ(run_together(work, config).time[0].fetch, 0);
+  EXPECT_EQ(run_together(work, config).time[0][Mechanism::FetchContention], 0);
 }
 
 TEST(Team, RefillsFromL2AreServedInTurn) {
-  EXPECT_NEAR(fetching(1, work::kNeverFetched).alone.fetch, 20.0 * kN, 1);
+  EXPECT_NEAR(fetching(1, work::kNeverFetched)[Mechanism::Fetch], 20.0 * kN, 1);
   // All of a team wait for each line as one alone would, and it is fetched for all: the refills of
   // eight cores keep L2 as busy as those of one.
-  const SegmentTime all = fetching(8, work::kNeverFetched);
-  EXPECT_NEAR(all.alone.fetch, 20.0 * kN, 1);
-  EXPECT_LT(all.fetch, 0.2 * all.alone.fetch);
+  const MechanismCycles all = fetching(8, work::kNeverFetched);
+  EXPECT_NEAR(all[Mechanism::Fetch], 20.0 * kN, 1);
+  EXPECT_LT(all[Mechanism::FetchContention], 0.2 * all[Mechanism::Fetch]);
 }
 
 TEST(Team, MixedDemandsNeverExceedAUnitAndLeaveNoneIdleNeedlessly) {

@@ -100,7 +100,7 @@ TEST_F(Compare, PartsAddUpForRandomPairsOfChips) {
       if (!s.mechanisms) continue;
       const std::string what = fmt::format("pair {}, {}", pair, s.stage.name);
       expect_adds_up(*s.mechanisms, what);
-      expect_adds_up(*s.places, what);
+      expect_adds_up(*s.forks, what);
       for (const ComparedQuantity& mechanism : s.mechanisms->parts)
         if (!mechanism.parts.empty()) expect_adds_up(mechanism, what + ", " + mechanism.name);
       EXPECT_NEAR(s.causes.total(), difference(*s.mechanisms), 1e-6) << what;
@@ -118,7 +118,7 @@ TEST_F(Compare, WhatCostsMoreIsNamed) {
     if (s.stage.name != "frame matching") continue;
     ASSERT_TRUE(s.mechanisms.has_value());
     EXPECT_EQ(leaves_by_difference(*s.mechanisms).front().name, "issue: popcount");
-    EXPECT_GT(s.causes.price, 10 * std::abs(s.causes.meeting));
+    EXPECT_GT(s.causes.cost, 10 * std::abs(s.causes.contention));
     return;
   }
   FAIL() << "no such stage";
@@ -131,7 +131,7 @@ TEST_F(Compare, OneUnitLessIsWaitedFor) {
   for (const StageComparison& s : c.stages)
     if (s.stage.name == "8-point RANSAC" && s.calls.a.value_or(0) > 0) {
       EXPECT_EQ(leaves_by_difference(*s.mechanisms).front().name, "fpu");
-      EXPECT_EQ(s.causes.price, 0);
+      EXPECT_EQ(s.causes.cost, 0);
     }
   EXPECT_NE(work_line(c).find("the same"), std::string::npos);
 }

@@ -8,6 +8,7 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
+#include "tests/support/account_checks.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/report/statistics.h"
 #include "traces/synthesis/synthetic.h"
@@ -96,7 +97,8 @@ TEST_F(Simulated, BreakdownsAddUpAndMemoryFits) {
     if (s.calls == 0) continue;
     const double cores = s.on_controller ? 1 : 8;
     const double cycles = cores * static_cast<double>(s.parallel.count());
-    EXPECT_NEAR(s.breakdown.total(), cycles, 1e-6 * cycles + 1) << s.name;
+    EXPECT_NEAR(s.account.total(), cycles, 1e-6 * cycles + 1) << s.name;
+    sim::testing::expect_adds_up(s.account, s.on_controller);
     if (s.on_controller) continue;
     EXPECT_LE(s.memory.single, s.memory.parallel) << s.name;
     EXPECT_LE(s.memory.parallel, result.l1_size) << s.name;
@@ -178,8 +180,10 @@ TEST(RealFrames, AllThreeHundredFramesOfMachineHall) {
   expect_one_ransac_per_frame(result);
   // Waiting, the divider and serial work hold the 8-point algorithm back; matching runs freely.
   EXPECT_LT(speedup(stage(result, "8-point RANSAC")), speedup(stage(result, "frame matching")) - 1);
-  const sim::CycleBreakdown& breakdown = stage(result, "8-point RANSAC").breakdown;
-  EXPECT_GT(breakdown.imbalance + breakdown.divider + breakdown.serial, 0.1 * breakdown.total());
+  const sim::MechanismCycles& breakdown = stage(result, "8-point RANSAC").account.team;
+  EXPECT_GT(breakdown[sim::Mechanism::Imbalance] + breakdown[sim::Mechanism::Divider] +
+                breakdown[sim::Mechanism::Serial],
+            0.1 * breakdown.total());
 }
 
 }  // namespace

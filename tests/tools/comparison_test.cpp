@@ -27,18 +27,18 @@ const ComparedQuantity& part(const ComparedQuantity& whole, const std::string& n
   return none;
 }
 
-TEST(CycleDifference, WorkIsAtThePriceOfAAndTheRestIsPrice) {
+TEST(CycleDifference, WorkIsAtTheCostInAAndTheRestIsCost) {
   // 100 operations at 2 cycles, then 150 at 3; and 40 cycles of waiting more.
   const StageParts a = stage(200, {{"f", "issue", "int_alu", 200, 100}});
   const StageParts b = stage(490, {{"f", "issue", "int_alu", 450, 150}, {"", "fpu", "", 40, 0}});
   const Causes causes = split_by_cause(&a, &b, 1, 1);
   EXPECT_EQ(causes.work, 100);
-  EXPECT_EQ(causes.price, 150);
-  EXPECT_EQ(causes.meeting, 40);
+  EXPECT_EQ(causes.cost, 150);
+  EXPECT_EQ(causes.contention, 40);
   const ComparedQuantity whole = split_by_mechanism(&a, &b, 1, 1);
   EXPECT_EQ(part(part(whole, "issue"), "int_alu").difference(), 250);
   EXPECT_EQ(part(whole, "fpu").difference(), 40);
-  const ComparedQuantity places = split_by_place(&a, &b, 1, 1);
+  const ComparedQuantity places = split_by_fork(&a, &b, 1, 1);
   EXPECT_EQ(part(places, "f").difference(), 250);
 }
 

@@ -19,15 +19,19 @@ inline StageResult parallel_stage() {
   stage.single = Cycles(8'000'000);
   stage.parallel = Cycles(2'000'000);
   stage.worst_parallel = Cycles(1'200'000);
-  stage.breakdown.useful = {3e6, 1e6, 5e5, 2e5, 3e5};
-  stage.breakdown.fpu = 1e6;
-  stage.breakdown.divider = 5e5;
-  stage.breakdown.banks = 1e5;
-  stage.breakdown.imbalance = 3e5;
-  stage.breakdown.synchronisation = 1e5;
-  stage.breakdown.transfer = 2e5;
-  stage.breakdown.serial = 799'000;
-  stage.breakdown.rounding = 1'000;
+  stage.account.team[sim::Mechanism::Issue] = 3e6;
+  stage.account.team[sim::Mechanism::LoadUse] = 1e6;
+  stage.account.team[sim::Mechanism::Control] = 5e5;
+  stage.account.team[sim::Mechanism::Memory] = 2e5;
+  stage.account.team[sim::Mechanism::Arithmetic] = 3e5;
+  stage.account.team[sim::Mechanism::Fpu] = 1e6;
+  stage.account.team[sim::Mechanism::Divider] = 5e5;
+  stage.account.team[sim::Mechanism::Banks] = 1e5;
+  stage.account.team[sim::Mechanism::Imbalance] = 3e5;
+  stage.account.team[sim::Mechanism::Synchronisation] = 1e5;
+  stage.account.team[sim::Mechanism::Transfer] = 2e5;
+  stage.account.team[sim::Mechanism::Serial] = 799'000;
+  stage.account.team[sim::Mechanism::Rounding] = 1'000;
   stage.counts[work::Op::F32Add] = 12'345;
   stage.memory.single = Bytes(32'000);
   stage.memory.parallel = Bytes(64'000);
@@ -51,7 +55,7 @@ inline StageResult controller_stage() {
   stage.calls = 3;
   stage.single = stage.parallel = Cycles(1'500'000);
   stage.worst_parallel = Cycles(600'000);
-  stage.breakdown.useful.issue = 1'500'000;
+  stage.account.team[sim::Mechanism::Issue] = 1'500'000;
   stage.memory.single = stage.memory.parallel = Bytes(743'600);
   return stage;
 }

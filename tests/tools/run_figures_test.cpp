@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "platform_models/loader/loader.h"
-#include "sim/soc/stage_book.h"
+#include "sim/soc/account.h"
 #include "tests/tools/example_run.h"
 #include "tests/tools/statistic_values.h"
 #include "tools/app/report/statistics.h"
@@ -58,10 +58,10 @@ TEST(RunFigures, TheWorstIsTheLongestOfSeveralAndNoSum) {
 }
 
 TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
-  soc::StageBook book({}, platform::load_platform("gap9"));
+  soc::RunAccount book({}, platform::load_platform("gap9"));
   for (const int cycles : {300, 500, 200}) {
     sim::StageTiming stage{"matching", {}, {}, Cycles(cycles), {}};
-    stage.breakdown.serial = cycles;
+    stage.account.team[sim::Mechanism::Serial] = cycles;
     book.add_parallel({{}, {}, {stage}});
     stage.cycles = Cycles(10 * cycles);
     book.add_single({{}, {}, {stage}});
@@ -71,12 +71,12 @@ TEST(RunFigures, TheBookKeepsTheLongestCallOfAStage) {
   EXPECT_EQ(stage.parallel, Cycles(1000));
   EXPECT_EQ(stage.worst_parallel, Cycles(500));
   EXPECT_EQ(stage.single, Cycles(10000));
-  EXPECT_EQ(stage.breakdown.serial, 1000);
+  EXPECT_EQ(stage.account.team[sim::Mechanism::Serial], 1000);
 }
 
 TEST(RunFigures, TheBookSaysWhatRestsOnCodeThatWasNotMeasured) {
   const sim::ChipConfig chip = platform::load_platform("gap9");
-  soc::StageBook book({}, chip);
+  soc::RunAccount book({}, chip);
   work::Segment measured, unmeasured;
   measured[work::Op::IntAlu] = unmeasured[work::Op::IntAlu] = 1000;
   work::CompiledWork compiled{};
@@ -109,7 +109,7 @@ TEST(RunFigures, TheStageTableNamesStagesThatWereNotMeasured) {
 }
 
 TEST(RunFigures, TheBookAddsUpTransfers) {
-  soc::StageBook book({}, platform::load_platform("gap9"));
+  soc::RunAccount book({}, platform::load_platform("gap9"));
   const work::Transfer in{work::Direction::L2ToL1, Bytes(100)};
   const work::Transfer far{work::Direction::ExternalToL2, Bytes(7)};
   for (int k = 0; k < 3; ++k) book.add_work({{{"matching", {in, far, in}, {}}}});

@@ -85,7 +85,7 @@ TEST(Statistics, BreakdownPartsAddUpToTheirTotal) {
   const Json document = statistics(example_run());
   const std::string prefix = "stages.feature_extraction.breakdown.";
   double sum = 0;
-  for (const BreakdownPart& part : kBreakdownParts)
+  for (const sim::MechanismInfo& part : breakdown_parts(example_run()))
     sum += value(document, prefix + std::string(part.key)).get<double>();
   EXPECT_DOUBLE_EQ(sum, value(document, prefix + "total").get<double>());
 }

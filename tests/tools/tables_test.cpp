@@ -180,9 +180,10 @@ TEST(BreakdownTable, TenthsAddUpForAnyParts) {
 }
 
 TEST(BreakdownTable, PartsAreTheWholeBreakdown) {
-  const sim::CycleBreakdown breakdown = example_run().stages[0].breakdown;
+  const sim::MechanismCycles breakdown = example_run().stages[0].account.team;
   double sum = 0;
-  for (const BreakdownPart& part : kBreakdownParts) sum += part.of(breakdown);
+  for (const sim::MechanismInfo& part : breakdown_parts(example_run()))
+    sum += breakdown[part.mechanism];
   EXPECT_DOUBLE_EQ(sum, breakdown.total());
   EXPECT_DOUBLE_EQ(breakdown.total(), 8e6);
 }

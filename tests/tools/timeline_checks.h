@@ -112,16 +112,20 @@ inline void expect_sums_of(const PerfettoTrace& trace, const RunResult& run) {
     const SlicesOfStage& slices = sums.stages().at(stage.name);
     EXPECT_EQ(slices.cycles, static_cast<double>(stage.parallel.count()));
     if (stage.on_controller) continue;
-    const sim::CycleBreakdown& breakdown = stage.breakdown;
+    const sim::MechanismCycles& breakdown = stage.account.team;
     const double tolerance = 1e-9 * breakdown.total() + 1e-6;
     // Whole cycles: exact.
-    EXPECT_EQ(slices.serial * cores, breakdown.serial);
-    EXPECT_EQ(slices.transfer * cores, breakdown.transfer);
-    EXPECT_NEAR(slices.synchronisation * cores, breakdown.synchronisation, tolerance);
+    EXPECT_EQ(slices.serial * cores, breakdown[sim::Mechanism::Serial]);
+    EXPECT_EQ(slices.transfer * cores, breakdown[sim::Mechanism::Transfer]);
+    EXPECT_NEAR(slices.synchronisation * cores, breakdown[sim::Mechanism::Synchronisation],
+                tolerance);
     EXPECT_NEAR(slices.forks * cores,
-                slices.worked + breakdown.imbalance + breakdown.synchronisation, tolerance);
-    EXPECT_GE(slices.idle, breakdown.imbalance - tolerance);
-    EXPECT_LE(slices.idle, breakdown.imbalance + breakdown.synchronisation + tolerance);
+                slices.worked + breakdown[sim::Mechanism::Imbalance] +
+                    breakdown[sim::Mechanism::Synchronisation],
+                tolerance);
+    EXPECT_GE(slices.idle, breakdown[sim::Mechanism::Imbalance] - tolerance);
+    EXPECT_LE(slices.idle, breakdown[sim::Mechanism::Imbalance] +
+                               breakdown[sim::Mechanism::Synchronisation] + tolerance);
     EXPECT_EQ((slices.serial + slices.transfer + slices.forks), slices.cycles);
     const auto part = [&](const char* name) {
       const auto it = slices.split.find(name);
@@ -131,15 +135,20 @@ inline void expect_sums_of(const PerfettoTrace& trace, const RunResult& run) {
     for (const auto& [name, cycles] : slices.split) worked += cycles;
     EXPECT_NEAR(worked, slices.worked, tolerance);
     EXPECT_NEAR(part("work"),
-                breakdown.useful.total() - breakdown.useful.fetch - breakdown.useful.accelerator,
+                breakdown.alone() - breakdown[sim::Mechanism::Fetch] -
+                    breakdown[sim::Mechanism::Accelerator],
                 tolerance);
-    EXPECT_NEAR(part("FPU"), breakdown.fpu, tolerance);
-    EXPECT_NEAR(part("divider"), breakdown.divider, tolerance);
-    EXPECT_NEAR(part("L1 banks"), breakdown.banks, tolerance);
-    EXPECT_NEAR(part("code"), breakdown.useful.fetch + breakdown.fetch, tolerance);
-    EXPECT_NEAR(part("accelerator"), breakdown.useful.accelerator + breakdown.accelerator,
+    EXPECT_NEAR(part("FPU"), breakdown[sim::Mechanism::Fpu], tolerance);
+    EXPECT_NEAR(part("divider"), breakdown[sim::Mechanism::Divider], tolerance);
+    EXPECT_NEAR(part("L1 banks"), breakdown[sim::Mechanism::Banks], tolerance);
+    EXPECT_NEAR(part("code"),
+                breakdown[sim::Mechanism::Fetch] + breakdown[sim::Mechanism::FetchContention],
                 tolerance);
-    EXPECT_NEAR(part("rounding"), breakdown.rounding, tolerance);
+    EXPECT_NEAR(
+        part("accelerator"),
+        breakdown[sim::Mechanism::Accelerator] + breakdown[sim::Mechanism::AcceleratorContention],
+        tolerance);
+    EXPECT_NEAR(part("rounding"), breakdown[sim::Mechanism::Rounding], tolerance);
   }
 }
 

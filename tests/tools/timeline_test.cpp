@@ -305,7 +305,7 @@ TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
     for (const StepEvents& step : stage.steps)
       for (const CoreEvents& core : step.cores) {
         work += own_work(core.split);
-        divider += core.split.divider;
+        divider += core.split[sim::Mechanism::Divider];
       }
   ASSERT_GT(divider, 0);
   // A period of the camera, and 1 % more, is 880 px wide; a row is 19 px high.

@@ -139,7 +139,8 @@ std::uint32_t bytes_of(const sim::ChipConfig& chip, const Code& code) {
     const work::Arena::Frame frame(m.local());
     code.run(m, code.size);
   });
-  return static_cast<std::uint32_t>(kInstruction * pass.breakdown.useful.issue / code.passes);
+  return static_cast<std::uint32_t>(kInstruction * pass.account.team[sim::Mechanism::Issue] /
+                                    code.passes);
 }
 
 std::vector<MicrobenchRow> rows(const std::vector<std::string>& overrides) {

@@ -55,7 +55,7 @@ Load eight_busy_cores(const sim::ChipConfig& config, const Counts& share) {
   const sim::StageTiming timing = time_of(config, {{stage}});
   const Activity activity =
       sim::cluster_activity(config, 8, work::counts_of(stage), work::transferred_by(stage),
-                            timing.breakdown, timing.cycles);
+                            timing.account.team, timing.cycles);
   return {activity, activity.instructions / 8 / static_cast<double>(timing.cycles.count())};
 }
 

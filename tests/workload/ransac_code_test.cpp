@@ -186,9 +186,9 @@ Modelled modelled(const Recording& recording, int workers) {
   const auto body = [&]() -> sim::Process { timing = co_await chip.cluster().run(recording.job); };
   chip.kernel().spawn("test", body());
   chip.kernel().run();
-  const sim::CycleBreakdown& b = timing.stages.at(0).breakdown;
-  const double waiting = b.useful.fetch + b.fetch;
-  return {(b.useful.total() - b.useful.fetch) / recording.cores, waiting / recording.cores};
+  const sim::MechanismCycles& b = timing.stages.at(0).account.team;
+  const double waiting = b[sim::Mechanism::Fetch] + b[sim::Mechanism::FetchContention];
+  return {(b.alone() - b[sim::Mechanism::Fetch]) / recording.cores, waiting / recording.cores};
 }
 
 /// Lines of every core, fork by fork.

@@ -40,16 +40,12 @@ Flown fly(RunOptions options, const char* profile, bool record, const Words& wor
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);
   if (record) request.recording = &recording;
-  CycleParts parts(request.platform.config, request.cores);
-  RunObservers observers;
-  observers.add(parts);
-  request.observer = &observers;
   Flown flown{simulate_with_progress(request, style), {}, {}};
   const Manifest manifest = make_manifest(options, request, words);
   flown.reported.files = run_files(flown.result, manifest, platform::to_yaml(request.platform));
-  flown.reported.files[kCyclesFile] = cycles_csv(parts.stages());
+  flown.reported.files[kCyclesFile] = cycles_csv(cycle_parts(flown.result));
   flown.reported.record =
-      make_record(options.out + '/' + profile, manifest, flown.result, parts.stages());
+      make_record(options.out + '/' + profile, manifest, flown.result, cycle_parts(flown.result));
   if (record) flown.trace = work_trace_of(std::move(recording), options, request, manifest);
   return flown;
 }

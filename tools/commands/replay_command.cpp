@@ -94,23 +94,20 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
   RunRequest request = request_for(trace, options);
   std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);
-  CycleParts parts(request.platform.config, request.cores);
-  RunObservers observers;
-  observers.add(parts);
-  if (timeline) observers.add(timeline->observer());
-  request.observer = &observers;
+  if (timeline) request.observer = &timeline->observer();
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = manifest_of(trace, options, words);
   options.data = trace.info().data;
   RunFiles files = run_files(result.run, manifest, platform::to_yaml(request.platform));
   files[kReplayFile] = replay_csv(result);
-  files[kCyclesFile] = cycles_csv(parts.stages());
+  files[kCyclesFile] = cycles_csv(cycle_parts(result.run));
   publish(out, run_printout(options, result.run, replay_report(result, trace)),
           [&] { write_run_files(out, files); });
   if (timeline) timeline->publish(result.run, !options.json);
-  report_and_check({make_record(out.shown_path(), manifest, result.run, parts.stages()), files},
-                   page, gate, !options.json);
+  report_and_check(
+      {make_record(out.shown_path(), manifest, result.run, cycle_parts(result.run)), files}, page,
+      gate, !options.json);
 }
 
 }  // namespace

@@ -37,24 +37,20 @@ void run(const CLI::App& command, RunCommandOptions options, const Words& words)
   out.reserve(expected_bytes(request, options.record));
   WorkRecording recording(request.cores);
   if (options.record) request.recording = &recording;
-  CycleParts parts(request.platform.config, request.cores);
-  RunObservers observers;
-  observers.add(parts);
-  if (timeline) observers.add(timeline->observer());
-  if (!request.native) request.observer = &observers;
+  if (timeline) request.observer = &timeline->observer();
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
   RunFiles files = run_files(result, manifest,
                              request.native ? std::string() : platform::to_yaml(request.platform));
-  if (!request.native) files[kCyclesFile] = cycles_csv(parts.stages());
+  if (!request.native) files[kCyclesFile] = cycles_csv(cycle_parts(result));
   publish(out, run_printout(options, result), [&] {
     write_run_files(out, files);
     if (!options.record) return;
     out.write(kWorkTraceFile, work_trace_of(std::move(recording), options, request, manifest));
   });
   if (timeline) timeline->publish(result, !options.json);
-  report_and_check({make_record(out.shown_path(), manifest, result, parts.stages()), files}, page,
-                   gate, !options.json);
+  report_and_check({make_record(out.shown_path(), manifest, result, cycle_parts(result)), files},
+                   page, gate, !options.json);
 }
 
 }  // namespace

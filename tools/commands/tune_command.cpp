@@ -36,7 +36,6 @@ struct GatedTuneWords : TuneWords {
 struct ChosenRun {
   RunRequest request;
   RunResult result;
-  std::vector<StageParts> cycles;
 };
 
 /// Runs a point by itself with all seeds, whatever the cache holds. @returns what the first gave
@@ -44,16 +43,13 @@ ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
   std::optional<ChosenRun> first;
   for (std::size_t i = 0; i < plan.seeds.size(); ++i) {
     RunRequest request = request_of(plan, point.fps, point.setting, plan.seeds[i]);
-    CycleParts parts(request.platform.config, request.cores);
-    if (i == 0) request.observer = &parts;
     RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
-    request.observer = nullptr;
     const RunOutcome outcome = outcome_of(result, plan.sequence.truth, plan.measure);
     if (to_text(figures_of(outcome)) != to_text(figures_of(point.outcomes[i])))
       throw InputError(
           "tune: run again, the chosen point gave other figures than were found in the cache of "
           "finished runs; remove it, or choose another with --cache");
-    if (i == 0) first = ChosenRun{std::move(request), std::move(result), parts.stages()};
+    if (i == 0) first = ChosenRun{std::move(request), std::move(result)};
   }
   return std::move(*first);
 }
@@ -84,7 +80,7 @@ void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
   }
   print_check(
       gate.check(make_record("the chosen point", manifest_of(plan, *best, *again, command_line),
-                             again->result, again->cycles)));
+                             again->result, cycle_parts(again->result))));
 }
 
 void run(const CLI::App& command, const GatedTuneWords& words, const Words& command_line) {

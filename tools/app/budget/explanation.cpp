@@ -67,8 +67,8 @@ class Explainer {
 
   /// The fork in which it happens, if it is known.
   static std::string place_in(const StageComparison& s) {
-    const ComparedQuantity* place = s.places ? most_different(s.places->parts) : nullptr;
-    if (place == nullptr || place->name == kWholeTeam) return s.stage.name;
+    const ComparedQuantity* place = s.forks ? most_different(s.forks->parts) : nullptr;
+    if (place == nullptr || place->name == kOutsideForks) return s.stage.name;
     return s.stage.name + ", " + place->name;
   }
 

@@ -92,7 +92,7 @@ class Comparer {
     if (in_a != nullptr && in_b != nullptr && is_folded(*in_a))
       in_b = &(like_a = folded_like(*in_b, *in_a));
     c.mechanisms = split_by_mechanism(in_a, in_b, frames(a_), frames(b_));
-    c.places = split_by_place(in_a, in_b, frames(a_), frames(b_));
+    c.forks = split_by_fork(in_a, in_b, frames(a_), frames(b_));
     c.causes = split_by_cause(in_a, in_b, frames(a_), frames(b_));
   }
 
@@ -149,7 +149,7 @@ class Comparer {
  private:
   static bool is_folded(const StageParts& stage) {
     return std::any_of(stage.parts.begin(), stage.parts.end(),
-                       [](const CyclePart& part) { return part.mechanism == "other"; });
+                       [](const CyclePart& part) { return part.mechanism == kOtherParts; });
   }
 
   static double frames(const RunRecord& run) {
@@ -227,8 +227,8 @@ std::optional<double> ComparedQuantity::percent() const {
 
 Causes& Causes::operator+=(const Causes& o) {
   work += o.work;
-  price += o.price;
-  meeting += o.meeting;
+  cost += o.cost;
+  contention += o.contention;
   return *this;
 }
 

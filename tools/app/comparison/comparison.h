@@ -3,7 +3,7 @@
 // prints it.
 //
 // Cycles are those of a mean frame on N cores. They are split twice: by mechanism and kind of
-// operation, and by what the cores did. A third split tells the work from its price.
+// operation, and by fork. A third split is by cause: work, its cost, and contention.
 #pragma once
 
 #include <optional>
@@ -29,16 +29,16 @@ struct ComparedQuantity {
 
 /// Of a difference of cycles.
 struct Causes {
-  double work = 0;     ///< other numbers of operations, at the price in A
-  double price = 0;    ///< the operations of B at the price in B instead of A's
-  double meeting = 0;  ///< cores that wait for each other, for memory, for the DMA
+  double work = 0;        ///< other numbers of operations, at their cost in A
+  double cost = 0;        ///< the operations of B at their cost in B instead of that in A
+  double contention = 0;  ///< cores that wait for shared units, for each other, for the DMA
 
-  double total() const { return work + price + meeting; }
+  double total() const { return work + cost + contention; }
   Causes& operator+=(const Causes& o);
 };
 
-/// The place of what is known of a stage as a whole.
-inline constexpr const char* kWholeTeam = "between the cores";
+/// The name of what the team awaits between forks: transfers.
+inline constexpr const char* kOutsideForks = "outside of forks";
 
 struct StageComparison {
   StageName stage;
@@ -52,7 +52,7 @@ struct StageComparison {
   /// the runs has no cycles.csv.
   std::optional<ComparedQuantity> mechanisms;
   /// The same by fork, with mechanisms as parts.
-  std::optional<ComparedQuantity> places;
+  std::optional<ComparedQuantity> forks;
   Causes causes;
 };
 

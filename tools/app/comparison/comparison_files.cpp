@@ -38,9 +38,9 @@ Json stage_json(const StageComparison& s) {
     json[key] = quantity_json(*quantity);
   if (!s.mechanisms) return json;
   json["causes"] = {
-      {"work", s.causes.work}, {"price", s.causes.price}, {"meeting", s.causes.meeting}};
+      {"work", s.causes.work}, {"cost", s.causes.cost}, {"contention", s.causes.contention}};
   json["by_mechanism"] = quantity_json(*s.mechanisms);
-  json["by_place"] = quantity_json(*s.places);
+  json["by_fork"] = quantity_json(*s.forks);
   return json;
 }
 
@@ -100,10 +100,10 @@ std::string comparison_csv(const RunComparison& c) {
       rows.add(s.stage.name, q->name, *q);
     if (!s.mechanisms) continue;
     rows.add(s.stage.name, "cycles of a frame by mechanism", *s.mechanisms);
-    rows.add(s.stage.name, "cycles of a frame by place", *s.places);
+    rows.add(s.stage.name, "cycles of a frame by fork", *s.forks);
     for (const auto& [name, cycles] : {std::pair{"work", s.causes.work},
-                                       {"price", s.causes.price},
-                                       {"meeting", s.causes.meeting}})
+                                       {"cost", s.causes.cost},
+                                       {"contention", s.causes.contention}})
       rows.add(s.stage.name, "cycles of a frame by cause", {name, "cycles", 0.0, cycles}, name);
   }
   for (const ComparedQuantity& q : c.blocks) rows.add("memory", q.name, q);

@@ -175,11 +175,11 @@ class Writer {
       if (!s.mechanisms || !is_worth_showing(*s.mechanisms)) continue;
       any = true;
       row(shortened(s.stage.name, 40), *s.mechanisms);
-      add_cause(t, "of it work", s.causes.work);
-      add_cause(t, "of it price of an operation", s.causes.price);
-      add_cause(t, "of it cores, memory, DMA", s.causes.meeting);
+      add_cause(t, "other work", s.causes.work);
+      add_cause(t, "other cost of an operation", s.causes.cost);
+      add_cause(t, "contention and waiting", s.causes.contention);
       add_leaves(t, *s.mechanisms);
-      add_places(t, *s.places);
+      add_places(t, *s.forks);
     }
     row("front end", c_.frame);
     table(t);
@@ -220,15 +220,15 @@ class Writer {
       return std::abs(place.b.value_or(0) - place.a.value_or(0)) >= kLeastShown;
     };
     if (std::none_of(whole.parts.begin(), whole.parts.end(), [&](const ComparedQuantity& place) {
-          return place.name != kWholeTeam && differs(place);
+          return place.name != kOutsideForks && differs(place);
         }))
       return;
     for (const ComparedQuantity& place : whole.parts)
       if (differs(place))
-        t.add(
-            {place.name == kWholeTeam ? "    " + place.name : "    in " + shortened(place.name, 41),
-             kilocycles(place.a), kilocycles(place.b),
-             signed_kilocycles(place.b.value_or(0) - place.a.value_or(0))});
+        t.add({place.name == kOutsideForks ? "    " + place.name
+                                           : "    in " + shortened(place.name, 41),
+               kilocycles(place.a), kilocycles(place.b),
+               signed_kilocycles(place.b.value_or(0) - place.a.value_or(0))});
   }
 
   /// The largest differences; all are in JSON and CSV.

@@ -22,14 +22,15 @@ ComparedQuantity& part(ComparedQuantity& whole, const std::string& name) {
 using Path = std::vector<std::string>;
 
 Path mechanism_path(const CyclePart& p) {
-  if (p.where == kSerialPlace)
-    return p.operation.empty() ? Path{kSerialPlace, p.mechanism}
-                               : Path{kSerialPlace, p.mechanism + ' ' + p.operation};
+  const std::string serial(sim::kSerialFork);
+  if (p.where == sim::kSerialFork)
+    return p.operation.empty() ? Path{serial, p.mechanism}
+                               : Path{serial, p.mechanism + ' ' + p.operation};
   return p.operation.empty() ? Path{p.mechanism} : Path{p.mechanism, p.operation};
 }
 
-Path place_path(const CyclePart& p) {
-  return {p.where.empty() ? kWholeTeam : p.where, p.mechanism};
+Path fork_path(const CyclePart& p) {
+  return {p.where.empty() ? kOutsideForks : p.where, p.mechanism};
 }
 
 void add_parts(ComparedQuantity& whole, const StageParts* stage, double frames,
@@ -71,7 +72,8 @@ const CyclePart* find(const StageParts* stage, const CyclePart& like) {
   return it == stage->parts.end() ? nullptr : &*it;
 }
 
-/// How often what a part prices occurs in a run, which may charge nothing for it by this mechanism.
+/// How often the operation of a part occurs in a run, which may charge nothing for it by this
+/// mechanism.
 double count_of(const StageParts* stage, const CyclePart& like) {
   if (stage == nullptr || like.operation.empty()) return 0;
   for (const CyclePart& p : stage->parts)
@@ -94,9 +96,9 @@ ComparedQuantity split_by_mechanism(const StageParts* a, const StageParts* b, do
   return split(a, b, frames_a, frames_b, mechanism_path);
 }
 
-ComparedQuantity split_by_place(const StageParts* a, const StageParts* b, double frames_a,
-                                double frames_b) {
-  return split(a, b, frames_a, frames_b, place_path);
+ComparedQuantity split_by_fork(const StageParts* a, const StageParts* b, double frames_a,
+                               double frames_b) {
+  return split(a, b, frames_a, frames_b, fork_path);
 }
 
 Causes split_by_cause(const StageParts* a, const StageParts* b, double frames_a, double frames_b) {
@@ -115,7 +117,7 @@ Causes split_by_cause(const StageParts* a, const StageParts* b, double frames_a,
     if (find(a, p) == nullptr) add(nullptr, &p);
   const double total = per((b != nullptr ? *b : kNone).cycles, frames_b) -
                        per((a != nullptr ? *a : kNone).cycles, frames_a);
-  sum.meeting += total - sum.total();
+  sum.contention += total - sum.total();
   return sum;
 }
 

@@ -48,8 +48,6 @@ std::string trace_of(const std::string& name) {
 
 RunRecord computed_record(const std::string& name, RunRequest request, const Manifest& manifest,
                           const Compute& compute, bool quiet, RunFiles* files) {
-  CycleParts parts(request.platform.config, request.cores);
-  request.observer = &parts;
   ProgressLine line(ProgressLine::style_of_stderr(quiet));
   const RunResult run = compute(request, [&](const Progress& p) {
     throw_if_interrupted();
@@ -58,9 +56,9 @@ RunRecord computed_record(const std::string& name, RunRequest request, const Man
   });
   if (files != nullptr) {
     *files = run_files(run, manifest, platform::to_yaml(request.platform));
-    (*files)[kCyclesFile] = cycles_csv(parts.stages());
+    (*files)[kCyclesFile] = cycles_csv(cycle_parts(run));
   }
-  return make_record(name, manifest, run, parts.stages());
+  return make_record(name, manifest, run, cycle_parts(run));
 }
 
 Manifest manifest_of_recording(const traces::WorkTrace& trace) {

@@ -104,12 +104,9 @@ Json stages_of(const RunRecord& record, const Json& table) {
 /// What the parts of the breakdown are called, and what they mean.
 Json account_of(const Json& stages) {
   Json list = Json::array();
-  const auto add = [&](const BreakdownPart& part) {
-    if (stages.contains(std::string(part.key) + "_core_cycles"))
-      list.push_back({{"key", part.key}, {"group", part.column}, {"meaning", part.description}});
-  };
-  for (const BreakdownPart& part : kBreakdownParts) add(part);
-  for (const BreakdownPart& part : kAcceleratorParts) add(part);
+  for (const sim::MechanismInfo& info : sim::kMechanisms)
+    if (stages.contains(std::string(info.key) + "_core_cycles"))
+      list.push_back({{"key", info.key}, {"group", info.column}, {"meaning", info.meaning}});
   return list;
 }
 

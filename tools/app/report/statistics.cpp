@@ -53,10 +53,10 @@ void add_cycles(StatisticList& list, const std::string& path, const RunResult& r
 void add_breakdown(StatisticList& list, const std::string& path, const RunResult& run,
                    const StageResult& stage) {
   list.add(path + "breakdown.total", "core-cycles", "of the team on N cores",
-           stage.breakdown.total());
-  for (const BreakdownPart& part : breakdown_parts(run))
-    list.add(fmt::format("{}breakdown.{}", path, part.key), "core-cycles", part.description,
-             part.of(stage.breakdown));
+           stage.account.total());
+  for (const sim::MechanismInfo& part : breakdown_parts(run))
+    list.add(fmt::format("{}breakdown.{}", path, part.key), "core-cycles", part.meaning,
+             stage.account.team[part.mechanism]);
 }
 
 /// Of chips with accelerators only.

@@ -31,10 +31,6 @@ std::string milliseconds_text(std::optional<double> cycles, Hertz clock) {
   return figure_text(cycles ? std::optional(milliseconds(*cycles, clock)) : std::nullopt, 3);
 }
 
-/// Columns of the table of breakdowns, in its order.
-constexpr std::array<std::string_view, 11> kBreakdownColumns{
-    "useful", "served",    "queue", "I-cache",  "FPU",   "divider",
-    "banks",  "imbalance", "sync",  "transfer", "serial"};
 /// Those that are small on most chips, so that they go first where the width is short.
 constexpr std::array<std::string_view, 4> kSmallColumns{"divider", "banks", "sync", "transfer"};
 
@@ -43,32 +39,46 @@ int rank_of(std::string_view column) {
                                                                                               : 1;
 }
 
-/// What stands in a column, summed up. Absent for a column that no part belongs to.
-std::optional<double> sum_of(std::string_view column, const std::vector<BreakdownPart>& parts,
-                             const sim::CycleBreakdown& breakdown) {
-  std::optional<double> sum;
-  for (const BreakdownPart& part : parts)
-    if (part.column == column) sum = sum.value_or(0) + part.of(breakdown);
-  return sum;
+/// A column of the table of breakdowns, and the mechanisms that are added to it.
+struct BreakdownColumn {
+  std::string_view name;
+  std::vector<sim::Mechanism> parts;
+
+  double sum(const sim::MechanismCycles& cycles) const {
+    double all = 0;
+    for (const sim::Mechanism part : parts) all += cycles[part];
+    return all;
+  }
+};
+
+/// Those that there are on the cluster, those of lone cores first.
+std::vector<BreakdownColumn> breakdown_columns(const RunResult& run) {
+  std::vector<sim::MechanismInfo> infos = breakdown_parts(run);
+  if (!run.timed || !sim::has_accelerators(run.chip.cluster.accelerators))
+    std::erase_if(infos, [](const sim::MechanismInfo& info) {
+      return info.mechanism == sim::Mechanism::Accelerator;
+    });
+  std::sort(infos.begin(), infos.end(), [](const auto& a, const auto& b) {
+    return sim::index(a.mechanism) < sim::index(b.mechanism);
+  });
+  std::vector<BreakdownColumn> columns;
+  for (const sim::MechanismInfo& info : infos) {
+    auto it = std::find_if(columns.begin(), columns.end(),
+                           [&](const BreakdownColumn& c) { return c.name == info.column; });
+    if (it == columns.end()) it = columns.insert(it, {info.column, {}});
+    it->parts.push_back(info.mechanism);
+  }
+  return columns;
 }
 
-/// Those that there are on the cluster.
-std::vector<BreakdownPart> cluster_parts(const RunResult& run) {
-  std::vector<BreakdownPart> parts(kBreakdownParts.begin(), kBreakdownParts.end());
-  if (run.timed && sim::has_accelerators(run.chip.cluster.accelerators))
-    parts.insert(parts.end(), kAcceleratorParts.begin(), kAcceleratorParts.end());
-  return parts;
-}
-
-std::vector<std::string> breakdown_cells(const std::vector<BreakdownPart>& parts,
-                                         const sim::CycleBreakdown& breakdown) {
+std::vector<std::string> breakdown_cells(const std::vector<BreakdownColumn>& columns,
+                                         const sim::MechanismCycles& cycles) {
+  if (!(cycles.total() > 0)) return std::vector<std::string>(columns.size() + 1, kNothing);
   std::vector<double> sums;
-  for (const std::string_view column : kBreakdownColumns)
-    if (const auto sum = sum_of(column, parts, breakdown)) sums.push_back(*sum);
-  if (!(breakdown.total() > 0)) return std::vector<std::string>(sums.size() + 1, kNothing);
+  for (const BreakdownColumn& column : columns) sums.push_back(column.sum(cycles));
   std::vector<std::string> cells;
   for (const double percent : tenths_of_percent(sums)) cells.push_back(figure_text(percent, 1));
-  cells.push_back(figure_text(breakdown.total() * 1e-6, 1));
+  cells.push_back(figure_text(cycles.total() * 1e-6, 1));
   return cells;
 }
 
@@ -180,7 +190,7 @@ std::string unmeasured_note(const RunResult& run) {
       shares.push_back(fmt::format("{:.0f} % of {}", 100 * *share, stage.name));
   if (shares.empty()) return "";
   return fmt::format(
-      "not measured as compiled code, priced as counted (isa.unmeasured_instructions): {}\n",
+      "not measured as compiled code, taken as counted (isa.unmeasured_instructions): {}\n",
       fmt::join(shares, ", "));
 }
 
@@ -197,15 +207,14 @@ std::string stage_table(const RunResult& run, int width) {
 
 std::string breakdown_table(const RunResult& run, int width) {
   std::vector<TextTable::Column> columns{{"stage", kLeft}};
-  const std::vector<BreakdownPart> parts = cluster_parts(run);
-  for (const std::string_view column : kBreakdownColumns)
-    if (sum_of(column, parts, {}))
-      columns.push_back({std::string(column), kRight, rank_of(column)});
+  const std::vector<BreakdownColumn> parts = breakdown_columns(run);
+  for (const BreakdownColumn& part : parts)
+    columns.push_back({std::string(part.name), kRight, rank_of(part.name)});
   columns.push_back({"core-Mcycles", kRight, 2});
   TextTable table(std::move(columns));
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;
-    std::vector<std::string> cells = breakdown_cells(parts, stage.breakdown);
+    std::vector<std::string> cells = breakdown_cells(parts, stage.account.team);
     cells.insert(cells.begin(), stage.name);
     table.add(std::move(cells));
   }

@@ -18,7 +18,7 @@ EnergyRow row_of(const RunResult& run, const StageResult& stage, const sim::Chip
       stage.on_controller ? sim::controller_activity(chip, stage.counts, stage.transfers,
                                                      stage.parallel, stage.served)
                           : sim::cluster_activity(chip, run.cores, stage.counts, stage.transfers,
-                                                  stage.breakdown, stage.parallel, stage.served);
+                                                  stage.account.team, stage.parallel, stage.served);
   return {stage.name,
           stage.unit,
           stage.on_controller,

@@ -11,9 +11,9 @@
 
 #include "sim/base/units.h"
 #include "sim/chip/config.h"
+#include "sim/soc/account.h"
 #include "sim/soc/camera.h"
 #include "sim/soc/observer.h"
-#include "sim/soc/stage_totals.h"
 #include "sim/work/program.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
@@ -72,6 +72,7 @@ struct RunResult {
   int image_width = 0;
   int image_height = 0;
   std::vector<StageResult> stages;     ///< in the order of the workload
+  Cycles offload;                      ///< of the cluster's jobs, outside of stages
   std::vector<FrameResult> frames;     ///< that the front end processed
   std::optional<CameraRecord> camera;  ///< of a closed loop
   std::vector<L2Row> l2;

@@ -133,12 +133,14 @@ Waiting frames_that_waited(const RunResult& run) {
   return waiting;
 }
 
-std::vector<BreakdownPart> breakdown_parts(const RunResult& run) {
-  std::vector<BreakdownPart> parts(kBreakdownParts.begin(), kBreakdownParts.end());
-  if (run.timed && sim::has_accelerators(run.chip.cluster.accelerators))
-    parts.insert(parts.end(), kAcceleratorParts.begin(), kAcceleratorParts.end());
-  else if (run.timed && sim::has_accelerators(run.chip.controller.accelerators))
-    parts.push_back(kAcceleratorParts[0]);
+std::vector<sim::MechanismInfo> breakdown_parts(const RunResult& run) {
+  const bool in_cluster = run.timed && sim::has_accelerators(run.chip.cluster.accelerators);
+  const bool anywhere = run.timed && sim::has_accelerators(run.chip);
+  std::vector<sim::MechanismInfo> parts(sim::kMechanisms.begin(), sim::kMechanisms.end());
+  std::erase_if(parts, [&](const sim::MechanismInfo& info) {
+    return info.column.empty() || (info.mechanism == sim::Mechanism::Accelerator && !anywhere) ||
+           (info.mechanism == sim::Mechanism::AcceleratorContention && !in_cluster);
+  });
   return parts;
 }
 

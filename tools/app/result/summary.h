@@ -57,57 +57,8 @@ struct Waiting {
 };
 Waiting frames_that_waited(const RunResult& run);
 
-/// One part of a breakdown. All parts together are its total.
-struct BreakdownPart {
-  std::string_view key;
-  std::string_view column;  ///< of the table that people read, which it is added to
-  std::string_view description;
-  double (*of)(const sim::CycleBreakdown&);
-};
-inline constexpr std::array kBreakdownParts{
-    BreakdownPart{"issue", "useful", "issuing instructions of parallel work",
-                  [](const sim::CycleBreakdown& a) { return a.useful.issue; }},
-    BreakdownPart{"load_use", "useful", "waiting for loaded values",
-                  [](const sim::CycleBreakdown& a) { return a.useful.load_use; }},
-    BreakdownPart{"control", "useful", "pipeline refills after branches, calls and loop entries",
-                  [](const sim::CycleBreakdown& a) { return a.useful.control; }},
-    BreakdownPart{"memory", "useful", "L2 latency and straddling words",
-                  [](const sim::CycleBreakdown& a) { return a.useful.memory; }},
-    BreakdownPart{"arithmetic", "useful",
-                  "latency of integer divisions and floating-point operations",
-                  [](const sim::CycleBreakdown& a) { return a.useful.arithmetic; }},
-    BreakdownPart{"fpu", "FPU", "waiting for a shared floating-point unit",
-                  [](const sim::CycleBreakdown& a) { return a.fpu; }},
-    BreakdownPart{"divider", "divider", "waiting for the shared divider",
-                  [](const sim::CycleBreakdown& a) { return a.divider; }},
-    BreakdownPart{"banks", "banks", "waiting for L1 banks",
-                  [](const sim::CycleBreakdown& a) { return a.banks; }},
-    BreakdownPart{"fetch", "I-cache", "waiting for code that the private instruction cache lacks",
-                  [](const sim::CycleBreakdown& a) { return a.useful.fetch; }},
-    BreakdownPart{"fetch_contention", "I-cache", "more of that, since other cores fetch as well",
-                  [](const sim::CycleBreakdown& a) { return a.fetch; }},
-    BreakdownPart{"imbalance", "imbalance", "waiting at the end of forks for the slowest core",
-                  [](const sim::CycleBreakdown& a) { return a.imbalance; }},
-    BreakdownPart{"synchronisation", "sync", "forking, waking up, barriers",
-                  [](const sim::CycleBreakdown& a) { return a.synchronisation; }},
-    BreakdownPart{"transfer", "transfer", "waiting for the DMA",
-                  [](const sim::CycleBreakdown& a) { return a.transfer; }},
-    BreakdownPart{"serial", "serial", "all cores, while the master works alone",
-                  [](const sim::CycleBreakdown& a) { return a.serial; }},
-    BreakdownPart{"rounding", "imbalance", "ends of shares moved to the next clock edge",
-                  [](const sim::CycleBreakdown& a) { return a.rounding; }},
-};
-
-/// Those that there are on chips with accelerators only.
-inline constexpr std::array kAcceleratorParts{
-    BreakdownPart{"accelerator", "served", "waiting for accelerators while they serve the core",
-                  [](const sim::CycleBreakdown& a) { return a.useful.accelerator; }},
-    BreakdownPart{"accelerator_contention", "queue",
-                  "waiting for accelerators while they serve others",
-                  [](const sim::CycleBreakdown& a) { return a.accelerator; }},
-};
-/// All parts that a run has.
-std::vector<BreakdownPart> breakdown_parts(const RunResult& run);
+/// What the breakdown of a run's stages is by: the mechanisms of cores that its chip has.
+std::vector<sim::MechanismInfo> breakdown_parts(const RunResult& run);
 
 /// Blocks of one name, e.g. the scratch of the cores.
 struct BlockGroup {

@@ -36,12 +36,12 @@ CsvTable<StageResult> stage_table_of(const RunResult& run) {
       {"memory_single_bytes", [](const S& s) { return s.memory.single; }},
       {"memory_parallel_bytes", [](const S& s) { return s.memory.parallel; }},
   };
-  for (const BreakdownPart& part : breakdown_parts(run))
+  for (const sim::MechanismInfo& part : breakdown_parts(run))
     table.add(fmt::format("{}_core_cycles", part.key),
-              [part](const S& s) { return fixed(part.of(s.breakdown), 3); });
-  for (const BreakdownPart& part : breakdown_parts(run))
+              [part](const S& s) { return fixed(s.account.team[part.mechanism], 3); });
+  for (const sim::MechanismInfo& part : breakdown_parts(run))
     table.add(fmt::format("single_{}_cycles", part.key),
-              [part](const S& s) { return fixed(part.of(s.single_account), 3); });
+              [part](const S& s) { return fixed(s.single_account[part.mechanism], 3); });
   for (const work::OpInfo& op : work::kOps)
     table.add(fmt::format("{}_ops", op.name), [&op](const S& s) { return s.counts[op.op]; });
   return table;

@@ -7,9 +7,6 @@
 // workload, or the trace's.
 #pragma once
 
-#include <algorithm>
-#include <vector>
-
 #include "sim/soc/observer.h"
 #include "tools/app/result/run_result.h"
 
@@ -37,30 +34,6 @@ class RunObserver {
   virtual void on_start([[maybe_unused]] int frames) {}
   virtual void on_front_end(const FrontEndJob&) {}
   virtual void on_optimiser(const OptimiserJob&) {}
-};
-
-/// Several that look on, in their order.
-class RunObservers : public RunObserver {
- public:
-  /// @param observer  outlives this
-  void add(RunObserver& observer) { observers_.push_back(&observer); }
-
-  bool wants_steps() const override {
-    return std::any_of(observers_.begin(), observers_.end(),
-                       [](const RunObserver* observer) { return observer->wants_steps(); });
-  }
-  void on_start(int frames) override {
-    for (RunObserver* observer : observers_) observer->on_start(frames);
-  }
-  void on_front_end(const FrontEndJob& job) override {
-    for (RunObserver* observer : observers_) observer->on_front_end(job);
-  }
-  void on_optimiser(const OptimiserJob& job) override {
-    for (RunObserver* observer : observers_) observer->on_optimiser(job);
-  }
-
- private:
-  std::vector<RunObserver*> observers_;
 };
 
 }  // namespace leviosim::tools

@@ -162,6 +162,7 @@ RunResult simulate_source(const RunRequest& request, RunSource& source,
   soc::Outcome outcome = soc::Simulation(setup, source, collector, progress).run();
   RunResult result;
   result.stages = std::move(outcome.stages);
+  result.offload = outcome.offload;
   result.frames = std::move(collector.frames);
   result.camera = std::move(outcome.camera);
   result.optimiser_published = outcome.optimiser_published;

@@ -9,16 +9,15 @@
 namespace leviosim::tools {
 namespace {
 
-using sim::SegmentTime;
-
-/// Waits below this share of a slice are told by its annotations only.
+/// Waits below this share of a slice stand in its annotations only.
 constexpr double kLeastDrawn = 0.01;
 
-void annotate(std::vector<Annotation>& notes, const SegmentTime& t) {
+void annotate(std::vector<Annotation>& notes, const sim::MechanismCycles& t) {
   notes.push_back({"work", own_work(t)});
   for (const Wait& wait : kWaits)
     if (const double cycles = wait.of(t); cycles != 0) notes.push_back({wait.name, cycles});
-  if (t.rounding != 0) notes.push_back({"rounding", t.rounding});
+  if (const double rest = t[sim::Mechanism::Rounding]; rest != 0)
+    notes.push_back({"rounding", rest});
 }
 
 }  // namespace
@@ -97,7 +96,7 @@ void CoreSlices::add_waits(std::uint64_t track, const CoreEvents& core) {
   for (const Wait& wait : kWaits) {
     const double cycles = wait.of(core.split);
     if (cycles < kLeastDrawn * worked || cycles <= 0) continue;
-    writer_.begin(track, ns(at), {wait.slice});
+    writer_.begin(track, ns(at), {fmt::format("wait: {}", wait.name)});
     at = std::max(at, before_end(left -= cycles));
     writer_.end(track, ns(at));
   }

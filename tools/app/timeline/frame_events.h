@@ -25,9 +25,9 @@ struct CoreEvents {
   int core = 0;  ///< the master's number is the size of the team
   sim::Time begin;
   sim::Time end;
-  Cycles worked;           ///< waits for shared units included
-  Cycles idle;             ///< of a worker, from its end to that of the fork
-  sim::SegmentTime split;  ///< of what it worked; they add up
+  Cycles worked;               ///< waits for shared units included
+  Cycles idle;                 ///< of a worker, from its end to that of the fork
+  sim::MechanismCycles split;  ///< of what it worked; they add up
 };
 
 /// Data in one direction of the DMA.

@@ -4,7 +4,7 @@
 
 #include "sim/base/check.h"
 #include "sim/chip/chip.h"
-#include "sim/soc/stage_book.h"
+#include "sim/soc/account.h"
 #include "tools/app/result/energy.h"
 
 namespace leviosim::tools {
@@ -72,10 +72,10 @@ std::vector<StageEvents> TimelineCollector::stages_of(const work::Job& job,
     stage.name = run.stage;
     stage.on_controller = on_controller;
   }
-  soc::StageBook book(std::move(names), job_run_.chip);
-  book.add_work(job);
-  book.add_parallel(timing);
-  job_run_.stages = book.stages();
+  soc::RunAccount account(std::move(names), job_run_.chip);
+  account.add_work(job);
+  account.add_parallel(timing);
+  job_run_.stages = account.stages();
   const std::optional<RunEnergy> energy = energy_of(job_run_);
 
   check_equal(job.stages.size(), timing.stages.size(), "stages of a job that were timed");

@@ -1,4 +1,4 @@
-// What differs between two runs, and why: by stage and mechanism, by function, by block, by energy.
+// What differs between two runs, and why: by stage and mechanism, by fork, by block, by energy.
 
 const kMechanismColours = {__proto__: null};
 for (const [, colour, parts] of kGroups)
@@ -102,10 +102,10 @@ function mechanismFigure(comparison) {
   });
 }
 
-function functionTable(comparison) {
-  const rows = comparison.stages.filter((stage) => stage.by_place)
+function forkTable(comparison) {
+  const rows = comparison.stages.filter((stage) => stage.by_fork)
                    .flatMap(
-                       (stage) => (stage.by_place.parts || [])
+                       (stage) => (stage.by_fork.parts || [])
                                       .filter((part) => Math.abs(part.difference) > 0.5)
                                       .map(
                                           (part) =>
@@ -114,14 +114,14 @@ function functionTable(comparison) {
   if (rows.length === 0) return null;
   rows.sort((a, b) => Math.abs(b[4]) - Math.abs(a[4]));
   return element(
-      'div', {class: 'card'}, element('h3', {}, 'By function, the largest difference first'),
+      'div', {class: 'card'}, element('h3', {}, 'By fork, the largest difference first'),
       sortableTable(
           [
-            {title: 'stage', text: true}, {title: 'function', text: true},
+            {title: 'stage', text: true}, {title: 'fork', text: true},
             {title: 'A, kcycles per frame'}, {title: 'B, kcycles per frame'},
             {title: 'B − A', node: (value) => signed(value)}
           ],
-          rows, {label: 'By function'}));
+          rows, {label: 'By fork'}));
 }
 
 function causesTable(comparison) {
@@ -130,20 +130,20 @@ function causesTable(comparison) {
           .map(
               (stage) =>
                   [stage.name, stage.same_work ? 'the same' : 'another',
-                   ...['work', 'price', 'meeting'].map((cause) => stage.causes[cause] / 1e3)]);
+                   ...['work', 'cost', 'contention'].map((cause) => stage.causes[cause] / 1e3)]);
   if (rows.length === 0) return null;
   return element(
-      'div', {class: 'card'}, element('h3', {}, 'Work or price'),
+      'div', {class: 'card'}, element('h3', {}, 'Work, cost or contention'),
       element(
           'p', {class: 'hint'},
-          'Kilocycles of a mean frame: from other numbers of operations, from another price of the same operations, from cores that wait for each other, for memory or for the DMA.'),
+          'Kilocycles of a mean frame: from other numbers of operations (work), from another cost of the same operations (cost), from cores that wait for shared units, for each other or for the DMA (contention).'),
       sortableTable(
           [
             {title: 'stage', text: true}, {title: 'its work is', text: true},
-            ...['work', 'price', 'meeting'].map(
+            ...['work', 'cost', 'contention'].map(
                 (title) => ({title, node: (value) => signed(value)}))
           ],
-          rows, {whole: true, label: 'Work or price'}));
+          rows, {whole: true, label: 'Work, cost or contention'}));
 }
 
 function comparisonSections(comparisons) {
@@ -168,7 +168,7 @@ function comparisonSections(comparisons) {
                     '',
                 comparison.same_work ? 'Both did the same work.' : 'The work itself differs.'),
             notes),
-        mechanismFigure(comparison), functionTable(comparison), causesTable(comparison),
+        mechanismFigure(comparison), forkTable(comparison), causesTable(comparison),
         quantityTable('The run as a whole', comparison.figures, 'figure'),
         comparison.blocks.length > 0 ?
             quantityTable(

@@ -15,14 +15,14 @@ double paper_cycles(const std::vector<Reference>& references, std::string_view k
 }
 
 /// Cycles of the operations alone, with their code at hand.
-double priced(const sim::WorkSum& work, const sim::ChipConfig& chip) {
-  return work.price(chip.cluster.core).total();
+double cost_of(const sim::WorkSum& work, const sim::ChipConfig& chip) {
+  return work.cost(chip.cluster.core).total();
 }
 
 }  // namespace
 
 double StageModel::cycles(const sim::ChipConfig& chip) const {
-  return (priced(work, chip) + fixed) / static_cast<double>(frames);
+  return (cost_of(work, chip) + fixed) / static_cast<double>(frames);
 }
 
 std::vector<StageModel> stage_models(const FrameLog& log, const sim::ChipConfig& chip) {
@@ -40,7 +40,7 @@ std::vector<StageModel> stage_models(const FrameLog& log, const sim::ChipConfig&
     model.title = stage.title;
     model.frames = sum.frames;
     model.work = sum.work;
-    model.fixed = static_cast<double>(sum.single.count()) - priced(sum.work, chip);
+    model.fixed = static_cast<double>(sum.single.count()) - cost_of(sum.work, chip);
     model.reference = paper_cycles(references, stage.key);
     models.push_back(std::move(model));
   }

@@ -1,9 +1,9 @@
 // What a stage would take on one core of a chip whose code-generation constants were others, from
-// one recorded run: its operations are priced again, without running anything.
+// one recorded run: its operations are costed again, without running anything.
 //
 // On one core nothing contends, so its time is the sum of what its operations cost alone
 // (sim/chip/cost.h), and of code fetches, forks, barriers, transfers and rounding, which do not
-// depend on these constants. The latter is what the recorded time exceeds the price of the
+// depend on these constants. The latter is what the recorded time exceeds the cost of the
 // operations on the chip of the run by.
 #pragma once
 

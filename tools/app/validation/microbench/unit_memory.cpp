@@ -71,7 +71,7 @@ double loads_in_step_beside_dma(const sim::ChipConfig& chip, int cores) {
     machine.wait(more);
     machine.wait(last);
   });
-  return 1 + timing.breakdown.banks / (static_cast<double>(cores) * kLoads);
+  return 1 + timing.account.team[sim::Mechanism::Banks] / (static_cast<double>(cores) * kLoads);
 }
 
 template <int Bytes>
@@ -136,7 +136,8 @@ double barrier(const sim::ChipConfig& chip, int cores) {
     for (int i = 0; i < 100 * core.id; ++i) x = x & x;
   });
   const sim::EventUnitConfig& events = chip.cluster.events;
-  return timing.breakdown.synchronisation / cores - events.fork_master - events.fork_worker;
+  return timing.account.team[sim::Mechanism::Synchronisation] / cores - events.fork_master -
+         events.fork_worker;
 }
 
 double empty_fork(const sim::ChipConfig& chip, int cores) {

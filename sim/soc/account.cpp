@@ -1,4 +1,4 @@
-#include "sim/soc/stage_book.h"
+#include "sim/soc/account.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace leviosim::soc {
 
-StageResult& StageBook::find(std::string_view name) {
+StageResult& RunAccount::find(std::string_view name) {
   const auto it = std::find_if(stages_.begin(), stages_.end(),
                                [&](const StageResult& s) { return s.name == name; });
   if (it != stages_.end()) return *it;
@@ -15,7 +15,7 @@ StageResult& StageBook::find(std::string_view name) {
   return stages_.emplace_back(std::move(stage));
 }
 
-void StageBook::add_work(const work::Job& job) {
+void RunAccount::add_work(const work::Job& job) {
   for (const work::StageRun& run : job.stages) {
     StageResult& stage = find(run.stage);
     ++stage.calls;
@@ -30,14 +30,14 @@ void StageBook::add_work(const work::Job& job) {
   }
 }
 
-/// Its price for a core that runs alone, if no function that it visits was measured.
-double StageBook::unmeasured_cycles(const work::Segment& segment, bool on_controller) const {
+/// What it costs a core that runs alone, if no function that it visits was measured.
+double RunAccount::unmeasured_cycles(const work::Segment& segment, bool on_controller) const {
   const sim::CoreConfig& core = on_controller ? controller_core_ : cluster_core_;
   if (sim::is_measured(work::compiled_of(segment.compiled, core.code))) return 0;
-  return sim::price(segment, core, on_controller ? controller_ : cluster_).cycles();
+  return sim::demand_of(segment, core, on_controller ? controller_ : cluster_).cycles();
 }
 
-void StageBook::add_unmeasured(const work::StageRun& run, StageResult& stage) const {
+void RunAccount::add_unmeasured(const work::StageRun& run, StageResult& stage) const {
   for (const work::Step& step : run.steps) {
     if (const auto* serial = std::get_if<work::Serial>(&step))
       stage.unmeasured += unmeasured_cycles(serial->counts, stage.on_controller);
@@ -47,7 +47,7 @@ void StageBook::add_unmeasured(const work::StageRun& run, StageResult& stage) co
   }
 }
 
-void StageBook::add_segments(const work::StageRun& run, StageResult& stage) const {
+void RunAccount::add_segments(const work::StageRun& run, StageResult& stage) const {
   const sim::Accelerators& accelerators = stage.on_controller ? controller_ : cluster_;
   if (!sim::has_accelerators(accelerators)) {
     stage.counts += work::counts_of(run);
@@ -63,21 +63,26 @@ void StageBook::add_segments(const work::StageRun& run, StageResult& stage) cons
   stage.served = std::move(sum.offload);
 }
 
-void StageBook::add_parallel(const sim::JobTiming& timing) {
+void RunAccount::add_parallel(const sim::JobTiming& timing) {
   for (const sim::StageTiming& run : timing.stages) {
     StageResult& stage = find(run.stage);
     stage.parallel += run.cycles;
     stage.worst_parallel = std::max(stage.worst_parallel, run.cycles);
-    stage.breakdown += run.breakdown;
+    stage.account += run.account;
   }
 }
 
-void StageBook::add_single(const sim::JobTiming& timing) {
+void RunAccount::add_single(const sim::JobTiming& timing) {
   for (const sim::StageTiming& run : timing.stages) {
     StageResult& stage = find(run.stage);
     stage.single += run.cycles;
-    stage.single_account += run.breakdown;
+    stage.single_account += run.account.team;
   }
+}
+
+void RunAccount::add_offload(Cycles whole, const sim::JobTiming& timing) {
+  offload_ += whole;
+  for (const sim::StageTiming& stage : timing.stages) offload_ -= stage.cycles;
 }
 
 }  // namespace leviosim::soc
