@@ -248,5 +248,34 @@ TEST_F(PrintoutTest, ColoursAndWidthAreThoseOfTheTerminal) {
   EXPECT_NE(on_terminal("COLUMNS=150 TERM=xterm " + words).find("worst ms"), std::string::npos);
 }
 
+TEST_F(PrintoutTest, TheHeadingSaysWhatWasSetOfTheChip) {
+  for (const ProgramResult& result :
+       {replay("set-replay", {"-p", "cluster.fpu.units=1"}),
+        run({"run", "--data", path("flight"), "--frames", "0:2", "-p", "cluster.fpu.units=1",
+             "--quiet", "--out", path("set-run")})})
+    EXPECT_NE(result.out.find(", cluster.fpu.units=1,"), std::string::npos) << result.out;
+}
+
+TEST_F(PrintoutTest, SeveralSeedsAndBagsAreRefusedWithWhatToDo) {
+  testing::expect_refused(
+      run({"run", "--data", path("flight"), "--seed", "1,2,3", "--out", path("seeds")}),
+      {"--seed '1,2,3'", "one seed", "sweep", "seed: [1,2,3]"});
+  base::write_file_atomically(folder_ / "flight.bag", "#ROSBAG V2.0\n");
+  testing::expect_refused(run({"run", "--data", path("flight.bag"), "--out", path("bag")}),
+                          {"flight.bag", "ROS bag", "ASL"});
+}
+
+/// Not the folder of the cache that holds it.
+TEST_F(PrintoutTest, TheSyntheticFlightIsCalledSo) {
+  ASSERT_EQ(run({"run", "--data", "synthetic", "--frames", "0:2", "--quiet", "--out", path("made"),
+                 "--report", path("made.html")})
+                .status,
+            0);
+  const Json manifest = Json::parse(read_text_file(folder_ / "made/manifest.json"));
+  EXPECT_EQ(manifest.at("data").at("folder"), "synthetic");
+  EXPECT_NE(read_text_file(folder_ / "made.html").find("\"data\":\"synthetic\""),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace leviosim::tools

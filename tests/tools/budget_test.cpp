@@ -295,5 +295,17 @@ TEST(Baseline, NoTextIsTooBroken) {
     }
 }
 
+TEST(BudgetShares, AreShownAsTheirLimitIs) {
+  Limit limit;
+  limit.bound = {.at_most = true, .relative = false, .number = 3.5, .unit = "%"};
+  Finding finding{.limit = &limit, .section = nullptr};
+  finding.unit = "1";
+  finding.value = 0.1033;
+  finding.bound = 0.035;
+  EXPECT_EQ(finding.excess(), "10.33 %, 195.14 % above 3.50 %");
+  limit.bound.unit = "";
+  EXPECT_EQ(finding.excess(), "0.1033, 195.14 % above 0.0350");
+}
+
 }  // namespace
 }  // namespace leviosim::tools

@@ -60,6 +60,12 @@ Eigen::Quaterniond quaternion_at(const base::CsvRow& row, std::size_t w_column) 
 /// The mav0 folder in or at `folder`.
 fs::path find_mav0(const fs::path& folder) {
   if (!base::exists(folder)) throw InputError(fmt::format("{}: no such folder", folder.string()));
+  const fs::path kind = folder.extension();
+  if (base::is_file(folder) && (kind == ".bag" || kind == ".db3" || kind == ".mcap"))
+    throw InputError(
+        fmt::format("{}: a ROS bag; convert it to an ASL folder, with mav0/{{cam0,imu0}}, each "
+                    "with sensor.yaml and data.csv",
+                    folder.string()));
   if (base::is_folder(folder / "mav0")) return folder / "mav0";
   return folder;
 }

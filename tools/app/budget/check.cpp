@@ -64,10 +64,10 @@ std::string Finding::title() const {
 
 std::string Finding::excess() const {
   if (!value) return "the run has no value of it";
-  const std::string found = figure_text(*value, unit);
+  const std::string found = figure_text(*value, unit, limit->bound);
   if (!bound) return found + ", but the baseline has no value of it";
   const double over = *value - *bound;
-  const std::string limit_text = figure_text(*bound, unit);
+  const std::string limit_text = figure_text(*bound, unit, limit->bound);
   const char* side = over > 0 ? "above" : over < 0 ? "below" : "at";
   std::string text = over == 0     ? fmt::format("{}, at the limit", found)
                      : *bound == 0 ? fmt::format("{}, {} {}", found, side, limit_text)

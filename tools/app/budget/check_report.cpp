@@ -57,7 +57,7 @@ std::string check_text(const CheckResult& result) {
   TextTable table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
     table.add({f.met ? "met" : "NOT MET", shortened(f.title(), kWidest),
-               f.value ? figure_text(*f.value, f.unit) : "–", margin(f)});
+               f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–", margin(f)});
   text += table.str();
   for (const Finding& f : result.findings)
     if (!f.met)

@@ -200,4 +200,10 @@ std::string figure_text(double value, std::string_view statistic_unit) {
   return known->shown_unit.empty() ? number : fmt::format("{} {}", number, known->shown_unit);
 }
 
+std::string figure_text(double value, std::string_view statistic_unit, const Bound& bound) {
+  if (statistic_unit == "1" && bound.unit == "%" && !bound.relative)
+    return fmt::format("{:.2f} %", 100 * value);
+  return figure_text(value, statistic_unit);
+}
+
 }  // namespace leviosim::tools

@@ -44,5 +44,7 @@ bool is_percent_of_baseline(const Bound& bound);
 
 /// "9 411.0 kcycles", "43.3 ms": a value of a statistic for people.
 std::string figure_text(double value, std::string_view statistic_unit);
+/// The same beside a limit: a share that is limited in % is shown in %.
+std::string figure_text(double value, std::string_view statistic_unit, const Bound& bound);
 
 }  // namespace leviosim::tools

@@ -22,7 +22,7 @@ struct Manifest {
   std::string platform;                   ///< as requested; empty for a native run
   std::vector<std::string> overrides;     ///< of platform parameters
   std::vector<std::string> workload;      ///< its parameters that were set, "workload.window=6"
-  std::string data;                       ///< folder that was read
+  std::string data;                       ///< folder that was read, or "synthetic"
   std::size_t first_frame = 0;            ///< index in the folder
   std::vector<InputDigest> inputs;
   Json recording;  ///< of a replay: what its trace says about the run that was recorded

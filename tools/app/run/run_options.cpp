@@ -46,6 +46,11 @@ void add_workload_options(CLI::App& command, RunOptions& options, const std::str
 RunRequest make_workload_request(const RunOptions& options) {
   RunRequest request;
   request.native = options.native;
+  if (options.seed.find(',') != std::string::npos)
+    throw InputError(fmt::format(
+        "--seed '{0}': a run has one seed; expected a whole number, or a sweep with the points "
+        "grid: {{ seed: [{0}] }} (leviosim sweep --help)",
+        options.seed));
   request.seed = static_cast<std::uint32_t>(
       parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
   request.profile = options.profile;

@@ -86,6 +86,7 @@ Manifest manifest_of_data(const RunRequest& request) {
 Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words) {
   Manifest manifest = manifest_of_data(request);
   manifest.command_line = words;
+  manifest.data = options.data;
   manifest.platform = options.platform;
   manifest.overrides = split_overrides(options.overrides).chip;
   return manifest;
@@ -113,8 +114,9 @@ std::string heading(const RunOptions& options, const RunResult& run) {
                                  run.timed ? printable(options.platform) : "the host",
                                  frames == 1 ? "1 frame" : fmt::format("{} frames", frames),
                                  printable(options.data), run.image_width, run.image_height);
-  for (const std::string& set : split_overrides(options.overrides).workload)
-    text += ", " + printable(set);
+  const auto [chip, workload] = split_overrides(options.overrides);
+  for (const std::vector<std::string>* sets : {&chip, &workload})
+    for (const std::string& set : *sets) text += ", " + printable(set);
   const auto mhz = [](Hertz f) { return static_cast<double>(f.count()) * 1e-6; };
   if (run.timed)
     text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,
