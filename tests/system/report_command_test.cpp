@@ -139,7 +139,10 @@ class InBrowser : public Report {
   };
 
   static Seen open(const std::string& page, int width, bool dark) {
-    constexpr const char* kTold = R"(<script>addEventListener("load", () => parent.postMessage({
+    constexpr const char* kTold = R"(<script>
+      const chartsOf = (axis) => [...document.querySelectorAll("canvas")].map((c) => Chart.getChart(c))
+        .filter((c) => c && (!axis || c.data.datasets.some((d) => d.yAxisID === axis)));
+      addEventListener("load", () => parent.postMessage({
       overflow: document.documentElement.scrollWidth > innerWidth,
       requests: performance.getEntriesByType("resource").length,
       canvases: document.querySelectorAll("canvas").length,
@@ -148,6 +151,20 @@ class InBrowser : public Report {
       verdict: document.querySelectorAll(".verdict, [aria-label=Runs]").length,
       colours: [...document.querySelectorAll("i")].every((i) => i.style.length > 0),
       evil: document.title === "evil",
+      unnamed: chartsOf("kind").reduce((sum, c) => sum + c.data.labels.length -
+        c.data.datasets.filter((d) => d.yAxisID === "kind").flatMap((d) => d.data)
+          .filter((v) => v).length, 0),
+      alike: chartsOf("").some((c) => {
+        const names = new Map();
+        return c.data.datasets.some((d) => {
+          if (typeof d.backgroundColor !== "string" || d.silent) return false;
+          const colour = d.stack + d.backgroundColor, other = names.get(colour) ?? d.label;
+          names.set(colour, d.label);
+          return other !== d.label;
+        });
+      }),
+      cut: [...document.querySelectorAll("section[id^=difference] .scroll.whole")]
+        .some((s) => s.scrollWidth > s.clientWidth),
       ink: getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()}, "*"));
       </script></body>)";
     std::string html = base::read_text_file(path(page));
@@ -192,6 +209,11 @@ class InBrowser : public Report {
         EXPECT_EQ(seen.page["verdict"], verdicts);
         EXPECT_EQ(seen.page["evil"], false);
         EXPECT_EQ(seen.page["colours"], true);
+        EXPECT_EQ(seen.page["unnamed"], 0) << "frames without a colour that says where from";
+        EXPECT_EQ(seen.page["alike"], false) << "two names in one colour";
+        if (width > 1000) {
+          EXPECT_EQ(seen.page["cut"], false) << "a table that has to be scrolled";
+        }
         EXPECT_EQ(seen.page["ink"], dark ? "#e4e9ef" : "#1b2430");
       }
   }
@@ -238,7 +260,7 @@ TEST_F(InBrowser, APageOfATuningIsToo) {
       program({"tune", "--data", path("flight"), "--clock", "200,370", "--fps", "10,20", "--seed",
                "1", "--quiet", "--cache", path("cache"), "--report", path("tune.html")});
   ASSERT_LE(tuned.status, 1) << tuned.err;  // 1: no clock meets the limits
-  expect_fine("tune.html", 0);
+  expect_fine("tune.html", 2);  // a box for each frame rate
 }
 
 TEST_F(InBrowser, APageOfASweepIsToo) {
@@ -247,7 +269,18 @@ TEST_F(InBrowser, APageOfASweepIsToo) {
                                       "370MHz]\n      platform.cluster.fpu.units: [1, 4]\n";
   expect_done({"sweep", path("plan.yaml"), "--out", path("sweep"), "--quiet", "--cache",
                path("cache"), "--report", path("sweep.html")});
-  expect_fine("sweep.html", 0);
+  expect_fine("sweep.html");
+}
+
+TEST_F(InBrowser, FramesThatInitialiseHaveAColour) {
+  fs::copy(path("a"), path("initialising"));
+  std::string frames = base::read_text_file(path("a/frames.csv"));
+  for (std::size_t at = frames.find(",epnp,"); at != std::string::npos; at = frames.find(",epnp,"))
+    frames.replace(at, 6, ",initialising,");
+  ASSERT_NE(frames.find(",initialising,"), std::string::npos);
+  std::ofstream(path("initialising/frames.csv")) << frames;
+  expect_done({"report", path("initialising"), "-o", path("initialising.html")});
+  expect_fine("initialising.html");
 }
 
 }  // namespace

@@ -25,6 +25,13 @@ Json study_report(const StudyPage& page) {
   Json data = report_json(page.title, Json::array());
   Json& study = data["study"];
   study["summary"] = page.summary;
+  study["boxes"] = Json::array();
+  for (const StudyBox& box : page.boxes)
+    study["boxes"].push_back({{"good", box.good ? Json(*box.good) : Json(nullptr)},
+                              {"mark", box.mark},
+                              {"sentence", box.sentence},
+                              {"lines", box.lines}});
+  study["best"] = page.best;
   const Json table = csv_json("points", page.points);
   study["columns"] = Json::array();
   study["table"] = Json::object();

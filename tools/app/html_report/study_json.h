@@ -33,9 +33,19 @@ struct StudyBars {
   std::vector<std::string> figures;
 };
 
+/// What a study found: a box with a mark, as the verdict of a run has.
+struct StudyBox {
+  std::optional<bool> good;
+  std::string mark;
+  std::string sentence;
+  std::vector<std::string> lines;
+};
+
 struct StudyPage {
   std::string title;
-  std::string summary;               ///< lines
+  std::vector<StudyBox> boxes;
+  std::string summary;                            ///< lines below the boxes
+  std::vector<std::vector<std::string>> best = {};  ///< a table: titles, then rows; may be empty
   std::string points;                ///< CSV, a row per point
   std::vector<StudyColumn> columns;  ///< those that the table lacks are left out
   std::optional<StudyCurves> curves = {};

@@ -113,10 +113,24 @@ function drawAll() {
   for (const entry of charts) entry.draw();
 }
 
-/** Labels of axes get at most a good third of a narrow chart. */
-function shorten(text, width) {
+/** A label in lines that take a good third of a narrow chart. */
+function labelLines(text, width) {
   const most = Math.max(12, Math.floor((width * 0.36) / 6));
-  return text.length > most ? `${text.slice(0, most - 1)}…` : text;
+  const lines = [];
+  for (const word of text.split(' ')) {
+    const last = lines[lines.length - 1];
+    if (last !== undefined && last.length + 1 + word.length <= most)
+      lines[lines.length - 1] = `${last} ${word}`;
+    else
+      lines.push(word);
+  }
+  return lines;
+}
+
+/** Of rows of bars with such labels, in px. */
+function rowsHeight(labels, width, least) {
+  const lines = Math.max(1, ...labels.map((label) => labelLines(label, width).length));
+  return labels.length * Math.max(least, 8 + 14 * lines);
 }
 
 /** The vertical axis of stacked bars, each of which has a name. */
@@ -127,7 +141,7 @@ function stackedRows() {
     ticks: {
       autoSkip: false,
       callback(value) {
-        return shorten(this.getLabelForValue(value), this.chart.width);
+        return labelLines(this.getLabelForValue(value), this.chart.width);
       }
     }
   };

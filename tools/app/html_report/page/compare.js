@@ -2,11 +2,18 @@
 
 const kMechanismColours = {__proto__: null};
 for (const [, colour, parts] of kGroups)
-  for (const part of parts) kMechanismColours[part] = colour;
-const kMoreColours = new Colours();
+  parts.forEach((part, i) => {
+    kMechanismColours[part] = shade(colour, [0, -0.35, 0.45, -0.6][i]);
+  });
 
+/** Each its own; what has no group takes a colour that is left. */
 function mechanismColour(name) {
-  return kMechanismColours[name] || kMoreColours.of(name);
+  if (!kMechanismColours[name]) {
+    const taken = new Set(Object.values(kMechanismColours));
+    kMechanismColours[name] =
+        kPalette.find((colour) => !taken.has(colour)) || paletteColour(taken.size);
+  }
+  return kMechanismColours[name];
 }
 
 function words(key) {
@@ -25,12 +32,17 @@ function percentOf(quantity) {
 }
 
 function quantityTable(title, quantities, label) {
-  const rows = quantities.map((q) => [q.name, q.unit, q.a, q.b, differenceOf(q), percentOf(q)]);
+  const units = new Set(quantities.map((q) => q.unit));
+  const unit = (cell) => (units.size === 1 ? [] : [cell]);
+  const rows = quantities.map(
+      (q) => [q.name, ...unit(q.unit), q.a, q.b, differenceOf(q), percentOf(q)]);
   return element(
-      'div', {class: 'card'}, element('h3', {}, title),
+      'div', {class: 'card'},
+      element('h3', {}, units.size === 1 ? `${title}, ${[...units][0]}` : title),
       sortableTable(
           [
-            {title: label, text: true}, {title: 'unit', text: true}, {title: 'A'}, {title: 'B'},
+            {title: label, text: true}, ...unit({title: 'unit', text: true}), {title: 'A'},
+            {title: 'B'},
             {title: 'B − A', node: (value) => signed(value)},
             {title: '%', node: (value) => (value === null ? '–' : signed(value, 3))}
           ],
@@ -53,7 +65,7 @@ function mechanismFigure(comparison) {
     title: 'Difference of a mean frame, by stage and mechanism',
     hint:
         'Kilocycles that B takes more (to the right) or less (to the left) than A. The parts of a stage add up to its difference.',
-    height: () => 80 + 30 * stages.length,
+    height: (width) => 80 + rowsHeight(stages.map((stage) => stage.name), width, 30),
     config: () => ({
       type: 'bar',
       data: {

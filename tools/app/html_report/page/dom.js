@@ -48,6 +48,16 @@ function paletteColour(index) {
   return kPalette[index % kPalette.length];
 }
 
+/** A colour that is mixed with white, or with black if `by` is negative. */
+function shade(colour, by) {
+  const to = by < 0 ? 0 : 255;
+  const mixed = [1, 3, 5].map((at) => {
+    const from = parseInt(colour.slice(at, at + 2), 16);
+    return Math.round(from + (to - from) * Math.abs(by)).toString(16).padStart(2, '0');
+  });
+  return `#${mixed.join('')}`;
+}
+
 /** Name → colour, in the order in which names come first: the same everywhere in the page. */
 class Colours {
   constructor() {

@@ -31,7 +31,7 @@ function domainFigure(title, hint, unit, entries) {
   return chartFigure({
     title,
     hint,
-    height: () => 75 + 27 * entries.length,
+    height: (width) => 75 + rowsHeight(entries.map(([name]) => name), width, 27),
     config: () => ({
       type: 'bar',
       data: {

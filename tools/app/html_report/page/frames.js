@@ -6,6 +6,7 @@ const kKinds = {
   epnp: 'EPnP',
   eight_point: '8-point',
   kept: 'pose kept',
+  initialising: 'initialising',
   predicted: 'predicted',
   tracked: 'tracked',
   dropped: 'dropped'
@@ -16,6 +17,7 @@ const kKindColours = {
   epnp: '#ee7755',
   eight_point: '#ddaa33',
   kept: '#5f6b7a',
+  initialising: '#66ccee',
   predicted: '#aa5588',
   tracked: '#44aa88',
   dropped: '#b3261e'

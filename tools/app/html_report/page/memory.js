@@ -30,7 +30,7 @@ function memoryFigure(title, hint, peaks, size) {
   return chartFigure({
     title,
     hint,
-    height: () => 70 + (isOne ? 46 : 30) * peaks.length,
+    height: (width) => 70 + rowsHeight(peaks.map((peak) => peak.owner), width, isOne ? 46 : 30),
     config: () => ({
       type: 'bar',
       data: {

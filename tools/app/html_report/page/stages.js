@@ -75,7 +75,7 @@ function breakdownFigure(run, rows) {
         'On one core and on all. Cycles of all cores are divided by the cores, so that a bar is as long as the stage takes.' :
         'On all cores. This run folder has no breakdown on one core: an older leviosim wrote it.',
     controls: element('div', {class: 'controls'}, element('label', {}, 'show', select)),
-    height: () => 80 + 23 * bars.length,
+    height: (width) => 80 + rowsHeight(bars.map((bar) => bar.label), width, 23),
     config: () => ({
       type: 'bar',
       data: {

@@ -273,11 +273,30 @@ function scatterFigure(study) {
   return [figure, panel];
 }
 
+function studyBox({good, mark, sentence, lines}) {
+  const [kind, sign] = good === null ? ['', ''] : good ? ['fits', '✓ '] : ['fails', '✗ '];
+  return element(
+      'div', {class: `card verdict ${kind}`}, element('span', {class: 'mark'}, sign + mark),
+      element('p', {class: 'sentence'}, sentence),
+      ...lines.map((line) => element('p', {class: 'soft'}, line)));
+}
+
+/** Points that no other beats. */
+function bestTable([titles, ...rows]) {
+  const cell = (text) => (text !== '' && Number.isFinite(Number(text)) ? Number(text) : text);
+  return element(
+      'div', {class: 'card'}, element('h3', {}, 'Points that no other beats in all figures'),
+      sortableTable(
+          titles.map((title, i) => ({title, text: i === titles.length - 1})),
+          rows.map((row) => row.map(cell)), {label: 'Points that no other beats'}));
+}
+
 function studySections(study, top) {
   const count = study.columns.length > 0 ? study.table[study.columns[0].name].length : 0;
-  top.append(element(
-      'div', {class: 'card'},
-      ...study.summary.trim().split('\n').map((line) => element('p', {}, line))));
+  top.append(...study.boxes.map(studyBox));
+  if (study.best.length > 0) top.append(bestTable(study.best));
+  if (study.summary)
+    top.append(...study.summary.trim().split('\n').map((line) => element('p', {class: 'hint'}, line)));
   if (count === 0) return [element('p', {class: 'card'}, 'No point is finished.')];
   const sections = [];
   if (study.bars)

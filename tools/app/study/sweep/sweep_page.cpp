@@ -18,7 +18,8 @@ Json sweep_page(SweepStore& store) {
   const std::vector<std::string> parameters = store.parameter_names();
   StudyPage page;
   page.title = "A sweep";
-  page.summary = sweep_report(store);
+  page.boxes = {sweep_box(store)};
+  page.best = sweep_front(store);
   page.points = store.csv();
   page.columns = {{"point", "point", "", true}};
   for (const std::string& name : parameters)

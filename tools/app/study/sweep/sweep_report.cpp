@@ -24,13 +24,16 @@ std::vector<std::size_t> known_objectives(const std::vector<SweepOutcome>& outco
   return known;
 }
 
-std::string front_table(SweepStore& store, const std::vector<SweepOutcome>& front,
-                        const std::vector<std::size_t>& objectives) {
-  std::vector<TextTable::Column> columns{{"point"}};
-  for (const std::size_t k : objectives) columns.push_back({kObjectives[k].title});
-  columns.push_back({"set", TextTable::Align::Left});
-  TextTable table(columns);
-  for (std::size_t i = 0; i < std::min(front.size(), kMostRows); ++i) {
+/// Titles, then a row for each of the first `most` points.
+std::vector<std::vector<std::string>> front_cells(SweepStore& store,
+                                                  const std::vector<SweepOutcome>& front,
+                                                  const std::vector<std::size_t>& objectives,
+                                                  std::size_t most) {
+  std::vector<std::vector<std::string>> rows(1);
+  rows[0].push_back("point");
+  for (const std::size_t k : objectives) rows[0].emplace_back(kObjectives[k].title);
+  rows[0].push_back("set");
+  for (std::size_t i = 0; i < std::min(front.size(), most); ++i) {
     std::vector<std::string> cells{fmt::format("{}", front[i].point)};
     for (const std::size_t k : objectives)
       cells.push_back(front[i].objectives[k]
@@ -38,8 +41,19 @@ std::string front_table(SweepStore& store, const std::vector<SweepOutcome>& fron
                                         kObjectives[k].decimals)
                           : "-");
     cells.push_back(store.settings_of(front[i].point));
-    table.add(std::move(cells));
+    rows.push_back(std::move(cells));
   }
+  return rows;
+}
+
+std::string front_table(SweepStore& store, const std::vector<SweepOutcome>& front,
+                        const std::vector<std::size_t>& objectives) {
+  const auto rows = front_cells(store, front, objectives, kMostRows);
+  std::vector<TextTable::Column> columns;
+  for (const std::string& title : rows[0]) columns.push_back({title});
+  columns.back().align = TextTable::Align::Left;
+  TextTable table(columns);
+  for (std::size_t i = 1; i < rows.size(); ++i) table.add(rows[i]);
   std::string text = table.str();
   if (front.size() > kMostRows)
     text += fmt::format("  and {} more: table front of sweep.sqlite\n", front.size() - kMostRows);
@@ -60,6 +74,34 @@ std::string failures(SweepStore& store, const std::vector<SweepOutcome>& outcome
 }
 
 }  // namespace
+
+std::vector<std::vector<std::string>> sweep_front(SweepStore& store) {
+  const std::vector<SweepOutcome> front = pareto_front(store.outcomes());
+  if (front.empty()) return {};
+  return front_cells(store, front, known_objectives(front), front.size());
+}
+
+StudyBox sweep_box(SweepStore& store) {
+  const std::vector<SweepOutcome> outcomes = store.outcomes();
+  const std::int64_t planned = store.planned();
+  const auto done = static_cast<std::int64_t>(outcomes.size());
+  StudyBox box;
+  box.good = done == planned;
+  box.mark = fmt::format("{} of {} points are done", done, planned);
+  for (const SweepOutcome& o : outcomes) {
+    if (o.failure.empty()) continue;
+    box.good = false;
+    box.lines.push_back(
+        fmt::format("point {} ({}): {}", o.point, store.settings_of(o.point), o.failure));
+  }
+  box.sentence = fmt::format("{} of them cannot run, and {} are beaten by no other.",
+                             box.lines.size(), pareto_front(outcomes).size());
+  if (box.lines.size() > kMostFailures) {
+    box.lines.resize(kMostFailures);
+    box.lines.push_back("and more: column failure of the points");
+  }
+  return box;
+}
 
 std::string sweep_report(SweepStore& store) {
   const std::vector<SweepOutcome> outcomes = store.outcomes();

@@ -3,11 +3,15 @@
 
 #include <string>
 
+#include "tools/app/html_report/study_json.h"
 #include "tools/app/study/sweep/sweep_store.h"
 
 namespace leviosim::tools {
 
 /// How many points are done, which failed and which are open, and the Pareto front.
 std::string sweep_report(SweepStore& store);
+/// The same for a page: a box, and the front as a table of titles and rows.
+StudyBox sweep_box(SweepStore& store);
+std::vector<std::vector<std::string>> sweep_front(SweepStore& store);
 
 }  // namespace leviosim::tools

@@ -11,7 +11,8 @@ Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
   constexpr double kNsToMs = 1e-6;
   StudyPage page;
   page.title = fmt::format("Clocks for {} on {}", plan.request.profile, plan.options.platform);
-  page.summary = choice_text(plan, choices) + tune_notes(plan);
+  page.boxes = choice_boxes(plan, choices);
+  page.summary = tune_notes(plan);
   page.points = tune_csv(plan, points);
   page.columns = {{"fps", "frame rate", "frames/s", true},
                   {"clock_mhz", "clock", "MHz", true},

@@ -48,23 +48,30 @@ std::string short_text(const TunePoint& point) {
                      percent(point.miss_rate()), ate(point.ate().median));
 }
 
-std::string choice_line(const Choice& choice) {
-  std::string text = fmt::format("  {:g} frames/s: ", choice.fps);
-  if (choice.lowest == nullptr) {
-    text += "none of these clocks";
-  } else {
-    const TunePoint& point = *choice.lowest;
-    text += fmt::format("{}: {} % missed, ATE {} m", clock_text(point.setting),
-                        percent(point.miss_rate()), ate(point.ate().median));
-    if (const auto power = point.median(&LoopOutcome::power_w))
-      text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
-                          milli(point.median(&LoopOutcome::frame_j), 3));
-  }
-  if (choice.lucky.empty()) return text + '\n';
+std::string point_text(const TunePoint& point) {
+  std::string text =
+      fmt::format("{} % missed, ATE {} m", percent(point.miss_rate()), ate(point.ate().median));
+  if (const auto power = point.median(&LoopOutcome::power_w))
+    text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
+                        milli(point.median(&LoopOutcome::frame_j), 3));
+  return text;
+}
+
+/// Lower clocks that meet the limits although one between does not; empty without such.
+std::string lucky_text(const Choice& choice) {
+  if (choice.lucky.empty()) return {};
   std::vector<std::string> lucky;
   for (const TunePoint* lower : choice.lucky) lucky.push_back(short_text(*lower));
-  return text + fmt::format("\n    lower ones that meet the limits by chance: {}; {} does not\n",
-                            fmt::join(lucky, ", "), short_text(*choice.highest_failing));
+  return fmt::format("lower ones that meet the limits by chance: {}; {} does not",
+                     fmt::join(lucky, ", "), short_text(*choice.highest_failing));
+}
+
+std::string choice_line(const Choice& choice) {
+  const std::string rate = fmt::format("  {:g} frames/s: ", choice.fps);
+  if (choice.lowest == nullptr) return rate + "none of these clocks\n";
+  const std::string lucky = lucky_text(choice);
+  return fmt::format("{}{}: {}{}{}\n", rate, clock_text(choice.lowest->setting),
+                     point_text(*choice.lowest), lucky.empty() ? "" : "\n    ", lucky);
 }
 
 Json banded_json(const std::optional<Banded>& figure) {
@@ -213,6 +220,29 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
   return text + fmt::format("the lowest of all: {} at {:g} frames/s\n  {}\n",
                             clock_text(best->setting), best->fps,
                             printable(run_command_text(plan, *best)));
+}
+
+std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices) {
+  std::vector<StudyBox> boxes;
+  for (const Choice& choice : choices) {
+    StudyBox& box = boxes.emplace_back();
+    box.good = choice.lowest != nullptr;
+    box.mark = fmt::format("{:g} frames/s", choice.fps);
+    if (!*box.good) {
+      box.sentence = fmt::format("None of these clocks has at most {:g} % missed and {:g} m of ATE.",
+                                 100 * plan.miss_rate, plan.ate_m);
+      continue;
+    }
+    box.sentence = fmt::format(
+        "{}: the lowest of these clocks with at most {:g} % missed and {:g} m of ATE.",
+        clock_text(choice.lowest->setting), 100 * plan.miss_rate, plan.ate_m);
+    box.lines.push_back(point_text(*choice.lowest));
+    if (std::string lucky = lucky_text(choice); !lucky.empty())
+      box.lines.push_back(std::move(lucky));
+    if (choice.lowest == chosen(choices))
+      box.lines.push_back("The lowest of all: " + run_command_text(plan, *choice.lowest));
+  }
+  return boxes;
 }
 
 Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {

@@ -6,6 +6,7 @@
 
 #include "tools/app/cli/command_line.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/html_report/study_json.h"
 #include "tools/app/study/tune/tuning.h"
 
 namespace leviosim::tools {
@@ -18,6 +19,9 @@ std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points)
 
 /// The lowest clock at each frame rate, and that of all.
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices);
+
+/// The same as boxes of a page, one for each frame rate.
+std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices);
 
 /// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.
 Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices);
