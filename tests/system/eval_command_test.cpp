@@ -268,5 +268,21 @@ TEST(EvalOptions, TolerancesHaveUnits) {
   EXPECT_EQ(parse_tolerance("--max-dt", "0"), 0);
 }
 
+/// The angle after an alignment of positions is nowhere taken for the error of the attitude.
+TEST_F(EvalCommand, GivesTiltAndHeadingEverywhere) {
+  const ProgramResult drawn = eval({"--plot", path("errors.svg"), "--json", path("errors.json")});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  const std::string picture = base::read_text_file(folder_ / "errors.svg");
+  expect_parts(picture, {"tilt error", "heading error", ", tilt 0.00°, heading 0.00° RMSE"});
+  EXPECT_EQ(picture.find("rotation"), std::string::npos);
+  std::map<std::string, Json> found = statistics_in(folder_ / "errors.json");
+  EXPECT_NEAR(found.at("accuracy.tilt.rmse").at("value").get<double>(), 0, 1e-6);
+  EXPECT_NEAR(found.at("accuracy.heading.rmse").at("value").get<double>(), 0, 1e-6);
+  EXPECT_EQ(found.count("accuracy.rotation.rmse"), 0u);
+  const std::string rows = eval({"--also", path("gt.tum")}).out;
+  expect_parts(rows, {"tilt °", "heading °"});
+  EXPECT_EQ(rows.find("rotation °"), std::string::npos) << rows;
+}
+
 }  // namespace
 }  // namespace leviosim::tools

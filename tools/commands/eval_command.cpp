@@ -13,6 +13,7 @@
 #include "tools/app/evaluation/trajectory_plot.h"
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/text_table.h"
+#include "traces/trajectories/attitude_error.h"
 
 namespace leviosim::tools {
 namespace {
@@ -73,7 +74,7 @@ Json protocol_json(const EvalRequest& request) {
 Json figures(const traces::TrajectoryPair& pair, const EvalRequest& request,
              const Accuracy& accuracy) {
   StatisticList list;
-  add_ate(list, accuracy.evaluation);
+  add_ate(list, accuracy.evaluation, attitude_errors(accuracy.evaluation));
   list.add("accuracy.longest_gap", "s", "between successive matched poses",
            value_of(accuracy.evaluation.longest_gap_s));
   list.add("accuracy.scale", "1", "that the alignment applied to the estimate",
@@ -109,7 +110,8 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
                                          {"ATE m"},
                                          {"median"},
                                          {"worst"},
-                                         {"rotation °"},
+                                         {"tilt °"},
+                                         {"heading °"},
                                          {"scale"},
                                          {"poses"},
                                          {"complete %"}};
@@ -118,11 +120,16 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
   TextTable table(columns);
   for (const auto& [pair, accuracy] : all) {
     const Evaluation& e = accuracy.evaluation;
+    const std::optional<traces::AttitudeErrors> attitude = attitude_errors(e);
+    const auto degrees = [&](double traces::AttitudeErrors::*error) {
+      return attitude ? fmt::format("{:.2f}", *attitude.*error) : "–";
+    };
     std::vector<std::string> cells{printable(pair.estimate.file.string()),
                                    fmt::format("{:.4f}", e.translation.rmse),
                                    fmt::format("{:.4f}", e.translation.median),
                                    fmt::format("{:.4f}", e.translation.max),
-                                   fmt::format("{:.2f}", e.rotation_rmse_deg),
+                                   degrees(&traces::AttitudeErrors::tilt_rmse_deg),
+                                   degrees(&traces::AttitudeErrors::heading_rmse_deg),
                                    fmt::format("{:.4f}", e.alignment.scale),
                                    fmt::format("{}", e.matched),
                                    fmt::format("{:.1f}", 100 * e.completion)};

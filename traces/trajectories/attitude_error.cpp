@@ -47,8 +47,11 @@ std::optional<AttitudeErrors> attitude_errors(const Evaluation& evaluation) {
     headings.push_back(heading_deg(error));
   }
   // The poses of an evaluation have its alignment applied already.
-  return AttitudeErrors{summarize(std::move(tilts)).rmse, summarize(std::move(headings)).rmse,
-                        tilt_deg(aligned * evaluation.alignment.rotation)};
+  return AttitudeErrors{.tilt_rmse_deg = summarize(tilts).rmse,
+                        .heading_rmse_deg = summarize(headings).rmse,
+                        .tilts_deg = std::move(tilts),
+                        .headings_deg = std::move(headings),
+                        .world_tilt_deg = tilt_deg(aligned * evaluation.alignment.rotation)};
 }
 
 }  // namespace leviosim::traces

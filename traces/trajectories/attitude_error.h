@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "traces/trajectories/evaluation.h"
 
@@ -16,6 +17,8 @@ struct AttitudeErrors {
 
   double tilt_rmse_deg = 0;     ///< of the vertical
   double heading_rmse_deg = 0;  ///< about the vertical
+  std::vector<double> tilts_deg;     ///< of each pose, from 0
+  std::vector<double> headings_deg;  ///< of each pose, from -180 to 180
   double world_tilt_deg = 0;    ///< between the z axes of the estimate's world and of the truth's
 
   bool is_gravity_aligned() const { return world_tilt_deg <= kVerticalWithin; }

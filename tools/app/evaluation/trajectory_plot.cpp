@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <sstream>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "tools/app/report/plot/colour_scale.h"
 #include "tools/app/report/plot/svg.h"
 #include "tools/app/report/text_table.h"
+#include "traces/trajectories/attitude_error.h"
 
 namespace leviosim::tools {
 namespace {
@@ -30,7 +32,8 @@ constexpr double kLegendY = 100;
 constexpr Box kTopView{70, 134, 400, 360};
 constexpr Box kSideView{570, 134, 400, 360};
 constexpr Box kTranslation{70, 560, 900, 130};
-constexpr Box kRotation{70, 742, 900, 110};
+constexpr Box kTilt{70, 742, 400, 110};
+constexpr Box kHeading{570, 742, 400, 110};
 constexpr const char* kTruthColour = "#b4bbc4";
 constexpr const char* kInk = "#1c2733";
 constexpr const char* kErrorColour = "#203e8c";
@@ -43,7 +46,7 @@ struct Picture {
   traces::Trajectory truth;  ///< from the first to the last matched pose
   bool timed;
   std::vector<double> translation;  ///< errors [m], one per matched pose
-  std::vector<double> rotation;     ///< [deg]
+  traces::AttitudeErrors attitude;
   std::int64_t longest_step_ns;     ///< a longer one is a gap, over which nothing is drawn
 };
 
@@ -58,16 +61,19 @@ std::int64_t longest_step(const std::vector<MatchedPose>& poses) {
 }
 
 Picture picture_of(const traces::TrajectoryPair& pair, const Evaluation& evaluation) {
-  Picture picture{evaluation, {}, pair.estimate.stamps == traces::Stamps::time,
-                  {},         {}, longest_step(evaluation.poses)};
+  Picture picture{evaluation,
+                  {},
+                  pair.estimate.stamps == traces::Stamps::time,
+                  {},
+                  attitude_errors(evaluation).value_or(traces::AttitudeErrors{}),
+                  longest_step(evaluation.poses)};
   const std::int64_t first = evaluation.poses.front().t_ns;
   const std::int64_t last = evaluation.poses.back().t_ns;
   for (const traces::StampedPose& pose : pair.truth.poses)
     if (pose.t_ns >= first && pose.t_ns <= last) picture.truth.push_back(pose);
-  for (const MatchedPose& pose : evaluation.poses) {
+  for (const MatchedPose& pose : evaluation.poses)
     picture.translation.push_back(traces::translation_error(pose));
-    picture.rotation.push_back(traces::rotation_error_deg(pose));
-  }
+  for (double& heading : picture.attitude.headings_deg) heading = std::abs(heading);
   return picture;
 }
 
@@ -158,7 +164,7 @@ void draw_errors(Svg& svg, const Box& box, const Picture& picture,
   const double worst = *std::max_element(errors.begin(), errors.end());
   const Axes axes(box, plot::widened({time(0), time(poses.size() - 1)}, 0),
                   {0, std::max(worst * 1.12, 1e-6)});
-  const bool lowest = box.y == kRotation.y;
+  const bool lowest = box.y == kTilt.y;
   const char* label = picture.timed ? "time since the first matched pose [s]" : "pose number";
   axes.draw(svg, lowest ? label : "", unit);
   svg.begin_clip(box);
@@ -184,7 +190,9 @@ void draw_error_panels(Svg& svg, const Picture& picture) {
     draw_errors(svg, box, picture, errors, rmse, fmt::format("[{}]", unit));
   };
   panel(kTranslation, "translation", picture.translation, e.translation.rmse, "m");
-  panel(kRotation, "rotation", picture.rotation, e.rotation_rmse_deg, "deg");
+  const traces::AttitudeErrors& a = picture.attitude;
+  panel(kTilt, "tilt", a.tilts_deg, a.tilt_rmse_deg, "deg");
+  panel(kHeading, "heading", a.headings_deg, a.heading_rmse_deg, "deg");
 }
 
 void draw_legend(Svg& svg, const Picture& picture) {
@@ -212,9 +220,10 @@ void draw_heading(Svg& svg, const Picture& picture) {
   constexpr int kCharacters = 125;
   const Evaluation& e = picture.evaluation;
   svg.text({70, 34},
-           fmt::format("Absolute trajectory error {:.3f} m RMSE ({:.3f} m at worst), rotation "
-                       "{:.2f}° RMSE",
-                       e.translation.rmse, e.translation.max, e.rotation_rmse_deg),
+           fmt::format("Absolute trajectory error {:.3f} m RMSE ({:.3f} m at worst), tilt {:.2f}°, "
+                       "heading {:.2f}° RMSE",
+                       e.translation.rmse, e.translation.max, picture.attitude.tilt_rmse_deg,
+                       picture.attitude.heading_rmse_deg),
            {17, Anchor::start, kInk, true});
   std::vector<std::string> words;
   std::istringstream protocol(e.protocol);

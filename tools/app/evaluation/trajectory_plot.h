@@ -1,6 +1,6 @@
 // A trajectory and its errors as one picture: views from top (x, y) and side (x, z) at the same
-// scale, with the aligned estimate coloured by its error over the truth in grey; translation and
-// rotation error over time. World z is up.
+// scale, with the aligned estimate coloured by its error over the truth in grey; translation,
+// tilt and heading error over time. World z is up.
 #pragma once
 
 #include <string>
