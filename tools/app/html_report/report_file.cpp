@@ -1,7 +1,10 @@
 #include "tools/app/html_report/report_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+
+#include <algorithm>
 
 #include "tools/app/budget/check_report.h"
 #include "tools/app/cli/outputs.h"
@@ -27,13 +30,17 @@ Json runs_report(const std::vector<ReportedRun>& runs,
                  const std::vector<RunComparison>& comparisons, const CheckResult* check) {
   Json list = Json::array();
   for (const ReportedRun& run : runs) list.push_back(run_json(run.record, run.files));
+  std::vector<std::string> profiles;
+  for (const ReportedRun& run : runs)
+    if (std::find(profiles.begin(), profiles.end(), run.record.facts.profile) == profiles.end())
+      profiles.push_back(run.record.facts.profile);
   const std::string title =
       runs.size() == 1
           ? fmt::format("{} on {}", runs.front().record.facts.profile,
                         runs.front().record.facts.platform.empty()
                             ? "the host"
                             : runs.front().record.facts.platform)
-          : fmt::format("{} runs of {}", runs.size(), runs.front().record.facts.profile);
+          : fmt::format("{} runs of {}", runs.size(), fmt::join(profiles, " and "));
   Json data = report_json(title, std::move(list));
   for (const RunComparison& comparison : comparisons)
     data["comparisons"].push_back(comparison_json(comparison));

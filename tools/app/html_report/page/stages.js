@@ -7,7 +7,7 @@ const kGroups = [
     'stalls: loads, branches, arithmetic', '#7fb0d8',
     ['load_use', 'control', 'memory', 'arithmetic']
   ],
-  ['I-cache', '#b9d3ea', ['fetch', 'fetch_contention']],
+  ['I-cache', '#66ccee', ['fetch', 'fetch_contention']],
   ['FPU', '#ddaa33', ['fpu']],
   ['divider', '#f0cf80', ['divider']],
   ['L1 banks', '#ee7755', ['banks']],
