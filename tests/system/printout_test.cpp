@@ -260,7 +260,7 @@ TEST_F(PrintoutTest, SeveralSeedsAndBagsAreRefusedWithWhatToDo) {
   testing::expect_refused(
       run({"run", "--data", path("flight"), "--seed", "1,2,3", "--out", path("seeds")}),
       {"--seed '1,2,3'", "one seed", "sweep", "seed: [1,2,3]"});
-  base::write_file_atomically(folder_ / "flight.bag", "#ROSBAG V2.0\n");
+  outputs::write_file_atomically(folder_ / "flight.bag", "#ROSBAG V2.0\n");
   testing::expect_refused(run({"run", "--data", path("flight.bag"), "--out", path("bag")}),
                           {"flight.bag", "ROS bag", "ASL"});
 }

@@ -298,10 +298,7 @@ TEST(Baseline, NoTextIsTooBroken) {
 TEST(BudgetShares, AreShownAsTheirLimitIs) {
   Limit limit;
   limit.bound = {.at_most = true, .relative = false, .number = 3.5, .unit = "%"};
-  Finding finding{.limit = &limit, .section = nullptr};
-  finding.unit = "1";
-  finding.value = 0.1033;
-  finding.bound = 0.035;
+  Finding finding{&limit, nullptr, "frame.missed_share", "", "1", 0.1033, 0.035, {}, false, "", {}};
   EXPECT_EQ(finding.excess(), "10.33 %, 195.14 % above 3.50 %");
   limit.bound.unit = "";
   EXPECT_EQ(finding.excess(), "0.1033, 195.14 % above 0.0350");
