@@ -292,8 +292,7 @@ after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --o
 shows 'leviosim report recorded --out report.html'
 photo 1280x1200 report.html
 
-figure terminal
-needs data aha
-shows 'script -qec "stty cols 80; unset COLUMNS; leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --out shown --quiet" /dev/null |
-      aha --black --title leviosim >terminal.html'
-photo 640x390 terminal.html
+figure demo
+needs aha
+shows 'COLUMNS=80 leviosim demo --quiet | sed "s|file://.*/|file://…/|" | aha --black --title leviosim >demo.html'
+photo 680x420 demo.html
