@@ -71,7 +71,7 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
   for (const std::string& line : lines)
     EXPECT_TRUE(line.starts_with("results: ") || display_width(line) <= 80) << line;
   for (const char* part : {"verdict: fits: all 30 frames", "feature extraction", "latency: p50 ",
-                           "memory: fits, L1 ", "energy: ", "trajectory: ", "--tables all"})
+                           "memory: L1 ", "energy: ", "trajectory: ", "--tables all"})
     EXPECT_NE(recorded_.out.find(part), std::string::npos) << part << " is not in:\n"
                                                            << recorded_.out;
   EXPECT_EQ(recorded_.out.find("… 0 more"), std::string::npos) << recorded_.out;
@@ -228,8 +228,8 @@ TEST_F(PrintoutTest, JsonOfRowsHoldsTheNumbersOfTheFile) {
 }
 
 TEST(Colours, AreForVerdictsAndWarnings) {
-  EXPECT_EQ(coloured_lines("a\nverdict: fits: x\nverdict: does not\nwarning: y\n"),
-            "a\n\x1b[32mverdict: fits: x\x1b[0m\n\x1b[31mverdict: does not\x1b[0m\n"
+  EXPECT_EQ(coloured_lines("a\nverdict: fits: x\nverdict: too slow\nwarning: y\n"),
+            "a\n\x1b[32mverdict: fits: x\x1b[0m\n\x1b[31mverdict: too slow\x1b[0m\n"
             "\x1b[33mwarning: y\x1b[0m\n");
   EXPECT_EQ(coloured_lines("no warning: y"), "no warning: y");
   EXPECT_EQ(coloured_lines(""), "");

@@ -304,5 +304,28 @@ TEST(BudgetShares, AreShownAsTheirLimitIs) {
   EXPECT_EQ(finding.excess(), "0.1033, 195.14 % above 0.0350");
 }
 
+TEST(Budget, HoldsVerdictsByTheirWords) {
+  EXPECT_TRUE(check_budget(record_of(), one("time verdict <= fits on average"), nullptr).missed() ==
+              0);
+  const CheckResult result = check_budget(record_of(), one("time verdict <= fits"), nullptr);
+  ASSERT_EQ(result.missed(), 1u);  // one of five frames is late
+  EXPECT_NE(result.findings[0].excess().find("fits on average"), std::string::npos)
+      << result.findings[0].excess();
+  EXPECT_THROW(one("time verdict <= lost"), InputError);
+  EXPECT_THROW(one("L1 peak <= lost"), InputError);
+}
+
+TEST(Budget, NoVerdictMayBeTheWorstUnlessALimitAllowsIt) {
+  RunResult run = example_run();
+  run.ate->translation.rmse = 2.04;  // of 5.4 m
+  const CheckResult result = check_budget(record_of(run), one("L1 peak <= 64 kB"), nullptr);
+  ASSERT_EQ(result.missed(), 1u);
+  EXPECT_EQ(result.findings.back().title(), "map verdict <= unreliable");
+  EXPECT_EQ(check_budget(record_of(run), one("map verdict <= lost"), nullptr).missed(), 0u);
+  const std::string first = first_budget(record_of(run), 0);
+  EXPECT_NE(first.find("map verdict <= lost"), std::string::npos) << first;
+  EXPECT_EQ(check_budget(record_of(run), parse_budget("first.yaml", first), nullptr).missed(), 0u);
+}
+
 }  // namespace
 }  // namespace leviosim::tools

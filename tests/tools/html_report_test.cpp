@@ -9,6 +9,8 @@
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/html_report/study_json.h"
 #include "tools/app/html_report/verdict.h"
+#include "tools/app/report/statistics.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -47,21 +49,30 @@ TEST(CsvJson, RefusesRowsOfAnotherWidth) {
   expect_input_error([] { csv_json("x.csv", "a,b\n1\n"); }, {"x.csv", "row 2", "1 cells", "2"});
 }
 
-TEST(Verdict, OfARunThatKeepsItsDeadlineSaysByHowMuch) {
-  const Json run = json_of(punctual_run());
-  EXPECT_EQ(run["verdict"]["fits"], true);
-  const std::string text = run["verdict"]["sentence"];
-  EXPECT_EQ(text.rfind("Fits: all 5 frames", 0), 0u) << text;
-  EXPECT_NE(text.find("50 ms"), std::string::npos) << text;
-  EXPECT_NE(text.find("45 ms"), std::string::npos) << text;
+TEST(Verdict, HasAGradeAndThreeVerdictsWithReasons) {
+  const Json run = json_of(example_run());  // one of five takes 60 ms
+  EXPECT_EQ(run["verdict"]["grade"], "doubtful");
+  ASSERT_EQ(run["verdict"]["list"].size(), 3u);
+  EXPECT_EQ(run["verdict"]["list"][0]["word"], "fits on average");
+  EXPECT_EQ(run["verdict"]["list"][2]["about"], "map");
+  EXPECT_EQ(json_of(punctual_run())["verdict"]["grade"], "good");
 }
 
-TEST(Verdict, CountsFramesThatMissTheDeadline) {
-  const Json run = json_of(example_run());  // one of five takes 60 ms
-  EXPECT_EQ(run["verdict"]["fits"], false);
-  const std::string text = run["verdict"]["sentence"];
-  EXPECT_EQ(text.rfind("Does not fit: 1 of 5 frames", 0), 0u) << text;
-  EXPECT_NE(text.find("60 ms"), std::string::npos) << text;
+TEST(Verdict, OfAFolderIsThatOfTheRunInMemory) {
+  RunResult run = example_run();
+  run.ate->translation.rmse = 1;
+  for (const FrameResult& f : run.frames) {
+    traces::MatchedPose pose{f.t_ns, f.pose.T_world_body, f.pose.T_world_body};
+    pose.estimate.translation() *= 1.4;
+    run.ate->poses.push_back(pose);
+  }
+  const RunFigures in_memory = figures_of(run);
+  const RunRecord read = reported(run).record;
+  EXPECT_EQ(verdicts(read).text(), verdicts(in_memory).text());
+  EXPECT_NE(verdicts(read).text().find("the scale is 1.40"), std::string::npos);
+  ASSERT_EQ(read.statistics.size(), in_memory.statistics.size());
+  for (std::size_t i = 0; i < read.statistics.size(); ++i)
+    EXPECT_EQ(read.statistics[i].value, in_memory.statistics[i].value) << read.statistics[i].name;
 }
 
 TEST(Verdict, NamesTheStageThatTakesMostOfTheSlowestFrame) {
@@ -76,14 +87,15 @@ TEST(Verdict, NamesTheStageThatTakesMostOfTheSlowestFrame) {
 TEST(Verdict, OfAMemoryThatIsTooSmallIsNo) {
   RunResult run = punctual_run();
   run.l1_size = Bytes(60'000);  // the example needs 64 000
-  EXPECT_EQ(json_of(run)["verdict"]["fits"], false);
+  EXPECT_EQ(json_of(run)["verdict"]["grade"], "bad");
 }
 
-TEST(Verdict, OfANativeRunIsNone) {
+TEST(Verdict, OfANativeRunIsThatOfItsMap) {
   RunResult run = example_run();
   run.timed = false;
   const Json json = json_of(run);
-  EXPECT_TRUE(json["verdict"]["fits"].is_null());
+  ASSERT_EQ(json["verdict"]["list"].size(), 1u);
+  EXPECT_EQ(json["verdict"]["list"][0]["about"], "map");
   EXPECT_TRUE(json["tables"]["stages"].is_null());
 }
 

@@ -129,7 +129,12 @@ class BudgetReader {
 }  // namespace
 
 Budget parse_budget(const std::string& file, const std::string& text) {
-  return BudgetReader(file).read(text);
+  Budget budget = BudgetReader(file).read(text);
+  budget.verdicts.name = "verdicts";
+  for (const char* limit :
+       {"time verdict <= fits on average", "memory verdict <= fits", "map verdict <= unreliable"})
+    budget.verdicts.limits.push_back(parse_limit(limit, platform::place_of(file, 1, "")));
+  return budget;
 }
 
 Budget read_budget(const std::string& file) {

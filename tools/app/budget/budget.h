@@ -20,6 +20,8 @@ struct BudgetSection {
 struct Budget {
   std::string file;
   std::vector<BudgetSection> sections;
+  /// What every budget holds unless a limit names that verdict: none may be the worst.
+  BudgetSection verdicts;
 };
 
 /// @throws InputError with file, line and key

@@ -8,6 +8,7 @@
 #include "platform_models/loader/yaml_entries.h"
 #include "tools/app/budget/explanation.h"
 #include "tools/app/budget/figures.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -54,6 +55,25 @@ Finding hold(const Limit& limit, const FigureOf& figure, const RunRecord* baseli
 /// calls, a limit for several of them says nothing about it.
 bool is_idle(const Finding& f) { return !f.value && (!f.limit->bound.relative || !f.baseline); }
 
+/// Verdicts that are the worst although no limit allows it.
+void add_bad_verdicts(CheckResult& result, const RunRecord& run, const Budget& budget) {
+  for (const Limit& limit : budget.verdicts.limits) {
+    const bool is_named = std::any_of(result.findings.begin(), result.findings.end(),
+                                      [&](const Finding& f) { return f.unit == limit.figure; });
+    if (is_named || run.find(fmt::format(
+                        "verdict.{}", limit.figure.substr(0, limit.figure.find(' ')))) == nullptr)
+      continue;
+    const FigureOf figure = figures_of(limit, run).front();
+    if (figure.statistic->value != static_cast<double>(Grade::bad)) continue;
+    Finding finding = hold(limit, figure, nullptr);
+    finding.section = &budget.verdicts;
+    for (const RunVerdict& verdict : verdicts(run).list)
+      if (figure.statistic->name == fmt::format("verdict.{}", verdict.about))
+        finding.why = verdict.reasons;
+    result.findings.push_back(std::move(finding));
+  }
+}
+
 }  // namespace
 
 std::string Finding::title() const {
@@ -96,6 +116,7 @@ CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRe
         result.findings.push_back(std::move(finding));
       }
     }
+  add_bad_verdicts(result, run, budget);
   if (result.missed() > 0) explain(result, run, baseline);
   return result;
 }

@@ -10,6 +10,7 @@
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -22,6 +23,10 @@ constexpr std::array kOfTheRun{
     FigurePhrase{"frame latency p95", "frame.latency.p95", "ns"},
     FigurePhrase{"frame latency p99", "frame.latency.p99", "ns"},
     FigurePhrase{"frame latency worst", "frame.latency.worst", "ns"},
+    FigurePhrase{"frame time mean", "frame.time.mean", "ns"},
+    FigurePhrase{"frame time p99", "frame.time.p99", "ns"},
+    FigurePhrase{"frame time worst", "frame.time.worst", "ns"},
+    FigurePhrase{"sustainable rate", "frame.sustainable_rate", "1/s"},
     FigurePhrase{"frame cycles", "frame.cycles.parallel.mean", "cycles"},
     FigurePhrase{"frame cycles on one core", "frame.cycles.single.mean", "cycles"},
     FigurePhrase{"missed", "frame.missed_share", "1"},
@@ -32,6 +37,9 @@ constexpr std::array kOfTheRun{
     FigurePhrase{"ATE", "accuracy.ate.rmse", "m"},
     FigurePhrase{"rotation error", "accuracy.rotation.rmse", "deg"},
     FigurePhrase{"completion", "accuracy.completion", "1"},
+    FigurePhrase{"time verdict", "verdict.time", "time verdict"},
+    FigurePhrase{"memory verdict", "verdict.memory", "memory verdict"},
+    FigurePhrase{"map verdict", "verdict.map", "map verdict"},
 };
 constexpr std::array kOfAStage{
     FigurePhrase{"cycles", "stages.{}.cycles.parallel.mean", "cycles"},
@@ -94,6 +102,25 @@ const StatisticUnit* find_unit(std::string_view name) {
 
 [[noreturn]] void fail(const Limit& limit, const std::string& message) {
   platform::place_of(limit.file, limit.line, "").fail(message);
+}
+
+/// Of the unit "map verdict": what it may be.
+std::vector<VerdictWord> words_of(std::string_view unit) {
+  std::vector<VerdictWord> words;
+  for (const VerdictWord& word : verdict_words())
+    if (unit == fmt::format("{} verdict", word.about)) words.push_back(word);
+  return words;
+}
+
+/// The grade of a bound that is a word.
+double grade_of(const Limit& limit, std::string_view unit) {
+  std::vector<std::string> names;
+  for (const VerdictWord& word : words_of(unit)) {
+    if (word.word == limit.bound.word) return static_cast<double>(word.grade);
+    names.emplace_back(word.word);
+  }
+  fail(limit, fmt::format("'{}': expected {} <= one of {}{}", limit.text, limit.figure,
+                          fmt::join(names, ", "), base::did_you_mean(limit.bound.word, names)));
 }
 
 std::span<const FigurePhrase> phrases_for(const Limit& limit) {
@@ -178,7 +205,10 @@ bool is_percent_of_baseline(const Bound& bound) { return bound.relative && bound
 
 double bound_in(const Limit& limit, std::string_view statistic_unit) {
   const Bound& bound = limit.bound;
+  if (!bound.word.empty() && words_of(statistic_unit).empty())
+    fail(limit, fmt::format("'{}': expected a number", limit.text));
   if (is_percent_of_baseline(bound)) return bound.number;
+  if (!words_of(statistic_unit).empty()) return grade_of(limit, statistic_unit);
   const StatisticUnit* known = find_unit(statistic_unit);
   if (known == nullptr)
     fail(limit, fmt::format("'{}': a statistic in {} can only be held against a baseline, in %",
@@ -194,6 +224,8 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
 }
 
 std::string figure_text(double value, std::string_view statistic_unit) {
+  for (const VerdictWord& word : words_of(statistic_unit))
+    if (static_cast<double>(word.grade) == value) return std::string(word.word);
   const StatisticUnit* known = find_unit(statistic_unit);
   if (known == nullptr) return fmt::format("{} {}", value, statistic_unit);
   const std::string number = fmt::format("{:.{}f}", value / known->shown, known->decimals);

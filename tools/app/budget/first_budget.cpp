@@ -9,6 +9,7 @@
 #include "platform_models/loader/dimension.h"
 #include "sim/base/error.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -52,6 +53,9 @@ std::string first_budget(const RunRecord& run, double margin) {
     if (const auto value = run.value(limit.statistic))
       text += fmt::format("      - {} <= {} {}\n", limit.figure,
                           rounded_up(*value * limit.scale * factor, limit.decimals), limit.unit);
+  for (const RunVerdict& verdict : verdicts(run).list)  // a budget that says nothing refuses these
+    if (verdict.grade == Grade::bad)
+      text += fmt::format("      - {} verdict <= {}\n", verdict.about, verdict.word());
   for (const StageName& stage : run.stages)
     if (const auto value = run.value(fmt::format("stages.{}.cycles.parallel.mean", stage.key)))
       text += fmt::format("      - stage: {}\n        limit: cycles <= {} kcycles\n",

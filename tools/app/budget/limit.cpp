@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "platform_models/loader/dimension.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 
@@ -21,6 +24,11 @@ Limit parse_limit(const std::string& text, const platform::Place& place) {
   std::string_view value = platform::trim(std::string_view(text).substr(at + 2));
   limit.bound.relative = !value.empty() && (value.front() == '+' || value.front() == '-');
   if (!value.empty() && value.front() == '+') value.remove_prefix(1);
+  if (std::any_of(verdict_words().begin(), verdict_words().end(),
+                  [&](const VerdictWord& w) { return w.word == value; })) {
+    limit.bound.word = value;
+    return limit;
+  }
   const auto measure = platform::split_measure(value);
   if (limit.figure.empty() || !measure || !(measure->number >= -1e18 && measure->number <= 1e18))
     place.fail(

@@ -27,7 +27,11 @@ struct Colour {
 
 constexpr std::string_view kPlain = "\x1b[0m";
 /// The first that fits is taken.
-constexpr std::array kColours{Colour{"verdict: fits", "\x1b[32m"}, Colour{"verdict: ", "\x1b[31m"},
+constexpr std::array kColours{Colour{"verdict: fits: ", "\x1b[32m"},
+                              Colour{"verdict: map good", "\x1b[32m"},
+                              Colour{"verdict: fits on average", "\x1b[33m"},
+                              Colour{"verdict: map unreliable", "\x1b[33m"},
+                              Colour{"verdict: ", "\x1b[31m"},
                               Colour{"warning: ", "\x1b[33m"}};
 
 std::string_view variable(const char* name) {

@@ -7,7 +7,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/outputs/output_record.h"
-#include "tools/app/comparison/frame_statistics.h"
+#include "tools/app/comparison/recorded_frames.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/summary.h"
 
@@ -77,39 +77,6 @@ RunFacts facts_of_manifest(const Json& m) {
   return facts;
 }
 
-/// "epnp_ransac" of "stages.epnp_ransac.calls" with the end ".calls"; empty for other names.
-std::string stage_key(const std::string& name, std::string_view end) {
-  constexpr std::string_view kStages = "stages.";
-  if (name.rfind(kStages, 0) != 0 || name.size() <= kStages.size() + end.size()) return {};
-  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return {};
-  std::string key = name.substr(kStages.size(), name.size() - kStages.size() - end.size());
-  return key.find('.') == std::string::npos ? key : std::string();
-}
-
-/// Of a statistic that is a text.
-void add_text(const std::string& name, const Json& value, RunRecord& record) {
-  const std::string key = stage_key(name, ".runs_on");
-  for (StageName& stage : record.stages)
-    if (stage.key == key) stage.on_controller = value == "controller";
-}
-
-void add_statistics(const Json& document, RunRecord& record) {
-  for (const Json& entry : document.at("statistics")) {
-    const Json& value = entry.at("value");
-    const auto text = [&](const char* key) { return entry.at(key).get<std::string>(); };
-    const std::string name = text("name");
-    if (value.is_string()) {
-      add_text(name, value, record);
-      continue;
-    }
-    if (std::string key = stage_key(name, ".calls"); !key.empty())
-      record.stages.push_back({key, key, false});
-    Statistic statistic{name, text("unit"), text("description"), {}};
-    if (!value.is_null()) statistic.value = value.get<double>();
-    record.statistics.push_back(std::move(statistic));
-  }
-}
-
 void name_stages(RunRecord& record) {
   for (StageName& stage : record.stages)
     for (const StageParts& parts : record.cycles)
@@ -135,17 +102,6 @@ void check_recorded(const std::filesystem::path& file, const outputs::OutputReco
 
 }  // namespace
 
-const Statistic* RunRecord::find(std::string_view statistic) const {
-  const auto it = std::find_if(statistics.begin(), statistics.end(),
-                               [&](const Statistic& s) { return s.name == statistic; });
-  return it == statistics.end() ? nullptr : &*it;
-}
-
-std::optional<double> RunRecord::value(std::string_view statistic) const {
-  const Statistic* found = find(statistic);
-  return found == nullptr ? std::nullopt : found->value;
-}
-
 const StageParts* RunRecord::stage_parts(std::string_view stage) const {
   const auto it = std::find_if(cycles.begin(), cycles.end(),
                                [&](const StageParts& s) { return s.stage == stage; });
@@ -159,33 +115,12 @@ Json parse_json(const std::string& where, const std::string& text) {
   return document;
 }
 
-RunRecord record_of(const std::string& where, const Json& manifest, const Json& statistics,
-                    const std::string& frames_csv, std::vector<StageParts> cycles) {
-  RunRecord record;
-  record.name = where;
-  reading(where + "/manifest.json", "a manifest", [&] {
-    check_format(where + "/manifest.json", manifest, "leviosim manifest", kManifestVersion);
-    record.facts = facts_of_manifest(manifest);
-  });
-  reading(where + "/stats.json", "statistics", [&] {
-    check_format(where + "/stats.json", statistics, "leviosim statistics", kStatisticsVersion);
-    add_statistics(statistics, record);
-  });
-  record.cycles = std::move(cycles);
-  name_stages(record);
-  const std::int64_t rows = add_frame_statistics(where + "/frames.csv", frames_csv, record);
-  if (rows != record.facts.frames)
-    throw InputError(fmt::format("{}/frames.csv: has {} frames; expected {}, as manifest.json says",
-                                 where, rows, record.facts.frames));
-  add_memory_statistics(record);
-  add_operations(record);
-  return record;
-}
-
 RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run,
                       std::vector<StageParts> cycles) {
-  return record_of(name, manifest_json(manifest, run), statistics(run), frames_csv(run),
-                   std::move(cycles));
+  RunRecord record{figures_of(run), std::move(name),
+                   facts_of_manifest(manifest_json(manifest, run)), std::move(cycles)};
+  name_stages(record);
+  return record;
 }
 
 RunFiles read_run_files(const std::filesystem::path& folder) {
@@ -210,12 +145,33 @@ RunFiles read_run_files(const std::filesystem::path& folder) {
 }
 
 RunRecord record_of_files(const std::string& where, const RunFiles& files) {
-  std::vector<StageParts> cycles;
+  const auto at = [&](const char* name) { return (std::filesystem::path(where) / name).string(); };
+  RunRecord record;
+  record.name = where;
   if (const auto file = files.find(kCyclesFile); file != files.end())
-    cycles = parse_cycles(std::filesystem::path(where) / kCyclesFile, file->second);
-  return record_of(where, parse_json(where + "/manifest.json", files.at("manifest.json")),
-                   parse_json(where + "/stats.json", files.at("stats.json")), files.at(kFramesFile),
-                   std::move(cycles));
+    record.cycles = parse_cycles(at(kCyclesFile), file->second);
+  const std::string manifest_file = where + "/manifest.json";
+  const Json manifest = parse_json(manifest_file, files.at("manifest.json"));
+  reading(manifest_file, "a manifest", [&] {
+    check_format(manifest_file, manifest, "leviosim manifest", kManifestVersion);
+    record.facts = facts_of_manifest(manifest);
+  });
+  const std::string statistics_file = where + "/stats.json";
+  const Json statistics = parse_json(statistics_file, files.at("stats.json"));
+  reading(statistics_file, "statistics", [&] {
+    check_format(statistics_file, statistics, "leviosim statistics", kStatisticsVersion);
+    add_statistics(statistics, record);
+  });
+  name_stages(record);
+  const std::vector<RecordedFrame> frames = read_frames(at(kFramesFile), files.at(kFramesFile));
+  if (std::ssize(frames) != record.facts.frames)
+    throw InputError(fmt::format("{}/frames.csv: has {} frames; expected {}, as manifest.json says",
+                                 where, frames.size(), record.facts.frames));
+  const auto errors = files.find(kErrorsFile);
+  complete(record, frames,
+           errors == files.end() ? std::vector<PositionPair>()
+                                 : read_positions(at(kErrorsFile), errors->second));
+  return record;
 }
 
 RunRecord read_run_folder(const std::filesystem::path& folder) {

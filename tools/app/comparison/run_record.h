@@ -2,8 +2,8 @@
 // and where its cycles went. It is read from a run folder, put together after a run or a replay, or
 // read from a baseline (budget/baseline.h).
 //
-// Besides the statistics of stats.json there are those of all frames together (kFrameStatistics),
-// which need every frame.
+// Besides the statistics of stats.json there are those that follow from them and from all frames
+// (result/run_figures.h).
 #pragma once
 
 #include <filesystem>
@@ -14,6 +14,7 @@
 
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/result/run_figures.h"
 #include "tools/app/run/manifest.h"
 #include "tools/app/run/run_folder.h"
 
@@ -37,31 +38,11 @@ struct RunFacts {
   friend bool operator==(const RunFacts&, const RunFacts&) = default;
 };
 
-struct Statistic {
-  std::string name;
-  std::string unit;
-  std::string description;
-  std::optional<double> value;  ///< absent where the run has none
-};
-
-/// A stage, by its name for people and as statistics name it.
-struct StageName {
-  std::string name;  ///< "EPnP RANSAC"; the key where cycles.csv is missing
-  std::string key;   ///< "epnp_ransac"
-  bool on_controller = false;
-};
-
-struct RunRecord {
+struct RunRecord : RunFigures {
   std::string name;  ///< in the words of the user
   RunFacts facts;
-  std::vector<StageName> stages;      ///< in the order of the run
-  std::vector<Statistic> statistics;  ///< that are numbers
-  std::vector<StageParts> cycles;     ///< empty if the run folder has no cycles.csv
+  std::vector<StageParts> cycles;  ///< empty if the run folder has no cycles.csv
 
-  /// Null if there is none of that name.
-  const Statistic* find(std::string_view statistic) const;
-  /// Absent also if there is no such statistic.
-  std::optional<double> value(std::string_view statistic) const;
   /// Null if there is no such stage.
   const StageParts* stage_parts(std::string_view stage) const;
 };
@@ -80,11 +61,6 @@ RunRecord record_of_files(const std::string& where, const RunFiles& files);
 
 /// Both.
 RunRecord read_run_folder(const std::filesystem::path& folder);
-
-/// A record of texts, as a run folder has them. @param where  begins messages
-/// @param frames_csv  with all frames
-RunRecord record_of(const std::string& where, const Json& manifest, const Json& statistics,
-                    const std::string& frames_csv, std::vector<StageParts> cycles);
 
 /// The document in a text. @throws InputError that begins with `where`
 Json parse_json(const std::string& where, const std::string& text);

@@ -4,6 +4,7 @@
 #include "tools/app/html_report/csv_json.h"
 #include "tools/app/html_report/verdict.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -121,6 +122,18 @@ Json key_figures_json(const RunRecord& record, const std::string& protocol) {
   return list;
 }
 
+Json verdict_json(const Verdicts& verdicts) {
+  Json list = Json::array();
+  for (const RunVerdict& v : verdicts.list)
+    list.push_back({{"about", v.about},
+                    {"grade", name_of(v.grade)},
+                    {"word", v.word()},
+                    {"reason", v.reason()}});
+  return {{"grade", verdicts.list.empty() ? Json(nullptr) : Json(name_of(verdicts.grade()))},
+          {"text", verdicts.text()},
+          {"list", std::move(list)}};
+}
+
 /// A table of columns that a script can rely on. @throws InputError for one that is missing
 void expect_columns(const std::string& where, const Json& table,
                     std::initializer_list<const char*> columns) {
@@ -160,11 +173,10 @@ Json run_json(const RunRecord& record, const RunFiles& files) {
   json["facts"] = facts_of(record, manifest);
   json["tables"] = tables_of(record, files);
   json["stages"] = stages_of(record, json["tables"]["stages"]);
-  const FitVerdict verdict =
-      verdict_of(record, worst_frame(record, json["tables"]["frames"], json["stages"]));
-  json["verdict"] = {{"fits", verdict.fits ? Json(*verdict.fits) : Json(nullptr)},
-                     {"sentence", verdict.sentence},
-                     {"why", verdict.why}};
+  const std::optional<WorstFrame> worst =
+      worst_frame(record, json["tables"]["frames"], json["stages"]);
+  json["verdict"] = verdict_json(verdicts(record));
+  json["verdict"]["why"] = worst ? reason_of(*worst) : "";
   json["figures"] = key_figures_json(record, protocol);
   json["protocol"] = protocol;
   if (!json["tables"]["stages"].is_null()) json["breakdown"] = account_of(json["tables"]["stages"]);

@@ -17,13 +17,8 @@ struct MemoryUse {
   double used;
   double size;
 
-  bool fits() const { return used <= size; }
   double percent() const {
     return percent_of_nominal(Bytes(std::llround(used)), Bytes(std::llround(size)));
-  }
-  /// "L1 102.2 kB (79.8 %)".
-  std::string text() const {
-    return fmt::format("{} {:.1f} kB ({:.1f} %)", name, used * 1e-3, percent());
   }
 };
 
@@ -35,18 +30,6 @@ std::vector<MemoryUse> memories(const RunRecord& run) {
     if (used && size && *size > 0) list.push_back({name, *used, *size});
   }
   return list;
-}
-
-std::string deadline_text(const RunRecord& run, double missed, double worst) {
-  const double deadline = deadline_ns(run);
-  if (missed == 0)
-    return fmt::format("all {} frames have their pose within {} of their arrival (worst {})",
-                       run.facts.frames, ms(deadline), ms(worst));
-  std::string text = fmt::format("{:.0f} of {} frames miss their deadline of {}", missed,
-                                 run.facts.frames, ms(deadline));
-  if (const double dropped = run.value("camera.dropped").value_or(0); dropped > 0)
-    text += fmt::format(", {:.0f} of them dropped", dropped);
-  return text + fmt::format("; the worst takes {}", ms(worst));
 }
 
 /// The stage of the cluster with the highest peak.
@@ -109,32 +92,10 @@ void add_energy(std::vector<KeyFigure>& list, const RunRecord& run) {
 
 }  // namespace
 
-double deadline_ns(const RunRecord& run) {
-  const double rate = run.value("camera.rate").value_or(0);
-  return rate > 0 ? 1e9 / rate : run.value("run.frame_period").value_or(0);
-}
-
-FitVerdict verdict_of(const RunRecord& run, const std::optional<WorstFrame>& worst) {
-  const auto longest = run.value("frame.latency.worst");
-  if (!longest)
-    return {{}, "No verdict: without a chip there are no times; this run was native.", ""};
-  const double frames = static_cast<double>(run.facts.frames);
-  const double missed = std::round(run.value("frame.missed_share").value_or(0) * frames);
-  FitVerdict verdict;
-  verdict.fits = missed == 0;
-  std::string memory;
-  for (const MemoryUse& use : memories(run)) {
-    if (!use.fits()) verdict.fits = false;
-    memory += fmt::format("{} {}", memory.empty() ? "." : " and", use.text());
-  }
-  if (!memory.empty()) memory = ". At most" + memory.substr(1) + " are occupied";
-  verdict.sentence = fmt::format("{}: {}{}.", *verdict.fits ? "Fits" : "Does not fit",
-                                 deadline_text(run, missed, *longest), memory);
-  if (worst && !worst->stage.empty())
-    verdict.why =
-        fmt::format("The slowest frame, number {}, spends {} of its {} in {}.", worst->frame,
-                    ms(worst->stage_ns), ms(worst->latency_ns), worst->stage);
-  return verdict;
+std::string reason_of(const WorstFrame& worst) {
+  if (worst.stage.empty()) return {};
+  return fmt::format("The slowest frame, number {}, spends {} of its {} in {}.", worst.frame,
+                     ms(worst.stage_ns), ms(worst.latency_ns), worst.stage);
 }
 
 std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol) {

@@ -1,5 +1,5 @@
-// Whether a run fits its chip and its deadline, in a sentence with the reason; and the few figures
-// that anybody asks for first.
+// The few figures of a run that anybody asks for first, and where its slowest frame spends its
+// time. Verdicts are those of result/verdict.h.
 #pragma once
 
 #include <optional>
@@ -18,13 +18,8 @@ struct WorstFrame {
   double stage_ns = 0;
 };
 
-struct FitVerdict {
-  std::optional<bool> fits;  ///< absent for native runs, which have no times
-  std::string sentence;
-  std::string why;  ///< where the worst frame spends its time; may be empty
-};
-
-FitVerdict verdict_of(const RunRecord& run, const std::optional<WorstFrame>& worst);
+/// Where it spends its time; empty if that is not known.
+std::string reason_of(const WorstFrame& worst);
 
 /// A figure of the first screen, as text.
 struct KeyFigure {
@@ -38,8 +33,5 @@ struct KeyFigure {
 /// Those that the run has.
 /// @param protocol  of its accuracy; without one, the error is left out
 std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol);
-
-/// Between two frames of the camera. [ns]
-double deadline_ns(const RunRecord& run);
 
 }  // namespace leviosim::tools

@@ -9,8 +9,8 @@
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/number_text.h"
 #include "tools/app/result/camera_figures.h"
-#include "tools/app/result/map_faults.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -137,9 +137,8 @@ std::string host_line(const RunResult& run) {
 }
 
 std::string map_warning(const RunResult& run) {
-  const std::vector<std::string> faults = map_faults(run);
-  if (faults.empty()) return {};
-  return fmt::format("warning: the map is wrong: {}\n", fmt::join(faults, ", "));
+  const RunVerdict verdict = map_verdict(map_signs(run));
+  return verdict.grade == Grade::good ? "" : fmt::format("warning: {}\n", verdict.text());
 }
 
 }  // namespace leviosim::tools

@@ -25,7 +25,7 @@ std::string trajectory_summary(const RunResult& run);
 /// The one line about the host.
 std::string host_line(const RunResult& run);
 
-/// "warning: the map is wrong: …" (tools/app/result/map_faults.h); empty where it may be right.
+/// "warning: map lost: …"; empty where the map is good (tools/app/result/verdict.h).
 std::string map_warning(const RunResult& run);
 
 }  // namespace leviosim::tools

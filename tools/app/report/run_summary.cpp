@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "sim/base/printable_text.h"
+#include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
-#include "tools/app/result/map_faults.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/result/verdict.h"
 #include "traces/trajectories/attitude_error.h"
 
 namespace leviosim::tools {
@@ -50,19 +51,6 @@ std::string wrapped(const std::string& text, int width) {
   return wrap(items, " ", kIndent, width) + '\n';
 }
 
-/// Frames without a pose at their deadline, of all that arrived.
-struct Missed {
-  std::int64_t frames = 0;
-  std::int64_t of = 0;
-};
-
-Missed missed(const RunResult& run) {
-  if (const auto camera = camera_figures(run)) return {camera->missed(), camera->arrived};
-  return {std::count_if(run.frames.begin(), run.frames.end(),
-                        [&](const FrameResult& frame) { return is_late(frame, run); }),
-          std::ssize(run.frames)};
-}
-
 std::string latency_line(const RunResult& run) {
   const CameraFigures::Latencies latency = latencies_of(run);
   std::string text = fmt::format(
@@ -78,20 +66,19 @@ std::string occupied(Bytes used, Bytes size) {
                      percent_of_nominal(used, size));
 }
 
-/// What does not fit ends a run, so all that there is fits.
 std::string memory_line(const RunResult& run) {
   const StageResult* worst = nullptr;
   for (const StageResult& stage : run.stages)
     if (!stage.on_controller &&
         (worst == nullptr || stage.memory.parallel > worst->memory.parallel))
       worst = &stage;
-  std::string text = "memory: fits";
+  std::string text = "memory:";
   if (worst != nullptr)
-    text += fmt::format(", L1 {} in {}", occupied(worst->memory.parallel, run.l1_size),
+    text += fmt::format(" L1 {} in {},", occupied(worst->memory.parallel, run.l1_size),
                         printable(worst->name));
   Bytes l2;
   for (const L2Row& row : run.l2) l2 += row.bytes;
-  return text + fmt::format(", L2 {}", occupied(l2, run.l2_size));
+  return text + fmt::format(" L2 {}", occupied(l2, run.l2_size));
 }
 
 /// Empty where the platform has no energy figures.
@@ -156,16 +143,7 @@ std::string stage_lines(const RunResult& run, int rows, int width) {
 
 }  // namespace
 
-std::string verdict(const RunResult& run) {
-  const auto [frames, of] = missed(run);
-  if (of == 0) return "verdict: no frames";
-  const double deadline = ms(run.frame_period_ns);
-  if (frames == 0)
-    return fmt::format("verdict: fits: all {} frames meet the deadline of {:.4g} ms", of, deadline);
-  return fmt::format(
-      "verdict: does not fit: {} of {} frames ({:.1f} %) miss the deadline of {:.4g} ms", frames,
-      of, 100 * static_cast<double>(frames) / static_cast<double>(of), deadline);
-}
+std::string verdict(const RunResult& run) { return "verdict: " + verdicts(figures_of(run)).text(); }
 
 std::string run_summary(const std::string& heading, const RunResult& run, int width,
                         const std::string& remarks) {
@@ -175,7 +153,6 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
   else
     below = {frame_summary(run).substr(0, frame_summary(run).find('\n'))};
   for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));
-  below.push_back(map_warning(run));
   std::string end;
   for (std::string& line : below) {
     if (line.ends_with('\n')) line.pop_back();
@@ -183,8 +160,8 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
   }
   end += "more: --tables all, or some of them\n";
   std::string text = wrapped(heading, width) + '\n';
-  if (!run.timed) return text + remarks + end;
   text += wrapped(verdict(run), width);
+  if (!run.timed) return text + remarks + end;
   constexpr int kTitleRuleAndFolder = 3;
   const auto lines = std::count(text.begin(), text.end(), '\n') +
                      std::count(end.begin(), end.end(), '\n') + kTitleRuleAndFolder;

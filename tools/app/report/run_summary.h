@@ -13,8 +13,7 @@ namespace leviosim::tools {
 /// where results are put in place.
 inline constexpr int kSummaryLines = 24;
 
-/// "verdict: fits: …", or by how much the deadlines are missed. Of runs on a chip; what does not
-/// fit into memory ends a run before. One line, without its end.
+/// "verdict: fits: …": the three verdicts (result/verdict.h). One line, without its end.
 std::string verdict(const RunResult& run);
 
 /// At most kSummaryLines - 1 lines of `width` columns, where these are 80 or more. Of stages for

@@ -4,15 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "sim/energy/area.h"
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
-#include "tools/app/result/map_faults.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -123,11 +122,12 @@ void add_frames(StatisticList& list, const RunResult& run) {
     for (const FrameResult& frame : run.frames) sum += frame.*fact.of;
     list.add(fmt::format("frames.{}.sum", fact.name), "1", "summed over the frames", sum);
   }
-  const MapLimits without_scale{.scale = std::numeric_limits<double>::infinity()};
+  MapSigns without_scale = map_signs(run);
+  without_scale.scale.reset();
   list.add("frames.map_faults", "text",
            "what is plainly wrong with the map, as the end of the run warns of it, but for the "
            "scale, which replays do not know; empty if nothing",
-           fmt::format("{}", fmt::join(map_faults(run, without_scale), ", ")));
+           map_verdict(without_scale).reason());
 }
 
 void add_latencies(StatisticList& list, const RunResult& run) {
@@ -251,9 +251,23 @@ void add_accuracy(StatisticList& list, const RunResult& run) {
   if (run.ate) add_ate(list, *run.ate);
 }
 
-}  // namespace
+/// "epnp_ransac" of "stages.epnp_ransac.calls" with the end ".calls"; empty for other names.
+std::string stage_key(const std::string& name, std::string_view end) {
+  constexpr std::string_view kStages = "stages.";
+  if (name.rfind(kStages, 0) != 0 || name.size() <= kStages.size() + end.size()) return {};
+  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return {};
+  std::string key = name.substr(kStages.size(), name.size() - kStages.size() - end.size());
+  return key.find('.') == std::string::npos ? key : std::string();
+}
 
-Json statistics(const RunResult& run) {
+/// Of a statistic that is a text.
+void add_text(const std::string& name, const Json& value, RunFigures& run) {
+  const std::string key = stage_key(name, ".runs_on");
+  for (StageName& stage : run.stages)
+    if (stage.key == key) stage.on_controller = value == "controller";
+}
+
+Json list_of(const RunResult& run) {
   StatisticList list;
   add_run(list, run);
   if (run.timed)
@@ -272,7 +286,53 @@ Json statistics(const RunResult& run) {
              run.optimiser_late);
   }
   add_accuracy(list, run);
-  return statistics_document(list.take());
+  return list.take();
+}
+
+/// In words.
+void add_verdicts(StatisticList& list, const Verdicts& verdicts) {
+  for (const RunVerdict& verdict : verdicts.list) {
+    std::vector<std::string_view> words;
+    for (const VerdictWord& w : verdict_words())
+      if (w.about == verdict.about) words.push_back(w.word);
+    const std::string name = fmt::format("verdict.{}", verdict.about);
+    list.add(name, "text", fmt::format("one of: {}", fmt::join(words, ", ")), verdict.word());
+    list.add(name + ".reason", "text", "why", verdict.reason());
+  }
+}
+
+}  // namespace
+
+void add_statistics(const Json& document, RunFigures& run) {
+  for (const Json& entry : document.at("statistics")) {
+    const Json& value = entry.at("value");
+    const auto text = [&](const char* key) { return entry.at(key).get<std::string>(); };
+    const std::string name = text("name");
+    if (value.is_string()) {
+      add_text(name, value, run);
+      continue;
+    }
+    if (std::string key = stage_key(name, ".calls"); !key.empty())
+      run.stages.push_back({key, key, false});
+    Statistic statistic{name, text("unit"), text("description"), {}};
+    if (!value.is_null()) statistic.value = value.get<double>();
+    run.statistics.push_back(std::move(statistic));
+  }
+}
+
+RunFigures figures_of(const RunResult& run) {
+  RunFigures figures;
+  add_statistics({{"statistics", list_of(run)}}, figures);
+  complete(figures, recorded_frames(run), position_pairs(run));
+  return figures;
+}
+
+Json statistics(const RunResult& run) {
+  Json list = list_of(run);
+  StatisticList words;
+  add_verdicts(words, verdicts(figures_of(run)));
+  for (Json& entry : words.take()) list.push_back(std::move(entry));
+  return statistics_document(std::move(list));
 }
 
 std::string statistics_text(const RunResult& run) {

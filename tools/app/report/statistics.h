@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/result/run_figures.h"
 #include "tools/app/result/run_result.h"
 
 namespace leviosim::tools {
@@ -14,6 +15,11 @@ namespace leviosim::tools {
 /// "value"}, …]}. What does not exist (a mean over no calls) is null. Accuracy figures also carry
 /// "protocol".
 Json statistics(const RunResult& run);
+
+/// The figures of a run that lies in memory.
+RunFigures figures_of(const RunResult& run);
+/// Adds the numbers of a document, and the stages that it names. @throws nlohmann::json::exception
+void add_statistics(const Json& document, RunFigures& run);
 
 /// The content of stats.json, with one statistic on a line, so that runs can be compared
 /// line by line.

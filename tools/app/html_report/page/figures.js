@@ -1,15 +1,20 @@
 // The first screen: the verdict, and the figures that are asked for first.
 
+/** A class of the page for each grade of a verdict. */
+const gradeClass = {good: 'fits', doubtful: 'doubtful', bad: 'fails'};
+const gradeMark = {good: '✓', doubtful: '!', bad: '✗'};
+
 function verdictCard(run) {
-  const {fits, sentence, why} = run.verdict;
-  const kind = fits === null ? '' : fits ? 'fits' : 'fails';
-  const mark = fits === null ? 'No verdict' : fits ? '✓ Fits' : '✗ Does not fit';
-  return element(
-      'div', {class: `card verdict ${kind}`}, element('span', {class: 'mark'}, mark),
+  const {grade, list, why} = run.verdict;
+  const line = (verdict) => element(
+      'p', {class: `sentence verdict-line ${gradeClass[verdict.grade]}`},
       element(
-          'p', {class: 'sentence'},
-          sentence.replace(/^(Fits|Does not fit|No verdict): /, '')
-              .replace(/^./, (letter) => letter.toUpperCase())),
+          'span', {class: 'mark'},
+          `${gradeMark[verdict.grade]} ${verdict.about} ${verdict.word}`),
+      verdict.reason ? ` ${verdict.reason}` : '');
+  return element(
+      'div', {class: `card verdict ${gradeClass[grade] || ''}`},
+      ...(list.length > 0 ? list.map(line) : [element('p', {class: 'sentence'}, 'No frames')]),
       why ? element('p', {class: 'soft'}, why) : null);
 }
 

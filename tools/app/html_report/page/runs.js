@@ -37,10 +37,10 @@ function runsTable(runs, names) {
         [
           'Verdict',
           ...runs.map(
-              (run) =>
-                  (run.verdict.fits === null ? '–' :
-                       run.verdict.fits      ? '✓ fits' :
-                                               '✗ does not fit'))
+              (run) => run.verdict.list
+                           .map((v) => `${gradeMark[v.grade]} ${v.about} ${v.word}`)
+                           .join(', ') ||
+                  '–')
         ],
         ...titles.map((title) => [title, ...runs.map((run) => cell(run, title))])
       ],

@@ -6,7 +6,6 @@
 #include "sim/base/error.h"
 #include "sim/energy/area.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/run/replay.h"
@@ -78,9 +77,10 @@ void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& f
 
 /// What the record of a run has besides its statistics.
 void add_budget_figures(const RunResult& run, std::vector<Figure>& figures) {
-  for (const Statistic& s : make_record("", Manifest(), run, {}).statistics) {
+  for (const Statistic& s : figures_of(run).statistics) {
     const bool known = s.name.starts_with("frame.") || s.name.ends_with(".operations") ||
-                       s.name == "memory.l1.peak" || s.name == "memory.l2.peak";
+                       s.name == "memory.l1.peak" || s.name == "memory.l2.peak" ||
+                       s.name.starts_with("verdict.");
     if (known && s.value) figures.push_back({s.name, s.unit, s.description, *s.value});
   }
 }

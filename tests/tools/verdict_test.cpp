@@ -1,0 +1,176 @@
+// The three verdicts of a run, each at its limits.
+#include "tools/app/result/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/tools/example_run.h"
+#include "tools/app/report/statistics.h"
+#include "tools/app/report/tables.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// Poses on a line of 10 m; the estimate's is `scale` times as long.
+RunResult with_scale(double scale) {
+  RunResult run = testing::example_run();
+  run.ate->path_length_m = 10;
+  for (int i = 0; i <= 10; ++i) {
+    traces::MatchedPose pose;
+    pose.truth.translation().x() = i;
+    pose.estimate.translation().x() = scale * i;
+    run.ate->poses.push_back(pose);
+  }
+  return run;
+}
+
+RunResult with_error(double share, double path_m = 10) {
+  RunResult run = testing::example_run();
+  run.ate->path_length_m = path_m;
+  run.ate->translation.rmse = share * path_m;
+  return run;
+}
+
+/// Frames of 50 ms, of which `kept` in a row have no pose of their own.
+RunResult with_kept(int kept) {
+  RunResult run = testing::example_run();
+  run.frames.clear();
+  for (int i = 0; i < 100; ++i)
+    run.frames.push_back(testing::frame(
+        i, i >= 10 && i < 10 + kept ? PoseSource::Kept : PoseSource::Epnp, false, 1'000'000));
+  return run;
+}
+
+using Texts = std::vector<std::string>;
+
+Texts map_faults(const RunResult& run) { return map_verdict(map_signs(run)).reasons; }
+Grade map_grade(const RunResult& run) { return map_verdict(map_signs(run)).grade; }
+std::string text_of(const RunResult& run) { return verdicts(figures_of(run)).text(); }
+Grade grade_of(const RunResult& run) { return verdicts(figures_of(run)).grade(); }
+
+TEST(MapVerdict, AGoodMapHasNone) {
+  EXPECT_EQ(map_faults(testing::example_run()), Texts());
+  EXPECT_EQ(map_faults(RunResult()), Texts());
+  EXPECT_EQ(map_warning(testing::example_run()), "");
+}
+
+TEST(MapVerdict, AnErrorAboveAShareOfThePath) {
+  EXPECT_EQ(map_faults(with_error(0.099)), Texts());
+  EXPECT_EQ(map_faults(with_error(0.213)), (Texts{"the error is 21.3 % of the path"}));
+  EXPECT_EQ(map_faults(with_error(5, 0.9)), Texts()) << "a path too short to tell";
+}
+
+TEST(MapVerdict, AScaleThatIsOffEitherWay) {
+  for (const double right : {0.81, 1.0, 1.24}) EXPECT_EQ(map_faults(with_scale(right)), Texts());
+  EXPECT_EQ(map_faults(with_scale(1.26)), (Texts{"the scale is 1.26"}));
+  EXPECT_EQ(map_faults(with_scale(0.25)), (Texts{"the scale is 0.25"}));
+}
+
+TEST(MapVerdict, APoseThatIsKeptForSeconds) {
+  EXPECT_EQ(map_faults(with_kept(40)), Texts());  // 2 s after the last pose
+  EXPECT_EQ(map_faults(with_kept(41)).size(), 1u);
+  EXPECT_EQ(map_faults(with_kept(48)), (Texts{"the pose was kept for 2.4 s"}));
+  RunResult apart = with_kept(60);
+  apart.frames[40].source = PoseSource::Tracked;
+  EXPECT_EQ(map_faults(apart), Texts());
+}
+
+TEST(MapVerdict, AreAllNamedInOneWarningAtTheEnd) {
+  RunResult run = with_kept(60);
+  run.ate->translation.rmse = 2.7;  // of 5.4 m
+  run.poses_left_out = 3;
+  EXPECT_EQ(map_warning(run),
+            "warning: map lost: the error is 50.0 % of the path, the pose was kept for 3.0 "
+            "s, 3 poses are NaN\n");
+  const std::string text = report(run);
+  EXPECT_TRUE(text.ends_with(map_warning(run)));
+}
+
+TEST(MapVerdict, FarBeyondTheLimitsItIsLost) {
+  EXPECT_EQ(map_grade(with_error(0.099)), Grade::good);
+  EXPECT_EQ(map_grade(with_error(0.24)), Grade::doubtful);
+  EXPECT_EQ(map_grade(with_error(0.26)), Grade::bad);
+  EXPECT_EQ(map_grade(with_scale(1.26)), Grade::doubtful);
+  EXPECT_EQ(map_grade(with_scale(2.1)), Grade::bad);
+  EXPECT_EQ(map_grade(with_scale(0.45)), Grade::bad);
+}
+
+TEST(MapVerdict, APoseThatIsKeptUpToTheEndIsLost) {
+  EXPECT_EQ(map_grade(with_kept(60)), Grade::doubtful);
+  EXPECT_EQ(map_grade(with_kept(90)), Grade::bad);
+}
+
+TEST(MapVerdict, BelievesAnEstimatorThatDoubtsItself) {
+  MapSigns signs;
+  signs.health = 0;
+  EXPECT_EQ(map_verdict(signs).grade, Grade::good);
+  signs.lost_frames = 3;
+  EXPECT_EQ(map_verdict(signs).grade, Grade::doubtful);
+  signs.health = 1;
+  EXPECT_EQ(map_verdict(signs).grade, Grade::doubtful);
+  signs.health = 2;
+  EXPECT_EQ(map_verdict(signs).grade, Grade::bad);
+}
+
+/// One frame in four takes `slow_ms`, the others 20 ms; the period is 50 ms. Each waits for those
+/// before it.
+RunResult with_slow_frames(std::int64_t slow_ms) {
+  RunResult run = testing::example_run();
+  run.frames.clear();
+  std::int64_t end = 0;
+  for (int i = 0; i < 40; ++i) {
+    FrameResult f = testing::frame(i, PoseSource::Epnp, false, 0);
+    f.start_ns = std::max(f.arrival_ns, end);
+    f.end_ns = end = f.start_ns + (i % 4 == 2 ? slow_ms : 20) * 1'000'000;
+    run.frames.push_back(f);
+  }
+  run.trajectory.clear();
+  for (const FrameResult& f : run.frames) run.trajectory.push_back(f.pose);
+  return run;
+}
+
+TEST(TimeVerdict, FitsIfEveryFrameIsInTime) {
+  EXPECT_EQ(text_of(with_slow_frames(50)),
+            "fits: all 40 frames within 50 ms, worst 50 ms, memory fits, map good");
+}
+
+TEST(TimeVerdict, FewLateFramesFitOnAverage) {
+  EXPECT_EQ(text_of(with_slow_frames(60)),
+            "fits on average: 10 of 40 frames late, a frame takes 30 ms on average of 50 ms, worst "
+            "60 ms, memory fits, map good");
+}
+
+/// The mean is that of the frames themselves: it does not grow with the flight, as the queue does.
+TEST(TimeVerdict, ASlowChipIsToldByTheTimeOfAFrame) {
+  RunResult run = with_slow_frames(180);
+  EXPECT_EQ(text_of(run),
+            "too slow: a frame takes 60 ms on average of 50 ms, which sustains 16.7 frames/s, "
+            "memory fits, map good");
+  EXPECT_EQ(figures_of(run).value("frame.time.mean"), 60e6);
+  EXPECT_GT(figures_of(run).value("frame.latency.worst"), 180e6);
+}
+
+TEST(Verdicts, AreGreenOnlyIfAllAre) {
+  RunResult run = with_slow_frames(20);
+  EXPECT_EQ(grade_of(run), Grade::good);
+  run.ate->translation.rmse = 2.04;  // of 5.4 m
+  EXPECT_EQ(text_of(run),
+            "map lost: the error is 37.8 % of the path, time fits: all 40 frames within 50 ms, "
+            "worst 20 ms, memory fits");
+  run.l1_size = Bytes(60'000);  // the example needs 64 000
+  EXPECT_EQ(verdicts(figures_of(run)).list[1].word(), "does not fit");
+  EXPECT_EQ(verdicts(figures_of(RunResult())).text(), "no frames");
+}
+
+/// What the program promises of every verdict, over many runs.
+TEST(Verdicts, AreNeverGreenOverAWrongMapOrALateFrame) {
+  for (const double share : {0.02, 0.09, 0.11, 0.4})
+    for (const std::int64_t slow_ms : {20, 50, 51, 101, 300}) {
+      RunResult run = with_slow_frames(slow_ms);
+      run.ate->translation.rmse = share * run.ate->path_length_m;
+      EXPECT_EQ(grade_of(run) == Grade::good, share < 0.1 && slow_ms <= 50)
+          << share << ' ' << slow_ms;
+    }
+}
+
+}  // namespace
+}  // namespace leviosim::tools

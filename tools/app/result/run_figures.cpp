@@ -1,0 +1,232 @@
+#include "tools/app/result/run_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/verdict.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::optional<int> health_of(const FrameResult& frame) {
+  for (const vio::FrameFact& fact : vio::kFrameFacts)
+    if (fact.name == "health") return frame.*fact.of;
+  return std::nullopt;
+}
+
+RecordedFrame recorded(const FrameResult& frame, bool timed) {
+  RecordedFrame row;
+  row.t_ns = frame.t_ns;
+  row.source = frame.source;
+  row.map_restarts = frame.map_restarts;
+  row.health = health_of(frame);
+  if (timed)
+    row.timing = {frame.end_ns - frame.arrival_ns, frame.end_ns - frame.start_ns,
+                  static_cast<double>(frame.cycles.count()),
+                  static_cast<double>(frame.single_cycles.count())};
+  return row;
+}
+
+/// Root mean square of the distances from their mean. [m]
+double spread(const std::vector<PositionPair>& poses, Eigen::Vector3d PositionPair::*position) {
+  const auto count = static_cast<double>(poses.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const PositionPair& pose : poses) mean += pose.*position / count;
+  double sum = 0;
+  for (const PositionPair& pose : poses) sum += (pose.*position - mean).squaredNorm();
+  return std::sqrt(sum / count);
+}
+
+/// The longest time from a pose to the last of its successors that all come from `source`.
+double longest_s(const std::vector<RecordedFrame>& frames, PoseSource source) {
+  std::int64_t longest_ns = 0;
+  for (std::size_t i = 1, known = 0; i < frames.size(); ++i) {
+    if (frames[i].source != source)
+      known = i;
+    else
+      longest_ns = std::max(longest_ns, frames[i].t_ns - frames[known].t_ns);
+  }
+  return static_cast<double>(longest_ns) * 1e-9;
+}
+
+void add_latencies(RunFigures& run, const std::vector<RecordedFrame::Timing>& timings) {
+  std::vector<std::int64_t> sorted;
+  std::vector<std::int64_t> own;
+  double sum = 0;
+  double own_sum = 0;
+  double single = 0;
+  double parallel = 0;
+  for (const RecordedFrame::Timing& t : timings) {
+    sorted.push_back(t.latency_ns);
+    own.push_back(t.own_ns);
+    sum += static_cast<double>(t.latency_ns);
+    own_sum += static_cast<double>(t.own_ns);
+    single += t.single_cycles;
+    parallel += t.parallel_cycles;
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::sort(own.begin(), own.end());
+  const auto n = static_cast<double>(timings.size());
+  const auto add = [&](const char* name, const char* unit, const char* description, double value) {
+    run.statistics.push_back(
+        {name, unit, description, timings.empty() ? std::nullopt : std::optional<double>(value)});
+  };
+  const auto at = [](const std::vector<std::int64_t>& values, double share) {
+    return values.empty() ? 0 : static_cast<double>(percentile(values, share));
+  };
+  add("frame.latency.mean", "ns", "from the camera's frame to its pose, all frames", sum / n);
+  add("frame.latency.p50", "ns", "median from the camera's frame to its pose", at(sorted, 0.5));
+  add("frame.latency.p95", "ns", "that 95 % of the frames do not exceed", at(sorted, 0.95));
+  add("frame.latency.p99", "ns", "that 99 % of the frames do not exceed", at(sorted, 0.99));
+  add("frame.latency.worst", "ns", "longest from the camera's frame to its pose", at(sorted, 1));
+  add("frame.cycles.single.mean", "cycles", "of the front end on one core", single / n);
+  add("frame.cycles.parallel.mean", "cycles", "of the front end on N cores", parallel / n);
+  add("frame.time.mean", "ns", "that a frame takes by itself, without waiting for others",
+      own_sum / n);
+  add("frame.time.p99", "ns", "that 99 % of the frames do not exceed by themselves", at(own, 0.99));
+  add("frame.time.worst", "ns", "longest that a frame takes by itself", at(own, 1));
+  add("frame.sustainable_rate", "1/s", "frames that the chip can process, by their mean time",
+      own_sum > 0 ? 1e9 * n / own_sum : 0);
+}
+
+void add_frame_statistics(RunFigures& run, const std::vector<RecordedFrame>& frames) {
+  std::vector<RecordedFrame::Timing> timings;
+  for (const RecordedFrame& frame : frames)
+    if (frame.timing) timings.push_back(*frame.timing);
+  const auto dropped =
+      std::count_if(frames.begin(), frames.end(), [](const RecordedFrame& f) { return f.dropped; });
+  if (frames.empty() || (timings.empty() && dropped == 0)) return;
+  add_latencies(run, timings);
+  const double deadline = deadline_ns(run);
+  const auto late = std::count_if(
+      timings.begin(), timings.end(),
+      [&](const RecordedFrame::Timing& t) { return static_cast<double>(t.latency_ns) > deadline; });
+  const double missed =
+      run.value("camera.missed_share")
+          .value_or(static_cast<double>(dropped + late) / static_cast<double>(frames.size()));
+  run.statistics.push_back(
+      {"frame.missed_share", "1", "frames without a pose within a period of the camera", missed});
+}
+
+void add_operations(RunFigures& run) {
+  for (const StageName& stage : run.stages) {
+    const std::string ops = fmt::format("stages.{}.ops.", stage.key);
+    std::optional<double> sum;
+    for (const Statistic& s : run.statistics)
+      if (s.value && s.name.starts_with(ops)) sum = sum.value_or(0) + *s.value;
+    if (sum)
+      run.statistics.push_back({fmt::format("stages.{}.operations", stage.key), "1",
+                                "operations of all kinds, of all calls", sum});
+  }
+}
+
+void add_memory_statistics(RunFigures& run) {
+  std::optional<double> l1;
+  for (const StageName& stage : run.stages) {
+    const auto peak = run.value(fmt::format("stages.{}.memory.parallel", stage.key));
+    if (!stage.on_controller && peak) l1 = std::max(l1.value_or(0), *peak);
+  }
+  std::optional<double> l2;
+  for (const Statistic& s : run.statistics)
+    if (s.name.starts_with("memory.l2.") && s.name.ends_with(".bytes") && s.value)
+      l2 = l2.value_or(0) + *s.value;
+  if (l1) run.statistics.push_back({"memory.l1.peak", "byte", "highest occupation of L1", l1});
+  if (l2) run.statistics.push_back({"memory.l2.peak", "byte", "occupation of L2", l2});
+}
+
+}  // namespace
+
+const Statistic* RunFigures::find(std::string_view statistic) const {
+  const auto it = std::find_if(statistics.begin(), statistics.end(),
+                               [&](const Statistic& s) { return s.name == statistic; });
+  return it == statistics.end() ? nullptr : &*it;
+}
+
+std::optional<double> RunFigures::value(std::string_view statistic) const {
+  const Statistic* found = find(statistic);
+  return found == nullptr ? std::nullopt : found->value;
+}
+
+std::vector<RecordedFrame> recorded_frames(const RunResult& run) {
+  std::vector<RecordedFrame> frames;
+  auto frame = run.frames.begin();
+  const auto next = [&] {
+    if (frame != run.frames.end()) frames.push_back(recorded(*frame++, run.timed));
+  };
+  if (!run.camera)
+    while (frame != run.frames.end()) next();
+  else
+    for (const soc::Delivery& delivery : run.camera->deliveries) {
+      if (!delivery.dropped) {
+        next();
+        continue;
+      }
+      RecordedFrame& lost = frames.emplace_back();
+      lost.t_ns = delivery.t_ns;
+      lost.dropped = true;
+    }
+  return frames;
+}
+
+std::vector<PositionPair> position_pairs(const RunResult& run) {
+  std::vector<PositionPair> pairs;
+  if (run.ate)
+    for (const traces::MatchedPose& pose : run.ate->poses)
+      pairs.emplace_back(pose.estimate.translation(), pose.truth.translation());
+  return pairs;
+}
+
+MapSigns map_signs(const std::vector<RecordedFrame>& frames,
+                   const std::vector<PositionPair>& positions, std::optional<double> rmse_m,
+                   std::optional<double> path_m, std::int64_t poses_left_out) {
+  MapSigns signs;
+  signs.poses_left_out = poses_left_out;
+  if (rmse_m && path_m && *path_m >= kShortestPath_m) {
+    signs.error_share = *rmse_m / *path_m;
+    if (!positions.empty())
+      signs.scale =
+          spread(positions, &PositionPair::first) / spread(positions, &PositionPair::second);
+  }
+  std::vector<RecordedFrame> processed;
+  for (const RecordedFrame& frame : frames)
+    if (frame.source) processed.push_back(frame);
+  if (processed.empty()) return signs;
+  signs.kept_s = longest_s(processed, PoseSource::Kept);
+  signs.initialising_s = longest_s(processed, PoseSource::Initialising);
+  const RecordedFrame& last = processed.back();
+  signs.ends_without_pose =
+      last.source == PoseSource::Kept || last.source == PoseSource::Initialising;
+  signs.duration_s = static_cast<double>(last.t_ns - processed.front().t_ns) * 1e-9;
+  signs.health = last.health;
+  for (const RecordedFrame& frame : processed) {
+    signs.restarts += frame.map_restarts;
+    signs.lost_frames += frame.health == 2 ? 1 : 0;
+  }
+  return signs;
+}
+
+double deadline_ns(const RunFigures& run) {
+  const double rate = run.value("camera.rate").value_or(0);
+  return rate > 0 ? 1e9 / rate : run.value("run.frame_period").value_or(0);
+}
+
+void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
+              const std::vector<PositionPair>& positions) {
+  add_frame_statistics(run, frames);
+  add_memory_statistics(run);
+  add_operations(run);
+  const double left_out =
+      run.value("frames.count").value_or(0) - run.value("trajectory.poses").value_or(0);
+  run.map = map_signs(frames, positions, run.value("accuracy.ate.rmse"),
+                      run.value("accuracy.truth_length"),
+                      std::max<std::int64_t>(0, std::llround(left_out)));
+  for (const RunVerdict& verdict : verdicts(run).list)
+    run.statistics.push_back({fmt::format("verdict.{}", verdict.about),
+                              fmt::format("{} verdict", verdict.about),
+                              "0 is the best, 2 the worst", static_cast<double>(verdict.grade)});
+}
+
+}  // namespace leviosim::tools

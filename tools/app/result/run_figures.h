@@ -1,0 +1,95 @@
+// The figures of a run that verdicts, comparisons and budgets read: its statistics, those that need
+// every frame or every memory, and what its frames say of the map. They are the same whether the
+// run lies in memory or its folder was read (comparison/run_record.h).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tools/app/result/run_result.h"
+
+namespace leviosim::tools {
+
+struct Statistic {
+  std::string name;
+  std::string unit;
+  std::string description;
+  std::optional<double> value;  ///< absent where the run has none
+};
+
+/// A stage, by its name for people and as statistics name it.
+struct StageName {
+  std::string name;  ///< "EPnP RANSAC"; the key where cycles.csv is missing
+  std::string key;   ///< "epnp_ransac"
+  bool on_controller = false;
+};
+
+/// A frame of the camera, as a row of frames.csv has it.
+struct RecordedFrame {
+  struct Timing {
+    std::int64_t latency_ns = 0;  ///< from arrival to pose
+    std::int64_t own_ns = 0;      ///< from the start of its front end to its pose
+    double parallel_cycles = 0;
+    double single_cycles = 0;
+  };
+  std::int64_t t_ns = 0;
+  bool dropped = false;
+  std::optional<PoseSource> source;  ///< absent if it was dropped
+  int map_restarts = 0;
+  std::optional<int> health;     ///< of the map: 0 good, 1 unreliable, 2 lost; absent if not told
+  std::optional<Timing> timing;  ///< absent if it was dropped, and in native runs
+};
+
+/// Estimated and true position of a pose. [m]
+using PositionPair = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
+
+/// What says whether a map can be right.
+struct MapSigns {
+  std::optional<double> error_share;  ///< ATE over the length of the true path, where that is long
+  std::optional<double> scale;        ///< size of the estimated path over that of the true one
+  double kept_s = 0;                  ///< the longest time for which the pose was kept
+  double initialising_s = 0;          ///< the longest initialisation
+  bool ends_without_pose = false;     ///< the last frame kept its pose, or still initialises
+  std::int64_t restarts = 0;
+  double duration_s = 0;
+  std::int64_t poses_left_out = 0;  ///< since they are NaN
+  std::optional<int> health;        ///< of the last frame
+  std::int64_t lost_frames = 0;     ///< of health 2
+};
+
+struct RunFigures {
+  std::vector<StageName> stages;      ///< in the order of the run
+  std::vector<Statistic> statistics;  ///< that are numbers
+  MapSigns map;
+
+  /// Null if there is none of that name.
+  const Statistic* find(std::string_view statistic) const;
+  /// Absent also if there is no such statistic.
+  std::optional<double> value(std::string_view statistic) const;
+};
+
+/// All frames that arrived.
+std::vector<RecordedFrame> recorded_frames(const RunResult& run);
+/// None without ground truth, and in replays.
+std::vector<PositionPair> position_pairs(const RunResult& run);
+
+/// What frames and positions tell.
+/// @param rmse_m, path_m  absent without ground truth
+MapSigns map_signs(const std::vector<RecordedFrame>& frames,
+                   const std::vector<PositionPair>& positions, std::optional<double> rmse_m,
+                   std::optional<double> path_m, std::int64_t poses_left_out);
+
+/// Adds to the statistics of stats.json those that follow from all frames (frame.*), the peaks of
+/// L1 and L2, operations of stages, the signs of the map, and the verdicts as grades (verdict.*).
+void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
+              const std::vector<PositionPair>& positions);
+
+/// Between two frames of the camera. [ns]
+double deadline_ns(const RunFigures& run);
+
+}  // namespace leviosim::tools

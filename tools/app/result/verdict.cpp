@@ -1,0 +1,172 @@
+#include "tools/app/result/verdict.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/app/result/summary.h"
+
+namespace leviosim::tools {
+namespace {
+
+std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
+
+/// Absent where nothing was timed.
+std::optional<RunVerdict> time_verdict(const RunFigures& run) {
+  const auto mean = run.value("frame.time.mean");
+  const auto rate = run.value("frame.sustainable_rate");
+  const auto worst = run.value("frame.latency.worst");
+  const auto missed_share = run.value("frame.missed_share");
+  if (!missed_share) return std::nullopt;
+  const double processed = run.value("frames.count").value_or(0);
+  const double arrived = run.value("camera.arrived").value_or(processed);
+  const double deadline = deadline_ns(run);
+  const double missed = std::round(*missed_share * arrived);
+  const double dropped = run.value("camera.dropped").value_or(0);
+  if (!mean || !rate || !worst)
+    return RunVerdict{"time", Grade::bad, {fmt::format("all {:.0f} frames were dropped", arrived)}};
+  const std::string missed_text =
+      fmt::format("{:.0f} of {:.0f} frames {}", missed, arrived,
+                  dropped == 0        ? "late"
+                  : dropped == missed ? "dropped"
+                                      : fmt::format("late or dropped ({:.0f})", dropped));
+  if (*mean > deadline) {
+    RunVerdict verdict{"time", Grade::bad, {}};
+    verdict.reasons.push_back(
+        fmt::format("a frame takes {} on average of {}", ms(*mean), ms(deadline)));
+    verdict.reasons.push_back(fmt::format("which sustains {:.3g} frames/s", *rate));
+    if (run.value("camera.arrived")) verdict.reasons.push_back(missed_text);
+    return verdict;
+  }
+  if (missed > 0)
+    return RunVerdict{
+        "time",
+        Grade::doubtful,
+        {missed_text, fmt::format("a frame takes {} on average of {}", ms(*mean), ms(deadline)),
+         fmt::format("worst {}", ms(*worst))}};
+  return RunVerdict{"time",
+                    Grade::good,
+                    {fmt::format("all {:.0f} frames within {}", arrived, ms(deadline)),
+                     fmt::format("worst {}", ms(*worst))}};
+}
+
+/// Absent where nothing is known of memories.
+std::optional<RunVerdict> memory_verdict(const RunFigures& run) {
+  std::optional<RunVerdict> verdict;
+  for (const auto& [name, key] : {std::pair{"L1", "l1"}, {"L2", "l2"}}) {
+    const auto used = run.value(fmt::format("memory.{}.peak", key));
+    const auto size = run.value(fmt::format("run.{}_size", key));
+    if (!used || !size || *size <= 0) continue;
+    if (!verdict) verdict = RunVerdict{"memory", Grade::good, {}};
+    if (*used > *size) verdict->grade = Grade::bad;
+    verdict->reasons.push_back(
+        fmt::format("{} {:.1f} kB ({:.1f} %)", name, *used * 1e-3,
+                    percent_of_nominal(Bytes(std::llround(*used)), Bytes(std::llround(*size)))));
+  }
+  return verdict;
+}
+
+/// How far a scale is off, in either direction.
+double off(double scale) { return scale > 0 ? std::max(scale, 1 / scale) : INFINITY; }
+
+}  // namespace
+
+std::string_view name_of(Grade grade) {
+  return grade == Grade::good ? "good" : grade == Grade::doubtful ? "doubtful" : "bad";
+}
+
+const std::vector<VerdictWord>& verdict_words() {
+  static const std::vector<VerdictWord> words{
+      {"time", "fits", Grade::good},          {"time", "fits on average", Grade::doubtful},
+      {"time", "too slow", Grade::bad},       {"memory", "fits", Grade::good},
+      {"memory", "does not fit", Grade::bad}, {"map", "good", Grade::good},
+      {"map", "unreliable", Grade::doubtful}, {"map", "lost", Grade::bad}};
+  return words;
+}
+
+std::string_view RunVerdict::word() const {
+  for (const VerdictWord& w : verdict_words())
+    if (w.about == about && w.grade == grade) return w.word;
+  return {};
+}
+
+std::string RunVerdict::reason() const { return fmt::format("{}", fmt::join(reasons, ", ")); }
+
+std::string RunVerdict::text() const {
+  std::string text = fmt::format("{} {}", about, word());
+  const bool says_why = grade != Grade::good || about == "time";
+  return says_why && !reasons.empty() ? text + ": " + reason() : text;
+}
+
+Grade Verdicts::grade() const {
+  Grade worst = Grade::good;
+  for (const RunVerdict& verdict : list) worst = std::max(worst, verdict.grade);
+  return worst;
+}
+
+std::string Verdicts::text() const {
+  if (list.empty()) return "no frames";
+  std::vector<RunVerdict> sorted = list;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const RunVerdict& a, const RunVerdict& b) { return a.grade > b.grade; });
+  std::vector<std::string> texts;
+  for (const RunVerdict& verdict : sorted) texts.push_back(verdict.text());
+  if (sorted.front().about == "time") texts.front().erase(0, std::string_view("time ").size());
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
+  RunVerdict verdict{"map", Grade::good, {}};
+  const auto fault = [&](bool is_lost, std::string reason) {
+    verdict.grade = std::max(verdict.grade, is_lost ? Grade::bad : Grade::doubtful);
+    verdict.reasons.push_back(std::move(reason));
+  };
+  if (signs.error_share && *signs.error_share > limits.error_share)
+    fault(*signs.error_share > limits.lost_error_share,
+          fmt::format("the error is {:.1f} % of the path", 100 * *signs.error_share));
+  if (signs.scale && !(off(*signs.scale) < limits.scale))
+    fault(!(off(*signs.scale) < limits.lost_scale),
+          fmt::format("the scale is {:.2f}", *signs.scale));
+  if (signs.kept_s > limits.kept_s)
+    fault(signs.ends_without_pose, fmt::format("the pose was kept for {:.1f} s", signs.kept_s));
+  if (signs.initialising_s > limits.initialising_s)
+    fault(signs.ends_without_pose,
+          fmt::format("the initialisation took {:.1f} s", signs.initialising_s));
+  if (signs.restarts > 2 &&
+      static_cast<double>(signs.restarts) > limits.restarts_per_s * signs.duration_s)
+    fault(false, fmt::format("the map was begun anew {} times", signs.restarts));
+  if (signs.health.value_or(0) > 0)
+    fault(*signs.health == 2, fmt::format("the estimator ends with a map that is {}",
+                                          *signs.health == 2 ? "lost" : "unreliable"));
+  else if (signs.lost_frames > 0)
+    fault(false, fmt::format("the estimator had lost its map in {} frames", signs.lost_frames));
+  if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));
+  return verdict;
+}
+
+Verdicts verdicts(const RunFigures& run) {
+  Verdicts all;
+  if (run.value("frames.count").value_or(0) == 0 && !run.value("camera.arrived")) return all;
+  if (std::optional<RunVerdict> time = time_verdict(run)) all.list.push_back(std::move(*time));
+  if (std::optional<RunVerdict> memory = memory_verdict(run))
+    all.list.push_back(std::move(*memory));
+  all.list.push_back(map_verdict(run.map));
+  return all;
+}
+
+MapSigns map_signs(const RunResult& run) {
+  const auto of_ate = [&](double value) { return run.ate ? std::optional(value) : std::nullopt; };
+  return map_signs(recorded_frames(run), position_pairs(run),
+                   of_ate(run.ate ? run.ate->translation.rmse : 0),
+                   of_ate(run.ate ? run.ate->path_length_m : 0), run.poses_left_out);
+}
+
+std::int64_t map_restarts(const RunResult& run) {
+  std::int64_t restarts = 0;
+  for (const FrameResult& frame : run.frames) restarts += frame.map_restarts;
+  return restarts;
+}
+
+}  // namespace leviosim::tools

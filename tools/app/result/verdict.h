@@ -1,0 +1,75 @@
+// Whether a run does what it should: three verdicts, each with its reason. They are the same in
+// what a command prints, in stats.json, on pages and for budgets.
+//
+//   time    fits; fits on average: some frames come late; too slow: a mean frame takes longer than
+//           the camera's period, so that frames pile up or are lost
+//   memory  fits; does not fit
+//   map     good; unreliable; lost: the poses are worth nothing
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/app/result/run_figures.h"
+
+namespace leviosim::tools {
+
+enum class Grade { good, doubtful, bad };
+/// "good", "doubtful", "bad": in files.
+std::string_view name_of(Grade grade);
+
+struct RunVerdict {
+  std::string_view about;  ///< "time", "memory", "map"
+  Grade grade = Grade::good;
+  std::vector<std::string> reasons;
+
+  std::string_view word() const;  ///< "fits on average"
+  std::string reason() const;     ///< the reasons in a row; may be empty
+  std::string text() const;       ///< "map lost: the error is 37.8 % of the path"
+};
+
+/// The words of a kind of verdict, from the best on. Empty for what is none.
+struct VerdictWord {
+  std::string_view about;
+  std::string_view word;
+  Grade grade;
+};
+const std::vector<VerdictWord>& verdict_words();
+
+struct Verdicts {
+  std::vector<RunVerdict> list;  ///< time, memory, map; native runs have the last only
+
+  /// The worst; good only if all are.
+  Grade grade() const;
+  /// One line, the worst first. "no frames" if there is nothing to judge.
+  std::string text() const;
+};
+
+Verdicts verdicts(const RunFigures& run);
+
+/// On paths below this, error and scale say nothing of the map.
+inline constexpr double kShortestPath_m = 1;
+
+/// Beyond these a map is unreliable, or lost. Drift of published estimators is 1 % of the path or
+/// less, and a scale within a few per cent; an error of a quarter of the path, or a path of twice
+/// or half its size, is of no use to anybody who flies by it.
+struct MapLimits {
+  double error_share = 0.1;  ///< ATE over the length of the true path
+  double lost_error_share = 0.25;
+  double scale = 1.25;  ///< of the estimate over the truth, or the truth over it
+  double lost_scale = 2;
+  double kept_s = 2;            ///< that the pose may be kept, frame after frame
+  double initialising_s = 5;    ///< that the initialisation may take
+  double restarts_per_s = 0.2;  ///< of the map, where there are more than two
+};
+
+/// By the truth where there is one, and by what the estimator says of its poses.
+RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits = {});
+
+MapSigns map_signs(const RunResult& run);
+/// Over all frames.
+std::int64_t map_restarts(const RunResult& run);
+
+}  // namespace leviosim::tools
