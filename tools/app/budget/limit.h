@@ -14,7 +14,7 @@ struct Bound {
   bool relative = false;  ///< to the baseline: the text has a sign
   double number = 0;
   std::string unit;  ///< as written; empty: none
-  std::string word;  ///< of a limit on a verdict, "fits on average"; has no number
+  std::string word = {};  ///< of a limit on a verdict, "fits on average"; has no number
 };
 
 struct Limit {

@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "sim/chip/account.h"
+
 namespace leviosim::tools {
 namespace {
 
@@ -38,6 +40,15 @@ std::string words_of(std::string_view mechanism) {
   for (const Words& w : kWords)
     if (w.mechanism == mechanism) return std::string(w.words);
   return std::string(mechanism);
+}
+
+/// Whether cores spend it on their own shares of a fork, so that more cores have less of it each.
+bool is_of_a_core(std::string_view mechanism) {
+  return std::any_of(sim::kMechanisms.begin(), sim::kMechanisms.end(),
+                     [&](const sim::MechanismInfo& info) {
+                       return info.key == mechanism &&
+                              sim::index(info.mechanism) < sim::kCoreMechanismCount;
+                     });
 }
 
 bool is_kernel(std::string_view operation) {
@@ -128,7 +139,8 @@ class CauseSum {
     const double other_cores = static_cast<double>(a_.cores) / b_.cores;
     for (const auto& [key, pair] : cycles) {
       const auto& [where, mechanism, operation] = key;
-      const bool is_divided = !where.empty() && where != kSerialPlace;
+      const bool is_divided =
+          !where.empty() && where != sim::kSerialFork && is_of_a_core(mechanism);
       const double divided = is_divided ? pair.first * (other_cores - 1) : 0;
       put("another clock", stage, pair.first * clock_ms_);
       put(b_.cores > a_.cores ? "divided among more cores" : "divided among fewer cores", stage,

@@ -43,7 +43,7 @@ struct StudyBox {
 
 struct StudyPage {
   std::string title;
-  std::vector<StudyBox> boxes;
+  std::vector<StudyBox> boxes = {};
   std::string summary;                            ///< lines below the boxes
   std::vector<std::vector<std::string>> best = {};  ///< a table: titles, then rows; may be empty
   std::string points;                ///< CSV, a row per point

@@ -102,9 +102,7 @@ void take_costs(VariantResult& result, const RunResult& run) {
 }
 
 VariantResult timed(const std::string& name, const ResolvedPoint& point) {
-  RunRequest request = point.request;
-  CycleParts parts(request.platform.config, request.cores);
-  request.observer = &parts;
+  const RunRequest& request = point.request;
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
   const RunResult run = point.trace != nullptr ? replay(*point.trace, request, progress).run
                                                : simulate(request, progress);
@@ -113,7 +111,7 @@ VariantResult timed(const std::string& name, const ResolvedPoint& point) {
   result.is_run = point.trace == nullptr;
   take_times(result, run);
   take_costs(result, run);
-  result.parts = {parts.stages(), request.cores, static_cast<double>(run.frames.size()),
+  result.parts = {cycle_parts(run), request.cores, static_cast<double>(run.frames.size()),
                   run.cluster_clock};
   result.unused = unused_accelerators(request.platform.config, result.parts.stages);
   return result;
