@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
+#include <new>
 #include <string_view>
 
 #include "sim/base/error.h"
@@ -148,7 +151,21 @@ int run_program(const Words& typed) {
   }
 }
 
+/// Given back when memory ends: what is unwound then may need some, as JSON documents do.
+std::atomic<char*> memory_reserve = new char[std::size_t{4} << 20];
+
+[[noreturn]] void end_memory() {
+  delete[] memory_reserve.exchange(nullptr);
+  throw std::bad_alloc();
+}
+
 }  // namespace
+
+int begin(const Words& typed) {
+  std::set_new_handler(end_memory);
+  return run_program(typed);
+}
+
 }  // namespace leviosim::tools
 
 int main(int argc, char** argv) {
@@ -157,7 +174,7 @@ int main(int argc, char** argv) {
   if (const auto width = leviosim::tools::terminal_width())
     leviosim::tools::set_table_width(*width);
   try {
-    return leviosim::tools::run_program(leviosim::tools::Words(argv + 1, argv + argc));
+    return leviosim::tools::begin(leviosim::tools::Words(argv + 1, argv + argc));
   } catch (const std::bad_alloc&) {  // while it was begun, or a message was made
     return leviosim::tools::fail_without_memory();
   }

@@ -72,6 +72,7 @@ int StagingFolder::write(const std::string& name, std::string_view bytes) {
   const FileState state = state_of_bytes(bytes);
   const std::lock_guard<std::mutex> guard(mutex_);
   reserve_ = Descriptor();
+  if (::faccessat(folder_.get(), name.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) return EEXIST;
   if (const int error = make_folders(name)) return error;
   Descriptor file;
   if (const int error = begin_file(file)) return error;
