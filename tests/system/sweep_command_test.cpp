@@ -124,8 +124,8 @@ TEST_F(SweepCommand, HoldsEveryPointAgainstABudget) {
       sweep({"--out", path("held"), "--budget", path("budgets.yaml")}, "whole");
   EXPECT_EQ(held.status, 1) << held.err;
   EXPECT_EQ(held.err, "");
-  // All that run are near point 1. Point 9 cannot run.
-  for (const char* part : {"9 points against ", ": 1 do not meet it", "cannot run"})
+  // All that run are near point 1. Two are too slow for the camera. Point 9 cannot run.
+  for (const char* part : {"9 points against ", ": 3 do not meet it", "cannot run"})
     EXPECT_NE(held.out.find(part), std::string::npos) << part << " is not in:\n" << held.out;
   EXPECT_NE(csv("held").find(",frame.latency.p99,"), std::string::npos);
   EXPECT_EQ(csv("whole").find(",frame.latency.p99,"), std::string::npos);

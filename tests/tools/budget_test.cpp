@@ -307,7 +307,8 @@ TEST(BudgetShares, AreShownAsTheirLimitIs) {
 TEST(Budget, HoldsVerdictsByTheirWords) {
   EXPECT_TRUE(check_budget(record_of(), one("time verdict <= fits on average"), nullptr).missed() ==
               0);
-  const CheckResult result = check_budget(record_of(), one("time verdict <= fits"), nullptr);
+  const Budget strict = one("time verdict <= fits");
+  const CheckResult result = check_budget(record_of(), strict, nullptr);
   ASSERT_EQ(result.missed(), 1u);  // one of five frames is late
   EXPECT_NE(result.findings[0].excess().find("fits on average"), std::string::npos)
       << result.findings[0].excess();
@@ -318,7 +319,8 @@ TEST(Budget, HoldsVerdictsByTheirWords) {
 TEST(Budget, NoVerdictMayBeTheWorstUnlessALimitAllowsIt) {
   RunResult run = example_run();
   run.ate->translation.rmse = 2.04;  // of 5.4 m
-  const CheckResult result = check_budget(record_of(run), one("L1 peak <= 64 kB"), nullptr);
+  const Budget silent = one("L1 peak <= 64 kB");
+  const CheckResult result = check_budget(record_of(run), silent, nullptr);
   ASSERT_EQ(result.missed(), 1u);
   EXPECT_EQ(result.findings.back().title(), "map verdict <= unreliable");
   EXPECT_EQ(check_budget(record_of(run), one("map verdict <= lost"), nullptr).missed(), 0u);

@@ -131,9 +131,12 @@ class BudgetReader {
 Budget parse_budget(const std::string& file, const std::string& text) {
   Budget budget = BudgetReader(file).read(text);
   budget.verdicts.name = "verdicts";
-  for (const char* limit :
-       {"time verdict <= fits on average", "memory verdict <= fits", "map verdict <= unreliable"})
-    budget.verdicts.limits.push_back(parse_limit(limit, platform::place_of(file, 1, "")));
+  for (const char* text_of_limit :
+       {"time verdict <= fits on average", "memory verdict <= fits", "map verdict <= unreliable"}) {
+    Limit& limit = budget.verdicts.limits.emplace_back(
+        parse_limit(text_of_limit, platform::place_of(file, 1, "")));
+    limit.file = file;
+  }
   return budget;
 }
 

@@ -44,7 +44,10 @@ std::string details(const Finding& f) {
          wrapped("reason:", f.limit->reason) + wrapped("owner:", f.limit->owner);
 }
 
-std::string place(const Finding& f) { return fmt::format("{}:{}", f.limit->file, f.limit->line); }
+std::string place(const Finding& f) {
+  return f.limit->line == 0 ? f.limit->file
+                            : fmt::format("{}:{}", f.limit->file, f.limit->line);
+}
 
 }  // namespace
 

@@ -330,7 +330,9 @@ RunFigures figures_of(const RunResult& run) {
 Json statistics(const RunResult& run) {
   Json list = list_of(run);
   StatisticList words;
-  add_verdicts(words, verdicts(figures_of(run)));
+  RunFigures figures = figures_of(run);
+  figures.map.scale.reset();  // replays do not know it
+  add_verdicts(words, verdicts(figures));
   for (Json& entry : words.take()) list.push_back(std::move(entry));
   return statistics_document(std::move(list));
 }

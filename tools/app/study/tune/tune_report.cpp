@@ -68,10 +68,12 @@ std::string lucky_text(const Choice& choice) {
 
 std::string choice_line(const Choice& choice) {
   const std::string rate = fmt::format("  {:g} frames/s: ", choice.fps);
-  if (choice.lowest == nullptr) return rate + "none of these clocks\n";
   const std::string lucky = lucky_text(choice);
-  return fmt::format("{}{}: {}{}{}\n", rate, clock_text(choice.lowest->setting),
-                     point_text(*choice.lowest), lucky.empty() ? "" : "\n    ", lucky);
+  const std::string chosen =
+      choice.lowest == nullptr ? "none of these clocks"
+                               : fmt::format("{}: {}", clock_text(choice.lowest->setting),
+                                             point_text(*choice.lowest));
+  return fmt::format("{}{}{}{}\n", rate, chosen, lucky.empty() ? "" : "\n    ", lucky);
 }
 
 Json banded_json(const std::optional<Banded>& figure) {
