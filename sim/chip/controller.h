@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/chip/config.h"
+#include "sim/chip/cost.h"
 #include "sim/chip/instruction_cache.h"
 #include "sim/chip/timing.h"
 #include "sim/events/kernel.h"
