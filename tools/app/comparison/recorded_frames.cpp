@@ -27,6 +27,8 @@ class Table {
  public:
   Table(const std::filesystem::path& file, const std::string& csv)
       : titles_(titles_of(csv)), reader_(file, base::Separator::comma, titles_, csv) {
+    if (csv.empty() || csv.back() != '\n')
+      throw InputError(fmt::format("{}: ends within a line: it was cut off", file.string()));
     reader_.next();  // the titles
   }
 
