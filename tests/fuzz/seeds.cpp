@@ -52,7 +52,8 @@ void write_traces(const fs::path& folder) {
                               list(1, stage(bytes({4, 4, 0, 8, 0, 0, 5, 0, 2, 0, 0,
                                                    0}))) +  // transfer, work, wait, fork
                               list(2, list(1, stage(list(1, bytes({3, 2, 64}))))))};
-  write_trace(folder, "version_1", parts.file());
+  parts.segments = 2 + parts.cores;
+  write_trace(folder, "by_hand", parts.file());
 }
 
 void write_images(const fs::path& folder) {

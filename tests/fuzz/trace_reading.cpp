@@ -39,7 +39,7 @@ void read_and_time(std::string bytes, int timed_frames) {
   const traces::WorkTrace trace("fuzzed.trace", std::move(bytes), kFuzzedTraceMemory);
   const int cores = trace.info().cores;
   std::optional<sim::Chip> chip;
-  traces::WorkFrames reader(trace, trace.has_offload());
+  traces::WorkFrames reader(trace, true);
   int frames = 0;
   for (traces::WorkFrame frame; reader.next(frame); ++frames) {
     if (cores > config.cluster.max_workers || frames >= timed_frames) continue;

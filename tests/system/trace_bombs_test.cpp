@@ -88,7 +88,7 @@ class TraceLimitsOfPrograms : public ::testing::Test {
 /// One frame of so many steps, each of the work segment in which one counter is so high.
 std::string heavy_trace(std::size_t steps, std::uint64_t count, work::Op op) {
   return trace_of_frame(gap9_parts(), list(1, constant_series(work::index(op), count)),
-                        frame(list(1, stage(list(steps, kSerial)))));
+                        frame(list(1, stage(list(steps, kSerial)))), steps);
 }
 
 TEST_F(TraceLimitsOfPrograms, AreRaisedByMaxMemory) {

@@ -18,10 +18,11 @@ struct TraceBomb {
   friend void PrintTo(const TraceBomb& bomb, std::ostream* out) { *out << bomb.name; }
 };
 
-/// With one section of one frame.
+/// With one section of one frame. @param segments  of work in it
 inline std::string trace_of_frame(TraceParts parts, const std::string& series,
-                                  const std::string& of_frame) {
+                                  const std::string& of_frame, std::size_t segments = 0) {
   parts.frames = {section(1, series, of_frame)};
+  parts.segments = segments;
   return parts.file();
 }
 
@@ -115,7 +116,8 @@ inline const TraceBomb kTraceBombs[] = {
      [](TraceParts whole) {
        whole.cores = 1023;
        return trace_of_frame(whole, kOneSeries,
-                             frame(list(1, stage(list(20'000, bytes({1, 0, 0}))))));
+                             frame(list(1, stage(list(20'000, bytes({1, 0, 0}))))),
+                             20'000 * whole.cores);
      }},
     {"OffloadRegions", "offload regions",
      [](TraceParts whole) {

@@ -15,16 +15,17 @@ void expect_refused(const std::string& file, std::initializer_list<std::string> 
   expect_input_error([&] { read_all(WorkTrace("t", file, memory)); }, parts);
 }
 
-std::string trace_of_stage(const std::string& steps) {
-  return trace_of_frame({}, kOneSeries, frame(list(1, stage(steps))));
+/// @param segments  of work in the steps
+std::string trace_of_stage(const std::string& steps, std::size_t segments = 0) {
+  return trace_of_frame({}, kOneSeries, frame(list(1, stage(steps))), segments);
 }
 
 TEST(TraceLimits, PartsMakeATrace) {
-  EXPECT_EQ(read_all(WorkTrace("t", trace_of_stage(list(3, kSerial)))), 1);
+  EXPECT_EQ(read_all(WorkTrace("t", trace_of_stage(list(3, kSerial), 3))), 1);
 }
 
 TEST(TraceLimits, AsksForTheMemoryAndSaysHowToAllowMore) {
-  const std::string file = trace_of_stage(list(20'000, kSerial));
+  const std::string file = trace_of_stage(list(20'000, kSerial), 20'000);
   expect_refused(
       file,
       {"t, frames 0 to 0", "byte ", "steps of a stage (20000)", "MiB of memory", "--max-memory"},
@@ -75,10 +76,10 @@ TEST(TraceLimits, AllFramesTogetherAreBounded) {
   parts.frames = {section(kFrames, kOneSeries, times(kFrames, forks))};
   const std::string file = parts.file();
   EXPECT_LT(file.size(), 5'000u);
-  expect_refused(
-      file, {"frames up to here", "1.0 GiB", "256 times the memory of 4.0 MiB", "--max-memory"},
-      Bytes(4 * kMiB));
-  EXPECT_EQ(read_all(WorkTrace("t", file, Bytes(16 * kMiB))), static_cast<int>(kFrames));
+  expect_input_error(
+      [&] { read_all(WorkTrace("t", file, Bytes(4 * kMiB)), false); },
+      {"frames up to here", "1.0 GiB", "256 times the memory of 4.0 MiB", "--max-memory"});
+  EXPECT_EQ(read_all(WorkTrace("t", file, Bytes(16 * kMiB)), false), static_cast<int>(kFrames));
 }
 
 TEST(TraceLimits, StagesOfOneNameAreManyOfDifferentNamesAreFew) {
@@ -160,7 +161,7 @@ TEST(TraceLimits, TheSizeOfASectionIsThatOfItsContent) {
   head.u32(static_cast<std::uint32_t>(stored.size()));
   head.u32(200'000'000);
   head.u32(crc_of(head.bytes(), stored));
-  const std::string file = file_head({"LEVIOWT\n", "a work trace", 2}) + head.take() + stored;
+  const std::string file = file_head(kWorkTraceFile) + head.take() + stored;
   // Compared before anything is allocated, so even with little memory it is not that which lacks.
   expect_refused(file, {"byte 16", "holds 1 bytes; expected 200000000"}, Bytes(kMiB));
 }

@@ -9,6 +9,7 @@
 #include "traces/work_traces/byte_stream.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
+#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::traces::testing {
 
@@ -47,7 +48,8 @@ struct TraceParts {
   std::vector<std::uint64_t> chunk_frames{1};
   std::string stamps = list(1, bytes({2}));
   std::vector<std::string> frames;   ///< contents of the sections of frames
-  std::vector<std::string> offload;  ///< of kernels; the file is of version 1 without
+  std::vector<std::string> offload;  ///< contents of those of kernels; empty: there are no kernels
+  std::size_t segments = 0;          ///< of work in each section of frames, where offload is empty
 
   std::string summary() const {
     ByteWriter out;
@@ -63,7 +65,11 @@ struct TraceParts {
     for (const work::OpInfo& op : work::kOps) out.text(op.name);
     out.whole(work::kReuseDistances.size());
     for (const std::uint32_t end : work::kReuseDistances) out.whole(end);
+    out.whole(work::kCompiledFor.size());
+    for (const std::string_view set : work::kCompiledFor) out.text(set);
+    out.whole(work::kCompiledCount);
     out.append(stages);
+    out.append(list(5, text("fact")));
     out.byte(0);  // no accuracy
     for (const std::string* part : {&names, &memories}) out.append(*part);
     out.whole(chunk_frames.size());
@@ -73,11 +79,11 @@ struct TraceParts {
   }
 
   std::string file() const {
-    const std::uint32_t version = offload.empty() ? 1 : 2;
-    std::string all = file_head({"LEVIOWT\n", "a work trace", version});
-    all += packed_section(summary(), 1);
+    std::string all = file_head(kWorkTraceFile) + packed_section(summary(), 1);
     for (const std::string& content : frames) all += packed_section(content, 1);
-    for (const std::string& content : offload) all += packed_section(content, 1);
+    const std::string no_kernels = text(list(0, "")) + text("") + std::string(segments, '\0');
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      all += packed_section(offload.empty() ? no_kernels : offload[i], 1);
     return all;
   }
 };

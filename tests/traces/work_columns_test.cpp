@@ -14,8 +14,8 @@ namespace {
 using work::Op;
 
 FileFields all_fields() {
-  FileFields fields{std::vector<std::size_t>(kCounters), {}};
-  std::iota(fields.counters.begin(), fields.counters.end(), 0);
+  FileFields fields(kCounters);
+  std::iota(fields.begin(), fields.end(), 0);
   return fields;
 }
 

@@ -179,9 +179,9 @@ inline void expect_equal(const WorkFrame& a, const WorkFrame& b) {
     expect_equal(a.iterations[i], b.iterations[i]);
 }
 
-/// Everything that a replay reads.
-inline int read_all(const WorkTrace& trace) {
-  WorkFrames reader(trace, trace.has_offload());
+/// Everything that a replay reads. @param offload  on a chip with accelerators
+inline int read_all(const WorkTrace& trace, bool offload = true) {
+  WorkFrames reader(trace, offload);
   int frames = 0;
   for (WorkFrame frame; reader.next(frame);) ++frames;
   return frames;

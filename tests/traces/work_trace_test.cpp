@@ -15,10 +15,10 @@ using testing::expect_input_error;
 using testing::read_all;
 
 constexpr int kHeadBytes = 16;
-constexpr std::uint32_t kVersion = 7;
 
 /// The container around other contents, with checksums that are right.
-std::string trace_of(const std::vector<std::string>& contents, std::uint32_t version = kVersion) {
+std::string trace_of(const std::vector<std::string>& contents,
+                     std::uint32_t version = kWorkTraceFile.version) {
   std::string file = file_head({"LEVIOWT\n", "a work trace", version});
   for (const std::string& content : contents) file += packed_section(content, 1);
   return file;
@@ -27,19 +27,8 @@ std::string trace_of(const std::vector<std::string>& contents, std::uint32_t ver
 std::vector<std::string> contents_of(const std::string& trace) {
   std::vector<std::string> contents;
   MemoryBudget budget(kTraceMemory);
-  for (const Section& section : sections_of({"LEVIOWT\n", "a work trace", kVersion}, "t", trace))
+  for (const Section& section : sections_of(kWorkTraceFile, "t", trace))
     contents.push_back(unpacked(section, "t", budget));
-  return contents;
-}
-
-/// The contents as version 2 had them: the summary does not name the facts of frames.
-std::vector<std::string> without_names_of_facts(std::vector<std::string> contents) {
-  ByteWriter names;
-  names.whole(testing::example_info().facts.size());
-  for (const std::string& name : testing::example_info().facts) names.text(name);
-  const std::size_t at = contents[0].find(names.bytes());
-  EXPECT_NE(at, std::string::npos);
-  contents[0].erase(at, names.bytes().size());
   return contents;
 }
 
@@ -107,61 +96,8 @@ void for_each_segment(WorkFrame& frame, Change change) {
       }
 }
 
-/// Compiled work of the first instruction set stands for all in files of version 5 and older.
-void take_first_set_for_all(work::Segment& segment) {
-  const auto first = work::compiled_of(segment.compiled, work::CompiledFor::Rv32imfc);
-  for (std::size_t set = 1; set < work::kCompiledFor.size(); ++set)
-    work::set_compiled(segment.compiled, static_cast<work::CompiledFor>(set), first);
-}
-
-/// What older files say: of code that is reused at a class of distances, half is of the next nearer
-/// class, and nothing is known of compiled work.
-WorkFrame of_older_file(WorkFrame frame) {
-  for_each_segment(frame, [](work::Segment& segment) {
-    segment.code[4] = segment.code[5] / 2;
-    segment.code[5] -= segment.code[4];
-    segment.compiled = {};
-  });
-  return frame;
-}
-
 std::filesystem::path golden_file(const std::string& name) {
   return leviosim::tests::source_folder() / "tests/traces/golden" / name;
-}
-
-/// A file of version 1, as it was first written; later programs read it too. Made by writing
-/// example_trace(5) to that file.
-TEST(WorkTrace, ReadsTheFileOfTheFirstVersion) {
-  const WorkTrace golden(golden_file("version_1.trace"));
-  ASSERT_EQ(golden.frames(), 5);
-  WorkFrames reader(golden);
-  WorkFrame frame;
-  for (int i = 0; reader.next(frame); ++i)
-    testing::expect_equal(frame, of_older_file(example_frame(i)));
-  EXPECT_FALSE(golden.has_offload());
-  expect_input_error([&] { WorkFrames(golden, true); },
-                     {"version_1.trace", "version 1", "offload regions", "record it again"});
-}
-
-TEST(WorkTrace, ReadsTheSecondVersion) {
-  const std::string third = base::read_text_file(golden_file("version_3.trace"));
-  const WorkTrace second("second", trace_of(without_names_of_facts(contents_of(third)), 2));
-  EXPECT_EQ(second.info().facts, testing::example_info().facts);
-  WorkFrames reader(second, true);
-  WorkFrame frame;
-  for (int i = 0; reader.next(frame); ++i)
-    testing::expect_equal(frame, of_older_file(testing::example_frame_with_offload(i)));
-}
-
-/// Made by writing example_trace_with_offload(5) to that file.
-TEST(WorkTrace, ReadsTheThirdVersion) {
-  const WorkTrace third(golden_file("version_3.trace"));
-  WorkFrames reader(third, true);
-  WorkFrame frame;
-  int frames = 0;
-  for (; reader.next(frame); ++frames)
-    testing::expect_equal(frame, of_older_file(testing::example_frame_with_offload(frames)));
-  EXPECT_EQ(frames, 5);
 }
 
 TEST(WorkTrace, KeepsFactsOfAnyNameAndNumber) {
@@ -212,80 +148,6 @@ TEST(WorkTrace, RefusesKernelsThatCannotBe) {
   refuse("eigen12", "eigen17", {"offload regions of frames 0 to 1", "'eigen17' is no kernel"});
   // Order of the kinds: 12 after Hamming is twice the same or out of order.
   refuse("eigen12", "hamming", {"comes twice"});
-}
-
-/// A file names its operations, so more of them make no other version.
-TEST(WorkTrace, ReadsTheFirstVersionWithMoreOperations) {
-  const WorkTrace golden(golden_file("version_1_46_operations.trace"));
-  WorkFrames reader(golden);
-  WorkFrame frame;
-  for (int i = 0; i < 5; ++i) {
-    ASSERT_TRUE(reader.next(frame));
-    testing::expect_equal(frame, of_older_file(example_frame(i)));
-  }
-}
-
-/// Made by writing example_trace_with_offload(5) to that file. Nothing is known of loops.
-TEST(WorkTrace, ReadsTheFourthVersion) {
-  const WorkTrace fourth(golden_file("version_4.trace"));
-  WorkFrames reader(fourth, true);
-  WorkFrame frame;
-  int frames = 0;
-  for (; reader.next(frame); ++frames) {
-    WorkFrame expected = testing::example_frame_with_offload(frames);
-    for_each_segment(expected, [](work::Segment& segment) {
-      for (const auto part : {work::Compiled::ExecutedLoops, work::Compiled::PricedLoops})
-        segment.compiled[static_cast<std::size_t>(part)] = 0;
-      take_first_set_for_all(segment);
-    });
-    testing::expect_equal(frame, expected);
-  }
-  EXPECT_EQ(frames, 5);
-}
-
-/// Made by writing example_trace_with_offload(5) to that file. It knows of one instruction set.
-TEST(WorkTrace, ReadsTheFifthVersion) {
-  const WorkTrace fifth(golden_file("version_5.trace"));
-  for (const std::optional<work::CompiledFor> code :
-       {std::optional<work::CompiledFor>(), std::optional(work::CompiledFor::Armv6)}) {
-    WorkFrames reader(fifth, true, code);
-    WorkFrame frame;
-    int frames = 0;
-    for (; reader.next(frame); ++frames) {
-      WorkFrame expected = testing::example_frame_with_offload(frames);
-      for_each_segment(expected, take_first_set_for_all);
-      testing::expect_equal(frame, expected);
-    }
-    EXPECT_EQ(frames, 5);
-  }
-}
-
-/// Likewise. It has no compiled work of RV32 with Xpulp.
-TEST(WorkTrace, ReadsTheSixthVersion) {
-  const WorkTrace sixth(golden_file("version_6.trace"));
-  constexpr auto kSet = work::CompiledFor::Rv32imfcXpulp;
-  for (const std::optional<work::CompiledFor> code :
-       {std::optional<work::CompiledFor>(), std::optional(kSet)}) {
-    WorkFrames reader(sixth, true, code);
-    WorkFrame frame;
-    int frames = 0;
-    for (; reader.next(frame); ++frames) {
-      WorkFrame expected = testing::example_frame_with_offload(frames);
-      for_each_segment(expected, [](work::Segment& segment) {
-        work::set_compiled(segment.compiled, kSet,
-                           work::compiled_of(segment.compiled, work::CompiledFor::Rv32imfc));
-      });
-      const auto keep_asked = [&](work::Segment& segment) {
-        const auto own = work::compiled_of(segment.compiled, kSet);
-        if (code) segment.compiled = {};
-        work::set_compiled(segment.compiled, kSet, own);
-      };
-      for_each_segment(expected, keep_asked);
-      for_each_segment(frame, keep_asked);
-      testing::expect_equal(frame, expected);
-    }
-    EXPECT_EQ(frames, 5);
-  }
 }
 
 TEST(WorkTrace, KeepsWhichForksAreAlignedOnOneCore) {
@@ -394,7 +256,9 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   std::string damaged = whole;
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
-  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 8", "up to 7", "newer"});
+  constexpr std::uint32_t kVersion = kWorkTraceFile.version;
+  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 8", "reads version 7", "newer"});
+  refuse(trace_of(contents_of(whole), kVersion - 1), {"version 6", "reads version 7", "again"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});

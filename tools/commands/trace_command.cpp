@@ -54,7 +54,7 @@ void show_trace(const traces::WorkTrace& trace, bool json) {
 /// Everything that replay reads, its platform too.
 void check_trace(const traces::WorkTrace& trace, bool json) {
   recorded_platform(trace);
-  traces::WorkFrames reader(trace, trace.has_offload());
+  traces::WorkFrames reader(trace, true);
   for (traces::WorkFrame frame; reader.next(frame);) {
   }
   const auto lines = [&] {

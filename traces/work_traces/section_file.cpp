@@ -35,10 +35,10 @@ void check_head(const FileKind& kind, const std::string& file, std::string_view 
   const std::uint32_t version = head.u32("version");
   if (head.u32("checksum") != crc_of(bytes.substr(0, kCoveredHead)))
     fail(file, kMagicSize, "the head does not match its checksum: the file is damaged");
-  if (version == 0 || version > kind.version)
-    throw InputError(fmt::format(
-        "{}: is {} of version {}; this leviosim reads versions up to {}: use a newer one", file,
-        kind.name, version, kind.version));
+  if (version != kind.version)
+    throw InputError(fmt::format("{}: is {} of version {}; this leviosim reads version {}: {}", file,
+                                 kind.name, version, kind.version,
+                                 version > kind.version ? "use a newer one" : "record it again"));
 }
 
 }  // namespace
@@ -58,12 +58,6 @@ std::string file_head(const FileKind& kind) {
   head.u32(kind.version);
   head.u32(crc_of(head.bytes()));
   return head.take();
-}
-
-std::uint32_t version_of(std::string_view bytes) {
-  const std::string place;
-  ByteReader head(bytes.substr(kMagicSize, 4), place);
-  return head.u32("version");
 }
 
 std::string packed_section(std::string_view content, int level) {

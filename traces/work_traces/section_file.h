@@ -6,8 +6,8 @@
 //             then what is stored: a zstd frame
 //   …         until the end of the file
 //
-// The head keeps its meaning in all versions, so that a program can tell a newer file from a
-// damaged one.
+// The head keeps its meaning in all versions, so that a program can tell a file of another version
+// from a damaged one.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace leviosim::traces {
 struct FileKind {
   std::string_view magic;  ///< 8 bytes
   const char* name;        ///< "a work trace"
-  std::uint32_t version;   ///< the one that is written, and the newest that is read
+  std::uint32_t version;   ///< the one that is written and read
 };
 
 /// Checksum of one text after the other.
@@ -41,13 +41,10 @@ struct Section {
 };
 
 /// All sections, their checksums compared. @param file  its name, for messages
-/// @throws InputError for another kind of file, a newer version, truncation and damage, with the
+/// @throws InputError for another kind of file, another version, truncation and damage, with the
 ///         byte of the file at which that shows
 std::vector<Section> sections_of(const FileKind& kind, const std::string& file,
                                  std::string_view bytes);
-
-/// Version that the head of a file names, of which sections_of() has read the sections.
-std::uint32_t version_of(std::string_view bytes);
 
 /// The content. @param budget  pays for it
 /// @throws InputError if the section does not decompress to the size that it states, and, before

@@ -110,8 +110,6 @@ class Dependences {
   std::vector<Row> reduced_;
 };
 
-/// In files of all versions.
-constexpr work::CompiledFor kFirstSet = work::CompiledFor::Rv32imfc;
 /// Of the chips that are asked for most.
 constexpr work::CompiledFor kMostReadSet = work::CompiledFor::Rv32imfcXpulp;
 
@@ -193,10 +191,9 @@ void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWr
 
 SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns, const FileFields& fields,
                            std::optional<work::CompiledFor> code)
-    : place_(&head.place()), not_measured_(fields.not_measured) {
+    : place_(&head.place()) {
   const auto field = [&](const char* what) {
-    return fields
-        .counters[static_cast<std::size_t>(head.whole_below(fields.counters.size(), what))];
+    return fields[static_cast<std::size_t>(head.whole_below(fields.size(), what))];
   };
   // Each counter has one column or sum at most, and a sum has each counter once: what a work
   // segment costs to read is bounded.
@@ -228,7 +225,7 @@ SeriesReader::SeriesReader(ByteReader& head, ByteReader& columns, const FileFiel
     sum.end_term = terms_.size();
     sums_.push_back(sum);
   }
-  if (code) leave_out_others(std::ranges::count(not_measured_, *code) ? kFirstSet : *code);
+  if (code) leave_out_others(*code);
 }
 
 /// Drops columns and sums of other instruction sets that nothing else is a sum of.
@@ -262,9 +259,6 @@ void SeriesReader::next(work::Counts& counts) {
   }
   first_ = false;
   counts = present_;
-  if (not_measured_.empty()) return;
-  const auto first = work::compiled_of(present_.compiled, kFirstSet);
-  for (const work::CompiledFor set : not_measured_) work::set_compiled(counts.compiled, set, first);
 }
 
 void SeriesReader::expect_end() {

@@ -30,12 +30,8 @@ inline std::uint64_t counter(const work::Counts& counts, std::size_t k) {
   return k < kFirstCompiled ? counts.code[k - work::kOpCount] : counts.compiled[k - kFirstCompiled];
 }
 
-/// What the counters of a file are in this program.
-struct FileFields {
-  std::vector<std::size_t> counters;
-  /// Instruction sets without compiled work in the file: that of the first one stands for theirs.
-  std::vector<work::CompiledFor> not_measured;
-};
+/// Which counter of this program each field of a file is.
+using FileFields = std::vector<std::size_t>;
 
 /// Appends the description of a series to `head`, its differences to `columns`.
 void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWriter& columns);
@@ -73,7 +69,6 @@ class SeriesReader {
 
   const std::string* place_;
   bool first_ = true;
-  std::vector<work::CompiledFor> not_measured_;
   work::Counts present_;
   std::vector<Column> columns_;
   std::vector<Term> terms_;

@@ -15,15 +15,6 @@ namespace {
 
 constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 31;
 
-/// Code that an older file has in the class that ends at its distance.
-void divide(work::CodeReuse& code) {
-  for (std::size_t k = 1; k < work::kReuseDistances.size(); ++k) {
-    const std::uint64_t nearer = code[k] / 2;
-    code[k - 1] += nearer;
-    code[k] -= nearer;
-  }
-}
-
 }  // namespace
 
 WorkFrames::WorkFrames(const WorkTrace& trace, bool offload, std::optional<work::CompiledFor> code)
@@ -31,13 +22,7 @@ WorkFrames::WorkFrames(const WorkTrace& trace, bool offload, std::optional<work:
       with_offload_(offload),
       code_(code),
       budget_(trace.budget()),
-      stage_names_(trace.names().size()) {
-  if (offload && !trace.has_offload())
-    throw InputError(
-        fmt::format("{}: is of version 1, which does not say what of the work was done in offload "
-                    "regions: record it again",
-                    trace.name()));
-}
+      stage_names_(trace.names().size()) {}
 
 bool WorkFrames::next(WorkFrame& frame) {
   throw_if_interrupted();
@@ -99,8 +84,8 @@ void WorkFrames::open_chunk(WorkFrame& frame) {
 void WorkFrames::open_offload(const WorkTrace::Chunk& chunk) {
   offload_place_ =
       fmt::format("{}, offload regions of frames {} to {} (section at byte {})", trace_->name(),
-                  chunk.first, chunk.first + chunk.frames - 1, chunk.offload->offset);
-  offload_content_ = unpacked(*chunk.offload, trace_->name(), budget_);
+                  chunk.first, chunk.first + chunk.frames - 1, chunk.offload.offset);
+  offload_content_ = unpacked(chunk.offload, trace_->name(), budget_);
   offload_text_ = ByteReader(offload_content_, offload_place_, &budget_);
   open_series(offload_text_, offload_series_);
 }
@@ -270,7 +255,6 @@ void WorkFrames::read_counts(std::uint64_t series, work::Segment& segment) {
   if (series >= series_.size()) [[unlikely]]
     text_.fail(fmt::format("a work segment is of series {}; there are {}", series, series_.size()));
   series_[series].next(segment);
-  if (!trace_->has_divided_reuse()) divide(segment.code);
   if (with_offload_) read_offload(segment);
 }
 

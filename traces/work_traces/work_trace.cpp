@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 
 #include "sim/base/check.h"
@@ -17,13 +16,6 @@
 namespace leviosim::traces {
 namespace {
 
-constexpr std::uint32_t kWithOffload = 2;
-constexpr std::uint32_t kWithNamesOfFacts = 3;
-constexpr std::uint32_t kWithDividedReuse = 4;     ///< and with compiled work
-constexpr std::uint32_t kWithInstructionSets = 6;  ///< of compiled work
-/// Of frames in files of older versions.
-constexpr std::array kOldFacts{"features", "world_matches", "frame_matches", "inliers",
-                               "landmarks"};
 constexpr int kFramesPerChunk = 32;
 constexpr int kLevel = 9;  ///< of zstd; higher ones take longer than the run for 2 % of size
 constexpr std::uint64_t kMostCores = 1024;
@@ -36,7 +28,7 @@ void write_texts(ByteWriter& out, const std::vector<std::string>& texts) {
   for (const std::string& text : texts) out.text(text);
 }
 
-/// What the counters of this version are called, and which code distances they mean.
+/// What the counters are called, and which code distances they mean.
 void write_fields(ByteWriter& out) {
   out.whole(work::kOpCount);
   for (const work::OpInfo& op : work::kOps) out.text(op.name);
@@ -124,37 +116,29 @@ std::size_t number_of(ByteReader& in, const Names& known, std::string_view what)
   return static_cast<std::size_t>(found - known.begin());
 }
 
-/// Appends the fields of compiled work. Files of older versions have that of one instruction set,
-/// others that of the instruction sets that were measured when they were written.
-void read_compiled_fields(ByteReader& in, std::uint32_t version, FileFields& fields) {
-  std::vector<std::size_t> sets{0};
-  if (version >= kWithInstructionSets) {
-    sets.resize(in.whole_below(work::kCompiledFor.size() + 1, "instruction sets"));
-    for (std::size_t& set : sets)
-      set = number_of(in, work::kCompiledFor, "work as compiled for instruction set");
-  }
-  for (std::size_t set = 0; set < work::kCompiledFor.size(); ++set)
-    if (std::find(sets.begin(), sets.end(), set) == sets.end())
-      fields.not_measured.push_back(static_cast<work::CompiledFor>(set));
-  const std::size_t kinds = in.whole_below(work::kCompiledCount + 1, "kinds of compiled work");
+/// Appends the fields of compiled work: of each instruction set, in any order.
+void read_compiled_fields(ByteReader& in, FileFields& fields) {
+  const auto expect = [&](std::size_t expected, const char* what) {
+    if (const std::uint64_t found = in.whole(what); found != expected)
+      in.fail(fmt::format("has {} {}; expected {}", found, what, expected));
+  };
+  expect(work::kCompiledFor.size(), "instruction sets");
+  std::vector<std::size_t> sets(work::kCompiledFor.size());
+  for (std::size_t& set : sets)
+    set = number_of(in, work::kCompiledFor, "work as compiled for instruction set");
+  expect(work::kCompiledCount, "kinds of compiled work");
   for (const std::size_t set : sets)
-    for (std::size_t k = 0; k < kinds; ++k)
-      fields.counters.push_back(kFirstCompiled + set * work::kCompiledCount + k);
+    for (std::size_t k = 0; k < work::kCompiledCount; ++k)
+      fields.push_back(kFirstCompiled + set * work::kCompiledCount + k);
 }
 
 /// Which counter each field of the file is.
-FileFields read_fields(ByteReader& in, std::uint32_t version) {
-  std::vector<std::string> known;
+FileFields read_fields(ByteReader& in) {
+  std::vector<std::string_view> known;
   for (const work::OpInfo& op : work::kOps) known.emplace_back(op.name);
-  FileFields result;
-  std::vector<std::size_t>& fields = result.counters;
-  for (std::uint64_t i = in.whole_below(work::kOpCount + 1, "operations"); i > 0; --i) {
-    const std::string name(in.text("the name of an operation"));
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end())
-      in.fail(fmt::format("counts operation '{}', which this leviosim does not know", name));
-    fields.push_back(static_cast<std::size_t>(found - known.begin()));
-  }
+  FileFields fields;
+  for (std::uint64_t i = in.whole_below(work::kOpCount + 1, "operations"); i > 0; --i)
+    fields.push_back(number_of(in, known, "operation"));
   const std::uint64_t classes = in.whole("classes of code reuse");
   if (classes != work::kReuseDistances.size())
     in.fail(fmt::format("has {} classes of code reuse; expected {}", classes,
@@ -163,12 +147,12 @@ FileFields read_fields(ByteReader& in, std::uint32_t version) {
     if (const std::uint64_t found = in.whole("the end of a class of code reuse"); found != end)
       in.fail(fmt::format("a class of code reuse ends at {} bytes; expected {}", found, end));
   for (std::size_t k = 0; k < work::kReuseClasses; ++k) fields.push_back(work::kOpCount + k);
-  if (version >= kWithDividedReuse) read_compiled_fields(in, version, result);
+  read_compiled_fields(in, fields);
   std::vector<std::size_t> sorted = fields;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    in.fail("names an operation twice");
-  return result;
+    in.fail("names an operation or an instruction set twice");
+  return fields;
 }
 
 Evaluation read_ate(ByteReader& in) {
@@ -234,8 +218,6 @@ WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
   if (sections.empty())
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",
                                  name_, bytes_.size()));
-  has_offload_ = version_of(bytes_) >= kWithOffload;
-  has_divided_reuse_ = version_of(bytes_) >= kWithDividedReuse;
   const std::string summary = unpacked(sections[0], name_, budget_);
   const std::string place =
       fmt::format("{}, summary (section at byte {})", name_, sections[0].offset);
@@ -265,32 +247,24 @@ void WorkTrace::read_summary(ByteReader& in) {
   info_.image_width = static_cast<int>(read_number(in, kLargestSide, "the width of an image"));
   info_.image_height = static_cast<int>(read_number(in, kLargestSide, "the height of an image"));
   info_.frame_period_ns = read_number(in, kLongestPeriod, "the frame period");
-  fields_ = read_fields(in, version_of(bytes_));
+  fields_ = read_fields(in);
   info_.stages.resize(in.whole_below(kMostStages + 1, "stages"));
   for (WorkTraceInfo::Stage& stage : info_.stages) {
     stage.name = in.text("the name of a stage");
     stage.unit = in.text("the unit of a stage");
     stage.on_controller = read_flag(in, "whether a stage runs on the controller");
   }
-  read_facts(in);
+  info_.facts.resize(in.whole_below(kMostFacts + 1, "facts of frames"));
+  for (std::string& fact : info_.facts) fact = in.text("the name of a fact");
   if (read_flag(in, "whether the accuracy is known")) info_.ate = read_ate(in);
   names_ = read_names(in);
   info_.l2 = read_l2(in, names_);
 }
 
-void WorkTrace::read_facts(ByteReader& in) {
-  if (version_of(bytes_) < kWithNamesOfFacts) {
-    info_.facts.assign(kOldFacts.begin(), kOldFacts.end());
-    return;
-  }
-  info_.facts.resize(in.whole_below(kMostFacts + 1, "facts of frames"));
-  for (std::string& fact : info_.facts) fact = in.text("the name of a fact");
-}
-
 void WorkTrace::read_chunks(ByteReader& in, const std::vector<Section>& sections) {
   int frames = 0;
   const std::size_t chunks = in.count("sections of frames", sizeof(Chunk));
-  const std::size_t expected = has_offload_ ? 2 * chunks : chunks;
+  const std::size_t expected = 2 * chunks;
   if (expected + 1 != sections.size())
     throw InputError(fmt::format(
         "{}, byte {}: the file ends after {} sections of frames; expected {}: it is truncated",
@@ -298,8 +272,7 @@ void WorkTrace::read_chunks(ByteReader& in, const std::vector<Section>& sections
   for (std::size_t i = 0; i < chunks; ++i) {
     const auto n = static_cast<int>(read_number(in, 1 << 16, "frames of a section"));
     if (n == 0) in.fail("a section without frames");
-    chunks_.push_back({frames, n, sections[i + 1], {}});
-    if (has_offload_) chunks_.back().offload = sections[i + 1 + chunks];
+    chunks_.push_back({frames, n, sections[i + 1], sections[i + 1 + chunks]});
     frames += n;
     if (static_cast<std::size_t>(frames) > in.left()) in.fail("more frames than time stamps");
   }

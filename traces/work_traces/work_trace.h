@@ -89,7 +89,7 @@ class WorkTrace {
  public:
   /// Reads the file and compares all checksums.
   /// @param memory  that the file and everything that is read from it may take at any time
-  /// @throws InputError for anything that is no whole work trace of a version that is known, and if
+  /// @throws InputError for anything that is no whole work trace of this version, and if
   ///         the memory does not suffice
   explicit WorkTrace(const std::filesystem::path& file, Bytes memory = kTraceMemory);
   /// Opens a work trace from its bytes; `name` is for messages.
@@ -101,11 +101,6 @@ class WorkTrace {
   const WorkTraceInfo& info() const { return info_; }
   int frames() const { return static_cast<int>(info_.stamps_ns.size()); }
   const std::vector<std::string>& names() const { return names_; }
-  /// Whether it says what of the work was done in offload regions: those of version 1 do not.
-  bool has_offload() const { return has_offload_; }
-  /// Whether code is divided between the two nearest classes of reuse: up to version 3 it is in the
-  /// next farther one.
-  bool has_divided_reuse() const { return has_divided_reuse_; }
   std::size_t file_size() const { return bytes_.size(); }
   /// Memory that is allowed, and used by what is the same for all frames.
   const MemoryBudget& budget() const { return budget_; }
@@ -115,15 +110,13 @@ class WorkTrace {
     int first = 0;
     int frames = 0;
     Section section;
-    std::optional<Section> offload;  ///< offload regions in the frames
+    Section offload;  ///< offload regions in the frames
   };
   const std::vector<Chunk>& chunks() const { return chunks_; }
-  /// Which counter of work::Counts (operations, then classes of reuse) a field of the file is.
   const FileFields& fields() const { return fields_; }
 
  private:
   void read_summary(ByteReader& in);
-  void read_facts(ByteReader& in);
   void read_chunks(ByteReader& in, const std::vector<Section>& sections);
 
   std::string name_;
@@ -133,8 +126,6 @@ class WorkTrace {
   std::vector<std::string> names_;
   FileFields fields_;
   std::vector<Chunk> chunks_;
-  bool has_offload_ = false;
-  bool has_divided_reuse_ = false;
 };
 
 /// Makes a trace of frames that are given in order.

@@ -31,15 +31,13 @@ void whole(const Json& number, Whole& value) {
   if (!number.is_number_integer() || number != value) throw std::out_of_range("no whole number");
 }
 
-void check_format(const std::string& where, const Json& document, const char* format, int newest) {
+void check_format(const std::string& where, const Json& document, const char* format, int known) {
   if (document.value("format", "") != format)
     throw InputError(fmt::format("{}: no {}", where, format));
   const int version = document.value("version", 0);
-  if (version < 1 || version > newest)
-    throw InputError(
-        fmt::format("{}: {} of version {}, which this leviosim does not know; "
-                    "expected 1 to {}",
-                    where, format, version, newest));
+  if (version != known)
+    throw InputError(fmt::format("{}: {} of version {}; this leviosim reads version {}: run it again",
+                                 where, format, version, known));
 }
 
 std::vector<std::pair<std::string, std::string>> digests(const Json& inputs) {

@@ -11,8 +11,8 @@ namespace leviosim::tools {
 
 using Json = nlohmann::ordered_json;
 
-/// Of statistics documents; it rises with every statistic that is added. Those of all versions up
-/// to this one can be read.
+/// Of statistics documents: the one that is written and read. It rises with every statistic that is
+/// added.
 inline constexpr int kStatisticsVersion = 4;
 
 /// The text of any document. Bytes that are no UTF-8, which names of files may have, are replaced

@@ -11,9 +11,8 @@
 
 namespace leviosim::tools {
 
-/// Of manifests, and so of run folders. It rises when a file of the folder gets other columns.
-/// Those of all versions up to this one can be read.
-///   2  cycles of each stage in frames.csv, the breakdown on one core in stages.csv, errors.csv
+/// Of manifests, and so of run folders: the one that is written and read. It rises when a file of
+/// the folder gets other columns.
 inline constexpr int kManifestVersion = 2;
 
 struct Manifest {

@@ -33,7 +33,7 @@ double operations(const work::Counts& counts) {
 class Contents {
  public:
   explicit Contents(const traces::WorkTrace& trace) {
-    traces::WorkFrames reader(trace, trace.has_offload());
+    traces::WorkFrames reader(trace, true);
     for (traces::WorkFrame frame; reader.next(frame);) {
       keyframes += frame.keyframe;
       optimised += frame.optimised;
@@ -111,8 +111,7 @@ std::string stage_table(const traces::WorkTrace& trace, const Contents& contents
 }
 
 /// What an accelerator might serve.
-std::string kernel_line(const traces::WorkTrace& trace, const Contents& contents) {
-  if (!trace.has_offload()) return "offload regions are not in it: version 1\n";
+std::string kernel_line(const Contents& contents) {
   std::string text;
   for (const work::OffloadWork& calls : contents.offload.offload)
     text += fmt::format(
@@ -143,7 +142,7 @@ std::string trace_summary(const traces::WorkTrace& trace) {
              contents.optimised, contents.iterations, contents.busy, size * 1e-3,
              size * 1e-3 / frames, static_cast<double>(all.segments) / frames,
              size / static_cast<double>(std::max(all.segments, std::int64_t{1}))) +
-         stage_table(trace, contents) + kernel_line(trace, contents);
+         stage_table(trace, contents) + kernel_line(contents);
 }
 
 }  // namespace leviosim::tools
