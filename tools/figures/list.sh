@@ -130,7 +130,7 @@ cut 'sed "/^  /d" | table sequence profile runs "absolute [m]" "least … greate
 figure flights-recorded
 needs data slow
 shows 'leviosim benchmark-flights recorded --motions euroc --out real'
-cut 'sed "/^  /d" | table profile profile set pieces "ATE %" "of pieces" "worst %" diverged'
+cut 'sed "/^  /d" | table profile profile piece set pieces "ATE %" "of pieces" "worst %" diverged'
 
 # platform_models/CHIPS.md
 figure chips
