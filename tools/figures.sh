@@ -8,8 +8,8 @@
 # --check changes nothing, and names the figures that are stale: exit status 1 if there are any.
 # Figures that take minutes are left out unless they are named or --slow is given; --check leaves out photos of
 # pages (Chromium), which differ from version to version. DIR is the folder
-# that contains euroc/ and euroc_motion/ [LEVIOSIM_DATA, else ../shared/data]; figures that need one of
-# them are left out where it is absent. FILE is the leviosim to run [build/release/leviosim].
+# that contains euroc/ [LEVIOSIM_DATA, else ../shared/data]; figures that need it are left out where it is
+# absent. FILE is the leviosim to run [build/release/leviosim].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source tools/figures/cut.sh
@@ -21,9 +21,9 @@ figure() { # figure NAME: the following lines are about it
   names+=("$name")
   needs[$name]=
 }
-needs() { needs[$name]="$*"; }  # data, motions, slow, aha
+needs() { needs[$name]="$*"; }  # data, slow, aha
 after() { after[$name]=$1; }    # a command that makes what the figure's command reads; not shown
-shows() { command[$name]=$1; }  # the command; it runs in an empty folder beside euroc/ and euroc_motion/
+shows() { command[$name]=$1; }  # the command; it runs in an empty folder beside euroc/
 cut() { cut[$name]=$1; }        # the part of its output that is shown: functions of cut.sh
 keeps() { result[$name]=$1; }   # a picture that the command makes, kept as tools/figures/NAME.svg
 # photo WIDTHxHEIGHT PAGE: how a browser shows a page that the command makes, kept as NAME.png
@@ -92,9 +92,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" "$work/outputs" "$work/folder"
 ln -s "$(realpath "$leviosim")" "$work/bin/leviosim"
-for folder in euroc euroc_motion; do
-  if [[ -d $data/$folder ]]; then ln -s "$(realpath "$data/$folder")" "$work/folder/$folder"; fi
-done
+if [[ -d $data/euroc ]]; then ln -s "$(realpath "$data/euroc")" "$work/folder/euroc"; fi
 
 # Runs a command once, however many figures show parts of what it prints; the name of its output.
 output_of() { # output_of NAME COMMAND
@@ -169,10 +167,6 @@ for name in "${names[@]}"; do
   fi
   if [[ " ${needs[$name]} " == *" data "* && ! -d $data/euroc ]]; then
     echo "figures: $name left out: there is no $data/euroc"
-    continue
-  fi
-  if [[ " ${needs[$name]} " == *" motions "* && ! -d $data/euroc_motion ]]; then
-    echo "figures: $name left out: there is no $data/euroc_motion"
     continue
   fi
   if [[ " ${needs[$name]} " == *" aha "* ]] && ! command -v aha >/dev/null; then

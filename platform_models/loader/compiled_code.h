@@ -21,7 +21,7 @@ const work::CodeMap& compiled_code();
 /// the pieces that are in both.
 double size_of_code(work::CompiledFor set);
 
-/// Of the table code/NAME.csv; what it executes is told as that of kCompiledCode.
+/// Of the table code/NAME.csv; what it executes is described at kCompiledCode.
 /// @throws InputError with the tables that there are if there is none of this name
 work::CodeMap code_map_named(std::string_view name);
 

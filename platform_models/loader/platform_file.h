@@ -56,7 +56,7 @@ class PlatformFile {
 
 /// What the chip is, whatever its file looks like: a line per parameter in base units. Ends of a
 /// range count where the chip depends on them (Field::set_band). Platforms of the same lines time
-/// and price work alike.
+/// and time work alike.
 std::string canonical_text(const Schema& schema, const ResolvedPlatform& platform);
 
 }  // namespace leviosim::platform

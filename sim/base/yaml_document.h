@@ -1,7 +1,7 @@
 // One YAML document as a tree. The text may come from anybody: its size, the depth of nesting and
 // the number of values are bounded, and every fault is one message with its line.
 // Keys are single words of which none occurs twice in a mapping. Values stay text: what they mean
-// is the reader's business; only an empty value, ~ and null are told apart.
+// is the reader's business; only an empty value, ~ and null are distinguished.
 // Left out: anchors and aliases, tags other than YAML's own, more than one document; all of them
 // are refused.
 #pragma once

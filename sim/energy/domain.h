@@ -1,4 +1,4 @@
-// The parts of a chip that energy is told apart by. Together they are the chip.
+// The parts of a chip by which energy is reported. Together they are the chip.
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 // A rate below the recorded one takes every (recorded/asked)-th frame, rounded to the nearest where
 // that is no whole number; the frames then come at even intervals, as of a camera of that rate, and
 // each picture is up to half a recorded period older or younger than its arrival. The estimator is
-// told when the picture was taken, so that its IMU samples fit it.
+// given the time at which the picture was taken, so that its IMU samples fit it.
 //
 // Leaves out: exposure and readout (a frame is there in an instant, and with it the IMU samples up
 // to it), and that the front end could give its buffer back once features are extracted.

@@ -19,7 +19,7 @@ class JobTimer {
   /// A job of the optimiser, on the controller.
   sim::JobTiming optimiser(const work::Job& job);
 
-  /// Whole cycles of the cluster from the controller's call until it is told of the end.
+  /// Whole cycles of the cluster from the controller's call until it is notified of the end.
   Cycles front_end_cycles(const sim::JobTiming& timing) {
     return chip_.cluster().clock().whole_cycles(timing.end - timing.begin);
   }

@@ -2,7 +2,7 @@
 // cache still holds them, whatever its size. A *reuse distance* is the number of distinct bytes of
 // code that a core walked through since it was last in a piece of code, that piece included
 // (Mattson's stack distance, in bytes). Work carries a histogram of it, so that a recorded work
-// segment can be priced for any cache, and two work segments can be added.
+// segment can be timed for any cache, and two work segments can be added.
 //
 // The histogram has a class at each of some distances. What is fetched at a distance between two of
 // them is divided between both, so that its mean distance is kept: code that grows by a few per

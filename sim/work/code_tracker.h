@@ -6,7 +6,7 @@
 // fetched the same pieces in the same order. That order, with the functions entered, is therefore a
 // *state*, and what a window of events fetches is remembered with its step from state to state, as
 // lazily built automata of regular expressions do. The states are a memory only: without them the
-// same bytes are counted, at many times the cost. Windows are told apart by a hash of 64 bits.
+// same bytes are counted, at many times the cost. Windows are identified by a hash of 64 bits.
 // Cores execute the same program, so they share the states.
 //
 // Left out: code outside of named functions, and the order of fetches within a piece. Small loops

@@ -1,6 +1,6 @@
 // What the compiled form of functions executes beside what was counted in them. A function's visit
 // has means that were measured once (platform_models/code/); the sums of these means over the
-// visits of a work segment give its *ratios*: executed instructions to counted ones at the prices
+// visits of a work segment give its *ratios*: executed instructions to counted ones at the costs
 // of a plain instruction set, and loads whose value the next instruction needs to all loads. What
 // repeats loops has a ratio of its own, for a compiler that writes a loop out spares just that, and
 // a core with hardware loops does not pay it. The counts of the segment stay what they are.

@@ -1,5 +1,5 @@
 // Packed integers of 32 bits: two of 16 or four of 8. What a workload written for a core with SIMD
-// instructions uses; other instruction sets price the same operations as sequences.
+// instructions uses; other instruction sets cost the same operations as sequences.
 //
 //   work::I8x4<P> a = x[i], b = w[i];
 //   sum = work::dot(a, b, sum);             // one simd_dot

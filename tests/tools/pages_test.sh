@@ -98,6 +98,12 @@ expect 0 '0 faults' tools/check_pages.sh
 printf 'word%.0s ' {1..901} >README.md
 expect 1 'has 901 words' tools/check_pages.sh
 : >README.md
+printf 'word%.0s ' {1..3001} >sim/VALIDATION.md
+expect 1 'sim/VALIDATION.md has 3001 words, more than 3000' tools/check_pages.sh
+rm sim/VALIDATION.md
+printf 'word%.0s ' {1..601} >CHANGELOG.md
+expect 1 'CHANGELOG.md has 601 words' tools/check_pages.sh
+rm CHANGELOG.md
 printf 'line%.0s\n' {1..41} >sim/README.md
 expect 1 'sim/README.md has 41 lines' tools/check_pages.sh
 rm sim/README.md

@@ -51,3 +51,10 @@ first() { awk -v most="$1" 'NR <= most { print } NR == most + 1 { print "…" }'
 
 # narrow N: lines of N characters at most; what is cut off is …
 narrow() { perl -CSD -Mutf8 -ne 'chomp; print length > '"$1"' ? substr($_, 0, '"$1"' - 1) . "…" : $_, "\n"'; }
+
+# outside_tolerance: of the rows of microbench, those that are marked, each below its kernel.
+outside_tolerance() {
+  awk '/cores  unit/ { if (!header++) print; next }
+    !/!$/ && !/  [18]  / { kernel = $0; next }
+    /!$/ { if (kernel) print kernel; kernel = ""; print }'
+}

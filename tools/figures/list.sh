@@ -1,6 +1,5 @@
 # The figures of the pages: tools/figures.sh reads this file and says what its words mean. `data` are
-# 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `motions` are recorded motions,
-# euroc_motion/ beside them; `slow` takes minutes.
+# 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `slow` takes minutes.
 # Tables have all their columns: 1000 fit.
 # No figure shows the host's times, the commit, or anything else that differs from run to run.
 
@@ -46,17 +45,12 @@ cut 'table stage'
 figure paper-others
 needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
-cut 'table quantity'
-
-figure paper-inputs
-needs data
-shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
-cut 'table "input, mean"'
+cut 'table quantity quantity unit paper simulated error within | grep -v occupation'
 
 figure paper-units
 needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
-cut 'table "cycles of"'
+cut 'table "cycles of" | sed "/^How to read/,\$d"'
 
 figure paper-paths
 needs data
@@ -79,16 +73,10 @@ shows 'leviosim run --platform gap9 -p workload.released=on --data euroc/MH_01_e
       --tables all --out released'
 cut 'sed "1,/^where the core-cycles go/d" | table stage stage useful I-cache FPU divider banks imbalance transfer serial'
 
-figure latency
-needs data
-shows 'leviosim run --platform gap9 -p workload.released=on --data euroc/MH_01_easy_t05_t20 \
-      --tables all --out released'
-cut 'table "pose from"'
-
 figure sensitivity
 needs data
 shows 'leviosim sensitivity --data euroc/MH_01_easy_t05_t20 --frames 0:100'
-cut 'table number number confidence value range frame optimiser | first 14'
+cut 'table number number confidence value range frame optimiser | first 10'
 
 figure bands
 needs data
@@ -98,7 +86,7 @@ cut 'sed -n "/^a mean call/,/^changing/p" | grep -v "^changing"'
 figure calibrate
 needs data
 shows 'leviosim calibrate --data euroc/MH_01_easy_t05_t20 --constants isa.instruction_overhead'
-cut 'sed -n "/^constant/,/^mean/p; /^stage, left/,/^mean/p"'
+cut 'sed -n "/^constants,/,/^$/p; /^stage, left/,/^mean/p"'
 
 figure microbench
 shows 'leviosim microbench'
@@ -106,7 +94,7 @@ cut 'lines "^GAP.: "'
 
 figure gap8-board
 shows 'leviosim microbench'
-cut 'sed "1,/^GAP9: /d; /^GAP8: /d; /^─/d; /^$/d; s/  *\(SDK-12\|source\).*//" | awk "!/cores  unit/ || !header++"'
+cut 'sed "1,/^GAP9: /d; /^GAP8: /d; /^─/d; /^$/d; s/  *\(SDK-12\|source\).*//" | outside_tolerance'
 
 # workload/ACCURACY.md
 figure next-stages
@@ -129,25 +117,20 @@ needs data
 shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --tables all --out next'
 cut 'table peak | rows ^feature ^triangulation "L2  "'
 
-figure flights-mid-air
-needs motions slow
-shows 'leviosim benchmark-flights mid-air --motions euroc_motion --out flown'
-cut 'sed "/^  /d" | table profile profile set motion pieces "ATE %" "of pieces" "of seeds" "worst %" diverged'
+figure seeds
+needs data
+shows 'leviosim ablate --data euroc/MH_01_easy_t05_t20 --profile levio,next --seed 1,2,3,4,5,6,7,8 --out seeds'
+cut 'sed "/^  /d" | table sequence profile runs "absolute [m]" "least … greatest"'
 
-figure flights-mid-air-notes
-needs motions slow
-shows 'leviosim benchmark-flights mid-air --motions euroc_motion --out flown'
-cut 'lines "^  of pieces" "^  a piece"'
+figure ablation
+needs data
+shows 'leviosim ablate --data euroc/MH_01_easy_t05_t20 --align sim3 --relative 2 --out ablated'
+cut 'sed "/^  /d" | table sequence profile runs "absolute [m]" "least … greatest"'
 
-figure flights-mid-air-long
-needs motions slow
-shows 'leviosim benchmark-flights mid-air-long --motions euroc_motion --out flown-long'
-cut 'sed "/^  /d" | table profile profile set motion pieces "ATE %" "of pieces" "of seeds" "worst %" scale "σ %" diverged restarts'
-
-figure flights-whole
-needs motions slow
-shows 'leviosim benchmark-flights whole-flights --motions euroc_motion --out whole'
-cut 'sed "/^  /d" | table profile profile set motion pieces "ATE m" "worst m" "ATE %" scale "σ %" diverged restarts'
+figure flights-recorded
+needs data slow
+shows 'leviosim benchmark-flights recorded --motions euroc --out real'
+cut 'sed "/^  /d" | table profile profile piece set pieces "ATE %" "of pieces" "worst %" diverged'
 
 # platform_models/CHIPS.md
 figure chips

@@ -17,7 +17,7 @@ struct ScaleWindows {
 
 /// Scale of the estimate over the truth in each window that counts: the factor which brings the
 /// true positions closest to the estimated ones (alignment.h). Windows follow one another from the
-/// first matched pose on. What is left at the end is none, but a flight that is shorter than a
+/// first matched pose on. What is left at the end is dropped, but a flight that is shorter than a
 /// window is one as a whole. Whatever scale the evaluation applied is taken back. For poses with
 /// time stamps.
 std::vector<double> scales_in_windows(const Evaluation& evaluation, const ScaleWindows& how = {});

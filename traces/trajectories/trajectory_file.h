@@ -1,4 +1,4 @@
-// Trajectories as people have them: TUM, EuRoC or KITTI files, told apart by their content, or a
+// Trajectories as people have them: TUM, EuRoC or KITTI files, recognised by their content, or a
 // folder that holds one.
 #pragma once
 

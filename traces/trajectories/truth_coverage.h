@@ -1,4 +1,4 @@
-// Whether the accuracy of poses could be told before they are estimated.
+// Whether the accuracy of poses can be evaluated, before they are estimated.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace leviosim::traces {
 
-/// Throws InputError if no accuracy could be told of poses at these times: there is ground truth,
+/// Throws InputError if the accuracy of poses at these times is unknown: there is ground truth,
 /// but fewer than three stamps have a true pose that is close enough (EvaluationOptions). Passes
 /// where there is no truth, or fewer than three stamps.
 void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stamps_ns);

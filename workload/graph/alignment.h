@@ -46,7 +46,7 @@ struct AlignmentOptions {
   float full_uncertainty = 4;     ///< times that, where the window has no room for more keyframes
   float max_surprise = 3;         ///< standard deviations of velocity, biases and gravity in all
   float min_explained = 0.7f;     ///< share of the landmarks that agree with the alignment
-  int min_landmarks = 30;         ///< that do and whose distance is told
+  int min_landmarks = 30;         ///< that do and whose distance is known
   // Of the starts that are compared.
   float same_scale = 1.2f;  ///< ratio of the lengths of two paths below which they are one solution
   /// Half a chi-square: of two solutions whose costs differ by less, neither is known to be right.
@@ -73,7 +73,7 @@ struct AlignmentState {
 
 /// One iteration on a snapshot of at least two keyframes; changes poses, velocities and points of
 /// `window.state`, and `window.bias`. Position and heading of the first keyframe stay. Landmarks
-/// that no place explains, or whose distance is not told, are marked as lost.
+/// that no position explains, or whose distance is unknown, are marked as lost.
 /// @param afresh  forgets what has been found: no velocity, no biases, gravity opposes the mean
 ///                force, all landmarks at the mean inverse depth
 /// Must run in a stage of `fc`, whose local memory it uses for some tens of kB, freed on return.

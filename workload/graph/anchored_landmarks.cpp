@@ -257,7 +257,7 @@ typename AnchoredLandmarks<P>::Verdict AnchoredLandmarks<P>::judge(
     const Window<P>& window, const CarriedPoses<P>& poses) const {
   const typename P::Function function("judge_landmarks");
   constexpr float kErrors = 3;    // standard deviations of an observation that is explained
-  constexpr float kDistance = 2;  // standard deviations of an inverse depth that is told
+  constexpr float kDistance = 2;  // standard deviations of an inverse depth that is known
   const F limit = F(kErrors * kErrors) / model_.information * F(2.0f);
   Verdict verdict{0, 0};
   for (int i : P::range(0, window.landmarks)) {

@@ -57,8 +57,8 @@ class AnchoredLandmarks {
   F add(const Window<P>& window, const CarriedPoses<P>& poses,
         const ReducedSystem<P>& system) const;
 
-  /// Marks those as lost that do not explain their observations, or whose distance is not told.
-  /// @return the numbers of those that explain them, and of those whose distance is told as well
+  /// Marks those as lost that do not explain their observations, or whose distance is unknown.
+  /// @return the numbers of those that explain them, and of those whose distance is known as well
   struct Verdict {
     int explained, told;
   };

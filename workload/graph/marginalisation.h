@@ -73,8 +73,8 @@ struct WindowPrior {
   ImuBias<P> bias = ImuBias<P>::zero();
 };
 
-/// The prior of a window that begins with the very first keyframe. That it began at rest is told by
-/// the window's prior of the gyro's bias, which knows more then.
+/// The prior of a window that begins with the very first keyframe. It began at rest if the
+/// window's prior of the gyro's bias says so, which is tighter then.
 template <class P>
 void start_prior(const Window<P>& window, const PriorOptions& options, WindowPrior<P>& prior);
 

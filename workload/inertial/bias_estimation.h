@@ -3,7 +3,7 @@
 //
 // Gyro: the rotation residuals of the window's intervals, weighted with the variance of each.
 // Accelerometer: the velocity residuals, weighted with their variance and the uncertainty of
-// gravity, from which a bias can hardly be told; off unless asked for.
+// gravity, from which a bias is hardly observable; off unless asked for.
 // Both are held to a prior: what the intervals that have left the window said, each once. Its
 // information grows by theirs, and the random walk between them takes some away. A window is
 // estimated again after every frame, and so the prior must not be the estimate before: the same

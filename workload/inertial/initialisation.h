@@ -143,7 +143,7 @@ class StillnessDetector {
   }
 
   /// If still: with the means of the older half of the batches, so that a motion which has begun,
-  /// but is not told from rest yet, is not taken for a bias. Call as evaluate().
+  /// but is not distinguished from rest yet, is not taken for a bias. Call as evaluate().
   Stillness<P> without_recent(const Stillness<P>& seen) const {
     Vec3<P> gyro{0.0f, 0.0f, 0.0f}, accel{0.0f, 0.0f, 0.0f};
     F samples = 0.0f;

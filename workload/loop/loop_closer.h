@@ -65,7 +65,7 @@ class LoopCloser {
   /// The odometry began another map: the path since then is uncertain.
   void doubt();
 
-  /// Whether a loop was ever closed; until then the correction is none.
+  /// Whether a loop was ever closed; until then there is no correction.
   bool has_closed() const { return closed_; }
   /// T_world_camera, dt [s] after the last call.
   Pose<P> corrected(const Pose<P>& T_odometry_camera, float dt);

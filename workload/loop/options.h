@@ -12,7 +12,7 @@ struct PlaceOptions {
   int min_observations = 2;   ///< of a feature's landmark, in the window of keyframes
   float min_distance = 0.3f;  ///< to the place before, m …
   float min_turn = 0.3f;      ///< … or angle between the optical axes, rad
-  float metres_per_rad = 1;   ///< of a turn, where places are told near or far
+  float metres_per_rad = 1;   ///< of a turn, when distances to places are compared
 };
 
 /// Which views are looked at, and which places they are compared with.

@@ -1,6 +1,6 @@
 // The pose of a camera whose vertical is known, from matches of points with pixels. It has four
 // unknowns, so two points fix it: RANSAC over pairs of matches, and Gauss–Newton on the
-// reprojection errors of many. A match that only a tilted camera would see is none.
+// reprojection errors of many. A match that only a tilted camera would see is rejected.
 //
 // Points are relative to some origin, in axes with z up; the view has axes of its own, with z up
 // likewise and the camera as origin. Unknown is x → Rz(yaw) x + t from the former to the latter.

@@ -1,5 +1,5 @@
 // How far the features have moved since the last keyframe, from which a frame that becomes a
-// keyframe is told.
+// keyframe is known.
 #pragma once
 
 #include <optional>

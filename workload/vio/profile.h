@@ -41,7 +41,7 @@ struct RecoveryOptions {
   float max_accel_bias = 3;   ///< m/s²
   float max_correction = 1;   ///< that the optimiser may have made since the last frame, m
   /// An 8-point pose whose rotation differs by more from the gyro's, but for the largest bias since
-  /// the keyframe, is none, rad.
+  /// the keyframe, is rejected, rad.
   float max_gyro_difference = 0.05f;
 };
 
@@ -54,7 +54,7 @@ struct RestOptions {
   /// seen. Below it the camera has not moved, whatever the IMU says.
   float image_motion = 0.006f;
   float image_time = 1;       ///< for which the images must show it to say that it rests [s]
-  float wrong_match = 0.03f;  ///< a match that moved farther is none, in normalised coordinates
+  float wrong_match = 0.03f;  ///< a match that moved farther is rejected, in normalised coordinates
 };
 
 struct Profile {

@@ -25,7 +25,7 @@ struct PatchAlignmentOptions {
   /// Of the grey levels of two patches that agree, in squares about their means, as a share of
   /// those of the patch.
   float max_difference = 0.3f;
-  bool required = true;  ///< a match whose patches do not agree is none
+  bool required = true;  ///< a match whose patches do not agree is rejected
   float reach = 3.0f;    ///< as max_shift, from where a landmark is predicted, px
 };
 

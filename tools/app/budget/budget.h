@@ -28,7 +28,7 @@ struct Budget {
 Budget parse_budget(const std::string& file, const std::string& text);
 Budget read_budget(const std::string& file);
 
-/// The sections for a run. @throws InputError if there is none: a gate that holds nothing is none
+/// The sections for a run. @throws InputError if there is none: a gate must check something
 std::vector<const BudgetSection*> sections_for(const Budget& budget, const RunRecord& run);
 
 }  // namespace leviosim::tools

@@ -27,7 +27,7 @@ class Gate {
  public:
   /// Reads budget and baseline: a file of `budget record`, a run folder, or a trace.
   /// @param chip  on which a trace is replayed
-  /// @throws InputError for what is none, or names another run
+  /// @throws InputError for what is no baseline, or names another run
   Gate(const GateOptions& options, const RecordOptions& chip);
 
   /// @throws InputError as check_comparable() and check_budget()

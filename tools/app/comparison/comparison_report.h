@@ -11,7 +11,7 @@ namespace leviosim::tools {
 
 enum class ReportFormat { text, markdown, json, csv };
 
-/// @throws InputError for a name that is none of text, markdown, json, csv
+/// @throws InputError for another name than text, markdown, json, csv
 ReportFormat parse_report_format(const std::string& name);
 
 std::string comparison_report(const RunComparison& comparison, ReportFormat format);

@@ -10,10 +10,10 @@
 namespace leviosim::tools {
 
 /// The rows of frames.csv; those of a native run have no times.
-/// @throws InputError for a table that is none
+/// @throws InputError for a table that cannot be read
 std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const std::string& csv);
 
-/// The rows of errors.csv. @throws InputError for a table that is none
+/// The rows of errors.csv. @throws InputError for a table that cannot be read
 std::vector<PositionPair> read_positions(const std::filesystem::path& file, const std::string& csv);
 
 }  // namespace leviosim::tools

@@ -30,7 +30,7 @@ std::vector<PublishedFlow> published_flow();
 
 std::string_view name_of(FlowFigure figure);
 
-/// The figure from a run, absent if it cannot be told from it: on a chip without energy figures, or
+/// The figure from a run, absent if it has none: on a chip without energy figures, or
 /// with another number of cores. The published clock may be another than the run's: then all clocks
 /// are scaled in proportion, cycles stay the same, and the voltage is the lowest that allows it.
 std::optional<double> predicted(const PublishedFlow& published, const RunResult& run);

@@ -30,7 +30,7 @@ struct RunVerdict {
   std::string text() const;       ///< "map lost: the error is 37.8 % of the path"
 };
 
-/// The words of a kind of verdict, from the best on. Empty for what is none.
+/// The words of a kind of verdict, from the best on. Empty for another name.
 struct VerdictWord {
   std::string_view about;
   std::string_view word;

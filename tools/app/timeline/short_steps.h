@@ -1,4 +1,4 @@
-// Joins steps that are too short to be told apart, so that a frame of thousands of them can still
+// Joins steps that are too short to be seen apart, so that a frame of thousands of them can still
 // be shown. What is joined keeps its sums: cycles of each core by what they went to, bytes moved.
 #pragma once
 

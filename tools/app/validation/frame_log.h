@@ -38,7 +38,7 @@ struct LoggedIteration {
 
 class FrameLog : public RunObserver {
  public:
-  /// @param code  of the cores that the work is priced for
+  /// @param code  of the cores that the work is timed for
   explicit FrameLog(work::CompiledFor code) : code_(code) {}
   FrameLog() = default;
 

@@ -52,7 +52,7 @@ enum class Verdict {
 std::string_view name_of(Verdict verdict);
 
 Verdict judge(const Reference& reference, std::optional<double> value);
-/// The same of an error. @param guard  of what is known to be missed; else there is none
+/// The same of an error. @param guard  of what is known to be missed; otherwise absent
 Verdict judge(double error, double tolerance, std::optional<double> guard);
 
 /// The file with statuses and guards brought up to date with what was measured; everything else,

@@ -1,5 +1,5 @@
 // The frames since a map began in motion, each as what the IMU measured since its keyframe, so that
-// their poses can be told anew when the map is aligned. In L2; the oldest frames are forgotten.
+// their poses can be corrected when the map is aligned. In L2; the oldest frames are forgotten.
 #pragma once
 
 #include <vector>

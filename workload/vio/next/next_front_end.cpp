@@ -118,7 +118,7 @@ bool NextFrontEnd<P>::initialises() const {
 }
 
 /// While a map has few keyframes, or its alignment has not converged, its scale is a guess, and so
-/// is how far the camera has gone: it is told to be where the map began. The map itself keeps the
+/// is how far the camera has gone: it is reported where the map began. The map itself keeps the
 /// guess. The newest keyframe does not count, as the alignment has hardly seen it.
 template <class P>
 void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {

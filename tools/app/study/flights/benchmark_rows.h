@@ -1,5 +1,5 @@
 // What a benchmark of flights comes to: runs condensed to pieces, pieces to rows. Worlds, starts
-// and random draws are told apart. A piece counts once, with the median of its seeds; a row has the
+// and random draws are kept apart. A piece counts once, with the median of its seeds; a row has the
 // median of its pieces, and says how far that would move with other pieces, and with other seeds.
 #pragma once
 

@@ -8,13 +8,13 @@
 //   pieces: [90, 400, rest, whole]            # frames from every start in mid-air; from there to
 //                                             # the end; whole flights
 //   every: 20                                 # seconds from start to start [20]
-//   recordings: [MH_01_easy_t05_t20]          # folders with pictures, in place of motions or
-//   beside starts:                                   # in recordings: the first frame and the step,
-//   in sets
+//   recordings: [MH_01_easy_t05_t20]          # folders with pictures, beside or without motions
+//   starts:                                   # in recordings: the first frame and the step,
+//                                             # in sets
 //     even: [0, 20]
 //     odd: [10, 20]
-//   disturbances: [none, noise=10]            # of all pieces (traces/datasets/disturbance.h)
-//   [none] seeds: [1, 2, 3]                          # of the workload's random draws [1, 2, 3]
+//   disturbances: [none, noise=10]            # of all pieces (disturbance.h) [none]
+//   seeds: [1, 2, 3]                          # of the workload's random draws [1, 2, 3]
 //   size: 160x120                             # of the images [160x120]
 //   variants:                                 # [next]
 //     - { profile: next, workload.window: 8 }
