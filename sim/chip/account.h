@@ -75,7 +75,7 @@ inline constexpr std::array kMechanisms{
     MechanismInfo{Mechanism::Fetch, "fetch", "I-cache", "code",
                   "I-cache: code that the private cache lacks"},
     MechanismInfo{Mechanism::FetchContention, "fetch_contention", "I-cache", "code",
-                  "I-cache: other cores fetch as well"},
+                  "I-cache: contention with the fetches of other cores"},
     MechanismInfo{Mechanism::Imbalance, "imbalance", "imbalance", "",
                   "waiting for the slowest core", true},
     MechanismInfo{Mechanism::Synchronisation, "synchronisation", "sync", "",

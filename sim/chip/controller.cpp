@@ -58,7 +58,7 @@ double Controller::transfer_cycles(const work::StageRun& stage) const {
     if (transfer == nullptr || work::is_between_l1_and_l2(transfer->direction)) continue;
     if (memory.bytes_per_second <= 0)
       throw InputError(fmt::format(
-          "{}: the work moves data from or to external memory, which the platform has not",
+          "{}: the work moves data from or to external memory, which the platform does not have",
           stage.stage));
     const Bytes moved = std::max(transfer->bytes, memory.burst);
     seconds +=

@@ -42,7 +42,7 @@ inline constexpr std::array kUncertaintySources{
                       [](const EnergyConfig& from, EnergyConfig& to) {
                         to.soc.static_power = from.soc.static_power;
                       }},
-    UncertaintySource{"whether the clock of an idle cluster goes on",
+    UncertaintySource{"whether the clock of an idle cluster keeps running",
                       [](const EnergyConfig& from, EnergyConfig& to) {
                         to.cluster.idle_clock = from.cluster.idle_clock;
                       }},

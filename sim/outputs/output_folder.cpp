@@ -53,12 +53,12 @@ void OutputFolder::judge() const {
   const FolderContents there = contents_of(path(), request().repair);
   if (!there.record)
     refuse(
-        fmt::format("exists and holds something else than results: {}, and no record of what "
+        fmt::format("exists and holds something other than results: {}, and no record of what "
                     "leviosim wrote there ({}); choose a new folder, or remove this one by hand",
                     there.foreign, kRecordName));
   if (!there.foreign.empty())
     refuse(
-        fmt::format("holds something else than results: {}, which leviosim did not write, or "
+        fmt::format("holds something other than results: {}, which leviosim did not write, or "
                     "which was changed since; choose a new folder",
                     there.foreign));
   if (!request().replace)

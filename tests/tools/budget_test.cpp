@@ -148,7 +148,7 @@ TEST(Budget, WhatARunDoesNotHaveIsNotMet) {
   const CheckResult result =
       check_budget(record_of(run), of_stage("feature extraction", "cycles <= 1 Mcycles"), nullptr);
   ASSERT_EQ(result.missed(), 1u);
-  EXPECT_EQ(result.findings[0].excess(), "the run has no value of it");
+  EXPECT_EQ(result.findings[0].excess(), "the run has no such value");
 }
 
 TEST(Budget, SaysByHowMuchWhereAndWhy) {

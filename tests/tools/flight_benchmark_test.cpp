@@ -340,7 +340,7 @@ TEST_F(FlightBenchmark, SaysWhetherRunsKnewThatTheyWereWrong) {
   const BenchmarkRow row = result().rows[0];
   EXPECT_EQ(row.failed, 3u);
   EXPECT_EQ(row.alarms.failed, 3u);
-  EXPECT_EQ(row.alarms.told, 2u);
+  EXPECT_EQ(row.alarms.detected, 2u);
   EXPECT_EQ(row.alarms.right, 2u) << "2 and 2.5 %; 3 % is not below 3";
   EXPECT_EQ(row.alarms.false_alarms, 1u);
   EXPECT_EQ(row.alarms.silent, 1u);

@@ -230,7 +230,7 @@ Command add_sweep_command(CLI::App& app) {
     command->add_option(name, value, help)->type_name(type);
   };
   command->add_option("PLAN", words->plan, "YAML file: tools/app/study/sweep/README.md");
-  add("--out", words->out, "DIR", "folder for the results; goes on with what it holds");
+  add("--out", words->out, "DIR", "folder for the results; a sweep that it holds is continued");
   add("--budget", words->budget, "FILE",
       "limits that every point has to meet; those with a sign are relative to point 1");
   command->add_flag("--list", words->list, "print the points with their numbers, run nothing");

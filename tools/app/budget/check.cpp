@@ -83,7 +83,7 @@ std::string Finding::title() const {
 }
 
 std::string Finding::excess() const {
-  if (!value) return "the run has no value of it";
+  if (!value) return "the run has no such value";
   const std::string found = figure_text(*value, unit, limit->bound);
   if (!bound) return found + ", but the baseline has no value of it";
   const double over = *value - *bound;

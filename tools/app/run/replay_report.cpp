@@ -66,7 +66,7 @@ std::string replay_report(const Replay& replay, const traces::WorkTrace& trace) 
                   printable(trace.info().platform), trace.info().cores);
   if (first == replay.frames.end())
     text +=
-        "the algorithm sees in every frame what it saw in the recording: a run on this chip "
+        "in every frame the algorithm sees what it saw in the recording: a run on this chip "
         "computes the same\n";
   else
     text += fmt::format(

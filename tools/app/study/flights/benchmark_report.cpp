@@ -56,7 +56,7 @@ TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
                    {"σ %", kRight, 3},
                    {"diverged"},
                    {"failed"},
-                   {"told", kRight, 1},
+                   {"detected", kRight, 1},
                    {"false", kRight, 1},
                    {"silent", kRight, 1},
                    {"restarts", kRight, 5}});
@@ -80,7 +80,7 @@ TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
                            1),
                fmt::format("{} of {}", row.diverged, row.runs),
                fmt::format("{}", row.failed),
-               alarm_text(row.alarms, row.alarms.told, row.alarms.failed),
+               alarm_text(row.alarms, row.alarms.detected, row.alarms.failed),
                alarm_text(row.alarms, row.alarms.false_alarms, row.alarms.right),
                row.alarms.runs > 0 ? fmt::format("{}", row.alarms.silent) : kNothing,
                fmt::format("{}", row.map_restarts)});
@@ -117,7 +117,7 @@ std::string notes(const Benchmark& benchmark, const BenchmarkResult& result,
       "runs\n"
       "{0}scale of the estimate in windows of 5 s, and its standard deviation in a flight: medians "
       "of runs; diverged: an error above the path\n"
-      "{0}failed: runs that diverged, are lost, or have an error above {4:g} %; told: of those "
+      "{0}failed: runs that diverged, are lost, or have an error above {4:g} %; detected: of those "
       "with "
       "such an error, runs that end unreliable or lost; false: the same of runs below {5:g} %; "
       "silent: runs above {6:g} % that end good\n",
@@ -171,7 +171,7 @@ Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
           {"alarms",
            {{"runs", row.alarms.runs},
             {"failed", row.alarms.failed},
-            {"told", row.alarms.told},
+            {"detected", row.alarms.detected},
             {"right", row.alarms.right},
             {"false", row.alarms.false_alarms},
             {"silent", row.alarms.silent}}},

@@ -125,7 +125,7 @@ void Alarms::add(const RunOutcome& outcome) {
   const auto count = [](bool is) { return is ? std::size_t{1} : std::size_t{0}; };
   runs += 1;
   failed += count(wrong);
-  told += count(wrong && !good);
+  detected += count(wrong && !good);
   right += count(error && *error < kRightPercent);
   false_alarms += count(error && *error < kRightPercent && !good);
   silent += count((!error || *error > kSilentPercent) && good);

@@ -25,9 +25,9 @@ inline constexpr double kSilentPercent = 20;
 /// What runs said of themselves at their end, against what they were. Runs that say nothing, for
 /// their front end has no "health", do not count.
 struct Alarms {
-  std::size_t runs = 0;    ///< that say something
-  std::size_t failed = 0;  ///< of these
-  std::size_t told = 0;    ///< of the failed: that do not call themselves good
+  std::size_t runs = 0;      ///< that say something
+  std::size_t failed = 0;    ///< of these
+  std::size_t detected = 0;  ///< of the failed: that do not call themselves good
   std::size_t right = 0;
   std::size_t false_alarms = 0;  ///< of the right: that do not call themselves good
   std::size_t silent = 0;        ///< error above kSilentPercent, and good
