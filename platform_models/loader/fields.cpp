@@ -199,8 +199,8 @@ void add_fpu(Table& table) {
       [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
   table.add(
       optional(quantity("cluster.fpu.collisions", kRatio, 0, 10,
-                        "chance collisions at these units, over those of operations in random "
-                        "order; 0 unless said: cores find their turns")),
+                        "chance collisions at these units and in the queue of dividers, over those "
+                        "at any phase; 0 unless said: cores find their turns")),
       [](auto& chip) -> auto& { return chip.cluster.fpu.collisions; });
 }
 
@@ -287,7 +287,7 @@ void add_l1_and_dma(Table& table) {
       [](auto& chip) -> auto& { return chip.cluster.l1.stream_conflicts; });
   table.add(
       quantity("cluster.dma.programming", kCycles, 0, kMaxCost,
-               "cycles of the programming core per transfer, API included"),
+               "cycles of the programming core until a transfer begins"),
       [](auto& chip) -> auto& { return chip.cluster.dma.programming; });
   table.add(
       quantity("cluster.dma.first_data", kCycles, 0, kMaxCost,
@@ -306,6 +306,11 @@ void add_l1_and_dma(Table& table) {
           quantity("cluster.dma.commands", kUnits, 1, kMaxParts,
                    "transfers that are under way at most; the programming core waits for room")),
       [](auto& chip) -> auto& { return chip.cluster.dma.commands; });
+  table.add(
+      optional(quantity("cluster.dma.call", kCycles, 0, kMaxCost,
+                        "cycles of the programming core once a transfer has begun, the rest of the "
+                        "call of the API; 0 unless said")),
+      [](auto& chip) -> auto& { return chip.cluster.dma.call; });
 }
 
 void add_events(Table& table) {

@@ -119,6 +119,7 @@ Task<> Cluster::step(const work::Transfer& transfer, CycleAccount& account) {
   co_await kernel_.delay(cycles(config_.dma.programming));
   const DataTiming data = dma_.start(transfer);
   if (step_ != nullptr) step_->data = data;
+  co_await kernel_.delay(cycles(config_.dma.call));
   if (transfer.background)
     background_.push_back(data.end);
   else

@@ -80,8 +80,8 @@ struct FpuConfig {
   FpuMapping mapping = FpuMapping::Fixed;
   int dividers = 0;       ///< divide/square-root units of the cluster, any core uses any
   int int64_units = 0;    ///< units for 64-bit integers, mapped as the floating-point ones
-  double collisions = 0;  ///< chance collisions at a unit, over those of cores whose operations
-                          ///< come in random order; 0: cores find their turns
+  double collisions = 0;  ///< chance collisions at a unit, over those of cores at any phase; 0:
+                          ///< cores find their turns
 };
 
 /// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
@@ -119,11 +119,13 @@ struct AcceleratorConfig {
 using Accelerators = std::array<AcceleratorConfig, work::kOffloadKindCount>;
 
 struct DmaConfig {
-  double programming = 0;      ///< cycles of the programming core per transfer, API included
+  double programming = 0;      ///< cycles of the programming core until the transfer begins
   double first_data = 0;       ///< latency until the first beat arrives
   double bytes_per_cycle = 0;  ///< payload
   double completion = 0;       ///< from the last beat until the waiting core goes on
   int commands = 0;            ///< transfers that are under way at most; 0: any number
+  double call = 0;             ///< cycles of the programming core once the transfer has begun: the
+                               ///< rest of the call of the API, while data may flow
 };
 
 struct EventUnitConfig {

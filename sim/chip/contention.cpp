@@ -11,7 +11,7 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 // The limits of one unit depend on the rates that the others allow. A few rounds settle it; the
 // bound only keeps a pathological mix from going on for ever.
-constexpr int kMaxRounds = 16;
+constexpr int kMaxRounds = 32;
 constexpr double kSettled = 1e-9;
 
 constexpr std::size_t index(Unit unit) { return static_cast<std::size_t>(unit); }
@@ -180,14 +180,49 @@ void Contention::meet() {
     asked_.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       asked_[i] = std::min(1.0, runners[i].units[index(unit)].cycles * pace_[i]);
+    const auto met_by = [&](std::size_t i, std::size_t j) {
+      const double run = runners[i].units[index(unit)].run;
+      const double other_run = runners[j].units[index(unit)].run;
+      return run > 0 && other_run > 0 ? met_in_runs(asked_[i], run, asked_[j], other_run)
+                                      : met_by_chance(asked_[i], asked_[j]);
+    };
     for (std::size_t i = 0; i < n; ++i) {
       if (asked_[i] == 0) continue;
       double met = met_[i];
       for (std::size_t j = 0; j < n; ++j)
-        if (pool_of[j] == pool_of[i] && j != i)
-          met += collisions_ * met_by_chance(asked_[i], asked_[j]) / pace_[i];
+        if (pool_of[j] == pool_of[i] && j != i) met += collisions_ * met_by(i, j) / pace_[i];
       met_[i] = met;
     }
+  }
+}
+
+void Contention::queue() {
+  constexpr std::size_t kUnit = index(Unit::Divider);
+  const double units = pools_[kUnit].capacity;
+  if (collisions_ == 0 || units == 0) return;
+  const std::vector<Runner>& runners = *runners_;
+  const std::size_t n = runners.size();
+  double asking = 0;
+  double busy = 0;  // units, on average
+  for (std::size_t i = 0; i < n; ++i) {
+    asking += runners[i].units[kUnit].requests > 0 ? 1 : 0;
+    busy += runners[i].units[kUnit].cycles * rate_[i];
+  }
+  if (asking <= units) return;
+  // With several units a request waits only while all are busy, and for the first that ends.
+  const double all_busy = std::pow(std::min(1.0, busy / units), units - 1) / units;
+  for (std::size_t i = 0; i < n; ++i) {
+    const UnitDemand& mine = runners[i].units[kUnit];
+    if (mine.requests == 0) continue;
+    double behind = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const UnitDemand& other = runners[j].units[kUnit];
+      if (j != i && other.requests > 0)
+        behind +=
+            queued_behind({other.requests * rate_[j], other.cycles / other.requests, waiting_[j]});
+    }
+    waiting_[i] = (waiting_[i] + collisions_ * all_busy * behind) / 2;  // damped
+    queued_[i] = mine.requests * waiting_[i];
   }
 }
 
@@ -197,8 +232,10 @@ void Contention::blame(std::size_t i, Progress& p) const {
   on[Mechanism::Banks] = p.rate * l1_delay(i);
   on[Mechanism::FetchContention] = p.rate * fetch_delay(i);
   on[Mechanism::Fpu] = p.rate * met_[i];
-  const double lost = std::max(0.0, 1.0 - p.rate - on[Mechanism::Banks] -
-                                        on[Mechanism::FetchContention] - on[Mechanism::Fpu]);
+  on[Mechanism::Divider] = p.rate * queued_[i];
+  const double lost =
+      std::max(0.0, 1.0 - p.rate - on[Mechanism::Banks] - on[Mechanism::FetchContention] -
+                        on[Mechanism::Fpu] - on[Mechanism::Divider]);
   const auto tightest = std::min_element(shared_.begin(), shared_.end(), [&](Unit a, Unit b) {
     return limits_[index(a)][i] < limits_[index(b)][i];
   });
@@ -212,6 +249,8 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   for (const Unit unit : shared_) limits_[index(unit)].assign(n, kUnlimited);
   progress.assign(n, Progress{});
   met_.assign(n, 0.0);
+  queued_.assign(n, 0.0);
+  waiting_.assign(n, 0.0);
   pace_.assign(n, 1.0);
   if (n < 2 && dma_words == 0) return;
 
@@ -233,8 +272,9 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
     double change = 0;
     sum_up(runners, dma_words);
     meet();
+    queue();
     for (std::size_t i = 0; i < n; ++i)
-      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + met_[i]);
+      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + met_[i] + queued_[i]);
     // Each unit's limit is found with what the *other* limits leave of the demand.
     for (std::size_t k = 0; k < scarce_units; ++k) {
       const std::size_t unit = index(scarce[k]);

@@ -21,10 +21,15 @@
 // A floating-point or 64-bit integer unit that is not saturated makes nobody wait whose operations
 // alternate with other instructions: cores that share it find their turns. Operations in a row do
 // not, and whether two cores collide depends on their phase. What cores lose on average over phases
-// and orders of instructions has a closed form (met_by_chance).
+// has closed forms: for operations in runs, as loops have them that load their operands first
+// (met_in_runs), and in any order (met_by_chance).
+//
+// A divider that is not saturated has a queue: a request waits for the rest of the one that is
+// served, and for those that wait already (queued_behind). Cores do not keep out of each other's
+// way, since what each waits for elsewhere differs.
 //
 // Left out: transients of a few cycles until requesters have interleaved; chance collisions at
-// dividers, at words that all cores use, and where any core may take any unit.
+// words that all cores use, and at floating-point units of which any core may take any.
 #pragma once
 
 #include <cstdint>
@@ -64,6 +69,29 @@ constexpr double met_by_chance(double mine, double other) {
                          ((1 - both) * (mine + other) + other * both * (1 + mine));
 }
 
+/// The same if both execute a share of their instructions in runs, at any phase. Of two loops of L
+/// instructions that end with r operations each, the one d instructions ahead of the other, both
+/// lose r - d cycles a round if 0 < d < r, and r - 1 if d = 0: (r² - 1) / L² over all phases.
+/// Single operations find their turns.
+constexpr double met_in_runs(double mine, double my_run, double other, double other_run) {
+  return mine * other * (1 - 1 / (my_run * other_run));
+}
+
+/// Requests of one core to a unit that serves one after the other.
+struct Queued {
+  double rate = 0;     ///< per cycle
+  double busy = 0;     ///< cycles of service
+  double waiting = 0;  ///< cycles before
+};
+
+/// Cycles that a request waits behind those of another core, which it finds waiting or served, and
+/// then in the middle of the service on average.
+constexpr double queued_behind(const Queued& other) {
+  const double there = other.rate * (other.busy + other.waiting);
+  const double served = other.rate * other.busy;
+  return ((there < 1 ? there : 1) - served / 2) * other.busy;
+}
+
 /// Requests of one runner to a unit: per lone cycle, and per cycle at its present rate.
 struct UnitRequest {
   std::size_t runner;
@@ -96,8 +124,10 @@ class Contention {
   double l1_delay(std::size_t runner) const;
   double fetch_delay(std::size_t runner) const;
   void sum_up(const std::vector<Runner>& runners, double dma_words);
-  /// Sets what each runner loses per lone cycle by chance collisions at shared units.
+  /// Sets what each runner loses per lone cycle by chance collisions at shared units, and in the
+  /// queue of the dividers.
   void meet();
+  void queue();
   void blame(std::size_t runner, Progress& progress) const;
 
   std::array<Pools, kUnitCount> pools_;
@@ -113,7 +143,9 @@ class Contention {
   double dma_words_ = 0;
   std::vector<double> rate_;                            ///< current estimate
   std::vector<double> met_;                             ///< lost by chance per lone cycle
-  std::vector<double> pace_;                            ///< rate but for what is lost so
+  std::vector<double> queued_;                          ///< lost at dividers per lone cycle
+  std::vector<double> waiting_;                         ///< … per request
+  std::vector<double> pace_;                            ///< rate but for what is lost by chance
   std::vector<double> free_rate_;                       ///< rate without units that serve in turn
   std::array<std::vector<double>, kUnitCount> limits_;  ///< highest rate that each unit allows
   std::array<std::vector<int>, kUnitCount> pool_of_;    ///< which group of units each runner uses

@@ -1,5 +1,6 @@
 #include "sim/chip/cost.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace leviosim::sim {
@@ -85,6 +86,15 @@ OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operatio
   return result;
 }
 
+namespace {
+
+/// An iteration of a loop has its operations in a row, behind the loads of what they need.
+double run_of(double requests, std::uint64_t iterations) {
+  return iterations == 0 ? 0 : std::max(1.0, requests / static_cast<double>(iterations));
+}
+
+}  // namespace
+
 Demand demand_of(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code,
                  OperationAccounts* by_operation) {
   Demand demand;
@@ -114,6 +124,7 @@ Demand demand_of(const work::Counts& counts, const CoreConfig& core, const CodeF
   }
   demand.fetches = fetch.requests + code.lines_executed(demand.alone[Mechanism::Issue]);
   demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
+  for (UnitDemand& unit : demand.units) unit.run = run_of(unit.requests, counts[Op::LoopIteration]);
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };
   // The second half of a straddling access follows the first.
   demand.streamed = sum(Op::LoadStream, Op::StoreStream, Op::Straddle);

@@ -16,6 +16,7 @@ namespace leviosim::sim {
 struct UnitDemand {
   double requests = 0;
   double cycles = 0;  ///< of occupation, over all requests
+  double run = 0;     ///< requests in a row, on average; 0: in any order
 };
 
 /// Demands of one segment.

@@ -18,7 +18,8 @@ double payload_cycles(const DmaConfig& dma, Bytes bytes) {
 }  // namespace
 
 double transfer_cycles(const DmaConfig& dma, Bytes bytes) {
-  return dma.programming + dma.first_data + payload_cycles(dma, bytes) + dma.completion;
+  return dma.programming + std::max(dma.call, dma.first_data + payload_cycles(dma, bytes)) +
+         dma.completion;
 }
 
 Dma::Dma(Kernel& kernel, const ClockDomain& clock, const DmaConfig& config, Team& team)

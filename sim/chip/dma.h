@@ -1,7 +1,8 @@
 // The cluster's DMA: one channel from L2 into L1 and one back, which overlap. A channel delivers
 // its transfers in the order in which they were programmed, the payload of one right behind that of
 // the one before; a transfer that finds its channel idle waits for the first data
-// (FACTS.md#cluster-dma). While data flow, they take banks of L1 from the cores (contention.h).
+// (FACTS.md#cluster-dma). Meanwhile the programming core executes the rest of the call of the API.
+// While data flow, they take banks of L1 from the cores (contention.h).
 //
 // Left out: bursts and the number that may be under way (eight of
 // 256 bytes hide the latency of L2), 2D transfers, and waits of the DMA itself for banks (its ports

@@ -45,6 +45,45 @@ TEST(Collisions, OfTwoCoresInOneLoopAreThoseOfPairsSteppedThrough) {
   EXPECT_NEAR(lost / by_chance, collisions, 0.1);
 }
 
+/// At any phase.
+TEST(Collisions, OfTwoCoresWithRunsOfOperationsAreThoseOfPairsSteppedThrough) {
+  for (const auto& [others, run] : {std::pair(6, 8), std::pair(2, 1), std::pair(4, 2),
+                                    std::pair(3, 3), std::pair(12, 8), std::pair(16, 8)}) {
+    const auto length = static_cast<std::size_t>(others + run);
+    const auto loop = leviosim::testing::loop_with_run(static_cast<std::size_t>(others),
+                                                       static_cast<std::size_t>(run));
+    double lost = 0;
+    for (std::size_t phase = 0; phase < length; ++phase) {
+      const auto pair = leviosim::testing::step_pair(loop, loop, phase, 20'000);
+      lost += (pair[0] + pair[1]) / 2 / static_cast<double>(length);
+    }
+    const double share = run / static_cast<double>(length);
+    EXPECT_NEAR(lost, sim::met_in_runs(share, run, share, run), 0.01) << others << " and " << run;
+  }
+}
+
+/// Loops of other lengths and on other numbers of cores, whose lengths vary by a third.
+TEST(Collisions, QueuesOfADividerAreThoseOfCoresSteppedThrough) {
+  sim::ClusterConfig cluster = load_platform("gap9").cluster;
+  std::mt19937 random(1);
+  for (const int others : {40, 69, 120, 300})
+    for (const int cores : {1, 2, 4, 8}) {
+      constexpr int kBusy = 14;
+      const double stepped =
+          leviosim::testing::step_divider(random, cores, others, others / 3, kBusy);
+      std::vector<sim::Runner> runners;
+      const double lone = others + kBusy;
+      for (int core = 0; core < cores; ++core) {
+        sim::Runner& runner = runners.emplace_back();
+        runner.core = core;
+        runner.units[static_cast<std::size_t>(sim::Unit::Divider)] = {1 / lone, kBusy / lone};
+      }
+      std::vector<sim::Progress> progress;
+      sim::Contention(cluster).solve(runners, progress);
+      EXPECT_NEAR(lone / progress[0].rate / stepped, 1, 0.1) << others << " on " << cores;
+    }
+}
+
 /// Nineteen operations of a unit, some of them in a row: how long two cores take depends on when
 /// they begin. The mean of the phases is what the model has; its band holds them all.
 TEST(Collisions, ThePhaseDecidesWhatTheMeanLeavesOpen) {

@@ -110,7 +110,7 @@ TEST(Gap9, ControllerDiffersOnlyInItsDivider) {
 // FACTS.md#synchronisation and FACTS.md#cluster-dma.
 TEST(Gap9, ForksAndTransfersAreWithinTheirBounds) {
   const sim::ClusterConfig cluster = load_platform("gap9").cluster;
-  EXPECT_EQ(cluster.events.fork_master + cluster.events.fork_worker + cluster.events.barrier, 80);
+  EXPECT_EQ(cluster.events.fork_master + cluster.events.fork_worker + cluster.events.barrier, 33);
   EXPECT_EQ(cluster.events.offload, 300);
   const double image = 160 * 120 / cluster.dma.bytes_per_cycle + cluster.dma.programming +
                        cluster.dma.first_data + cluster.dma.completion;
@@ -129,7 +129,7 @@ TEST(Gap9, RangesOfAForkAddUpToItsBounds) {
     low += p.range->low;
     high += p.range->high;
   }
-  EXPECT_EQ(low, 40);
+  EXPECT_EQ(low, 23);
   EXPECT_EQ(high, 190);
 }
 

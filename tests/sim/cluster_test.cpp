@@ -74,6 +74,20 @@ TEST(Cluster, TransferOfNBytes) {
   }
 }
 
+TEST(Cluster, AShortTransferTakesAsLongAsTheCallOfTheApi) {
+  ChipConfig config = test_chip();
+  config.cluster.dma.call = 40;
+  const auto cycles = [&](std::int64_t bytes) {
+    const work::Transfer transfer{work::Direction::L2ToL1, Bytes(bytes)};
+    const std::int64_t n = run(one_stage({transfer}), 8, config).stages[0].cycles.count();
+    EXPECT_EQ(n, transfer_cycles(config.cluster.dma, Bytes(bytes))) << bytes;
+    return n;
+  };
+  EXPECT_EQ(cycles(8), 25 + 40 + 8);
+  EXPECT_EQ(cycles(192), 25 + 40 + 8);
+  EXPECT_EQ(cycles(200), 25 + 16 + 25 + 8);
+}
+
 TEST(Cluster, BackgroundTransfersOverlapWithWorkAndWithTheOtherDirection) {
   const work::Transfer in{work::Direction::L2ToL1, Bytes(8000), true};
   const work::Transfer out{work::Direction::L1ToL2, Bytes(8000), true};

@@ -156,6 +156,32 @@ inline std::vector<double> step_pair(const std::vector<bool>& first,
           static_cast<double>(lost[1]) / static_cast<double>(worked[1])};
 }
 
+/// Cores that go round in a loop of `others` cycles, more or fewer by up to `spread`, and then ask
+/// the one divider, which serves one after the other. Cycles of a round, on average.
+inline double step_divider(std::mt19937& random, int cores, int others, int spread, int busy) {
+  std::vector<long> asks;
+  const auto loop = [&] {
+    return others - spread + static_cast<long>(random() % static_cast<unsigned>(2 * spread + 1));
+  };
+  for (int i = 0; i < cores; ++i) asks.push_back(loop());
+  long free = 0, rounds = 0;
+  constexpr long kCycles = 400'000;
+  for (;; ++rounds) {
+    const auto next = std::min_element(asks.begin(), asks.end());
+    if (*next > kCycles) break;
+    free = std::max(free, *next) + busy;
+    *next = free + loop();
+  }
+  return static_cast<double>(kCycles) * cores / static_cast<double>(rounds);
+}
+
+/// A loop that loads first and then computes: a run of operations of the unit at its end.
+inline std::vector<bool> loop_with_run(std::size_t others, std::size_t uses) {
+  std::vector<bool> loop(others, false);
+  loop.resize(others + uses, true);
+  return loop;
+}
+
 /// A loop of so many instructions, of which some use the unit, in random order.
 inline std::vector<bool> draw_loop(std::mt19937& random, std::size_t size, std::size_t uses) {
   std::vector<bool> loop(size, false);
