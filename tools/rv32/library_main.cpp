@@ -68,6 +68,20 @@ template <class Real>
   }
 }
 
+/// The double precision of a Jacobi rotation (workload/vio/levio/algebra/jacobi.h): what the
+/// workload's calls of it are.
+[[gnu::noinline]] void exercise_rotations(const volatile float* in) {
+  for (int i = 0; i < kOperands; ++i) {
+    const float app = in[i], aqq = in[(i * 7 + 3) % kOperands], apq = in[(i * 5 + 1) % kOperands];
+    const float angle = 0.5f * atan2f(2.0f * apq, aqq - app);
+    const float c = cosf(angle), s = sinf(angle);
+    const double wide_s = s;
+    const double mixed = (wide_s + wide_s) * c * apq;
+    single_result = static_cast<float>((c * c * app) - mixed + (s * s * aqq));
+    single_result = static_cast<float>((s * s * app) + mixed + (c * c * aqq));
+  }
+}
+
 /// As C libraries without a square root instruction do it: one bit of the root per step.
 [[gnu::noinline, gnu::used]] float digit_by_digit_sqrtf(float x) {
   std::uint32_t bits;
@@ -101,6 +115,10 @@ int main() {
     singles[i] = operand<float, std::uint32_t, 8, 32>(state);
     doubles[i] = operand<double, std::uint64_t, 11, 64>(state);
     integers[i] = static_cast<int>(state >> 8) - (1 << 23);
+  }
+  {
+    const leviosim::work::FunctionScope<false> scene("scene: rotations");
+    exercise_rotations(singles);
   }
   const leviosim::work::FunctionScope<false> scene("scene: library");
   exercise<float>(singles, single_result);

@@ -57,6 +57,7 @@ NO_INSTRUCTION = {"visits", "branch_taken", "branch_back", "load_use", "load_use
                   "more_loaded", "more_stored", "more_restored", "more_saved", "spared_move",
                   "spared_index", "spared_sum", "spared_shift", "loop_counter"}
 SCENE = "scene: "
+ROTATIONS = SCENE + "rotations"  # of library_main.cpp
 GENERATED = "made by tools/rv32/measure.sh (GCC 12.2 -O3, traced under QEMU); not edited by hand"
 
 
@@ -123,6 +124,7 @@ class Trace:
         self.pieces = []  # (function, after, visits, lines, refetches)
         self.kinds = collections.defaultdict(collections.Counter)  # by (scene, function)
         self.library = collections.defaultdict(list)  # by symbol: rows of numbers
+        self.rotations = {}  # those of the scene of Jacobi rotations
         self.calls = collections.defaultdict(collections.Counter)  # by (scene, function)
         self.function_lines, self.scene_lines = {}, {}
         for line in open(path):
@@ -135,7 +137,10 @@ class Trace:
                 symbol = "digit_by_digit_sqrtf" if "digit_by_digit" in row[2] else row[2]
                 numbers = list(map(int, row[3:]))
                 if numbers[0] > 0:
-                    self.library[symbol].append(numbers)
+                    if row[0] == ROTATIONS:
+                        self.rotations[symbol] = numbers
+                    else:
+                        self.library[symbol].append(numbers)
                     self.calls[row[0], row[1]][symbol, "calls"] += numbers[0]
                     self.calls[row[0], row[1]][symbol, "instructions"] += numbers[1]
             elif kind == "spared":
@@ -152,6 +157,8 @@ class Trace:
         traces = [Trace(path) for path in paths]
         first = traces[0]
         mean = lambda numbers: sum(numbers) / len(traces)
+        for symbol, row in first.rotations.items():
+            first.rotations[symbol] = row[:-1] + [mean([t.rotations[symbol][-1] for t in traces])]
         for symbol, rows in first.library.items():
             lines = [mean(of_call) for of_call in
                      zip(*([row[-1] for row in trace.library[symbol]] for trace in traces), strict=True)]
@@ -177,7 +184,9 @@ class Trace:
                 mean(4), min(r[5] for r in rows), max(r[6] for r in rows), mean(7))
 
     def lines_of(self, routine):
-        rows = [r for s in ROUTINES[routine] for r in self.library.get(s, [])]
+        """Of the calls in Jacobi rotations, or else of all."""
+        rows = [self.rotations[s] for s in ROUTINES[routine] if s in self.rotations]
+        rows = rows or [r for s in ROUTINES[routine] for r in self.library.get(s, [])]
         n = sum(r[0] for r in rows)
         return (sum(r[7] for r in rows) / n, n) if n else (0, 0)
 
@@ -337,19 +346,32 @@ def compiled_work(executed_kinds, memory, counts, isa):
     return work
 
 
+def routine_row(routine, trace):
+    lines, calls = trace.lines_of(routine)
+    return (routine, "", lines, calls, 0.0) if calls else None
+
+
+def renew_routines(library, code):
+    """Puts what was measured of routines alone into a table that is there."""
+    table = code.read_text().splitlines()
+    for i, line in enumerate(table):
+        row = routine_row(line.split(",")[0], library) if line.split(",")[0] in ROUTINES else None
+        if row:
+            table[i] = ",".join(f"{x:.2f}" if isinstance(x, float) else str(x) for x in row) + "," * 6
+    code.write_text("\n".join(table) + "\n")
+
+
 def write_footprints(trace, library, compiled, isa, code):
-    """@param library   trace of the routines alone, for those that the workload does not call
+    """@param library   trace of the routines alone
     @param compiled  compiled_work()"""
     columns = ["function", "after", "lines", "visits", "refetches"]
     nothing = ("",) * 6
     rows = [row + (nothing if row[1] else compiled.get(row[0], nothing))
             for row in piece_rows(trace, False) if row[0] not in ROUTINES]
     for routine in ROUTINES:
-        lines, calls = trace.lines_of(routine)
-        if not calls:
-            lines, calls = library.lines_of(routine)
-        if calls:
-            rows.append((routine, "", lines, calls, 0.0) + nothing)
+        row = routine_row(routine, library) or routine_row(routine, trace)
+        if row:
+            rows.append(row + nothing)
     write_csv(code, FOOTPRINT_HEADER % (isa.title, GENERATED, isa.price_file),
               columns + ["executed", "priced", "loads", "used_at_once", "executed_loops", "priced_loops"],
               sorted(rows))
@@ -616,7 +638,7 @@ def write_library(soft, hard, path):
     with open(path, "w") as out:
         out.write(f"<!-- {GENERATED} -->\n# Library routines: emulated arithmetic and trigonometry\n\n")
         for title, trace in (("Core without FPU: libraries for rv32imac", soft),
-                             ("Core with single precision: libraries that GCC links for rv32imfc", hard)):
+                             ("Core with single precision: compressed libraries, for rv32imafc", hard)):
             out.write(f"## {title}\n\n| routine | instructions, mean (min–max) | stalls, mean (min–max) "
                       "| lines |\n| --- | ---: | ---: | ---: |\n")
             for symbol in sorted(trace.library, key=lambda s: (OPERATION_OF.get(s, "z"), s)):
@@ -634,21 +656,26 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--isa", choices=INSTRUCTION_SETS, required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the raw results")
-    parser.add_argument("--counts", type=pathlib.Path, required=True, help="counted operations")
+    parser.add_argument("--counts", type=pathlib.Path, help="counted operations; without, routines of libraries only")
     parser.add_argument("--root", type=pathlib.Path, required=True, help="of the repository, to write to")
     parser.add_argument("--layouts", nargs="+", required=True, help="names of the linked programs")
     arguments = parser.parse_args()
     work, root = arguments.work, arguments.root
+    code, here = root / f"platform_models/code/{arguments.isa}.csv", root / "tools/rv32"
+    hard = Trace.of_layouts([work / f"library_hard_at_{layout}.tsv" for layout in arguments.layouts])
+    if arguments.isa == "rv32imfc":
+        write_library(Trace(work / "library_soft.tsv"), hard, here / "library.md")
+    if arguments.counts is None:
+        renew_routines(hard, code)
+        return
     contracted = Trace.of_layouts([work / f"scenes_at_{layout}.tsv" for layout in arguments.layouts])
-    hard = Trace(work / "library_hard.tsv")
     uncontracted = Trace(work / "scenes_uncontracted.tsv")
     counts = read_counts(arguments.counts)
     check_same_control_flow(uncontracted, counts)
     isa = INSTRUCTION_SETS[arguments.isa](root)
     executed = in_counted_flow(contracted, uncontracted)
     compiled = compiled_work(executed, copied_and_cleared(uncontracted, isa), counts, isa)
-    write_footprints(contracted, hard, compiled, isa, root / f"platform_models/code/{arguments.isa}.csv")
-    here = root / "tools/rv32"
+    write_footprints(contracted, hard, compiled, isa, code)
     if arguments.isa != "rv32imfc":
         visits = {function: n["visits"] for function, n in by_function(counts).items()}
         page = here / f"{arguments.isa}.md"
@@ -661,7 +688,6 @@ def main():
     write_stages(contracted, here)
     write_units(contracted, uncontracted, read_counts(arguments.counts, "inclusive"), costs, here)
     write_cross_check(uncontracted, contracted, counts, costs, here)
-    write_library(Trace(work / "library_soft.tsv"), hard, here / "library.md")
 
 
 if __name__ == "__main__":
