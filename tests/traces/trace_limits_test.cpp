@@ -1,4 +1,6 @@
 // What a work trace may not say: more than fits the memory that it is given, and what no run does.
+#include <random>
+
 #include "tests/traces/test_folder.h"
 #include "tests/traces/trace_bombs.h"
 #include "tests/traces/work_trace_example.h"
@@ -49,6 +51,9 @@ std::string frames_that_are_large_in_turn(std::size_t frames, std::size_t steps)
                          : bytes({0, 1}) + list(k == i ? steps : 0, kSerial));
   }
   parts.frames = {section(frames, kOneSeries, all)};
+  std::mt19937 random;
+  for (int i = 0; i < 30'000; ++i)  // a file that is as large as its frames ask for
+    parts.platform_yaml += static_cast<char>(random());
   return parts.file();
 }
 
@@ -76,10 +81,27 @@ TEST(TraceLimits, AllFramesTogetherAreBounded) {
   parts.frames = {section(kFrames, kOneSeries, times(kFrames, forks))};
   const std::string file = parts.file();
   EXPECT_LT(file.size(), 5'000u);
-  expect_input_error(
-      [&] { read_all(WorkTrace("t", file, Bytes(4 * kMiB)), false); },
-      {"frames up to here", "1.0 GiB", "256 times the memory of 4.0 MiB", "--max-memory"});
-  EXPECT_EQ(read_all(WorkTrace("t", file, Bytes(16 * kMiB)), false), static_cast<int>(kFrames));
+  expect_input_error([&] { read_all(WorkTrace("t", file, Bytes(64 * kMiB)), false); },
+                     {"t, frames 0 to 999", "stands for", "from a file of", "--max-memory"});
+  EXPECT_EQ(read_all(WorkTrace("t", file, Bytes(4096 * kMiB)), false), static_cast<int>(kFrames));
+}
+
+/// Each of the most terms costs time, but no memory.
+TEST(TraceLimits, SumsOfManyTermsAreBounded) {
+  ByteWriter series;
+  for (const std::size_t number : {std::size_t{0}, std::size_t{0}, work::kOpCount})
+    series.whole(number);
+  for (std::size_t sum = 0; sum < work::kOpCount; ++sum) {
+    series.whole(sum);
+    series.whole(work::kOpCount);
+    for (std::size_t term = 0; term < work::kOpCount; ++term) series.append(bytes({term, 0}));
+  }
+  const auto steps = [&](std::size_t number) {
+    return trace_of_frame({}, list(1, series.bytes()),
+                          frame(list(1, stage(list(number, kSerial)))), number);
+  };
+  EXPECT_EQ(read_all(WorkTrace("t", steps(200))), 1);
+  expect_refused(steps(100'000), {"stands for", "from a file of"});
 }
 
 TEST(TraceLimits, StagesOfOneNameAreManyOfDifferentNamesAreFew) {

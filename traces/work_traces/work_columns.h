@@ -46,6 +46,11 @@ class SeriesReader {
                std::optional<work::CompiledFor> code = {});
 
   void next(work::Counts& counts);
+  /// Of what next() goes through. [bytes]
+  std::size_t size() const {
+    return columns_.size() * sizeof(Column) + terms_.size() * sizeof(Term) +
+           sums_.size() * sizeof(Sum);
+  }
   /// @throws InputError if segments are left
   void expect_end();
 

@@ -31,9 +31,11 @@ bool WorkFrames::next(WorkFrame& frame) {
     open_chunk(frame);
   }
   if (budget_.used() - of_chunk_ > budget_.ceiling() / 8) drop_storage(frame);
+  const std::uint64_t before = budget_.used();
   read_facts(frame);
   read_job(frame.front_end, false);
   read_iterations(frame);
+  add_decoded(kDecodedPerFrame + budget_.used() - before);
   ++frame_;
   if (--frames_left_ == 0) close_chunk();
   return true;
@@ -52,14 +54,17 @@ void WorkFrames::read_iterations(WorkFrame& frame) {
 void WorkFrames::drop_storage(WorkFrame& frame) {
   frame.front_end = {};
   frame.iterations = std::vector<work::Job>();  // unlike {}, gives the memory back
-  decoded_ += budget_.used() - of_chunk_;
   budget_.release_to(of_chunk_);
-  if (decoded_ / kDecodedPerCeiling > budget_.ceiling())
+}
+
+void WorkFrames::add_decoded(std::uint64_t bytes) {
+  decoded_ += bytes;
+  const std::uint64_t most = budget_.ceiling() + kDecodedPerByte * trace_->file_size();
+  if (decoded_ > most) [[unlikely]]
     text_.fail(
-        fmt::format("the frames up to here are {} when they are read, from a file of {}, "
-                    "more than {} times the memory of {}: --max-memory SIZE allows more",
-                    memory_text(decoded_), memory_text(trace_->file_size()), kDecodedPerCeiling,
-                    memory_text(budget_.ceiling())));
+        fmt::format("what is read up to here stands for {}, which takes long; from a file of {} "
+                    "expected {} at most: --max-memory SIZE allows more",
+                    memory_text(decoded_), memory_text(trace_->file_size()), memory_text(most)));
 }
 
 void WorkFrames::open_chunk(WorkFrame& frame) {
@@ -78,6 +83,7 @@ void WorkFrames::open_chunk(WorkFrame& frame) {
   open_series(text_, series_);
   peaks_ = std::vector<work::MemoryPeak>();
   if (with_offload_) open_offload(chunk);
+  add_decoded(budget_.used() - of_chunk_);
   of_chunk_ = budget_.used();
 }
 
@@ -255,6 +261,7 @@ void WorkFrames::read_counts(std::uint64_t series, work::Segment& segment) {
   if (series >= series_.size()) [[unlikely]]
     text_.fail(fmt::format("a work segment is of series {}; there are {}", series, series_.size()));
   series_[series].next(segment);
+  add_decoded(series_[series].size());
   if (with_offload_) read_offload(segment);
 }
 
@@ -279,6 +286,7 @@ void WorkFrames::read_offload(work::Segment& segment) {
     const std::uint64_t series =
         offload_text_.whole_below(offload_series_.size(), "a series of offload regions");
     offload_series_[series].next(calls.counts);
+    add_decoded(offload_series_[series].size());
     for (std::size_t i = 0; i < work::kOpCount; ++i) {
       if (calls.counts.n[i] > left.n[i])
         offload_text_.fail("offload regions count more than their work segment");

@@ -89,6 +89,7 @@ class WorkFrames {
   void open_offload(const WorkTrace::Chunk& chunk);
   void close_chunk();
   void drop_storage(WorkFrame& frame);
+  void add_decoded(std::uint64_t bytes);
   std::string_view read_name();
   void read_facts(WorkFrame& frame);
   void read_iterations(WorkFrame& frame);
@@ -110,7 +111,7 @@ class WorkFrames {
   MemoryBudget budget_;
   std::uint64_t of_chunk_ =
       0;  ///< used of it at the first frame of the chunk, with peaks since then
-  std::uint64_t decoded_ = 0;  ///< entries that were struck out: frames and sections before
+  std::uint64_t decoded_ = 0;  ///< of all sections and frames so far [bytes]
   std::size_t next_chunk_ = 0;
   int frame_ = 0;        ///< number of the next
   int frames_left_ = 0;  ///< of the chunk

@@ -11,9 +11,13 @@ namespace leviosim::traces {
 
 /// By default for a whole trace. The recording of a flight at 160x120 pixels takes 4 to 8 MiB.
 inline constexpr Bytes kTraceMemory{std::int64_t{256} << 20};
-/// The frames of a trace are read one after the other; all together take no more than so many times
-/// the ceiling, which is hours of a flight. Bounds the time that a trace takes, however small.
-inline constexpr std::uint64_t kDecodedPerCeiling = 256;
+/// Frames are read one after the other. All that is decoded of a trace is no more than the ceiling
+/// and this many times the file, which bounds the time that a small file takes. Recordings reach 300
+/// to 400.
+inline constexpr std::uint64_t kDecodedPerByte = 2048;
+/// What a frame takes of that beside its contents: what a replay does for each, in bytes decoded in
+/// the same time.
+inline constexpr std::uint64_t kDecodedPerFrame = 16 << 10;
 
 inline constexpr std::size_t kFrameMemory = 2048;  ///< stamp, result, comparison, rows of tables
 inline constexpr std::size_t kJobMemory = 1024;    ///< with its timing
