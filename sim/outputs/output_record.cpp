@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Ten times as many files as the longest flight has.
+/// Flights of an hour have 70 000 files.
+constexpr int kMostLines = 200'000;
 constexpr std::uint64_t kLargestRecord = 16 << 20;
 constexpr std::string_view kHeader = "leviosim files 1";
 
@@ -100,6 +101,8 @@ OutputRecord OutputRecord::parse(std::string_view text, const std::string& name)
     if (end == std::string_view::npos) break;  // cut off
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(end + 1);
+    if (number > kMostLines)
+      throw InputError(fmt::format("{}: has more than {} lines", name, kMostLines));
     if (number > 1) {
       if (!parse_line(line, record))
         throw InputError(fmt::format("{}:{}: expected '<SHA-256> <size> <path>'", name, number));

@@ -104,6 +104,17 @@ TEST(FolderContents, NameWhatIsForeign) {
   fs::remove(folder.path().string() + "-a");
 }
 
+/// A line may be short, and what is kept of it is not.
+TEST(OutputRecord, OfMoreLinesThanAnyFlightHasFilesIsRefused) {
+  const auto record_of_lines = [](int number) {
+    std::string text = OutputRecord::header();
+    for (int line = 1; line < number; ++line) text += "- - a\n";
+    return text;
+  };
+  EXPECT_TRUE(OutputRecord::parse(record_of_lines(200'000), "f").names("a"));
+  EXPECT_THROW(OutputRecord::parse(record_of_lines(200'001), "f"), InputError);
+}
+
 TEST(FolderContents, AnEditedFileIsNotLeviosimsAnyMore) {
   const Scratch folder;
   write_text(folder / "a", "1");
