@@ -2,12 +2,15 @@
 // set was not met, 2 for bad input, with one message on stderr, 130
 // and 143 where it was interrupted. Faults of leviosim itself abort.
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
 #include <cstddef>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <new>
 #include <string_view>
@@ -63,6 +66,48 @@ int fail_without_memory() {
   return kBadInput;
 }
 
+/// Given back when memory ends. With the first, work goes on to where it may stop: destructors
+/// allocate, too, as those of JSON documents do, and may throw nothing. With the other, what was
+/// begun is unwound.
+std::array<std::atomic<char*>, 2> reserves{new char[std::size_t{4} << 20],
+                                           new char[std::size_t{4} << 20]};
+
+bool memory_ended() { return reserves[0] == nullptr; }
+
+/// Of operator new, which tries again when this returns. The request to stop is seen by whatever
+/// looks for a signal (sim/base/interruption.h).
+void end_memory() {
+  if (char* const first = reserves[0].exchange(nullptr)) {
+    delete[] first;
+    ::kill(::getpid(), SIGTERM);
+    return;
+  }
+  delete[] reserves[1].exchange(nullptr);
+  throw std::bad_alloc();
+}
+
+/// So that the program does not end by its own signal.
+void withdraw_request() {
+  sigset_t own;
+  sigemptyset(&own);
+  sigaddset(&own, SIGTERM);
+  constexpr timespec kAtOnce{};
+  if (memory_ended()) sigtimedwait(&own, nullptr, &kAtOnce);
+}
+
+/// Where nothing may be thrown. The next run removes what was staged.
+[[noreturn]] void end_terminated() {
+  try {
+    if (const std::exception_ptr failure = std::current_exception())
+      std::rethrow_exception(failure);
+  } catch (const std::bad_alloc&) {
+    std::_Exit(fail_without_memory());
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  std::abort();
+}
+
 /// What was printed may be refused only now.
 int end_after_report() {
   try {
@@ -71,7 +116,7 @@ int end_after_report() {
   } catch (const InputError& error) {
     return fail(error);
   } catch (const Interrupted& stop) {  // nobody reads it any more
-    return kSignalled + stop.signal();
+    return memory_ended() ? fail_without_memory() : kSignalled + stop.signal();
   }
 }
 
@@ -85,6 +130,7 @@ bool goes_on(const Words& words) {
 
 /// Says what was kept, to whoever asked the program to stop.
 int end_interrupted(const Interrupted& stop, const Words& words) {
+  if (memory_ended()) return fail_without_memory();
   if (stop.signal() == SIGINT || stop.signal() == SIGTERM)
     print_error(goes_on(words)
                     ? "interrupted: what was finished is kept; the same command goes on from there"
@@ -136,7 +182,7 @@ int run_program(const Words& typed) {
                                          add_report_command(app)},
                                         typed);
     flush_results();
-    throw_if_interrupted();
+    if (!memory_ended()) throw_if_interrupted();
     return status;
   } catch (const InputError& error) {
     return fail(error);
@@ -151,18 +197,11 @@ int run_program(const Words& typed) {
   }
 }
 
-/// Given back when memory ends: what is unwound then may need some, as JSON documents do.
-std::atomic<char*> memory_reserve = new char[std::size_t{4} << 20];
-
-[[noreturn]] void end_memory() {
-  delete[] memory_reserve.exchange(nullptr);
-  throw std::bad_alloc();
-}
-
 }  // namespace
 
 int begin(const Words& typed) {
   std::set_new_handler(end_memory);
+  std::set_terminate(end_terminated);
   return run_program(typed);
 }
 
@@ -173,9 +212,12 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // writing fails then, as on a full disk
   if (const auto width = leviosim::tools::terminal_width())
     leviosim::tools::set_table_width(*width);
+  int status = 0;
   try {
-    return leviosim::tools::begin(leviosim::tools::Words(argv + 1, argv + argc));
+    status = leviosim::tools::begin(leviosim::tools::Words(argv + 1, argv + argc));
   } catch (const std::bad_alloc&) {  // while it was begun, or a message was made
-    return leviosim::tools::fail_without_memory();
+    status = leviosim::tools::fail_without_memory();
   }
+  leviosim::tools::withdraw_request();
+  return status;
 }
