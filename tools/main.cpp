@@ -72,6 +72,8 @@ int fail_without_memory() {
 std::array<std::atomic<char*>, 2> reserves{new char[std::size_t{4} << 20],
                                            new char[std::size_t{4} << 20]};
 
+std::atomic<bool> is_over{false};  ///< what follows stops nowhere
+
 bool memory_ended() { return reserves[0] == nullptr; }
 
 /// Of operator new, which tries again when this returns. The request to stop is seen by whatever
@@ -79,7 +81,7 @@ bool memory_ended() { return reserves[0] == nullptr; }
 void end_memory() {
   if (char* const first = reserves[0].exchange(nullptr)) {
     delete[] first;
-    ::kill(::getpid(), SIGTERM);
+    if (!is_over) ::kill(::getpid(), SIGTERM);
     return;
   }
   delete[] reserves[1].exchange(nullptr);
@@ -88,6 +90,7 @@ void end_memory() {
 
 /// So that the program does not end by its own signal.
 void withdraw_request() {
+  is_over = true;
   sigset_t own;
   sigemptyset(&own);
   sigaddset(&own, SIGTERM);
