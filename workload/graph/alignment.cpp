@@ -13,6 +13,9 @@ namespace {
 /// Places of the unknowns.
 constexpr int kVelocity = 0, kGravityAt = 3, kGyro = 6, kAccel = 9;
 
+/// Standard deviations from the minimum at which an alignment is there.
+constexpr float kArrived = 0.1f;
+
 constexpr float information(float stddev) { return 1.0f / (stddev * stddev); }
 
 /// The window's state as what the IMU carries its first keyframe from.
@@ -274,6 +277,7 @@ AlignmentReport iterate(work::Machine& fc, Window<P>& window, AlignmentState<P>&
   report.cost_after = work::value(trial_cost);
   if (!cholesky_factor<P>(factor)) return report;
   report.distance = work::value(work::sqrt(square_by_covariance<P>(factor, slope)));
+  report.arrived = report.distance < kArrived;
   report.uncertainty =
       work::value(uncertainty_of_positions<P>(best, window.keyframes, factor, column));
   report.length = work::value(length_of<P>(best, window.keyframes));
@@ -340,7 +344,6 @@ AlignmentReport align_from_all(work::Machine& fc, Window<P>& window, AlignmentSt
                                const OptimiserOptions& optimiser, const AlignmentOptions& options) {
   using F = typename P::F32;
   const typename P::Function function("align_from_all");
-  constexpr float kArrived = 0.1f;  // standard deviations from the minimum
   std::array<AlignmentReport, kStarts.size() + 1> reports;
   std::size_t best = 0;
   const auto cost = [&](std::size_t of) {
@@ -358,7 +361,7 @@ AlignmentReport align_from_all(work::Machine& fc, Window<P>& window, AlignmentSt
       for (int i = 0; i < options.start_iterations; ++i) {
         const Begin begin = s > 0 && i == 0 ? Begin::afresh : Begin::here;
         reports[s] = iterate<P>(fc, share, trial, optimiser, options, begin);
-        if (i > 0 && reports[s].distance < kArrived) break;
+        if (i > 0 && reports[s].arrived) break;
       }
       if (s > 0 && !(cost(s) < cost(best))) continue;
       best = s;

@@ -96,8 +96,7 @@ OptimiserReport BackEnd<P>::optimise() {
             : align_once<P>(machine_, window_, alignment_, options_, profile_.alignment, false);
     solved_ = solved_ || report.positive_definite;
     converged_ = report.converged;
-    constexpr float kArrived = 0.1f;  // standard deviations from the minimum
-    arrived_ = !compares && report.distance < kArrived;
+    arrived_ = !compares && report.arrived;
     if (compares) ambiguous_ = report.ambiguous;
     determined_ = report.determined && !ambiguous_;
     return {true, report.accepted, report.cost_before, report.cost_after};
