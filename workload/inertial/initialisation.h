@@ -74,9 +74,12 @@ struct StillnessOptions {
 
 template <class P>
 struct Stillness {
+  using F = typename P::F32;
+
   bool still;
-  Vec3<P> gyro_mean;   ///< the gyro bias, if still, rad/s
-  Vec3<P> accel_mean;  ///< minus gravity in the camera frame, if still, m/s²
+  Vec3<P> gyro_mean;       ///< the gyro bias, if still, rad/s
+  Vec3<P> accel_mean;      ///< minus gravity in the camera frame, if still, m/s²
+  F gyro_variance = 0.0f;  ///< summed over the axes, rad²/s²
 };
 
 /// Sums over the last batches of samples, one batch per frame, kept in memory.
@@ -139,7 +142,7 @@ class StillnessDetector {
     bool still = closed_ + 1 >= options_.batches;
     if (gyro_variance > options_.gyro_stddev * options_.gyro_stddev) still = false;
     if (accel_variance > options_.accel_stddev * options_.accel_stddev) still = false;
-    return {still, gyro, accel};
+    return {still, gyro, accel, gyro_variance};
   }
 
   /// If still: with the means of the older half of the batches, so that a motion which has begun,
@@ -156,7 +159,7 @@ class StillnessDetector {
     }
     if (!(samples > F(0.0f))) return seen;
     const F scale = F(1.0f) / samples;
-    return {seen.still, gyro * scale, accel * scale};
+    return {seen.still, gyro * scale, accel * scale, seen.gyro_variance};
   }
 
  private:

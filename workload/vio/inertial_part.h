@@ -44,7 +44,7 @@ class InertialPart {
   Mat3<P> R_camera_body_;
   StillnessDetector<P> stillness_;
   std::optional<Stillness<P>> rest_;
-  Stillness<P> recent_{false, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+  Stillness<P> recent_{false, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 0.0f};
 };
 
 }  // namespace leviosim::vio

@@ -74,7 +74,9 @@ std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state, const
   const auto count = static_cast<float>(near);
   const Mat3<P> H{{{count, 0.0f, -x}, {0.0f, count, -y}, {-x, -y, radius_sq}}};
   Mat3<P> inverse;
-  if (near < state.profile.min_frame_matches || !invert_spd3<P>(H, inverse)) return std::nullopt;
+  if (near < state.profile.min_frame_matches || 2 * near < frame.matches.list.count ||
+      !invert_spd3<P>(H, inverse))
+    return std::nullopt;
   return inverse * b;
 }
 

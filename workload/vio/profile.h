@@ -54,6 +54,10 @@ struct RestOptions {
   /// seen. Below it the camera has not moved, whatever the IMU says.
   float image_motion = 0.006f;
   float image_time = 1;       ///< for which the images must show it to say that it rests [s]
+  /// Of the gyro, over the last second: beyond it the vehicle turns, and an image that does not is
+  /// frozen, or shows what moves with the camera. With rotors that idle recorded flights have up to
+  /// 0.04, in the air 0.11 and more; rad/s.
+  float gyro_stddev = 0.08f;
   float wrong_match = 0.03f;  ///< a match that moved farther is rejected, in normalised coordinates
 };
 

@@ -219,10 +219,13 @@ std::optional<Pose<P>> NextFrontEnd<P>::still_pose(const Frame<P>& frame) {
   return rests_ ? keyframe : Pose<P>{keyframe.R * turn, keyframe.t};
 }
 
-/// Whether the images have shown rest for as long as the IMU must. It may see rotors that idle.
+/// Whether the images have shown rest for as long as the IMU must. It may see rotors that idle, but
+/// no turns.
 template <class P>
 bool NextFrontEnd<P>::images_rest() const {
-  return rests_ && state_.time_since_keyframe > state_.profile.rest.image_time;
+  const RestOptions& limits = state_.profile.rest;
+  return rests_ && state_.time_since_keyframe > limits.image_time &&
+         work::value(inertial_.recent().gyro_variance) < limits.gyro_stddev * limits.gyro_stddev;
 }
 
 /// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
