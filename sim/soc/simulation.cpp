@@ -12,6 +12,7 @@ Simulation::Simulation(const Setup& setup, JobSource& source, Observer& observer
       observer_(observer),
       progress_(std::move(progress)),
       chip_(setup.chip, setup.cores),
+      on_one_core_(setup.on_one_core),
       single_core_(setup.chip, sim::Cluster::kMasterAlone),
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(source.frames())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
@@ -83,7 +84,7 @@ sim::Process Simulation::front_end() {
     const sim::JobTiming timing = co_await chip_.offload(job);
     --in_flight_;
     account_.add_parallel(timing);
-    const sim::JobTiming single = single_core_.front_end(job);
+    const sim::JobTiming single = on_one_core_ ? single_core_.front_end(job) : sim::JobTiming{};
     account_.add_single(single);
 
     times.end_ns = now_ns();

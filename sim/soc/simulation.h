@@ -38,6 +38,7 @@ struct Setup {
   const sim::ChipConfig& chip;
   int cores = 1;                     ///< of the cluster
   std::optional<Deadline> deadline;  ///< of a closed loop
+  bool on_one_core = true;           ///< whether jobs are also timed on the master alone
 };
 
 struct Outcome {
@@ -69,6 +70,7 @@ class Simulation {
   Observer& observer_;
   ProgressCallback progress_;
   sim::Chip chip_;
+  bool on_one_core_;
   JobTimer single_core_;  ///< the same jobs on the master alone
   sim::Channel<int> camera_frames_;
   int in_flight_ = 0;  ///< frames taken whose result is not out yet

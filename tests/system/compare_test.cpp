@@ -156,7 +156,8 @@ TEST_F(Compare, TextFitsEightyColumns) {
   const RunRecord a = replayed({});
   const RunRecord b = replayed({"isa.instruction_overhead=1.6"});
   const RunComparison c = compare_runs(a, b);
-  const std::string text = comparison_report(c, ReportFormat::text);
+  const std::string text = comparison_report({c}, ReportFormat::text, true);
+  EXPECT_EQ(text, comparison_report(c, ReportFormat::text));
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(display_width(line), 80) << line;
 }
@@ -174,6 +175,54 @@ TEST_F(Compare, TheProgramPrintsAllFormats) {
       EXPECT_FALSE(json.at("stages").at(0).at("by_mechanism").at("parts").empty());
     }
   }
+}
+
+TEST_F(Compare, TheSummaryFitsAScreen) {
+  const RunRecord a = replayed({});
+  for (const char* change :
+       {"cluster.fpu.units=1", "isa.instruction_overhead=1.4", "cluster.icache.shared_size=16KiB",
+        "cluster.clock=185MHz", "isa.ops.popcount.issue=3"}) {
+    const RunRecord b = replayed({change});
+    const std::string text = comparison_summary(compare_runs(a, b));
+    std::istringstream in(text);
+    int lines = 0;
+    for (std::string line; std::getline(in, line); ++lines)
+      EXPECT_LE(display_width(line), 80) << line;
+    EXPECT_LE(lines, 24) << text;
+    for (const char* part : {"frame time, mean", "why a mean frame takes another time:", "--all"})
+      EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
+  }
+}
+
+TEST_F(Compare, TheSummaryNamesTheCauses) {
+  const auto compared = [](std::vector<std::string> words) {
+    words.insert(words.begin(), {"compare", path("run")});
+    words.emplace_back("--quiet");
+    const ProgramResult result = program(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  };
+  const auto expect = [](const std::string& text, std::vector<const char*> parts,
+                         const char* not_there) {
+    for (const char* part : parts)
+      EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
+    EXPECT_EQ(text.find(not_there), std::string::npos) << text;
+  };
+  expect(compared({"-p", "cluster.fpu.units=1"}), {"waiting for a shared FPU +"}, "CHANGED");
+  expect(compared({"--platform", "gap9-hamming"}), {"work moved: ", "offloaded to hamming -"},
+         "CHANGED");
+  expect(compared({"--platform",
+                   "gap9:controller.accelerators.hamming.units=1,"
+                   "controller.accelerators.hamming.start_up=10,"
+                   "controller.accelerators.hamming.latency=10,"
+                   "controller.accelerators.hamming.items_per_cycle=1,"
+                   "controller.accelerators.hamming.energy=1nJ"}),
+         {"nothing of this run uses hamming (controller),", "because its work has no region"},
+         "offloaded");
+  expect_done({"run", "--data", path("flight"), "--platform",
+               "gap9:cluster.workers=16,cluster.max_workers=16,cluster.l1.size=256KiB", "--out",
+               path("sixteen"), "--quiet"});
+  expect(compared({path("sixteen")}), {"divided among more cores -"}, "price of an operation");
 }
 
 TEST_F(Compare, RefusesOtherInputsUnlessTheyAreMeant) {

@@ -46,9 +46,26 @@ TEST_F(WhatIfCommand, TriesSeveralValuesInOneCommand) {
   EXPECT_GT(mean_ms(table[1]), mean_ms(table[0]));
   EXPECT_LE(mean_ms(table[2]), mean_ms(table[0]));
   EXPECT_GT(table[2].at("area_mm2").get<double>(), table[0].at("area_mm2").get<double>());
-  EXPECT_NE(table[1].at("why").get<std::string>().find("waiting for an FPU +"), std::string::npos)
+  EXPECT_NE(table[1].at("why").get<std::string>().find("waiting for a shared FPU +"),
+            std::string::npos)
       << table[1];
   EXPECT_EQ(table[0].at("frames"), 64);
+}
+
+/// Times have bands, and every row all three verdicts.
+TEST_F(WhatIfCommand, RowsHaveBandsAndVerdicts) {
+  const Json table = rows({"cluster.clock=100MHz,controller.clock=100MHz"});
+  for (const Json& row : table) {
+    const double p99 = row.at("frame_p99_ms").get<double>();
+    EXPECT_LT(row.at("frame_p99_ms_low").get<double>(), 0.97 * p99) << row;
+    EXPECT_GT(row.at("frame_p99_ms_high").get<double>(), 1.03 * p99) << row;
+    EXPECT_LT(row.at("frame_p99_ms_high").get<double>(), 1.5 * p99) << row;
+    EXPECT_EQ(row.at("memory"), "fits");
+    EXPECT_EQ(row.at("map"), table[0].at("map"));
+  }
+  EXPECT_EQ(table[1].at("time"), "too slow");
+  EXPECT_EQ(table[1].at("verdict").get<std::string>().rfind("too slow", 0), 0u) << table[1];
+  EXPECT_NE(table[0].at("time"), "too slow");
 }
 
 TEST_F(WhatIfCommand, TimesTheRunAsItIsLikeTheRun) {
@@ -86,11 +103,12 @@ TEST_F(WhatIfCommand, OtherNumbersOfCoresSayWhichKeyHelpsUntilTheyRun) {
 }
 
 TEST_F(WhatIfCommand, SaysWhatIsOffloadedAndWhatNothingUses) {
-  const Json table = rows({"gap9-hamming", "gap9:controller.accelerators.hamming.units=1,"
-                                           "controller.accelerators.hamming.start_up=10,"
-                                           "controller.accelerators.hamming.latency=10,"
-                                           "controller.accelerators.hamming.items_per_cycle=1,"
-                                           "controller.accelerators.hamming.energy=1nJ"});
+  const Json table = rows({"gap9-hamming",
+                           "gap9:controller.accelerators.hamming.units=1,"
+                           "controller.accelerators.hamming.start_up=10,"
+                           "controller.accelerators.hamming.latency=10,"
+                           "controller.accelerators.hamming.items_per_cycle=1,"
+                           "controller.accelerators.hamming.energy=1nJ"});
   EXPECT_NE(table[1].at("why").get<std::string>().find("offloaded to hamming -"), std::string::npos)
       << table[1];
   EXPECT_NE(table[2].at("why").get<std::string>().find("nothing of this run uses hamming"),
@@ -111,9 +129,8 @@ TEST_F(WhatIfCommand, AdvisesTheLargestLever) {
     lines.push_back(line);
   }
   const auto at = [&](const std::string& part) {
-    return std::find_if(lines.begin(), lines.end(), [&](const std::string& l) {
-             return l.find(part) != std::string::npos;
-           }) -
+    return std::find_if(lines.begin(), lines.end(),
+                        [&](const std::string& l) { return l.find(part) != std::string::npos; }) -
            lines.begin();
   };
   EXPECT_LT(at("cluster.icache.shared_size="), at("By time gained per area")) << result.out;
@@ -144,8 +161,8 @@ TEST_F(WhatIfCommand, TypingErrorsAreRefusedBeforeWork) {
 TEST_F(WhatIfCommand, InlineVariantsArePlatformsEverywhere) {
   const std::string chip = "gap9:cluster.fpu.units=1";
   expect_done({"replay", path("run"), "--platform", chip, "--out", path("one"), "--quiet"});
-  expect_done({"replay", path("run"), "-p", "cluster.fpu.units=1", "--out", path("same"),
-               "--quiet"});
+  expect_done(
+      {"replay", path("run"), "-p", "cluster.fpu.units=1", "--out", path("same"), "--quiet"});
   EXPECT_EQ(base::read_text_file(path("one/stats.json")),
             base::read_text_file(path("same/stats.json")));
   std::ofstream(path("plan.yaml"))
@@ -155,8 +172,8 @@ TEST_F(WhatIfCommand, InlineVariantsArePlatformsEverywhere) {
   ASSERT_EQ(swept.status, 0) << swept.err;
   const Json points = Json::parse(swept.out).at("rows");
   ASSERT_EQ(points.size(), 2u);
-  EXPECT_LT(points[0].at("objective.latency").get<double>(),
-            points[1].at("objective.latency").get<double>());
+  EXPECT_LT(points[0].at("objective.frame_time").get<double>(),
+            points[1].at("objective.frame_time").get<double>());
   expect_refused(program({"replay", path("run"), "--platform", "gap9:cluster.fpu.unit=1", "--out",
                           path("none")}),
                  {"cluster.fpu.unit", "did you mean"});

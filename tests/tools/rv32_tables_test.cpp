@@ -84,6 +84,8 @@ const std::map<std::string_view, ChipOfTable> kChips{{"rv32imfc", {"gap9", {"isa
 /// The range that code gets which was not measured: the middle four fifths of the work of code that
 /// was, by its ratio of executed to counted instructions.
 TEST_P(CompiledTables, TheRangeOfUnmeasuredCodeIsThatOfMeasuredCode) {
+  if (GetParam() == "rv32imfc_xpulp")
+    GTEST_SKIP() << "its range is that of kernels with published cycles: bands_test.cpp";
   std::vector<std::pair<double, double>> works_of_ratios;
   double all = 0;
   for (const Segment& segment : segments(GetParam())) {

@@ -149,6 +149,38 @@ TEST(TimeVerdict, ASlowChipIsToldByTheTimeOfAFrame) {
   EXPECT_GT(figures_of(run).value("frame.latency.worst"), 180e6);
 }
 
+/// What the ranges of the platform leave open is said where the period lies in it.
+TEST(TimeVerdict, SaysWhatItsBandLeavesOpen) {
+  RunResult run = with_slow_frames(54);
+  run.time_bands = TimeBands{{1, 0.9, 1.15}, {1, 0.88, 1.15}};
+  EXPECT_EQ(text_of(run),
+            "fits on average: 10 of 40 frames late, a frame takes 28.5 (26–33) ms on average of 50 "
+            "ms, worst 54 (48–62) ms: cannot be told from 50, memory fits, map good");
+  run = with_slow_frames(49);
+  run.time_bands = TimeBands{{1, 0.9, 1.15}, {1, 0.88, 1.15}};
+  EXPECT_EQ(text_of(run),
+            "fits: all 40 frames within 50 ms, worst 49 (43–56) ms: cannot be told from 50, memory "
+            "fits, map good");
+  run.time_bands->slowest.high = 1.01;
+  EXPECT_EQ(text_of(run).find("cannot be told"), std::string::npos);
+  run = with_slow_frames(180);
+  run.time_bands = TimeBands{{1, 0.8, 1.15}, {1, 0.8, 1.15}};
+  EXPECT_EQ(text_of(run),
+            "too slow: a frame takes 60 (48–69) ms on average of 50 ms: cannot be told from 50, "
+            "which sustains 16.7 frames/s, memory fits, map good");
+}
+
+/// Where no camera runs, the queue behind a slow frame only tells how the flight was recorded.
+TEST(TimeVerdict, OfFramesByThemselvesUnlessACameraRuns) {
+  RunResult run = with_slow_frames(90);  // the frame after each waits 40 ms and takes 20
+  EXPECT_EQ(figures_of(run).value("frame.missed_share"), 0.25);
+  run.camera = CameraRecord{20, Deadline::Queue, {}};
+  for (const FrameResult& f : run.frames)
+    run.camera->deliveries.push_back({f.index, f.t_ns, f.arrival_ns, 0, false});
+  EXPECT_EQ(figures_of(run).value("frame.missed_share"), 0.5);
+  EXPECT_NE(text_of(run).find("20 of 40 frames late"), std::string::npos) << text_of(run);
+}
+
 TEST(Verdicts, AreGreenOnlyIfAllAre) {
   RunResult run = with_slow_frames(20);
   EXPECT_EQ(grade_of(run), Grade::good);

@@ -10,159 +10,27 @@
 
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/loader.h"
-#include "tests/validation/dsp_kernels.h"
-#include "tools/app/validation/builtin_references.h"
-#include "tools/app/validation/microbench/bench.h"
-#include "tools/app/validation/microbench/reference.h"
+#include "tools/app/validation/microbench/library_kernels.h"
+#include "tools/app/validation/microbench/library_programs.h"
 #include "tools/app/validation/microbench/report.h"
 #include "workload/vio/levio/geometry/eight_point.h"
 
 namespace leviosim::tools {
 namespace {
 
-using P = work::Counting;
-using I32 = P::I32;
-using Words = P::Span<I32>;
-using Pairs = P::Span<work::I16x2<P>>;
 using work::Core;
 using work::Machine;
 
-template <class Span>
-Span block(Machine& machine, std::string_view name, int n) {
-  const Span span = machine.local().alloc<Span>(name, n);
-  for (int i = 0; i < n; ++i) span.data()[i] = {};
-  return span;
-}
-
-void run_int32_product(Machine& m, int n) {
-  const auto a = block<Words>(m, "a", n * n), b = block<Words>(m, "b", n * n);
-  const auto c = block<Words>(m, "c", n * n);
-  m.fork("product", [&](Core& core) { multiply_int32<P>(a, b, c, n, core); });
-}
-
-void run_int16_product(Machine& m, int n) {
-  const auto a = block<Pairs>(m, "a", n * n / 2), b = block<Pairs>(m, "b", n * n / 2);
-  const auto c = block<Words>(m, "c", n * n);
-  m.fork("product", [&](Core& core) { multiply_int16<P>(a, b, c, n, core); });
-}
-
-/// Each core convolves its part of one operand; then each adds up its part of the results.
-void run_convolution(Machine& m, int n) {
-  const auto x = block<Words>(m, "x", n), taps = block<Words>(m, "taps", n);
-  const int part = n / m.cores();
-  const int results = part + n - 1;
-  const auto parts = block<Words>(m, "parts", m.cores() * results);
-  const auto out = block<Words>(m, "out", 2 * n - 1);
-  m.fork("convolve", [&](Core& core) {
-    convolve_int32<P>(taps, x.subspan(core.id * part, part),
-                      parts.subspan(core.id * results, results));
-  });
-  if (m.cores() == 1) return;
-  m.fork("add", [&](Core& core) {
-    const work::Share share = core.share(2 * n - 1);
-    for (const int t : P::range(share.begin, share.end)) {
-      I32 sum = 0;
-      for (int k = 0; k < m.cores(); ++k)
-        if (const int at = t - k * part; at >= 0 && at < results) sum += parts[k * results + at];
-      out[t] = sum;
-    }
-  });
-}
-
-/// The sum of the cores' sums is the master's.
-void run_dot(Machine& m, int n) {
-  const auto a = block<Words>(m, "a", n), b = block<Words>(m, "b", n);
-  const auto sums = block<Words>(m, "sums", m.cores());
-  m.fork("dot", [&](Core& core) {
-    const work::Share share = core.share(n);
-    sums[core.id] = dot_int32<P, P::Span<const I32>>(a, b, share.begin, share.end);
-  });
-  I32 sum = 0;
-  for (int core = 0; core < m.cores() && m.cores() > 1; ++core) sum += sums[core];
-}
-
-void run_dot_in_l2(Machine& m, int n) {
-  static std::vector<I32> values(2 * 80);
-  using Far = P::L2Span<const I32>;
-  m.fork("dot",
-         [&](Core&) { dot_int32<P, Far>(Far(values.data(), n), Far(values.data() + n, n), 0, n); });
-}
-
-/// What one pass through all of a kernel's code is: the smallest problem, and how many passes that
-/// is.
-struct Code {
-  std::string_view function;
-  void (*run)(Machine&, int);
-  int size;
-  int passes;
-};
-constexpr Code kInt32Product{"multiply_int32", run_int32_product, 2, 1};
-constexpr Code kInt16Product{"multiply_int16", run_int16_product, 4, 2};
-/// Four blocks: two of the rising edge, two of the falling one, which have loops of their own.
-constexpr Code kConvolution{"convolve_int32", run_convolution, 8, 2};
-constexpr Code kDot{"dot_int32", run_dot, 2, 1};
-
-struct Kernel {
-  std::string_view group;
-  std::string_view name;
-  void (*run)(Machine&, int);
-  int size;
-  const Code& code;
-};
-constexpr Kernel kKernels[] = {
-    {"int32 matrix product", "n = 16", run_int32_product, 16, kInt32Product},
-    {"int32 matrix product", "n = 32", run_int32_product, 32, kInt32Product},
-    {"int32 matrix product", "n = 48", run_int32_product, 48, kInt32Product},
-    {"int16 matrix product", "n = 16", run_int16_product, 16, kInt16Product},
-    {"int16 matrix product", "n = 32", run_int16_product, 32, kInt16Product},
-    {"int32 convolution", "512 with 512", run_convolution, 512, kConvolution},
-    {"int32 dot product", "6960", run_dot, 6960, kDot},
-    {"int32 dot product", "80", run_dot, 80, kDot},
-    {"int32 dot product", "80 in L2", run_dot_in_l2, 80, kDot},
-};
-
-const Kernel& kernel_of(const MicrobenchRow& row) {
-  return *std::find_if(std::begin(kKernels), std::end(kKernels), [&](const Kernel& kernel) {
-    return kernel.group == row.group && kernel.name == row.name;
-  });
-}
-
-/// GAP9 with what the sibling has less of; none of it matters to these kernels.
-const std::vector<std::string> kSibling = {"cluster.l1.size=64KiB", "cluster.fpu.units=2"};
-/// The kernels were scheduled by hand: what compilers add is not in them.
-const std::vector<std::string> kByHand = {"cluster.l1.size=64KiB", "cluster.fpu.units=2",
-                                          "isa.instruction_overhead=1", "isa.load_use_fraction=0"};
-
-/// Bytes of code of a kernel, whose compiled form is not known: four for each instruction that it
-/// executes in one pass.
-std::uint32_t bytes_of(const sim::ChipConfig& chip, const Code& code) {
-  constexpr double kInstruction = 4;
-  const sim::StageTiming pass = Bench(chip, 1).run([&](Machine& m) {
-    const work::Arena::Frame frame(m.local());
-    code.run(m, code.size);
-  });
-  return static_cast<std::uint32_t>(kInstruction * pass.account.team[sim::Mechanism::Issue] /
-                                    code.passes);
-}
+const std::vector<std::string> kByHand(kLibraryChip.begin(), kLibraryChip.end());
+/// With what compilers add.
+const std::vector<std::string> kSibling(kLibraryChip.begin(), kLibraryChip.begin() + 2);
 
 std::vector<MicrobenchRow> rows(const std::vector<std::string>& overrides) {
   const sim::ChipConfig chip = platform::load_platform("gap9", overrides);
-  std::vector<MicrobenchRow> all =
-      reference_rows("pulp_dsp.csv", std::string(reference_text("pulp_dsp")), 2);
-  for (MicrobenchRow& row : all) {
-    const Kernel& kernel = kernel_of(row);
-    work::CodeMap code;
-    code.add(kernel.code.function, "", bytes_of(chip, kernel.code));
-    Bench bench(chip, row.cores, &code);
-    const auto time = [&](const auto& body) {
-      return static_cast<double>(bench.run(body).cycles.count());
-    };
-    row.simulated = time([&](Machine& m) {
-      const work::Arena::Frame frame(m.local());
-      kernel.run(m, kernel.size);
-    });
-    // One core is not forked.
-    if (row.cores == 1) row.simulated -= time([](Machine& m) { m.fork("nothing", [](Core&) {}); });
+  std::vector<MicrobenchRow> all;
+  for (const KernelJob& kernel : library_kernels(chip)) {
+    all.push_back(kernel.row);
+    all.back().simulated = kernel.cycles_on(chip);
   }
   return all;
 }
@@ -226,7 +94,11 @@ TEST(ValidationDspKernels, HardwareRepeatsAllButTheColumns) {
   Machine machine({.cores = 1, .capacity = Bytes(65536), .record = true});
   {
     const auto stage = machine.stage("product");
-    run_int32_product(machine, 16);
+    using P = work::Counting;
+    using Words = P::Span<P::I32>;
+    const auto a = block<Words>(machine, "a", 256), b = block<Words>(machine, "b", 256);
+    const auto c = block<Words>(machine, "c", 256);
+    machine.fork("product", [&](Core& core) { multiply_int32<P>(a, b, c, 16, core); });
   }
   const work::Counts counts = work::counts_of(machine.take_job().stages[0]);
   EXPECT_EQ(counts[work::Op::LoopJump], 16u / 2);

@@ -1,6 +1,8 @@
 // The paper's tables against a run over real frames, with the tolerances and guards of paper.csv.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/run_request.h"
@@ -23,6 +25,7 @@ TEST(ValidationPaper, NoFigureIsWorseThanItsToleranceOrItsGuard) {
   request.platform = platform::resolve_platform("gap9");
   request.observer = &log;
   request.workload = parse_workload_overrides({"workload.released=on"});
+  request.time_bands = TimeBandsOf::team_and_one_core;
   const RunResult run = simulate(request, [](const Progress&) {});
   const Validation validation = validate(run, log, profile_of(request), paper_references());
   for (const Comparison& c : validation.comparisons) {
@@ -33,6 +36,11 @@ TEST(ValidationPaper, NoFigureIsWorseThanItsToleranceOrItsGuard) {
         << r.tolerance.value << ", guard " << r.guard.value_or(r.tolerance.value)
         << (c.verdict == Verdict::Improved ? " (paper.csv may say met)" : "");
   }
+  // At least four fifths of the table of cycles lie inside their bands.
+  ASSERT_EQ(validation.bands.size(), 12u);
+  EXPECT_GE(std::count_if(validation.bands.begin(), validation.bands.end(),
+                          [](const BandedStage& band) { return band.is_inside(); }),
+            10);
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct CompareOptions : RecordOptions {
   std::string allow;
   std::string format = "text";
   bool json = false;
+  bool all = false;
   std::string report;
 };
 
@@ -83,7 +84,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
                      check_comparable(runs.front().record, runs[i].record, allowed)));
   std::string html;
   if (page) html = html_page(runs_report(runs, comparisons, nullptr));
-  publish({{page, html, ""}}, comparison_report(comparisons, format));
+  publish({{page, html, ""}}, comparison_report(comparisons, format, options.all));
 }
 
 }  // namespace
@@ -99,6 +100,7 @@ Command add_compare_command(CLI::App& app) {
       ->type_name("data,frames,profile,seed,size");
   command->add_option("--format", options->format, "text, markdown, json or csv [text]")
       ->type_name("FORMAT");
+  command->add_flag("--all", options->all, "all tables in place of the summary");
   add_json_option(*command, options->json);
   add_report_option(*command, options->report);
   command->add_flag("--force", options->force, "replace that file");

@@ -37,6 +37,7 @@ Flown fly(RunOptions options, const char* profile, bool record, const Words& wor
           ProgressLine::Style style) {
   options.profile = profile;
   RunRequest request = make_chip_request(options);
+  request.time_bands = TimeBandsOf::team;
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);
   if (record) request.recording = &recording;

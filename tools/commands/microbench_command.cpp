@@ -13,6 +13,7 @@
 #include "tools/app/cli/terminal.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/validation/microbench/board_kernels.h"
+#include "tools/app/validation/microbench/library_kernels.h"
 #include "tools/app/validation/microbench/report.h"
 #include "tools/app/validation/microbench/unit_benches.h"
 
@@ -30,6 +31,13 @@ struct MicrobenchOptions {
   bool json = false;
 };
 
+/// The chip as the one of the library's figures is.
+platform::ResolvedPlatform sibling_of(const MicrobenchOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  overrides.insert(overrides.end(), kLibraryChip.begin(), kLibraryChip.end());
+  return platform::resolve_platform(options.platform, overrides);
+}
+
 void run(const MicrobenchOptions& options) {
   const platform::ResolvedPlatform chip =
       platform::resolve_platform(options.platform, options.overrides);
@@ -39,15 +47,29 @@ void run(const MicrobenchOptions& options) {
                                                          .inputs = {options.platform}});
   const bool is_board = chip.name == kBoard;
   std::vector<MicrobenchRow> rows;
+  std::vector<double> needed;
   std::string tables;
+  const auto add = [&](std::string_view name, const std::vector<MicrobenchRow>& more) {
+    tables += microbench_table(name, more) + '\n';
+    rows.insert(rows.end(), more.begin(), more.end());
+  };
+  const auto add_needed = [&](const std::vector<KernelJob>& kernels,
+                              const platform::Variants& platform) {
+    for (const double factor : needed_instructions(kernels, platform)) needed.push_back(factor);
+  };
   if (!is_board) {
-    rows = unit_rows(chip.config);
-    tables = microbench_table(printable(chip.name), rows) + '\n';
+    add(printable(chip.name), unit_rows(chip.config));
+    const platform::Variants sibling(sibling_of(options));
+    const std::vector<KernelJob> kernels = library_kernels(sibling.config({}));
+    add("PULP-DSP", banded_rows(kernels, sibling));
+    add_needed(kernels, sibling);
   }
-  const std::vector<MicrobenchRow> board =
-      board_rows(is_board ? chip.config : platform::load_platform("gap8"));
-  tables += microbench_table(kBoard, board);
-  rows.insert(rows.end(), board.begin(), board.end());
+  const platform::Variants board(is_board ? chip : platform::resolve_platform("gap8"));
+  const std::vector<KernelJob> kernels = board_kernels(board.config({}));
+  add(kBoard, board_rows(kernels, board));
+  add_needed(kernels, board);
+  std::sort(needed.begin(), needed.end());
+  tables += coverage_text(rows, needed);
   publish({{out, microbench_csv(rows), ""}},
           printout(
               options.json, [&] { return tables; },

@@ -94,6 +94,7 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
   RunRequest request = request_for(trace, options);
   std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);
+  request.time_bands = TimeBandsOf::team;
   if (timeline) request.observer = &timeline->observer();
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;

@@ -37,6 +37,7 @@ void run(const CLI::App& command, RunCommandOptions options, const Words& words)
   out.reserve(expected_bytes(request, options.record));
   WorkRecording recording(request.cores);
   if (options.record) request.recording = &recording;
+  request.time_bands = TimeBandsOf::team;
   if (timeline) request.observer = &timeline->observer();
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);

@@ -46,6 +46,7 @@ void run(const RunOptions& given, const Words& words) {
   request.data = data_folder(options, style);
   FrameLog log(request.platform.config.cluster.core.code);
   request.observer = &log;
+  request.time_bands = TimeBandsOf::team_and_one_core;
   const RunResult result = simulate_with_progress(request, style);
   const Validation validation = validate(result, log, profile_of(request), references);
   const Printout text = printout(

@@ -22,7 +22,7 @@ struct FirstLimit {
   int decimals;
 };
 constexpr std::array kFirstLimits{
-    FirstLimit{"frame latency p99", "frame.latency.p99", 1e-6, "ms", 2},
+    FirstLimit{"frame time p99", "frame.time.p99", 1e-6, "ms", 2},
     FirstLimit{"missed", "frame.missed_share", 100, "%", 2},
     FirstLimit{"frame cycles", "frame.cycles.parallel.mean", 1e-3, "kcycles", 1},
     FirstLimit{"L1 peak", "memory.l1.peak", 1e-3, "kB", 1},

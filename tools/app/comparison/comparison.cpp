@@ -18,11 +18,13 @@ struct Figure {
   double scale;  ///< from the statistic's unit
 };
 constexpr std::array kFigures{
-    Figure{"frame.latency.p50", "latency, median", "ms", 1e-6},
-    Figure{"frame.latency.p95", "latency, 95 %", "ms", 1e-6},
+    Figure{"frame.time.mean", "frame time, mean", "ms", 1e-6},
+    Figure{"frame.time.p99", "frame time, 99 %", "ms", 1e-6},
+    Figure{"frame.time.worst", "frame time, worst", "ms", 1e-6},
+    Figure{"frame.sustainable_rate", "sustainable rate", "frames/s", 1},
+    Figure{"frame.missed_share", "frames that missed", "%", 100},
     Figure{"frame.latency.p99", "latency, 99 %", "ms", 1e-6},
     Figure{"frame.latency.worst", "latency, worst", "ms", 1e-6},
-    Figure{"frame.missed_share", "frames that missed", "%", 100},
     Figure{"frame.cycles.single.mean", "frame on one core", "kcycles", 1e-3},
     Figure{"frame.cycles.parallel.mean", "frame on N cores", "kcycles", 1e-3},
     Figure{"run.cluster_clock", "clock of the cluster", "MHz", 1e-6},
@@ -49,7 +51,10 @@ class Comparer {
 
   std::vector<ComparedQuantity> figures() const {
     std::vector<ComparedQuantity> list;
+    const bool has_camera = a_.value("camera.arrived") || b_.value("camera.arrived");
     for (const Figure& f : kFigures) {
+      // Where no camera runs, frames queue as long as the flight is.
+      if (!has_camera && std::string_view(f.statistic).starts_with("frame.latency.")) continue;
       ComparedQuantity q = of(f.name, f.unit, f.statistic, f.scale);
       if (q.a || q.b) list.push_back(std::move(q));
     }
@@ -171,6 +176,14 @@ class Comparer {
       if (s.name.rfind(ops, 0) != 0) continue;
       const auto in_b = b_.value(s.name);
       if (in_b && in_b != s.value) c.same_work = false;
+    }
+    for (const work::OffloadKindInfo& kind : work::kOffloadKinds) {
+      const std::string calls = fmt::format("{}served.{}.calls", path, kind.name);
+      const bool in_a = a_.value(calls).value_or(0) > 0;
+      const bool in_b = b_.value(calls).value_or(0) > 0;
+      if (in_a != in_b)
+        c.offloaded.push_back(
+            fmt::format("{} to {}", in_b ? "offloaded" : "no longer offloaded", kind.name));
     }
   }
 

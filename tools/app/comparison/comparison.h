@@ -48,6 +48,8 @@ struct StageComparison {
   ComparedQuantity share;       ///< of the cycles of a frame, in per cent; none on the controller
   ComparedQuantity operations;  ///< of all calls
   bool same_work = true;
+  /// What became of work that an accelerator serves in one of the runs only: "offloaded to hamming".
+  std::vector<std::string> offloaded = {};
   /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if one of
   /// the runs has no cycles.csv.
   std::optional<ComparedQuantity> mechanisms;

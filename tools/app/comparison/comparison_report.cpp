@@ -295,16 +295,25 @@ std::string work_line(const RunComparison& comparison) {
   if (comparison.same_work())
     return "work: the same operations and calls in all stages; what differs is their cost";
   std::vector<std::string> changes;
+  std::vector<std::string> moved;
   for (const StageComparison& s : comparison.stages) {
     if (s.same_work) continue;
+    if (!s.offloaded.empty() && s.calls.a == s.calls.b) {
+      moved.push_back(fmt::format("{} {}", printable(s.stage.name), fmt::join(s.offloaded, ", ")));
+      continue;
+    }
     std::string change = printable(s.stage.name);
     if (s.calls.a != s.calls.b)
       change +=
           fmt::format(" {} → {} calls,", figure_text(s.calls.a, 0), figure_text(s.calls.b, 0));
     changes.push_back(change + fmt::format(" operations {}", percent(s.operations.percent())));
   }
-  return fmt::format("work: CHANGED in {} of {} stages: {}", changes.size(),
-                     comparison.stages.size(), fmt::join(changes, "; "));
+  const std::string offloaded =
+      moved.empty() ? "" : fmt::format("work moved: {}", fmt::join(moved, "; "));
+  if (changes.empty()) return offloaded;
+  return fmt::format("work: CHANGED in {} of {} stages: {}{}{}", changes.size(),
+                     comparison.stages.size(), fmt::join(changes, "; "),
+                     offloaded.empty() ? "" : "; ", offloaded);
 }
 
 std::vector<std::string> reasons(const StageComparison& stage, std::size_t most) {
@@ -332,7 +341,8 @@ std::string comparison_report(const RunComparison& comparison, ReportFormat form
   }
 }
 
-std::string comparison_report(const std::vector<RunComparison>& comparisons, ReportFormat format) {
+std::string comparison_report(const std::vector<RunComparison>& comparisons, ReportFormat format,
+                              bool all) {
   if (format == ReportFormat::json && comparisons.size() > 1) {
     Json list = Json::array();
     for (const RunComparison& c : comparisons) list.push_back(comparison_json(c));
@@ -340,7 +350,9 @@ std::string comparison_report(const std::vector<RunComparison>& comparisons, Rep
   }
   std::string text;
   for (const RunComparison& c : comparisons)
-    text += (text.empty() ? "" : "\n") + comparison_report(c, format);
+    text += (text.empty() ? "" : "\n") + (format == ReportFormat::text && !all
+                                              ? comparison_summary(c)
+                                              : comparison_report(c, format));
   return text;
 }
 

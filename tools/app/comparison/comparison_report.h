@@ -16,7 +16,13 @@ ReportFormat parse_report_format(const std::string& name);
 
 std::string comparison_report(const RunComparison& comparison, ReportFormat format);
 /// The same of several, one after the other; in JSON a list if there is more than one.
-std::string comparison_report(const std::vector<RunComparison>& comparisons, ReportFormat format);
+/// @param all  else text is the summary
+std::string comparison_report(const std::vector<RunComparison>& comparisons, ReportFormat format,
+                              bool all);
+
+/// At most 24 lines of 80 columns: figures of the run, the stages that differ most, and the main
+/// causes. More lines only for notes.
+std::string comparison_summary(const RunComparison& comparison);
 
 /// "8-point hypotheses: issue +1.2 %": the parts of a stage that explain most of its difference,
 /// each with its share of the stage's cycles in A.

@@ -1,7 +1,9 @@
 #include "tools/app/comparison/main_causes.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -12,43 +14,29 @@
 namespace leviosim::tools {
 namespace {
 
-struct Words {
-  std::string_view mechanism;
-  std::string_view words;
-};
-constexpr std::array kWords{
-    Words{"issue", "instructions"},
-    Words{"load_use", "waiting for loaded values"},
-    Words{"control", "refilling pipelines"},
-    Words{"memory", "L2 latency, straddling words"},
-    Words{"arithmetic", "latency of divisions, floats"},
-    Words{"fetch", "waiting for code"},
-    Words{"fetch_contention", "waiting for code"},
-    Words{"accelerator", "waiting for accelerators"},
-    Words{"accelerator_contention", "waiting for accelerators"},
-    Words{"fpu", "waiting for an FPU"},
-    Words{"divider", "waiting for a divider"},
-    Words{"banks", "waiting for L1 banks"},
-    Words{"imbalance", "waiting for the slowest core"},
-    Words{"rounding", "waiting for the slowest core"},
-    Words{"synchronisation", "forks and barriers"},
-    Words{"transfer", "waiting for the DMA"},
-    Words{"offload", "calling the cluster"},
-};
-
+/// Mechanisms that wait for the same, or stand in the same column of losses, are one cause.
 std::string words_of(std::string_view mechanism) {
-  for (const Words& w : kWords)
-    if (w.mechanism == mechanism) return std::string(w.words);
-  return std::string(mechanism);
+  const auto info_of = [](const auto& holds) {
+    return std::find_if(sim::kMechanisms.begin(), sim::kMechanisms.end(), holds);
+  };
+  const auto info = info_of([&](const sim::MechanismInfo& i) { return i.key == mechanism; });
+  if (info == sim::kMechanisms.end()) return std::string(mechanism);
+  const auto first = info_of([&](const sim::MechanismInfo& i) {
+    return i.wait == info->wait && i.column == info->column && i.column != "useful";
+  });
+  const auto others = std::count_if(
+      sim::kMechanisms.begin(), sim::kMechanisms.end(),
+      [&](const sim::MechanismInfo& i) { return !i.wait.empty() && i.wait == info->wait; });
+  if (others > 1) return fmt::format("waiting for {}", info->wait);
+  return std::string((first == sim::kMechanisms.end() ? info : first)->meaning);
 }
 
 /// Whether cores spend it on their own shares of a fork, so that more cores have less of it each.
 bool is_of_a_core(std::string_view mechanism) {
-  return std::any_of(sim::kMechanisms.begin(), sim::kMechanisms.end(),
-                     [&](const sim::MechanismInfo& info) {
-                       return info.key == mechanism &&
-                              sim::index(info.mechanism) < sim::kCoreMechanismCount;
-                     });
+  return std::any_of(
+      sim::kMechanisms.begin(), sim::kMechanisms.end(), [&](const sim::MechanismInfo& info) {
+        return info.key == mechanism && sim::index(info.mechanism) < sim::kCoreMechanismCount;
+      });
 }
 
 bool is_kernel(std::string_view operation) {
@@ -158,6 +146,48 @@ class CauseSum {
 };
 
 }  // namespace
+
+TimedParts timed_parts(const RunRecord& run) {
+  return {run.cycles, run.facts.cores,
+          run.value("frames.count").value_or(static_cast<double>(run.facts.frames)),
+          Hertz(std::llround(run.value("run.cluster_clock").value_or(1)))};
+}
+
+std::string cause_text(const MainCause& cause) {
+  std::string text = fmt::format("{} {:+.2f} ms", cause.what, cause.ms);
+  if (cause.stage.empty()) return text;
+  const bool is_part = std::abs(cause.stage_ms) < std::abs(cause.ms);
+  return text + (is_part ? ", most in " : " in ") + cause.stage;
+}
+
+std::vector<std::string> unused_accelerators(const RunFigures& run) {
+  constexpr std::string_view kAll = "accelerators.";
+  std::vector<std::string> unused;
+  for (const Statistic& s : run.statistics) {
+    if (!s.name.starts_with(kAll)) continue;
+    const std::size_t dot = s.name.find('.', kAll.size());
+    const std::string where = s.name.substr(kAll.size(), dot - kAll.size());
+    const std::string kernel = s.name.substr(dot + 1, s.name.rfind('.') - dot - 1);
+    const bool serves =
+        std::any_of(run.stages.begin(), run.stages.end(), [&](const StageName& stage) {
+          return stage.on_controller == (where == "controller") &&
+                 run.value(fmt::format("stages.{}.served.{}.calls", stage.key, kernel))
+                         .value_or(0) > 0;
+        });
+    if (!serves) unused.push_back(fmt::format("{} ({})", kernel, where));
+  }
+  return unused;
+}
+
+std::string unused_text(const std::vector<std::string>& in_a,
+                        const std::vector<std::string>& in_b) {
+  std::vector<std::string> unused;
+  for (const std::string& unit : in_b)
+    if (std::find(in_a.begin(), in_a.end(), unit) == in_a.end()) unused.push_back(unit);
+  if (unused.empty()) return {};
+  return fmt::format("nothing of this run uses {}, because its work has no region for it there",
+                     fmt::join(unused, ", "));
+}
 
 std::vector<MainCause> main_causes(const TimedParts& a, const TimedParts& b) {
   return CauseSum(a, b).list();

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {
 
@@ -27,7 +27,18 @@ struct MainCause {
   double stage_ms = 0;
 };
 
+TimedParts timed_parts(const RunRecord& run);
+
 /// The largest first.
 std::vector<MainCause> main_causes(const TimedParts& a, const TimedParts& b);
+
+/// "waiting for code -11.20 ms, most in EPnP RANSAC".
+std::string cause_text(const MainCause& cause);
+
+/// Accelerators of the chip that served nothing: "hamming (cluster)".
+std::vector<std::string> unused_accelerators(const RunFigures& run);
+/// "nothing of this run uses hamming (cluster), because …"; empty if B has no unused ones that A
+/// has not.
+std::string unused_text(const std::vector<std::string>& in_a, const std::vector<std::string>& in_b);
 
 }  // namespace leviosim::tools

@@ -51,14 +51,30 @@ std::string wrapped(const std::string& text, int width) {
   return wrap(items, " ", kIndent, width) + '\n';
 }
 
+/// Empty if nothing was timed.
+std::string frame_time_line(const RunResult& run) {
+  const std::optional<FrameTimes> times = frame_times(run);
+  if (!times) return {};
+  const auto text = [&](const Banded& ns) {
+    std::string words = fmt::format("{:.2f}", ns.value * 1e-6);
+    if (times->has_bands) words += fmt::format(" ({:.3g}–{:.3g})", ns.low * 1e-6, ns.high * 1e-6);
+    return words;
+  };
+  return fmt::format(
+      "frame time: mean {}, p99 {}, worst {} ms of {:.4g}, which sustains {:.3g} frames/s",
+      text(times->mean_ns), text(times->p99_ns), text(times->worst_ns), ms(run.frame_period_ns),
+      times->sustainable_rate());
+}
+
+/// What a pose takes with waiting, where a camera runs; else empty.
 std::string latency_line(const RunResult& run) {
-  const CameraFigures::Latencies latency = latencies_of(run);
-  std::string text = fmt::format(
-      "latency: p50 {:.2f}, p99 {:.2f}, worst {:.2f} ms, deadline {:.4g} ms", ms(latency.p50_ns),
-      ms(latency.p99_ns), ms(latency.max_ns), ms(run.frame_period_ns));
-  if (const auto camera = camera_figures(run))
-    text += fmt::format(", dropped {}, late {}", camera->dropped, camera->late);
-  return text;
+  const auto camera = camera_figures(run);
+  if (!camera) return {};
+  const CameraFigures::Latencies& latency = camera->latency;
+  return fmt::format(
+      "latency: p50 {:.2f}, p99 {:.2f}, worst {:.2f} ms, deadline {:.4g} ms, dropped {}, late {}",
+      ms(latency.p50_ns), ms(latency.p99_ns), ms(latency.max_ns), ms(run.frame_period_ns),
+      camera->dropped, camera->late);
 }
 
 std::string occupied(Bytes used, Bytes size) {
@@ -149,7 +165,7 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
                         const std::string& remarks) {
   std::vector<std::string> below;
   if (run.timed)
-    below = {latency_line(run), memory_line(run), energy_line(run)};
+    below = {frame_time_line(run), latency_line(run), memory_line(run), energy_line(run)};
   else
     below = {frame_summary(run).substr(0, frame_summary(run).find('\n'))};
   for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));

@@ -58,6 +58,16 @@ void add_breakdown(StatisticList& list, const std::string& path, const RunResult
              stage.account.team[part.mechanism]);
 }
 
+/// Those that the chip has, whether or not they serve anything.
+void add_accelerators(StatisticList& list, const RunResult& run) {
+  for (const auto& [where, units] : {std::pair("cluster", &run.chip.cluster.accelerators),
+                                     std::pair("controller", &run.chip.controller.accelerators)})
+    for (const work::OffloadKindInfo& info : work::kOffloadKinds)
+      if (const int count = (*units)[work::index(info.kernel)].units; count > 0)
+        list.add(fmt::format("accelerators.{}.{}.units", where, info.name), "1",
+                 fmt::format("units of the {}: {}", where, info.description), count);
+}
+
 /// Of chips with accelerators only.
 void add_served(StatisticList& list, const std::string& path, const StageResult& stage) {
   for (const work::OffloadWork& calls : stage.served) {
@@ -160,6 +170,32 @@ void add_latencies_of_all(StatisticList& list, const RunResult& run) {
            latency.p99_ns);
   list.add("latency.all.worst", "ns", "longest from the camera's frame to its pose",
            latency.max_ns);
+}
+
+/// Bands are there where they were asked for.
+void add_frame_times(StatisticList& list, const RunResult& run) {
+  const std::optional<FrameTimes> times = frame_times(run);
+  if (!times) return;
+  const auto add = [&](const std::string& name, const char* description, const Banded& ns) {
+    list.add(name, "ns", description, rounded(ns.value));
+    if (!times->has_bands) return;
+    list.add(name + ".low", "ns", fmt::format("{}: low end", description), rounded(ns.low));
+    list.add(name + ".high", "ns", fmt::format("{}: high end", description), rounded(ns.high));
+  };
+  add("frame.time.mean", "that a frame takes by itself, without waiting for others",
+      times->mean_ns);
+  add("frame.time.p99", "that 99 % of the frames do not exceed by themselves", times->p99_ns);
+  add("frame.time.worst", "longest that a frame takes by itself", times->worst_ns);
+  list.add("frame.sustainable_rate", "1/s", "frames that the chip can process, by their mean time",
+           rounded(times->sustainable_rate()));
+  if (!run.time_bands) return;
+  for (const TimeBands::Stage& stage : run.time_bands->stages) {
+    const std::string path = fmt::format("stages.{}.cycles.parallel.band.", key_of(stage.stage));
+    list.add(path + "low", "1", "of the mean on N cores, over that mean: low end",
+             rounded(stage.parallel.low));
+    list.add(path + "high", "1", "of the mean on N cores, over that mean: high end",
+             rounded(stage.parallel.high));
+  }
 }
 
 /// Of closed loops only.
@@ -270,10 +306,12 @@ void add_text(const std::string& name, const Json& value, RunFigures& run) {
 Json list_of(const RunResult& run) {
   StatisticList list;
   add_run(list, run);
+  if (run.timed) add_accelerators(list, run);
   if (run.timed)
     for (const StageResult& stage : run.stages) add_stage(list, run, stage);
   add_frames(list, run);
   if (run.timed) {
+    add_frame_times(list, run);
     add_latencies(list, run);
     add_camera(list, run);
     add_latencies_of_all(list, run);

@@ -15,6 +15,7 @@
 #include "sim/soc/camera.h"
 #include "sim/soc/observer.h"
 #include "sim/work/program.h"
+#include "tools/app/result/banded.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
 #include "workload/vio/records.h"
@@ -60,6 +61,18 @@ struct L2Row {
   std::vector<work::Block> blocks;
 };
 
+/// How far times may be off, over what they are: what the ranges of the platform's numbers leave.
+struct TimeBands {
+  struct Stage {
+    std::string stage;
+    Banded parallel{1, 1, 1};  ///< of a mean call on N cores
+    Banded single{1, 1, 1};    ///< on one core, where that was asked for
+  };
+  Banded mean{1, 1, 1};     ///< of a mean frame
+  Banded slowest{1, 1, 1};  ///< of the slowest frame, which stands for all slow ones
+  std::vector<Stage> stages{};
+};
+
 struct RunResult {
   std::string profile;
   bool timed = true;  ///< false for --native: no cycles, no latencies
@@ -83,6 +96,7 @@ struct RunResult {
   std::optional<traces::Evaluation> ate;  ///< where ground truth exists and all poses are numbers
   std::string
       not_comparable;       ///< why the trajectory could not be evaluated; see why_incomparable()
+  std::optional<TimeBands> time_bands{};  ///< where they were asked for
   double host_seconds = 0;  ///< wall time; not part of anything that must be reproducible
   sim::ChipConfig chip{};   ///< that the run was timed on; unused if not timed
 };

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "sim/chip/accelerator.h"
+#include "tools/app/result/camera_figures.h"
 
 namespace leviosim::tools {
 namespace {
@@ -121,6 +123,23 @@ std::vector<Scenario> scenarios(const RunResult& run) {
     if (first[0].frames + first[1].frames == 0) all.erase(first, first + 2);
   }
   return all;
+}
+
+std::optional<FrameTimes> frame_times(const RunResult& run) {
+  if (!run.timed || run.frames.empty()) return std::nullopt;
+  std::vector<std::int64_t> own;
+  for (const FrameResult& frame : run.frames) own.push_back(frame.end_ns - frame.start_ns);
+  std::sort(own.begin(), own.end());
+  const double mean =
+      static_cast<double>(std::accumulate(own.begin(), own.end(), std::int64_t{0})) /
+      static_cast<double>(own.size());
+  const TimeBands bands = run.time_bands.value_or(TimeBands());
+  FrameTimes times{mean * bands.mean, static_cast<double>(percentile(own, 0.99)) * bands.slowest,
+                   static_cast<double>(own.back()) * bands.slowest};
+  times.late = std::count_if(own.begin(), own.end(),
+                             [&](std::int64_t ns) { return ns > run.frame_period_ns; });
+  times.has_bands = run.time_bands.has_value();
+  return times;
 }
 
 Waiting frames_that_waited(const RunResult& run) {

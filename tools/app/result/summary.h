@@ -50,6 +50,20 @@ struct Scenario {
 /// them.
 std::vector<Scenario> scenarios(const RunResult& run);
 
+/// What frames take by themselves, without waiting for others: of the chip, whatever the camera.
+struct FrameTimes {
+  Banded mean_ns;
+  Banded p99_ns;
+  Banded worst_ns;
+  std::int64_t late = 0;  ///< that take longer than the camera's period
+  bool has_bands = false;
+
+  /// At which frames do not pile up. [1/s]
+  double sustainable_rate() const { return 1e9 / mean_ns.value; }
+};
+/// Absent if nothing was timed.
+std::optional<FrameTimes> frame_times(const RunResult& run);
+
 /// Frames that found the front end busy.
 struct Waiting {
   std::int64_t frames = 0;

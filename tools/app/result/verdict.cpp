@@ -13,43 +13,80 @@ namespace {
 
 std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
 
-/// Absent where nothing was timed.
+/// Of a few digits: 9.6, 54.
+std::string short_ms(double ns) { return fmt::format("{:.{}f}", ns * 1e-6, ns < 10e6 ? 1 : 0); }
+
+/// A time of the run, "54.5 (48–62) ms" where its band is known.
+struct TimeFigure {
+  double ns = 0;
+  std::optional<Banded> band{};
+
+  std::string text() const {
+    if (!band) return ms(ns);
+    return fmt::format("{:.4g} ({}–{}) ms", ns * 1e-6, short_ms(band->low), short_ms(band->high));
+  }
+};
+
+/// Absent if nothing was timed.
+std::optional<TimeFigure> time_figure(const RunFigures& run, const std::string& name) {
+  const auto value = run.value(name);
+  if (!value) return std::nullopt;
+  const auto low = run.value(name + ".low");
+  const auto high = run.value(name + ".high");
+  if (!low || !high) return TimeFigure{*value};
+  return TimeFigure{*value, Banded{*value, *low, *high}};
+}
+
+/// What the band leaves open: whether it is the mean or the slowest frame that fits.
+std::string undecided(const TimeFigure& figure, double deadline) {
+  if (!figure.band || !figure.band->holds(deadline)) return {};
+  return fmt::format(": cannot be told from {:.4g}", deadline * 1e-6);
+}
+
+/// Frames by what became of them: "3 of 400 frames late".
+std::string missed_text(const RunFigures& run, double arrived, double missed) {
+  const double dropped = run.value("camera.dropped").value_or(0);
+  return fmt::format("{:.0f} of {:.0f} frames {}", missed, arrived,
+                     dropped == 0        ? "late"
+                     : dropped == missed ? "dropped"
+                                         : fmt::format("late or dropped ({:.0f})", dropped));
+}
+
+/// By the frames' own times; where a camera runs, by what comes out of waiting for it, too. Absent
+/// where nothing was timed.
 std::optional<RunVerdict> time_verdict(const RunFigures& run) {
-  const auto mean = run.value("frame.time.mean");
+  const auto mean = time_figure(run, "frame.time.mean");
   const auto rate = run.value("frame.sustainable_rate");
-  const auto worst = run.value("frame.latency.worst");
+  const bool queues = run.value("camera.arrived").has_value();
+  const auto own_worst = time_figure(run, "frame.time.worst");
+  const auto latency_worst = run.value("frame.latency.worst");
   const auto missed_share = run.value("frame.missed_share");
   if (!missed_share) return std::nullopt;
-  const double processed = run.value("frames.count").value_or(0);
-  const double arrived = run.value("camera.arrived").value_or(processed);
+  const double arrived =
+      run.value("camera.arrived").value_or(run.value("frames.count").value_or(0));
   const double deadline = deadline_ns(run);
-  const double missed = std::round(*missed_share * arrived);
-  const double dropped = run.value("camera.dropped").value_or(0);
-  if (!mean || !rate || !worst)
+  if (!mean || !rate || !own_worst || !latency_worst)
     return RunVerdict{"time", Grade::bad, {fmt::format("all {:.0f} frames were dropped", arrived)}};
-  const std::string missed_text =
-      fmt::format("{:.0f} of {:.0f} frames {}", missed, arrived,
-                  dropped == 0        ? "late"
-                  : dropped == missed ? "dropped"
-                                      : fmt::format("late or dropped ({:.0f})", dropped));
-  if (*mean > deadline) {
-    RunVerdict verdict{"time", Grade::bad, {}};
-    verdict.reasons.push_back(
-        fmt::format("a frame takes {} on average of {}", ms(*mean), ms(deadline)));
+  const double missed = std::round(*missed_share * arrived);
+  const std::string mean_text =
+      fmt::format("a frame takes {} on average of {}", mean->text(), ms(deadline));
+  if (mean->ns > deadline) {
+    RunVerdict verdict{"time", Grade::bad, {mean_text + undecided(*mean, deadline)}};
     verdict.reasons.push_back(fmt::format("which sustains {:.3g} frames/s", *rate));
-    if (run.value("camera.arrived")) verdict.reasons.push_back(missed_text);
+    if (queues) verdict.reasons.push_back(missed_text(run, arrived, missed));
     return verdict;
   }
+  const std::string worst_text =
+      fmt::format("worst {}{}", own_worst->text(), undecided(*own_worst, deadline));
+  RunVerdict verdict{"time", missed > 0 ? Grade::doubtful : Grade::good, {}};
   if (missed > 0)
-    return RunVerdict{
-        "time",
-        Grade::doubtful,
-        {missed_text, fmt::format("a frame takes {} on average of {}", ms(*mean), ms(deadline)),
-         fmt::format("worst {}", ms(*worst))}};
-  return RunVerdict{"time",
-                    Grade::good,
-                    {fmt::format("all {:.0f} frames within {}", arrived, ms(deadline)),
-                     fmt::format("worst {}", ms(*worst))}};
+    verdict.reasons = {missed_text(run, arrived, missed), mean_text};
+  else
+    verdict.reasons = {fmt::format("all {:.0f} frames within {}", arrived, ms(deadline))};
+  verdict.reasons.push_back(worst_text);
+  if (queues && *latency_worst > own_worst->ns)
+    verdict.reasons.push_back(fmt::format("with waiting {}", ms(*latency_worst)));
+  return verdict;
 }
 
 /// Absent where nothing is known of memories.

@@ -1,6 +1,7 @@
 // What the user asked `leviosim run` to do, after the command line has been checked.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,14 @@ using soc::ProgressCallback;
 
 struct WorkRecording;
 
+/// Which times get bands (time_bands.h).
+enum class TimeBandsOf : std::uint8_t {
+  nothing,
+  slowest_frame,  ///< which stands for all; on the thread of the run
+  team,           ///< frames and stages
+  team_and_one_core
+};
+
 struct RunRequest {
   std::string data;  ///< ASL folder (the synthetic flight has been made)
   std::string profile = "levio";
@@ -37,6 +46,8 @@ struct RunRequest {
   std::optional<CameraRequest> camera;
   /// Whether the trajectory is compared with the truth. What diverged cannot be, and is refused.
   bool evaluate = true;
+  TimeBandsOf time_bands = TimeBandsOf::nothing;
+  bool on_one_core = true;  ///< whether jobs are also timed on one core
   /// Poses may wait for so long that the initialisation corrects them; 0: as the workload says. [s]
   double initial_delay_s = 0;
   RunObserver* observer = nullptr;     ///< sees every job; unused if native

@@ -11,6 +11,7 @@
 #include "sim/work/memory_overflow.h"
 #include "tools/app/run/live_source.h"
 #include "tools/app/run/recording_source.h"
+#include "tools/app/run/time_bands.h"
 #include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::tools {
@@ -36,8 +37,9 @@ void correct_earlier(std::vector<FrameResult>& frames) {
 /// Joins what the frames yielded with when they were processed.
 class FrameCollector : public soc::Observer {
  public:
-  FrameCollector(const RunSource& source, RunObserver* observer)
-      : source_(source), observer_(observer) {}
+  /// @param sample  of jobs, to be filled; may be null
+  FrameCollector(const RunSource& source, RunObserver* observer, JobSample* sample)
+      : source_(source), observer_(observer), sample_(sample) {}
 
   bool wants_steps() const override { return observer_ != nullptr && observer_->wants_steps(); }
 
@@ -46,10 +48,12 @@ class FrameCollector : public soc::Observer {
     correct_earlier(frames);
     static_cast<soc::FrameTiming&>(frame) = e.times;
     frame.stage_cycles = stage_cycles(e.parallel);
+    if (sample_ != nullptr) sample_->add_frame(e.job, e.times.cycles);
     if (observer_ != nullptr)
       observer_->on_front_end({e.frame, e.optimisation_begun, frame, e.job, e.parallel, e.single});
   }
   void on_optimiser(const OptimiserJob& e) override {
+    if (sample_ != nullptr) sample_->add_iteration(e.job, e.timing);
     if (observer_ != nullptr) observer_->on_optimiser(e);
   }
 
@@ -58,6 +62,7 @@ class FrameCollector : public soc::Observer {
  private:
   const RunSource& source_;
   RunObserver* observer_;
+  JobSample* sample_;
 };
 
 /// Fills in what does not depend on timing.
@@ -155,10 +160,12 @@ RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progres
 
 RunResult simulate_source(const RunRequest& request, RunSource& source,
                           const ProgressCallback& progress) {
-  soc::Setup setup{request.platform.config, request.cores, {}};
+  soc::Setup setup{request.platform.config, request.cores, {}, request.on_one_core};
   if (request.camera) setup.deadline = request.camera->deadline;
   if (request.observer != nullptr) request.observer->on_start(source.frames());
-  FrameCollector collector(source, request.observer);
+  JobSample sample;
+  FrameCollector collector(source, request.observer,
+                           request.time_bands == TimeBandsOf::nothing ? nullptr : &sample);
   soc::Outcome outcome = soc::Simulation(setup, source, collector, progress).run();
   RunResult result;
   result.stages = std::move(outcome.stages);
@@ -169,6 +176,8 @@ RunResult simulate_source(const RunRequest& request, RunSource& source,
   result.optimiser_late = outcome.optimiser_late;
   describe(result, request, source);
   add_l2_rows(result);
+  if (!sample.empty())
+    result.time_bands = time_bands(request.platform, request.cores, sample, request.time_bands);
   return result;
 }
 

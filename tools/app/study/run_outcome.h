@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/app/result/banded.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/study/outcome.h"
 #include "tools/app/study/point.h"
@@ -22,13 +23,6 @@ namespace leviosim::tools {
 struct Measure {
   traces::Alignment alignment = traces::Alignment::se3;
   double length_m = 40;  ///< of the sub-trajectories of relative errors
-};
-
-/// A figure with its band.
-struct Banded {
-  double value = 0;
-  double low = 0;
-  double high = 0;
 };
 
 /// Of a closed loop on a chip.

@@ -7,6 +7,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
+#include "tools/app/validation/paper_stages.h"
 
 namespace leviosim::tools {
 namespace {
@@ -138,11 +139,43 @@ std::vector<Comparison> compare(const std::vector<Reference>& references,
   return comparisons;
 }
 
+namespace {
+
+/// Of a stage of the paper's table on one core or on N; absent if the run has no such band.
+std::optional<BandedStage> banded_stage(const RunResult& run, const Validation& validation,
+                                        const PaperStage& stage, bool single) {
+  const std::string name = fmt::format("compute.{}.{}", stage.key, single ? "single" : "multi");
+  const Comparison* compared = nullptr;
+  for (const Comparison& c : validation.comparisons)
+    if (c.reference.name == name) compared = &c;
+  if (compared == nullptr || !compared->value) return std::nullopt;
+  for (const TimeBands::Stage& bands : run.time_bands->stages) {
+    if (bands.stage != stage.stage) continue;
+    const Banded& relative = single ? bands.single : bands.parallel;
+    BandedStage result{stage.title, single, compared->reference.value, *compared->value * relative};
+    for (const StageOnPaths& paths : validation.paths)
+      if (const auto mean = (single ? paths.single : paths.parallel).weighed;
+          mean && paths.key == stage.key)
+        result.weighed = *mean * 1e-3 * relative;
+    return result;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 Validation validate(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
                     const std::vector<Reference>& references) {
-  return {compare(references, quantities_of(run, log)), inputs_of(run, log, profile),
-          profile.name == "levio" ? input_distributions(log) : std::vector<InputDistribution>{},
-          normalised(run, log, profile), stages_on_paths(log)};
+  Validation validation{
+      compare(references, quantities_of(run, log)), inputs_of(run, log, profile),
+      profile.name == "levio" ? input_distributions(log) : std::vector<InputDistribution>{},
+      normalised(run, log, profile), stages_on_paths(log)};
+  if (run.time_bands)
+    for (const bool single : {true, false})
+      for (const PaperStage& stage : kPaperStages)
+        if (const auto band = banded_stage(run, validation, stage, single))
+          validation.bands.push_back(*band);
+  return validation;
 }
 
 std::string validation_csv(const Validation& validation) {
@@ -167,6 +200,11 @@ std::string validation_csv(const Validation& validation) {
   for (const StageOnPaths& stage : validation.paths)
     text +=
         path_lines(stage, "one core", stage.single) + path_lines(stage, "N cores", stage.parallel);
+  for (const BandedStage& band : validation.bands)
+    for (const auto& [end, value] : {std::pair("low", band.weighed.value_or(band.simulated).low),
+                                     std::pair("high", band.weighed.value_or(band.simulated).high)})
+      text += fmt::format("band,{}: {}: {},kcycles,{},{},,,,,,\n", band.title,
+                          band.single ? "one core" : "N cores", end, cell(band.paper), cell(value));
   return text;
 }
 
@@ -205,6 +243,17 @@ Json validation_json(const Validation& validation) {
     document["paths"].push_back({{"stage", stage.title},
                                  {"cycles_single", means_json(stage.single)},
                                  {"cycles_parallel", means_json(stage.parallel)}});
+  document["bands"] = Json::array();
+  for (const BandedStage& band : validation.bands) {
+    const Banded& shown = band.weighed.value_or(band.simulated);
+    document["bands"].push_back({{"stage", band.title},
+                                 {"cores", band.single ? "one" : "N"},
+                                 {"paper", band.paper},
+                                 {"simulated", shown.value},
+                                 {"low", shown.low},
+                                 {"high", shown.high},
+                                 {"inside", band.is_inside()}});
+  }
   return document;
 }
 

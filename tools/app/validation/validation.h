@@ -23,12 +23,26 @@ struct Comparison {
   }
 };
 
+/// A figure of the paper's table of cycles beside the band of what is simulated. [kcycles]
+struct BandedStage {
+  std::string_view title;
+  bool single = false;  ///< on one core; else on N
+  double paper = 0;
+  Banded simulated;
+  /// In the paper's shares of frames that took either RANSAC, where the stage runs on both.
+  std::optional<Banded> weighed{};
+
+  /// By what depends less on the flight.
+  bool is_inside() const { return weighed.value_or(simulated).holds(paper); }
+};
+
 struct Validation {
   std::vector<Comparison> comparisons;  ///< in the order of the references
   std::vector<InputFigure> inputs;
   std::vector<InputDistribution> distributions;  ///< of `levio` only
   std::vector<NormalisedFigure> normalised;
   std::vector<StageOnPaths> paths;
+  std::vector<BandedStage> bands{};  ///< where the run has them
 };
 
 /// Quantities named error.GROUP.{mean,worst} are formed here: of the absolute errors of the

@@ -188,16 +188,45 @@ std::string path_table(const Validation& validation, int cores) {
       kPaperEpnpFrames, kPaperEightPointFrames, table.str());
 }
 
+std::string band_table(const Validation& validation, int cores) {
+  if (validation.bands.empty()) return "";
+  TextTable table({{"stage", kLeft},
+                   {"cores"},
+                   {"paper"},
+                   {"this run"},
+                   {"band"},
+                   {"weighed"},
+                   {"band"},
+                   {"inside", kLeft}});
+  const auto inside = [](const auto& of) { return of ? "yes" : "no"; };
+  const auto ends = [](const Banded& b) { return fmt::format("{:.0f} … {:.0f}", b.low, b.high); };
+  int in_run = 0;
+  int in_weighed = 0;
+  for (const BandedStage& band : validation.bands) {
+    in_run += band.simulated.holds(band.paper) ? 1 : 0;
+    in_weighed += band.is_inside() ? 1 : 0;
+    table.add({std::string(band.title), band.single ? "1" : std::to_string(cores),
+               figure_text(band.paper, 0), figure_text(band.simulated.value, 0),
+               ends(band.simulated), band.weighed ? figure_text(band.weighed->value, 0) : kNothing,
+               band.weighed ? ends(*band.weighed) : kNothing, inside(band.is_inside())});
+  }
+  return fmt::format(
+      "kcycles with the band that the platform's ranges leave, of this run and weighed as the "
+      "paper's frames\n{}{} of {} of the paper's figures lie inside; of this run's own means "
+      "{}\n\n",
+      table.str(), in_weighed, validation.bands.size(), in_run);
+}
+
 std::string validation_report(const Validation& validation, int cores) {
   const auto within = std::count_if(
       validation.comparisons.begin(), validation.comparisons.end(), [](const Comparison& c) {
         return c.value && std::abs(*c.error()) <= c.reference.tolerance.value;
       });
-  return fmt::format("{}\n{}\n{}\n{}{}\n{}\n{} of {} references within their tolerance\n",
+  return fmt::format("{}\n{}\n{}\n{}{}\n{}\n{}{} of {} references within their tolerance\n",
                      compute_table(validation, cores), reference_table(validation),
                      input_table(validation), distribution_table(validation),
-                     normalised_table(validation, cores), path_table(validation, cores), within,
-                     validation.comparisons.size());
+                     normalised_table(validation, cores), path_table(validation, cores),
+                     band_table(validation, cores), within, validation.comparisons.size());
 }
 
 }  // namespace leviosim::tools

@@ -17,6 +17,9 @@ std::string reference_table(const Validation& validation);
 std::string input_table(const Validation& validation);
 std::string normalised_table(const Validation& validation, int cores);
 
+/// The paper's table of cycles beside the bands of the run; empty if it has none.
+std::string band_table(const Validation& validation, int cores);
+
 std::string validation_report(const Validation& validation, int cores);
 
 }  // namespace leviosim::tools

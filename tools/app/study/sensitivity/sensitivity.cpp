@@ -3,56 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/base/check.h"
 #include "sim/chip/accelerator.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/run/range_bands.h"
 #include "traces/work_traces/work_frames.h"
 
 namespace leviosim::tools {
 namespace {
-
-constexpr std::string_view kCalibrated = "calibrated";
-
-/// A chip to time: a parameter at one end of its range, or, without parameter, the base.
-struct Trial {
-  const platform::Parameter* parameter = nullptr;
-  bool high = false;
-};
-
-double value_of(const platform::Parameter& parameter) {
-  const auto value = platform::parse_number(parameter.value);
-  check(value.has_value(), "a parameter with a range is no number");
-  return *value;
-}
-
-double end_of(const Trial& trial) {
-  return trial.high ? trial.parameter->range->high : trial.parameter->range->low;
-}
-
-/// Energies, areas and what the supply allows have no effect on time.
-bool is_of_time(const platform::Parameter& parameter) {
-  for (const std::string_view section : {"energy.", "supply.", "area."})
-    if (std::string_view(parameter.path).substr(0, section.size()) == section) return false;
-  return true;
-}
-
-bool is_swept(const platform::Parameter& parameter) {
-  return parameter.range && is_of_time(parameter);
-}
-
-/// The base, then both ends of every range, except where an end is the value itself.
-std::vector<Trial> trials_of(const platform::ResolvedPlatform& platform) {
-  std::vector<Trial> trials{Trial{}};
-  for (const platform::Parameter& parameter : platform.parameters) {
-    if (!is_swept(parameter)) continue;
-    for (const bool high : {false, true}) {
-      const Trial trial{&parameter, high};
-      if (end_of(trial) != value_of(parameter)) trials.push_back(trial);
-    }
-  }
-  return trials;
-}
 
 bool is_uncertain(const platform::Parameter& parameter) {
   return parameter.confidence != "high" && !parameter.unit.empty() && is_of_time(parameter);
@@ -98,38 +56,8 @@ class StageAverages {
   std::vector<std::pair<std::string, Average>> stages_;
 };
 
-/// The root of the sum of the squares of what falls below, or rises above, the value.
-double together(const Sensitivity& sensitivity, const std::string& stage, double value, bool rise) {
-  double squares = 0;
-  for (const Swing& swing : sensitivity.swings) {
-    if (swing.parameter.confidence == kCalibrated) continue;
-    double farthest = 0;
-    for (const MeanTimes* end : {&swing.low, &swing.high}) {
-      const double change = end->stage(stage).value_or(value) - value;
-      farthest = std::max(farthest, rise ? change : -change);
-    }
-    squares += farthest * farthest;
-  }
-  return std::sqrt(squares);
-}
-
 double largest(std::optional<double> a, std::optional<double> b) {
   return std::max(std::abs(a.value_or(0)), std::abs(b.value_or(0)));
-}
-
-std::vector<Swing> collect(const platform::ResolvedPlatform& platform,
-                           const std::vector<Trial>& trials,
-                           const std::vector<MeanTimes>& outcomes) {
-  std::vector<Swing> swings;
-  for (const platform::Parameter& parameter : platform.parameters) {
-    if (!is_swept(parameter)) continue;
-    Swing swing{parameter, outcomes[0], outcomes[0]};
-    for (std::size_t i = 1; i < trials.size(); ++i)
-      if (trials[i].parameter == &parameter)
-        (trials[i].high ? swing.high : swing.low) = outcomes[i];
-    swings.push_back(std::move(swing));
-  }
-  return swings;
 }
 
 }  // namespace
@@ -171,9 +99,14 @@ std::optional<double> MeanTimes::stage(std::string_view name) const {
 
 std::vector<StageBand> stage_bands(const Sensitivity& sensitivity) {
   std::vector<StageBand> bands;
-  for (const auto& [stage, kcycles] : sensitivity.base.stages)
-    bands.push_back({stage, kcycles, kcycles - together(sensitivity, stage, kcycles, false),
-                     kcycles + together(sensitivity, stage, kcycles, true)});
+  for (const auto& [stage, kcycles] : sensitivity.base.stages) {
+    BandOf band(kcycles);
+    for (const Swing& swing : sensitivity.swings)
+      if (swing.is_in_bands)
+        band.add(swing.low.stage(stage).value_or(kcycles),
+                 swing.high.stage(stage).value_or(kcycles));
+    bands.push_back({stage, band.band()});
+  }
   return bands;
 }
 
@@ -194,18 +127,15 @@ double effect_on_iteration(const Swing& swing, const MeanTimes& base) {
 
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
                         const traces::WorkTrace& trace, const RunnerOptions& options) {
-  const std::vector<Trial> trials = trials_of(platform.platform());
-  std::vector<MeanTimes> outcomes(trials.size());
-  run_all(trials.size(), options, [&](std::size_t i) {
-    std::vector<platform::Change> changes;
-    if (trials[i].parameter != nullptr)
-      changes.push_back({trials[i].parameter->path, end_of(trials[i])});
-    outcomes[i] = time_on(platform.config(changes), workers, trace);
-  });
-
   Sensitivity result;
-  result.base = outcomes[0];
-  result.swings = collect(platform.platform(), trials, outcomes);
+  const auto times = [&](const sim::ChipConfig& chip) { return time_on(chip, workers, trace); };
+  result.base = times(platform.config({}));
+  const auto run = [&](std::size_t count, const auto& job) { run_all(count, options, job); };
+  const auto alone = [](const platform::Change& change) { return std::vector{change}; };
+  for (auto& ends :
+       at_ends(platform, ranged(platform.platform()), result.base, times, run, alone))
+    result.swings.push_back({*ends.parameter, std::move(ends.low), std::move(ends.high),
+                             is_in_bands(*ends.parameter, platform.platform().config)});
   std::stable_sort(result.swings.begin(), result.swings.end(), [&](const Swing& a, const Swing& b) {
     const double frame_a = effect_on_frame(a, result.base);
     const double frame_b = effect_on_frame(b, result.base);

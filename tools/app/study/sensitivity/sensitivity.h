@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "platform_models/loader/variants.h"
+#include "tools/app/result/banded.h"
 #include "tools/app/study/runner.h"
 #include "traces/work_traces/work_trace.h"
 
@@ -40,6 +41,7 @@ struct Swing {
   platform::Parameter parameter;
   MeanTimes low;
   MeanTimes high;
+  bool is_in_bands = true;  ///< run/range_bands.h
 };
 
 struct Sensitivity {
@@ -55,14 +57,11 @@ std::optional<double> percent_change(std::optional<double> value, std::optional<
 double effect_on_frame(const Swing& swing, const MeanTimes& base);
 double effect_on_iteration(const Swing& swing, const MeanTimes& base);
 
-/// What a stage takes if no number with a range is certain: the changes at the ends of all ranges,
-/// taken as independent, so as the root of the sum of their squares. Numbers that were fitted to
-/// stages are left out: they follow the others.
+/// What a stage takes if no number with a range is certain: the changes at the ends of the ranges,
+/// taken as independent, so as the root of the sum of their squares.
 struct StageBand {
   std::string stage;
-  double kcycles = 0;  ///< of a mean call
-  double low = 0;
-  double high = 0;
+  Banded kcycles;  ///< of a mean call
 };
 std::vector<StageBand> stage_bands(const Sensitivity& sensitivity);
 

@@ -46,14 +46,14 @@ std::string list_line(const std::string& title, const std::vector<std::string>& 
 
 std::string bands_table(const Sensitivity& sensitivity) {
   TextTable table({{"stage", kLeft}, {"kcycles"}, {"band"}, {"per cent"}});
-  for (const StageBand& band : stage_bands(sensitivity))
-    table.add({band.stage, fmt::format("{:.1f}", band.kcycles),
+  for (const auto& [stage, band] : stage_bands(sensitivity))
+    table.add({stage, fmt::format("{:.1f}", band.value),
                fmt::format("{:.1f} … {:.1f}", band.low, band.high),
-               fmt::format("{:+.1f} … {:+.1f}", percent_change(band.low, band.kcycles).value_or(0),
-                           percent_change(band.high, band.kcycles).value_or(0))});
+               fmt::format("{:+.1f} … {:+.1f}", percent_change(band.low, band.value).value_or(0),
+                           percent_change(band.high, band.value).value_or(0))});
   return "\na mean call of each stage if all these numbers are uncertain at once (root of the sum "
          "of\n"
-         "squares; without numbers that were fitted)\n" +
+         "squares; of what compilers make of operations, the factors of all together)\n" +
          table.str();
 }
 

@@ -8,6 +8,7 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/run/replay.h"
 #include "tools/app/run/simulate.h"
 
@@ -23,12 +24,6 @@ bool is_kept(const std::string& name) {
                       [&](const char* part) { return name.find(part) != std::string::npos; });
 }
 
-double mean_latency_ms(const RunResult& run) {
-  double sum_ns = 0;
-  for (const FrameResult& f : run.frames) sum_ns += static_cast<double>(f.end_ns - f.arrival_ns);
-  return sum_ns * 1e-6 / static_cast<double>(run.frames.size());
-}
-
 double l1_peak(const RunResult& run) {
   Bytes peak;
   for (const StageResult& stage : run.stages)
@@ -40,7 +35,8 @@ void add_objectives(const RunResult& run, bool ate_holds, std::vector<Figure>& f
   const auto add = [&](std::size_t i, const char* description, double value) {
     figures.push_back({kObjectives[i].figure, kObjectives[i].unit, description, value});
   };
-  add(0, "mean over all frames, from the camera's frame to its pose", mean_latency_ms(run));
+  if (const std::optional<FrameTimes> times = frame_times(run))
+    add(0, "mean over all frames, each by itself", times->mean_ns.value * 1e-6);
   if (const std::optional<RunEnergy> energy = energy_of(run))
     if (const auto per_frame = energy->per_frame())
       add(1, "per frame, idle time included", per_frame->value.count() * 1e3);
@@ -77,7 +73,12 @@ void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& f
 
 /// What the record of a run has besides its statistics.
 void add_budget_figures(const RunResult& run, std::vector<Figure>& figures) {
+  const auto is_kept_already = [&](const std::string& name) {
+    return std::any_of(figures.begin(), figures.end(),
+                       [&](const Figure& figure) { return figure.name == name; });
+  };
   for (const Statistic& s : figures_of(run).statistics) {
+    if (is_kept_already(s.name)) continue;
     const bool known = s.name.starts_with("frame.") || s.name.ends_with(".operations") ||
                        s.name == "memory.l1.peak" || s.name == "memory.l2.peak" ||
                        s.name.starts_with("verdict.");

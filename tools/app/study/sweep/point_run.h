@@ -19,7 +19,7 @@ struct Objective {
   double scale;  ///< for the column
 };
 inline constexpr std::array kObjectives{
-    Objective{"objective.latency", "ms", "latency ms", 3, 1},
+    Objective{"objective.frame_time", "ms", "frame ms", 3, 1},
     Objective{"objective.energy", "mJ", "energy mJ", 4, 1},
     Objective{"objective.l1_peak", "byte", "L1 peak kB", 1, 1e-3},
     Objective{"objective.ate", "m", "ATE m", 4, 1},

@@ -25,7 +25,7 @@ Json sweep_page(SweepStore& store) {
   for (const std::string& name : parameters)
     page.columns.push_back({name, title_of(name), "", true});
   const std::vector<StudyColumn> figures{
-      {"objective.latency", "mean latency", "ms"},
+      {"objective.frame_time", "mean frame", "ms"},
       {"objective.energy", "energy per frame", "mJ"},
       {"objective.l1_peak", "L1 peak", "kB", false, false, 1e-3},
       {"objective.ate", "position error (ATE)", "m"},
@@ -42,9 +42,9 @@ Json sweep_page(SweepStore& store) {
   if (!parameters.empty() && parameters.size() <= 2)
     page.curves = {parameters.front(),
                    parameters.size() == 2 ? parameters.back() : std::string(),
-                   {"objective.latency", "objective.energy", "objective.l1_peak", "objective.ate",
+                   {"objective.frame_time", "objective.energy", "objective.l1_peak", "objective.ate",
                     "objective.area"}};
-  page.x = "objective.latency";
+  page.x = "objective.frame_time";
   page.y = "objective.energy";
   page.colour = parameters.size() > 1 ? parameters.back() : std::string();
   return study_report(page);

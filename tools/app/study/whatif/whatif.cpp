@@ -1,6 +1,7 @@
 #include "tools/app/study/whatif/whatif.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -8,7 +9,7 @@
 #include "sim/energy/area.h"
 #include "sim/work/offload_regions.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/result/camera_figures.h"
+#include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/replay.h"
@@ -48,48 +49,6 @@ std::vector<Choice> choices_of(const std::string& text) {
   return choices;
 }
 
-std::vector<std::string> unused_accelerators(const sim::ChipConfig& chip,
-                                             const std::vector<StageParts>& stages) {
-  std::vector<std::string> unused;
-  for (const bool on_controller : {false, true})
-    for (const work::OffloadKindInfo& kind : work::kOffloadKinds) {
-      const sim::Accelerators& units =
-          on_controller ? chip.controller.accelerators : chip.cluster.accelerators;
-      if (units[work::index(kind.kernel)].units == 0) continue;
-      const bool serves =
-          std::any_of(stages.begin(), stages.end(), [&](const StageParts& stage) {
-            return stage.on_controller == on_controller &&
-                   std::any_of(stage.parts.begin(), stage.parts.end(), [&](const CyclePart& p) {
-                     return p.operation == kind.name && p.count > 0;
-                   });
-          });
-      if (!serves)
-        unused.push_back(fmt::format("{} ({})", kind.name, on_controller ? "controller" : "cluster"));
-    }
-  return unused;
-}
-
-void take_times(VariantResult& result, const RunResult& run) {
-  std::vector<std::int64_t> cycles;
-  Cycles sum;
-  for (const FrameResult& frame : run.frames) {
-    cycles.push_back(frame.cycles.count());
-    sum += frame.cycles;
-  }
-  std::sort(cycles.begin(), cycles.end());
-  const auto ms = [&](std::int64_t n) {
-    return milliseconds(static_cast<double>(n), run.cluster_clock);
-  };
-  result.frames = cycles.size();
-  result.period_ms = static_cast<double>(run.frame_period_ns) * 1e-6;
-  if (cycles.empty()) return;
-  result.mean_ms = milliseconds(*mean(sum, std::ssize(cycles)), run.cluster_clock);
-  result.p99_ms = ms(percentile(cycles, 0.99));
-  result.worst_ms = ms(cycles.back());
-  result.late = static_cast<std::size_t>(std::count_if(
-      cycles.begin(), cycles.end(), [&](std::int64_t n) { return ms(n) > result.period_ms; }));
-}
-
 void take_costs(VariantResult& result, const RunResult& run) {
   if (const std::optional<RunEnergy> energy = energy_of(run))
     if (const auto frame = energy->per_frame())
@@ -102,26 +61,43 @@ void take_costs(VariantResult& result, const RunResult& run) {
 }
 
 VariantResult timed(const std::string& name, const ResolvedPoint& point) {
-  const RunRequest& request = point.request;
+  RunRequest request = point.request;
+  request.time_bands = TimeBandsOf::slowest_frame;
+  request.on_one_core = false;
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
   const RunResult run = point.trace != nullptr ? replay(*point.trace, request, progress).run
                                                : simulate(request, progress);
   VariantResult result;
   result.name = name;
   result.is_run = point.trace == nullptr;
-  take_times(result, run);
+  result.frames = run.frames.size();
+  result.period_ms = static_cast<double>(run.frame_period_ns) * 1e-6;
+  if (const std::optional<FrameTimes> times = frame_times(run)) result.times = *times;
+  const RunFigures figures = figures_of(run);
+  result.verdicts = verdicts(figures);
+  result.unused = unused_accelerators(figures);
   take_costs(result, run);
   result.parts = {cycle_parts(run), request.cores, static_cast<double>(run.frames.size()),
                   run.cluster_clock};
-  result.unused = unused_accelerators(request.platform.config, result.parts.stages);
   return result;
 }
 
 }  // namespace
 
 std::string VariantResult::verdict() const {
-  if (late == 0) return "fits";
-  return mean_ms > period_ms ? "too slow" : fmt::format("{} late", late);
+  std::vector<std::string> faults;
+  for (const RunVerdict& verdict : verdicts.list) {
+    const bool is_time = verdict.about == "time";
+    const bool is_late = is_time && verdict.grade == Grade::doubtful;
+    const Banded& decides = verdict.grade == Grade::bad ? times.mean_ns : times.worst_ns;
+    const bool is_open = is_time && times.has_bands && decides.holds(period_ms * 1e6);
+    if (verdict.grade == Grade::good && !is_open) continue;
+    std::string words = is_late   ? fmt::format("{} late", times.late)
+                        : is_time ? std::string(verdict.word())
+                                  : fmt::format("{} {}", verdict.about, verdict.word());
+    faults.push_back(words + (is_open ? "?" : ""));
+  }
+  return faults.empty() ? "fits" : fmt::format("{}", fmt::join(faults, ", "));
 }
 
 WhatIf::WhatIf(SweepInputs& inputs, std::string trace, SweepRow again)
@@ -180,10 +156,12 @@ ResolvedPoint WhatIf::resolved(const Variant& variant) {
                                      : inputs_.trace(trace_, {where}).platform;
   std::vector<std::string> overrides;
   for (const auto& [name, value] : settings)
-    if (name.starts_with(kChipSettings)) overrides.push_back(name.substr(kChipSettings.size()) + '=' + value);
+    if (name.starts_with(kChipSettings))
+      overrides.push_back(name.substr(kChipSettings.size()) + '=' + value);
   const platform::ResolvedPlatform platform = chip.resolve(overrides);
   const int workers = platform.config.cluster.workers;
-  if (workers == trace.info().cores || (variant.settings.empty() && workers >= trace.info().cores)) {
+  if (workers == trace.info().cores ||
+      (variant.settings.empty() && workers >= trace.info().cores)) {
     settings["cores"] = fmt::format("{}", trace.info().cores);
     return resolve(plan_, settings, inputs_, where);
   }

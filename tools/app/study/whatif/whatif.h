@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "tools/app/comparison/main_causes.h"
+#include "tools/app/result/summary.h"
+#include "tools/app/result/verdict.h"
 #include "tools/app/study/run_outcome.h"
 #include "tools/app/study/runner.h"
 #include "tools/app/study/sweep/points.h"
@@ -27,12 +29,10 @@ struct Variant {
 struct VariantResult {
   std::string name;
   std::string failure;  ///< why it cannot run; then there are no figures
-  double mean_ms = 0;   ///< a frame's own time, without the time it waits for the one before
-  double p99_ms = 0;
-  double worst_ms = 0;
+  FrameTimes times;     ///< of frames by themselves, without the time they wait for the one before
   std::size_t frames = 0;
-  std::size_t late = 0;     ///< whose own time exceeds the camera's period
-  double period_ms = 0;     ///< of the camera
+  double period_ms = 0;  ///< of the camera
+  Verdicts verdicts;
   std::optional<Banded> energy_mj;
   std::optional<double> area_mm2;
   bool is_whole_area = true;  ///< else parts are unknown
@@ -40,8 +40,9 @@ struct VariantResult {
   TimedParts parts;
   std::vector<std::string> unused;  ///< accelerators that served nothing: "hamming of the cluster"
 
-  /// At which frames do not pile up.
-  double sustainable_fps() const { return 1e3 / mean_ms; }
+  double mean_ms() const { return times.mean_ns.value * 1e-6; }
+  /// What is not good: "3 late", "too slow, map lost"; "fits" if all is. With "?" where the band of
+  /// the time holds the period.
   std::string verdict() const;
 };
 

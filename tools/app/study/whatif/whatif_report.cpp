@@ -35,7 +35,7 @@ struct Changes {
 };
 
 Changes changes_of(const VariantResult& base, const VariantResult& variant) {
-  Changes changes{percent(variant.mean_ms, base.mean_ms).value_or(0), {}, {}};
+  Changes changes{percent(variant.mean_ms(), base.mean_ms()).value_or(0), {}, {}};
   if (base.energy_mj && variant.energy_mj)
     changes.energy = percent(variant.energy_mj->value, base.energy_mj->value);
   if (base.area_mm2 && variant.area_mm2) changes.area = percent(*variant.area_mm2, *base.area_mm2);
@@ -77,9 +77,9 @@ std::vector<std::string> cells_of(const VariantResult& result) {
   std::optional<double> energy;
   if (result.energy_mj) energy = result.energy_mj->value;
   return {name,
-          number(result.mean_ms, 2),
-          number(result.p99_ms, 2),
-          number(result.sustainable_fps(), 1),
+          number(result.mean_ms(), 2),
+          number(result.times.p99_ns.value * 1e-6, 2),
+          number(result.times.sustainable_rate(), 1),
           result.verdict(),
           number(energy, 3),
           (result.is_whole_area ? "" : ">") + number(result.area_mm2, 2)};
@@ -91,7 +91,7 @@ std::string table_of(const VariantResult& base, const std::vector<const VariantR
                    {"mean ms", kRight},
                    {"p99 ms", kRight, 2},
                    {"fps", kRight, 3},
-                   {"time", kLeft},
+                   {"verdict", kLeft},
                    {"mJ", kRight, 1},
                    {"mm2", kRight, 1}});
   table.add(cells_of(base));
@@ -127,26 +127,15 @@ std::string list_of(const std::string& title, const std::vector<std::string>& it
 
 std::string reason_of(const VariantResult& base, const VariantResult& variant) {
   if (!variant.failure.empty()) return variant.failure;
-  std::vector<std::string> unused;
-  for (const std::string& unit : variant.unused)
-    if (std::find(base.unused.begin(), base.unused.end(), unit) == base.unused.end())
-      unused.push_back(unit);
-  const double difference = variant.mean_ms - base.mean_ms;
+  const double difference = variant.mean_ms() - base.mean_ms();
   std::vector<std::string> parts;
-  if (std::abs(difference) >= kNoChange * 1e-2 * base.mean_ms)
+  if (std::abs(difference) >= kNoChange * 1e-2 * base.mean_ms())
     for (const MainCause& cause : main_causes(base.parts, variant.parts)) {
       if (parts.size() == 2 || std::abs(cause.ms) < kLeastCause * std::abs(difference)) break;
-      std::string part = fmt::format("{} {:+.2f} ms", cause.what, cause.ms);
-      if (!cause.stage.empty() && std::abs(cause.stage_ms) < std::abs(cause.ms))
-        part += fmt::format(", most in {}", cause.stage);
-      else if (!cause.stage.empty())
-        part += fmt::format(" in {}", cause.stage);
-      parts.push_back(std::move(part));
+      parts.push_back(cause_text(cause));
     }
-  if (!unused.empty())
-    parts.push_back(fmt::format("nothing of this run uses {}, because its work has no region for "
-                                "it there",
-                                fmt::join(unused, ", ")));
+  if (std::string unused = unused_text(base.unused, variant.unused); !unused.empty())
+    parts.push_back(std::move(unused));
   if (parts.empty()) return "no frame waits for it";
   return fmt::format("{}", fmt::join(parts, "; "));
 }
@@ -160,12 +149,12 @@ std::string whatif_table(const std::vector<VariantResult>& results) {
 std::string whatif_bars(const std::vector<VariantResult>& results) {
   constexpr double kBar = 34;
   double longest = 0;
-  for (const VariantResult& r : results) longest = std::max(longest, r.mean_ms);
+  for (const VariantResult& r : results) longest = std::max(longest, r.mean_ms());
   std::string text;
   for (const VariantResult& r : results) {
-    text += fmt::format("{:<22}{:6.2f} ms {:5.2f} mJ ", r.name, r.mean_ms,
+    text += fmt::format("{:<22}{:6.2f} ms {:5.2f} mJ ", r.name, r.mean_ms(),
                         r.energy_mj ? r.energy_mj->value : 0);
-    for (int n = static_cast<int>(longest > 0 ? kBar * r.mean_ms / longest + 0.5 : 0); n > 0; --n)
+    for (int n = static_cast<int>(longest > 0 ? kBar * r.mean_ms() / longest + 0.5 : 0); n > 0; --n)
       text += "█";
     text += '\n';
   }
@@ -179,7 +168,8 @@ std::string advice_text(const std::vector<VariantResult>& results) {
   for (std::size_t i = 1; i < results.size(); ++i) {
     const VariantResult& result = results[i];
     if (!result.failure.empty()) {
-      impossible.push_back(fmt::format("{} ({})", printable(result.name), printable(result.failure)));
+      impossible.push_back(
+          fmt::format("{} ({})", printable(result.name), printable(result.failure)));
       continue;
     }
     const Changes changes = changes_of(base, result);
@@ -217,8 +207,18 @@ std::string advice_text(const std::vector<VariantResult>& results) {
 
 std::string whatif_csv(const std::vector<VariantResult>& results) {
   using R = const VariantResult&;
-  const auto of = [](R r, double value, int decimals) {
-    return base::fixed(r.failure.empty() ? std::optional(value) : std::nullopt, decimals);
+  const auto time = [](Banded FrameTimes::*figure, double Banded::*part) {
+    return [=](R r) {
+      return base::fixed(
+          r.failure.empty() ? std::optional((r.times.*figure).*part * 1e-6) : std::nullopt, 4);
+    };
+  };
+  const auto word = [](std::string_view about) {
+    return [about](R r) {
+      for (const RunVerdict& verdict : r.verdicts.list)
+        if (verdict.about == about) return std::string(verdict.word());
+      return std::string(r.failure.empty() ? "" : "cannot run");
+    };
   };
   const auto energy = [](double Banded::*part) {
     return [part](R r) {
@@ -227,21 +227,34 @@ std::string whatif_csv(const std::vector<VariantResult>& results) {
   };
   base::CsvTable<VariantResult> table{
       {"variant", [](R r) { return r.name; }},
-      {"frame_mean_ms", [&](R r) { return of(r, r.mean_ms, 4); }},
-      {"frame_p99_ms", [&](R r) { return of(r, r.p99_ms, 4); }},
-      {"frame_worst_ms", [&](R r) { return of(r, r.worst_ms, 4); }},
+      {"frame_mean_ms", time(&FrameTimes::mean_ns, &Banded::value)},
+      {"frame_mean_ms_low", time(&FrameTimes::mean_ns, &Banded::low)},
+      {"frame_mean_ms_high", time(&FrameTimes::mean_ns, &Banded::high)},
+      {"frame_p99_ms", time(&FrameTimes::p99_ns, &Banded::value)},
+      {"frame_p99_ms_low", time(&FrameTimes::p99_ns, &Banded::low)},
+      {"frame_p99_ms_high", time(&FrameTimes::p99_ns, &Banded::high)},
+      {"frame_worst_ms", time(&FrameTimes::worst_ns, &Banded::value)},
+      {"frame_worst_ms_low", time(&FrameTimes::worst_ns, &Banded::low)},
+      {"frame_worst_ms_high", time(&FrameTimes::worst_ns, &Banded::high)},
       {"sustainable_fps",
-       [&](R r) { return of(r, r.mean_ms > 0 ? r.sustainable_fps() : 0, 3); }},
+       [](R r) {
+         return base::fixed(
+             r.failure.empty() ? std::optional(r.times.sustainable_rate()) : std::nullopt, 3);
+       }},
       {"frames", [](R r) { return fmt::format("{}", r.frames); }},
-      {"late", [](R r) { return fmt::format("{}", r.late); }},
-      {"time", [](R r) { return r.failure.empty() ? r.verdict() : std::string("cannot run"); }},
+      {"late", [](R r) { return fmt::format("{}", r.times.late); }},
+      {"verdict", [](R r) { return r.failure.empty() ? r.verdict() : "cannot run"; }},
+      {"time", word("time")},
+      {"memory", word("memory")},
+      {"map", word("map")},
       {"energy_mj", energy(&Banded::value)},
       {"energy_mj_low", energy(&Banded::low)},
       {"energy_mj_high", energy(&Banded::high)},
       {"area_mm2", [](R r) { return base::fixed(r.area_mm2, 4); }},
       {"area", [](R r) { return std::string(r.is_whole_area ? "whole" : "at least"); }},
       {"computed", [](R r) { return std::string(r.is_run ? "run again" : "replayed"); }},
-      {"why", [&](R r) {
+      {"why",
+       [&](R r) {
          return &r == &results.front() || !r.failure.empty() ? std::string()
                                                              : reason_of(results.front(), r);
        }},
@@ -261,7 +274,10 @@ Json whatif_page(const std::string& title, const std::string& summary,
                   {"frame_worst_ms", "worst frame", "ms"},
                   {"sustainable_fps", "sustainable rate", "frames/s", false, true},
                   {"late", "late frames", ""},
+                  {"verdict", "verdict", ""},
                   {"time", "time", ""},
+                  {"memory", "memory", ""},
+                  {"map", "map", ""},
                   {"energy_mj", "energy per frame", "mJ"},
                   {"area_mm2", "area", "mm2"},
                   {"why", "why", ""},

@@ -37,7 +37,7 @@ Bench::Bench(const sim::ChipConfig& chip, int cores, const work::CodeMap* code)
       workers_(std::min(cores, chip.cluster.workers)),
       machine_(machine_of(chip, workers_, code)) {}
 
-sim::StageTiming Bench::time(const work::Job& job) {
+sim::StageTiming Bench::time(const work::Job& job) const {
   sim::Chip chip(config_, workers_);
   sim::JobTiming timing;
   const auto body = [&]() -> sim::Process { timing = co_await chip.cluster().run(job); };

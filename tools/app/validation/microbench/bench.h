@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string_view>
 
 #include "sim/chip/chip.h"
 #include "sim/work/machine.h"
@@ -19,10 +20,28 @@ namespace leviosim::tools {
 /// @param loads_used_at_once  share of loads whose result the next instruction uses
 sim::ChipConfig as_assembly(sim::ChipConfig chip, double loads_used_at_once = 0);
 
+/// What a program reads, and where its results go.
+template <class P, class T>
+using In = typename P::template Span<const T>;
+template <class P, class T>
+using Out = typename P::template Span<T>;
+
+/// A block of memory with values that do not matter for its timing; the host fills it.
+template <class Span>
+Span block(work::Machine& machine, std::string_view name, int n) {
+  const Span span = machine.local().alloc<Span>(name, n);
+  for (int i = 0; i < n; ++i) span.data()[i] = {};
+  return span;
+}
+
 class Bench {
  public:
   /// @param cores  up to the number of workers; one more, and the master takes part
   Bench(const sim::ChipConfig& chip, int cores, const work::CodeMap* code = nullptr);
+
+  /// What the master does in one stage.
+  work::Job record(const std::function<void(work::Machine&)>& body);
+  sim::StageTiming time(const work::Job& job) const;
 
   /// Times one stage in which every core runs body(core).
   sim::StageTiming fork(const std::function<void(work::Core&)>& body);
@@ -34,9 +53,6 @@ class Bench {
   double offload_cycles();
 
  private:
-  work::Job record(const std::function<void(work::Machine&)>& body);
-  sim::StageTiming time(const work::Job& job);
-
   sim::ChipConfig config_;
   bool with_master_;
   int workers_;

@@ -26,14 +26,6 @@ constexpr std::string_view kBoardGuards = "gap8_board_guards";
 constexpr double kCalls = 100;
 constexpr double kSpeedUpTolerance = 0.5;  // of a factor
 
-/// A block of memory with values that do not matter for its timing; the host fills it.
-template <class Span>
-Span block(Machine& machine, std::string_view name, int n) {
-  const Span span = machine.local().alloc<Span>(name, n);
-  for (int i = 0; i < n; ++i) span.data()[i] = {};
-  return span;
-}
-
 constexpr int kImage = kPoolSize * kPoolSize;
 
 void run_max_pool(Machine& m) {
@@ -126,6 +118,7 @@ MicrobenchRow speed_up(const MicrobenchRow& one, const MicrobenchRow& many) {
   MicrobenchRow row = many;
   row.name += ", speed-up";
   row.unit = std::string("x");
+  row.band.reset();
   const double measured = one.reference / many.reference;
   row.reference = std::min(measured, static_cast<double>(many.cores));
   row.reference_high = measured;
@@ -136,26 +129,30 @@ MicrobenchRow speed_up(const MicrobenchRow& one, const MicrobenchRow& many) {
 
 }  // namespace
 
-std::vector<MicrobenchRow> board_kernels(const sim::ChipConfig& chip,
-                                         std::vector<MicrobenchRow> references) {
-  std::vector<MicrobenchRow> rows = std::move(references);
-  for (MicrobenchRow& row : rows) {
-    const sim::StageTiming call = Bench(chip, row.cores).run(kernel_of(row).run);
-    row.simulated = kCalls * static_cast<double>(call.cycles.count());
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip,
+                                     std::vector<MicrobenchRow> references) {
+  std::vector<KernelJob> kernels;
+  for (MicrobenchRow& row : references) {
+    const work::Job job = Bench(chip, row.cores).record(kernel_of(row).run);
+    kernels.push_back({.row = std::move(row), .job = job, .calls = kCalls});
   }
+  return kernels;
+}
+
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip) {
+  return board_kernels(chip, reference_rows(fmt::format("{}.csv", kBoardReferences),
+                                            std::string(reference_text(kBoardReferences)), 2));
+}
+
+std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
+                                      const platform::Variants& platform) {
+  std::vector<MicrobenchRow> rows = banded_rows(kernels, platform);
   const std::size_t timed = rows.size();
   for (std::size_t i = 0; i < timed; ++i)
     for (std::size_t j = 0; j < timed; ++j)
       if (rows[i].cores == 1 && rows[j].cores > 1 && rows[i].group == rows[j].group &&
           rows[i].name == rows[j].name)
         rows.push_back(speed_up(rows[i], rows[j]));
-  return rows;
-}
-
-std::vector<MicrobenchRow> board_rows(const sim::ChipConfig& chip) {
-  std::vector<MicrobenchRow> rows =
-      board_kernels(chip, reference_rows(fmt::format("{}.csv", kBoardReferences),
-                                         std::string(reference_text(kBoardReferences)), 2));
   take_guards(fmt::format("{}.csv", kBoardGuards), std::string(reference_text(kBoardGuards)), rows);
   return rows;
 }

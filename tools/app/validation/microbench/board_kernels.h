@@ -4,19 +4,22 @@
 
 #include <vector>
 
-#include "sim/chip/config.h"
-#include "tools/app/validation/microbench/row.h"
+#include "platform_models/loader/variants.h"
+#include "tools/app/validation/microbench/kernel_jobs.h"
 
 namespace leviosim::tools {
 
-/// Times the kernel of every reference: cycles of 100 calls, each with its fork. After them come
-/// the speed-ups of eight cores, with a tolerance of 0.5.
+/// The kernel of every reference: 100 calls, each with its fork.
 /// @param references  as reference_rows() gives them: group is the kernel, name the variant
 /// @throws InputError if there is no such kernel
-std::vector<MicrobenchRow> board_kernels(const sim::ChipConfig& chip,
-                                         std::vector<MicrobenchRow> references);
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip,
+                                     std::vector<MicrobenchRow> references);
+/// Those that are part of the program.
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip);
 
-/// The same with the references and guards that are part of the program.
-std::vector<MicrobenchRow> board_rows(const sim::ChipConfig& chip);
+/// Cycles with bands, and after them the speed-ups of eight cores, with a tolerance of 0.5; with
+/// the guards that are part of the program.
+std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
+                                      const platform::Variants& platform);
 
 }  // namespace leviosim::tools

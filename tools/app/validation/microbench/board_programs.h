@@ -12,8 +12,8 @@
 
 #include <cstdint>
 
-#include "sim/work/machine.h"
 #include "sim/work/packed.h"
+#include "tools/app/validation/microbench/bench.h"
 
 namespace leviosim::tools {
 
@@ -30,11 +30,6 @@ constexpr int kBinarySize = 100;  ///< side of the binary image
 constexpr int kBinaryWords = 4;   ///< of 32 pixels, per row
 constexpr int kBinaryOut = kBinarySize - kWindow + 1;
 constexpr int kNorm = 8;  ///< fraction bits of coefficients
-
-template <class P, class T>
-using In = typename P::template Span<const T>;
-template <class P, class T>
-using Out = typename P::template Span<T>;
 
 // ---- 2×2 pools: image 112×112 → 56×56, rows [share) of the output ----
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "sim/base/csv_table.h"
 #include "tools/app/report/text_table.h"
 
@@ -13,6 +15,13 @@ std::string number(double value) { return fmt::format("{:.5g}", value); }
 std::string reference_of(const MicrobenchRow& row) {
   if (row.reference == row.reference_high) return number(row.reference);
   return fmt::format("{} … {}", number(row.reference), number(row.reference_high));
+}
+
+/// With a mark where the reference lies outside.
+std::string band_of(const MicrobenchRow& row) {
+  if (!row.band) return {};
+  return fmt::format("{} … {}{}", number(row.band->low), number(row.band->high),
+                     row.is_inside() ? "" : " !");
 }
 
 std::string error_of(const MicrobenchRow& row) {
@@ -34,6 +43,7 @@ TextTable empty_table() {
                     {"unit", Align::Left, 1},
                     {"reference"},
                     {"simulated"},
+                    {"band", Align::Right, 1},
                     {"error %"},
                     {"source", Align::Left, 2}});
 }
@@ -57,7 +67,7 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
       const MicrobenchRow& row = rows[end];
       met += row.met();
       table.add({row.name, std::to_string(row.cores), row.unit, reference_of(row),
-                 number(row.simulated), error_of(row), row.source});
+                 number(row.simulated), band_of(row), error_of(row), row.source});
     }
     text += fmt::format("{}\n{}\n", group, table.str());
     begin = end;
@@ -66,6 +76,31 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
                       chip, met, rows.size(), 100 * mean_error(rows));
   for (const MicrobenchRow& row : rows) text += warning_of(row);
   return text;
+}
+
+std::string coverage_text(const std::vector<MicrobenchRow>& rows,
+                          const std::vector<double>& needed) {
+  int all = 0;
+  int inside = 0;
+  for (const MicrobenchRow& row : rows) {
+    all += row.band ? 1 : 0;
+    inside += row.is_inside() ? 1 : 0;
+  }
+  const auto at = [&](double share) {
+    return needed[static_cast<std::size_t>(
+        std::lround(share * static_cast<double>(needed.size() - 1)))];
+  };
+  std::string text = fmt::format(
+      "published cycles of kernels: {} of {} lie inside the band that the platform's ranges "
+      "leave\n",
+      inside, all);
+  if (needed.empty()) return text;
+  return text +
+         fmt::format(
+             "isa.unmeasured_instructions with which one core takes what is published: "
+             "{:.2f} to {:.2f} for\n{} kernels, median {:.2f}, the middle four fifths {:.2f} "
+             "to {:.2f}\n",
+             needed.front(), needed.back(), needed.size(), at(0.5), at(0.1), at(0.9));
 }
 
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
@@ -79,6 +114,8 @@ std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
       {"reference", [=](const R& r) { return all_digits(r.reference); }},
       {"reference_high", [=](const R& r) { return all_digits(r.reference_high); }},
       {"simulated", [=](const R& r) { return all_digits(r.simulated); }},
+      {"low", [=](const R& r) { return r.band ? all_digits(r.band->low) : std::string(); }},
+      {"high", [=](const R& r) { return r.band ? all_digits(r.band->high) : std::string(); }},
       {"error", [=](const R& r) { return all_digits(r.error()); }},
       {"tolerance", [=](const R& r) { return all_digits(r.tolerance); }},
       {"guard", [=](const R& r) { return r.guard ? all_digits(*r.guard) : std::string(); }},

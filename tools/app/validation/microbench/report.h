@@ -12,6 +12,11 @@ namespace leviosim::tools {
 /// Grouped, with the error of each row, a line that sums up, and a warning for each row that is
 /// worse than its tolerance or guard.
 std::string microbench_table(std::string_view chip, const std::vector<MicrobenchRow>& rows);
+/// How many references lie inside their bands, and what plain code is short of.
+/// @param needed  needed_instructions(), rising
+std::string coverage_text(const std::vector<MicrobenchRow>& rows,
+                          const std::vector<double>& needed);
+
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows);
 
 /// Mean of the absolute errors.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "tools/app/result/banded.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -19,6 +20,7 @@ struct MicrobenchRow {
   double reference = 0;       ///< or the low end of what the sources allow
   double reference_high = 0;  ///< the same as reference where they agree
   double simulated = 0;
+  std::optional<Banded> band = std::nullopt;  ///< of what is simulated
   double tolerance = 0.05;  ///< largest error that is accepted, relative
   /// Of a row that is known to miss it: the error that it may not exceed.
   std::optional<double> guard = std::nullopt;
@@ -29,6 +31,10 @@ struct MicrobenchRow {
   double error() const {
     const double nearest = std::clamp(simulated, reference, reference_high);
     return (simulated - nearest) / nearest;
+  }
+  /// Whether the reference lies in the band, or some of its range does.
+  bool is_inside() const {
+    return band && band->low <= reference_high && reference <= band->high;
   }
   bool met() const { return std::abs(error()) <= tolerance; }
   Verdict verdict() const { return judge(error(), tolerance, guard); }

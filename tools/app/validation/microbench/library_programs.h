@@ -12,15 +12,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "sim/work/machine.h"
 #include "sim/work/packed.h"
+#include "tools/app/validation/microbench/bench.h"
 
 namespace leviosim::tools {
-
-template <class P, class T>
-using In = typename P::template Span<const T>;
-template <class P, class T>
-using Out = typename P::template Span<T>;
 
 /// Sums that begin with zero.
 template <class I32, int Rows, int Columns>

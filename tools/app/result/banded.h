@@ -1,0 +1,42 @@
+// Figures with their bands, and how what single numbers do to a figure becomes its band.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace leviosim::tools {
+
+/// A figure with its band.
+struct Banded {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+
+  bool holds(double other) const { return low <= other && other <= high; }
+  friend Banded operator*(double factor, const Banded& b) {
+    return {factor * b.value, factor * b.low, factor * b.high};
+  }
+};
+
+/// The band of a figure that hangs on numbers which err independently of each other: the root of
+/// the sum of the squares of what each changes, below and above.
+class BandOf {
+ public:
+  explicit BandOf(double value) : value_(value) {}
+
+  /// @param at_low, at_high  the figure with one number at both ends of its range
+  void add(double at_low, double at_high) {
+    const double below = std::max({0.0, value_ - at_low, value_ - at_high});
+    const double above = std::max({0.0, at_low - value_, at_high - value_});
+    below_ += below * below;
+    above_ += above * above;
+  }
+  Banded band() const { return {value_, value_ - std::sqrt(below_), value_ + std::sqrt(above_)}; }
+
+ private:
+  double value_;
+  double below_ = 0;  ///< squares
+  double above_ = 0;
+};
+
+}  // namespace leviosim::tools

@@ -1,0 +1,93 @@
+#include "tools/app/run/range_bands.h"
+
+#include <string_view>
+
+#include "platform_models/loader/value.h"
+#include "sim/base/check.h"
+#include "sim/base/parallel_for.h"
+#include "sim/work/op.h"
+
+namespace leviosim::tools {
+
+bool is_of_time(const platform::Parameter& parameter) {
+  for (const std::string_view section : {"energy.", "supply.", "area."})
+    if (parameter.path.starts_with(section)) return false;
+  return true;
+}
+
+std::vector<const platform::Parameter*> ranged(const platform::ResolvedPlatform& platform) {
+  std::vector<const platform::Parameter*> parameters;
+  for (const platform::Parameter& parameter : platform.parameters)
+    if (parameter.range && is_of_time(parameter)) parameters.push_back(&parameter);
+  return parameters;
+}
+
+namespace {
+
+constexpr const char* kOverhead = "isa.instruction_overhead";
+constexpr const char* kUnmeasured = "isa.unmeasured_instructions";
+
+/// Whether it says what compilers make of an operation.
+bool is_of_compiler(const platform::Parameter& parameter, const sim::CoreConfig& core) {
+  constexpr std::string_view kOps = ".ops.";
+  const std::size_t at = parameter.path.find(kOps);
+  if (at == std::string::npos) return false;
+  const std::size_t begin = at + kOps.size();
+  const std::size_t end = parameter.path.find('.', begin);
+  const std::string name = parameter.path.substr(begin, end - begin);
+  if (name.starts_with("loop_")) return true;
+  if (parameter.path.substr(end) != ".issue") return false;
+  for (const work::OpInfo& op : work::kOps)
+    if (op.name == name) return !core[op.op].routine;
+  return false;
+}
+
+double value_of(const platform::Parameter& parameter) {
+  const auto value = platform::parse_number(parameter.value);
+  check(value.has_value(), "a parameter with a range is no number");
+  return *value;
+}
+
+/// Of code that was not measured, one range says what compilers add: what another factor for
+/// measured code would add to it is taken off.
+std::vector<platform::Change> with_unmeasured_as_it_is(const platform::Variants& platform,
+                                                       const platform::Change& change) {
+  std::vector<platform::Change> changes{change};
+  const platform::Parameter* unmeasured = platform.find(kUnmeasured);
+  if (change.path == kOverhead && unmeasured != nullptr)
+    changes.push_back(
+        {kUnmeasured, value_of(*unmeasured) * value_of(*platform.find(kOverhead)) / change.value});
+  return changes;
+}
+
+}  // namespace
+
+bool is_end(const platform::Parameter& parameter, double end) { return value_of(parameter) == end; }
+
+bool is_in_bands(const platform::Parameter& parameter, const sim::ChipConfig& chip) {
+  return !is_of_compiler(parameter, chip.cluster.core);
+}
+
+std::vector<Banded> range_bands(const platform::Variants& platform, const ChipFigures& figures,
+                                unsigned threads) {
+  std::vector<const platform::Parameter*> parameters = ranged(platform.platform());
+  std::erase_if(parameters, [&](const platform::Parameter* parameter) {
+    return !is_in_bands(*parameter, platform.platform().config);
+  });
+  const std::vector<double> base = figures(platform.config({}));
+  std::vector<BandOf> bands;
+  for (const double figure : base) bands.emplace_back(figure);
+  const auto run = [&](std::size_t count, const auto& job) {
+    base::parallel_for(count, threads, job);
+  };
+  const auto with = [&](const platform::Change& change) {
+    return with_unmeasured_as_it_is(platform, change);
+  };
+  for (const auto& ends : at_ends(platform, parameters, base, figures, run, with))
+    for (std::size_t k = 0; k < bands.size(); ++k) bands[k].add(ends.low[k], ends.high[k]);
+  std::vector<Banded> result;
+  for (const BandOf& band : bands) result.push_back(band.band());
+  return result;
+}
+
+}  // namespace leviosim::tools
