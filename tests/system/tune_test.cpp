@@ -96,7 +96,7 @@ struct Example {
     plan.request.platform.name = "gap9";
     plan.sequence.folder = "flights/my flight/";
     plan.fps = {10, 20};
-    plan.seeds = {1};
+    plan.variations = {{.name = "seed 1"}};
     plan.miss_rate = 0.05;
     plan.ate_m = 0.2;
     for (const std::int64_t mhz : {100, 200, 300})
@@ -219,7 +219,7 @@ TEST(Tuning, OnlyPowerIsALineInThePicture) {
 
 TEST(Tuning, TheCommandOfSeveralSeedsIsALoopOverThem) {
   Example example;
-  example.plan.seeds = {2, 7};
+  example.plan.variations = {{.name = "seed 2", .seed = 2}, {.name = "seed 7", .seed = 7}};
   const std::string text = run_command_text(example.plan, example.points[1]);
   EXPECT_EQ(text.rfind("for seed in 2 7; do leviosim run ", 0), 0u) << text;
   EXPECT_NE(text.find(" --seed $seed --out chosen-$seed; done"), std::string::npos) << text;

@@ -32,17 +32,18 @@ struct GatedTuneWords : TuneWords {
   std::string report;
 };
 
-/// A loop with the first seed.
+/// A loop with the first variation.
 struct ChosenRun {
   RunRequest request;
   RunResult result;
 };
 
-/// Runs a point by itself with all seeds, whatever the cache holds. @returns what the first gave
+/// Runs a point by itself with all variations, whatever the cache holds. @returns what the first
+/// gave
 ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
   std::optional<ChosenRun> first;
-  for (std::size_t i = 0; i < plan.seeds.size(); ++i) {
-    RunRequest request = request_of(plan, point.fps, point.setting, plan.seeds[i]);
+  for (std::size_t i = 0; i < plan.variations.size(); ++i) {
+    RunRequest request = request_of(plan, point.fps, point.setting, plan.variations[i]);
     RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
     const RunOutcome outcome = outcome_of(result, plan.sequence.truth, plan.measure);
     if (to_text(figures_of(outcome)) != to_text(figures_of(point.outcomes[i])))
@@ -71,7 +72,7 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
   plan.out->write("manifest.json", json_text(tune_manifest(plan, all, command_line), 2) + '\n');
 }
 
-/// Holds the chosen point against the budget, with the first seed.
+/// Holds the chosen point against the budget, with the first variation.
 void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
           const std::optional<ChosenRun>& again, const Words& command_line) {
   if (!again) {

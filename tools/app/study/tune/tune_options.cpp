@@ -115,6 +115,42 @@ std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
   return seeds;
 }
 
+std::vector<Variation> perturbations(std::uint32_t seed) {
+  constexpr double kHair = 1e-4;
+  const auto with = [&](const char* name, auto change) {
+    Variation variation{.name = name, .seed = seed};
+    change(variation);
+    return variation;
+  };
+  return {with("as it is", [](Variation&) {}),
+          with("1 frame later", [](Variation& v) { v.later = 1; }),
+          with("2 frames later", [](Variation& v) { v.later = 2; }),
+          with("clock -2 %", [](Variation& v) { v.clock = 0.98; }),
+          with("clock +2 %", [](Variation& v) { v.clock = 1.02; }),
+          with("gyro -0.0001 rad/s", [=](Variation& v) { v.gyro_bias = -kHair; }),
+          with("gyro +0.0001 rad/s", [=](Variation& v) { v.gyro_bias = kHair; })};
+}
+
+namespace {
+
+/// Perturbations for workloads that draw nothing at random while they track, unless seeds are asked
+/// for.
+void choose_variations(const CLI::App& command, const TuneWords& words, TunePlan& plan) {
+  const std::vector<std::uint32_t> seeds = parse_seed_list(words.run.seed);
+  const bool asks_for_seeds = command.count("--seed") > 0;
+  if (words.perturbs && asks_for_seeds && seeds.size() > 1)
+    throw InputError("--perturb: perturbs runs of one seed; expected one, such as --seed 1");
+  plan.options.seed = fmt::format("{}", seeds.front());
+  plan.request = make_chip_request(plan.options);
+  plan.perturbs = words.perturbs || (!asks_for_seeds && profile_of(plan.request).guided.enabled);
+  if (plan.perturbs) plan.variations = perturbations(seeds.front());
+  if (!plan.perturbs)
+    for (const std::uint32_t seed : seeds)
+      plan.variations.push_back({.name = fmt::format("seed {}", seed), .seed = seed});
+}
+
+}  // namespace
+
 std::vector<double> parse_rates(const std::string& text) {
   std::vector<double> rates;
   for (const std::string& item : base::split(text, ','))
@@ -159,6 +195,10 @@ void add_tune_options(CLI::App& command, TuneWords& words) {
       "what becomes of a frame that finds the front end busy [drop]");
   add("--miss-rate", words.miss_rate, "SHARE", "of frames that may be dropped or late [0.05]");
   add("--ate", words.ate, "M", "absolute trajectory error that is accepted, in metres [0.2]");
+  command.add_flag(
+      "--perturb", words.perturbs,
+      "in place of seeds: other starts, clocks 2 % off, a hair of gyro bias [where the "
+      "profile draws nothing at random and no seeds are given]");
   add_runner_options(command, words.runner, "run");
   add_out_options(command, words.run);
 }
@@ -167,10 +207,8 @@ TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
   require(command, "--clock", "clocks in MHz, such as 100:370:10");
   TunePlan plan;
   refuse_operating_points(words.run);
-  plan.seeds = parse_seed_list(words.run.seed);
   plan.options = words.run;
-  plan.options.seed = fmt::format("{}", plan.seeds.front());
-  plan.request = make_chip_request(plan.options);
+  choose_variations(command, words, plan);
   const std::vector<Hertz> clocks = parse_clocks(words.clocks);
   const sim::ChipConfig& chip = plan.request.platform.config;
   // The fastest first: it is what cannot be had.

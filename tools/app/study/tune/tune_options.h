@@ -20,6 +20,20 @@ namespace leviosim::tools {
 /// What a draw of the workload's random numbers does to an error is seen only over several.
 inline constexpr const char* kTunedSeeds = "1,2,3";
 
+/// What differs between runs of a point that ought to come to the same: the workload's random
+/// draws, or, where it draws nothing, causes as small as a user would not notice.
+struct Variation {
+  std::string name;         ///< "seed 2", "clock -2 %"
+  std::uint32_t seed = 1;
+  std::size_t later = 0;    ///< frames that are left out at the start
+  double clock = 1;         ///< factor of the point's
+  double gyro_bias = 0;     ///< of all samples [rad/s]
+};
+
+/// As it is; from one frame and from two frames later; with a clock 2 % lower and 2 % higher; with
+/// a hair of gyro bias, either way.
+std::vector<Variation> perturbations(std::uint32_t seed);
+
 /// As typed.
 struct TuneWords {
   TuneWords() { run.seed = kTunedSeeds; }
@@ -30,6 +44,7 @@ struct TuneWords {
   std::string deadline = "drop";
   std::string miss_rate = "0.05";
   std::string ate = "0.2";
+  bool perturbs = false;
   RunnerWords runner;
 };
 
@@ -47,7 +62,8 @@ struct TunePlan {
   double recorded_hz = 0;
   std::vector<ClockSetting> clocks;  ///< rising
   std::vector<double> fps;           ///< rising
-  std::vector<std::uint32_t> seeds;  ///< of every point
+  std::vector<Variation> variations;  ///< of every point
+  bool perturbs = false;              ///< they are perturbations; else seeds
   Deadline deadline = Deadline::Drop;
   double miss_rate = 0;  ///< share of missed frames that is allowed
   double ate_m = 0;      ///< error that is allowed

@@ -202,11 +202,11 @@ void draw_legend(Svg& svg, const TunePlan& plan) {
   }
   y += 1.5 * kLineHeight;
   svg.circle({kLegendX + 9, y - 4}, 3.2, kInk, {kInk, 0});
-  svg.text({kLegendX + 26, y}, plan.seeds.size() > 1 ? "median" : "the seed", {});
-  if (plan.seeds.size() > 1) {
+  svg.text({kLegendX + 26, y}, plan.variations.size() > 1 ? "median" : "the seed", {});
+  if (plan.variations.size() > 1) {
     y += kLineHeight;
     svg.circle({kLegendX + 9, y - 4}, 1.5, kInk, {kInk, 0});
-    svg.text({kLegendX + 26, y}, "each seed", {});
+    svg.text({kLegendX + 26, y}, plan.perturbs ? "each run" : "each seed", {});
   }
   y += kLineHeight;
   svg.polygon(
@@ -245,8 +245,10 @@ std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points
                        plan.request.platform.name, plan.request.cores, flight_name(plan),
                        plan.sequence.frames, plan.recorded_hz),
            {12});
-  const std::string medians =
-      plan.seeds.size() > 1 ? fmt::format("; medians over {} seeds", plan.seeds.size()) : "";
+  const std::string medians = plan.variations.size() > 1
+                                  ? fmt::format("; medians over {} {}", plan.variations.size(),
+                                                plan.perturbs ? "runs" : "seeds")
+                                  : "";
   svg.text({kLeftEdge, 74}, std::string(info_of(plan.deadline).description) + medians, {12});
   Range x{megahertz(points.front().setting.clock), megahertz(points.front().setting.clock)};
   for (const TunePoint& point : points) x.include(megahertz(point.setting.clock));

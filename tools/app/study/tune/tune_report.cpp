@@ -66,13 +66,22 @@ std::string lucky_text(const Choice& choice) {
                      fmt::join(lucky, ", "), short_text(*choice.highest_failing));
 }
 
+/// Runs that err by more than the limit, or diverged.
+std::size_t failures(const TunePoint& point, const TunePlan& plan) {
+  return static_cast<std::size_t>(
+      std::count_if(point.outcomes.begin(), point.outcomes.end(), [&](const RunOutcome& outcome) {
+        const std::optional<double> error = error_of(outcome);
+        return !error || *error > plan.ate_m;
+      }));
+}
+
 std::string choice_line(const Choice& choice) {
   const std::string rate = fmt::format("  {:g} frames/s: ", choice.fps);
   const std::string lucky = lucky_text(choice);
   const std::string chosen =
-      choice.lowest == nullptr ? "none of these clocks"
-                               : fmt::format("{}: {}", clock_text(choice.lowest->setting),
-                                             point_text(*choice.lowest));
+      choice.lowest == nullptr
+          ? "none of these clocks"
+          : fmt::format("{}: {}", clock_text(choice.lowest->setting), point_text(*choice.lowest));
   return fmt::format("{}{}{}{}\n", rate, chosen, lucky.empty() ? "" : "\n    ", lucky);
 }
 
@@ -93,7 +102,7 @@ constexpr std::array kLatencies{
 struct Run {
   const TunePoint& point;
   const RunOutcome& outcome;
-  std::uint32_t seed;
+  const Variation& variation;
 };
 
 base::CsvTable<Run> runs_table(const TunePlan& plan) {
@@ -118,7 +127,8 @@ base::CsvTable<Run> runs_table(const TunePlan& plan) {
     return p.setting.voltage ? general(p.setting.voltage->count()) : std::string();
   });
   add("deadline", [&plan](O) { return info_of(plan.deadline).name; });
-  table.add("seed", [](const Run& r) { return r.seed; });
+  table.add("seed", [](const Run& r) { return r.variation.seed; });
+  table.add("variation", [](const Run& r) { return r.variation.name; });
   add_of_camera("arrived", [](C c) { return c.arrived; });
   add_of_camera("processed", [](C c) { return c.processed; });
   add_of_camera("dropped", [](C c) { return c.dropped; });
@@ -162,13 +172,20 @@ std::string tune_notes(const TunePlan& plan) {
       "ATE: {}-aligned RMSE of the processed frames, diverged if above the length of the path; "
       "poses: frames with a pose\n",
       info_of(plan.deadline).description, name_of(plan.measure.alignment));
-  if (plan.seeds.size() > 1)
-    text += fmt::format("medians over {} seeds; poses: the least\n", plan.seeds.size());
-  return text;
+  if (plan.variations.size() < 2) return text;
+  if (!plan.perturbs)
+    return text + fmt::format("medians over {} seeds; poses: the least\n", plan.variations.size());
+  std::vector<std::string> names;
+  for (const Variation& variation : plan.variations) names.push_back(variation.name);
+  return text +
+         fmt::format(
+             "medians over {} runs, since seeds change nothing: {}\nfailed: runs whose error "
+             "is above the limit or that diverged; poses: the least\n",
+             names.size(), fmt::join(names, ", "));
 }
 
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  const bool several = plan.seeds.size() > 1;
+  const bool several = plan.variations.size() > 1;
   std::vector<TextTable::Column> columns{{"frames/s"},
                                          {"MHz"},
                                          {"V", kRight, 1},
@@ -183,6 +200,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
                                          {"mJ/frame", kRight, 1},
                                          {"ATE m"}};
   if (several) columns.push_back({"least … greatest", kRight, 2});
+  if (plan.perturbs) columns.push_back({"failed", kRight, 1});
   columns.push_back({"poses %", kRight, 2});
   columns.push_back({"meets limits", kLeft});
   TextTable table(std::move(columns));
@@ -196,6 +214,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
     cells.insert(cells.end(), {milli(power, 2), milli_band(power),
                                milli(point.median(&LoopOutcome::frame_j), 3), ate(errors.median)});
     if (several) cells.push_back(fmt::format("{} … {}", ate(errors.low), ate(errors.high)));
+    if (plan.perturbs) cells.push_back(std::to_string(failures(point, plan)));
     cells.push_back(percent(point.completion()));
     cells.push_back(is_enough(point, plan) ? "yes" : "");
     table.add(std::move(cells));
@@ -206,16 +225,16 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
   std::vector<Run> runs;
   for (const TunePoint& point : points)
-    for (std::size_t i = 0; i < plan.seeds.size(); ++i)
-      runs.push_back({point, point.outcomes[i], plan.seeds[i]});
+    for (std::size_t i = 0; i < plan.variations.size(); ++i)
+      runs.push_back({point, point.outcomes[i], plan.variations[i]});
   return runs_table(plan).text(runs);
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
-  std::string text =
-      fmt::format("the lowest clocks from which on all have at most {:g} % missed and an ATE of {:g} "
-                  "m:\n",
-                  100 * plan.miss_rate, plan.ate_m);
+  std::string text = fmt::format(
+      "the lowest clocks from which on all have at most {:g} % missed and an ATE of {:g} "
+      "m:\n",
+      100 * plan.miss_rate, plan.ate_m);
   for (const Choice& choice : choices) text += choice_line(choice);
   const TunePoint* best = chosen(choices);
   if (best == nullptr) return text + "no point meets the limits\n";
@@ -231,13 +250,14 @@ std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choic
     box.good = choice.lowest != nullptr;
     box.mark = fmt::format("{:g} frames/s", choice.fps);
     if (!*box.good) {
-      box.sentence = fmt::format("None of these clocks has at most {:g} % missed and {:g} m of ATE.",
-                                 100 * plan.miss_rate, plan.ate_m);
+      box.sentence =
+          fmt::format("None of these clocks has at most {:g} % missed and {:g} m of ATE.",
+                      100 * plan.miss_rate, plan.ate_m);
       continue;
     }
-    box.sentence = fmt::format(
-        "{}: the lowest of these clocks with at most {:g} % missed and {:g} m of ATE.",
-        clock_text(choice.lowest->setting), 100 * plan.miss_rate, plan.ate_m);
+    box.sentence =
+        fmt::format("{}: the lowest of these clocks with at most {:g} % missed and {:g} m of ATE.",
+                    clock_text(choice.lowest->setting), 100 * plan.miss_rate, plan.ate_m);
     box.lines.push_back(point_text(*choice.lowest));
     if (std::string lucky = lucky_text(choice); !lucky.empty())
       box.lines.push_back(std::move(lucky));
@@ -266,7 +286,12 @@ Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line) {
   Json document = study_manifest("leviosim tune manifest", command_line);
   document["profile"] = plan.request.profile;
-  document["seeds"] = plan.seeds;
+  document["seeds"] = Json::array();
+  document["variations"] = Json::array();
+  for (const Variation& variation : plan.variations) {
+    if (!plan.perturbs) document["seeds"].push_back(variation.seed);
+    document["variations"].push_back(variation.name);
+  }
   document["platform"]["name"] = plan.options.platform;
   document["platform"]["cores"] = plan.request.cores;
   document["deadline"] = info_of(plan.deadline).name;

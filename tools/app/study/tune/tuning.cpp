@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "sim/energy/model.h"
 #include "tools/app/run/workload_overrides.h"
+#include "traces/datasets/disturbance.h"
 
 namespace leviosim::tools {
 namespace {
@@ -63,12 +66,26 @@ double TunePoint::completion() const {
 }
 
 RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
-                      std::uint32_t seed) {
+                      const Variation& variation) {
   RunRequest request = plan.request;
-  request.seed = seed;
+  request.seed = variation.seed;
   request.camera = CameraRequest{fps, plan.deadline};
-  request.platform = platform::resolve_platform(plan.options.platform,
-                                                split_overrides(overrides_at(plan, setting)).chip);
+  ClockSetting perturbed = setting;
+  if (variation.clock != 1) {
+    const sim::ChipConfig& chip = plan.request.platform.config;
+    Hertz clock(std::llround(static_cast<double>(setting.clock.count()) * variation.clock));
+    if (sim::knows_energy(chip)) clock = std::min(clock, chip.supply.highest.clock);
+    perturbed = setting_for(chip, plan.request.platform.name, clock);
+  }
+  if (variation.later > 0) {
+    const std::size_t begin = request.frames ? request.frames->begin : 0;
+    request.frames = traces::FrameRange{begin + variation.later, begin + plan.sequence.frames};
+  }
+  if (variation.gyro_bias != 0)
+    request.disturbance =
+        traces::parse_disturbance(fmt::format("gyro-bias={}", variation.gyro_bias));
+  request.platform = platform::resolve_platform(
+      plan.options.platform, split_overrides(overrides_at(plan, perturbed)).chip);
   return request;
 }
 
@@ -77,11 +94,14 @@ std::vector<Point> tune_runs(const TunePlan& plan) {
   std::size_t row = 0;
   for (const double fps : plan.fps)
     for (const ClockSetting& setting : plan.clocks) {
-      for (const std::uint32_t seed : plan.seeds)
-        runs.push_back({.request = request_of(plan, fps, setting, seed),
-                        .work = plan.sequence.work,
+      for (const Variation& variation : plan.variations) {
+        std::string work = plan.sequence.work;
+        if (plan.perturbs) work += fmt::format("\nperturbed: {}", variation.name);
+        runs.push_back({.request = request_of(plan, fps, setting, variation),
+                        .work = std::move(work),
                         .sequence = &plan.sequence,
                         .row = row});
+      }
       ++row;
     }
   return runs;
@@ -155,12 +175,14 @@ std::string run_command_text(const TunePlan& plan, const TunePoint& point) {
   add("--size", options.size, defaults.size);
   add("--fps", options.camera_fps, "");
   add("--deadline", options.deadline, "");
-  if (plan.seeds.size() == 1) {
+  if (plan.perturbs || plan.variations.size() == 1) {
     add("--seed", options.seed, defaults.seed);
     return fmt::format("{} --out chosen", fmt::join(words, " "));
   }
+  std::vector<std::uint32_t> seeds;
+  for (const Variation& variation : plan.variations) seeds.push_back(variation.seed);
   return fmt::format("for seed in {}; do {} --seed $seed --out chosen-$seed; done",
-                     fmt::join(plan.seeds, " "), fmt::join(words, " "));
+                     fmt::join(seeds, " "), fmt::join(words, " "));
 }
 
 }  // namespace leviosim::tools

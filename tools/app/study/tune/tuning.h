@@ -13,9 +13,9 @@ namespace leviosim::tools {
 struct TunePoint {
   double fps = 0;
   ClockSetting setting;
-  std::vector<RunOutcome> outcomes;  ///< by seed
+  std::vector<RunOutcome> outcomes;  ///< by variation
 
-  /// Median over the seeds of a figure of their loops.
+  /// Median over the variations of a figure of their loops.
   double median(double (*of)(const LoopOutcome&)) const;
   /// The same of a figure that chips without energies lack.
   std::optional<Banded> median(std::optional<Banded> LoopOutcome::*of) const;
@@ -30,9 +30,9 @@ struct TunePoint {
 
 /// The closed loop of a point.
 RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
-                      std::uint32_t seed);
+                      const Variation& variation);
 
-/// By frame rate, clock, then seed; the sequence of the plan must outlive them.
+/// By frame rate, clock, then variation; the sequence of the plan must outlive them.
 std::vector<Point> tune_runs(const TunePlan& plan);
 
 /// @param runs  tune_runs()
@@ -58,10 +58,10 @@ std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& 
 /// enough.
 const TunePoint* chosen(const std::vector<Choice>& choices);
 
-/// A line for a shell that runs a point by itself, with each seed into a folder of its own: chosen,
+/// A line for a shell that runs a point by itself: unperturbed, or with each seed into a folder of its own: chosen,
 /// or chosen-1, chosen-2, … if there are several.
 std::string run_command_text(const TunePlan& plan, const TunePoint& point);
-/// The options of that command, with the first seed.
+/// The options of that command, with the first variation.
 RunOptions run_options_of(const TunePlan& plan, const TunePoint& point);
 
 }  // namespace leviosim::tools
