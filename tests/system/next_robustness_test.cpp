@@ -60,6 +60,11 @@ TEST_P(NextRobustness, SaysWhenItIsLostAndFindsBack) {
   const int lost = flown.count(PoseSource::Predicted);
   if (GetParam().lost) {
     for (std::size_t i = 102; i < 118; ++i) EXPECT_EQ(flown.sources[i], PoseSource::Predicted) << i;
+    EXPECT_EQ(flown.health[118], Health::unreliable);
+  }
+  if (flown.ate < 0.1) {
+    EXPECT_EQ(flown.health[90], Health::good);
+    EXPECT_EQ(flown.health.back(), Health::good);
   }
   EXPECT_LT(lost, 60);
   EXPECT_EQ(flown.sources.back(), PoseSource::Tracked);
@@ -154,6 +159,16 @@ TEST(NextRobustnessOf, SaysWhenItsMapStartsAnew) {
   const Flown refused = fly(flight, profile);
   EXPECT_EQ(refused.map_restarts, static_cast<int>(flight.frames.size()) - 1);
   EXPECT_EQ(refused.count(PoseSource::First), static_cast<int>(flight.frames.size()));
+}
+
+/// Not even while there is no map yet that they would contradict.
+TEST(NextRobustnessOf, FrozenImagesInFlightAreNoRest) {
+  ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 4);
+  freeze(flight, 5, 45);
+  const Flown flown = fly(flight, profile_named("next", 1));
+  ASSERT_TRUE(flown.finite);
+  EXPECT_EQ(flown.count(PoseSource::First), 1);
+  for (std::size_t i = 5; i < 45; ++i) EXPECT_EQ(flown.health[i], Health::unreliable) << i;
 }
 
 /// An IMU that sees rest, as in uniform motion, does not hold the pose while the images move.

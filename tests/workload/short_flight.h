@@ -147,6 +147,12 @@ inline void darken(ShortFlight& flight, std::size_t first, std::size_t last) {
       pixel = static_cast<std::uint8_t>(pixel / 40);
 }
 
+/// The camera delivers its last picture again and again.
+inline void freeze(ShortFlight& flight, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i)
+    flight.frames[i].pixels = flight.frames[first - 1].pixels;
+}
+
 /// Mean over 15 pixels of a row, as a fast turn blurs.
 inline void blur(ShortFlight& flight, std::size_t first, std::size_t last) {
   constexpr int kHalf = 7;
@@ -201,6 +207,7 @@ inline void nudge(ShortFlight& flight, std::size_t first, std::size_t last) {
 struct Flown {
   traces::Trajectory trajectory;  ///< of the body
   std::vector<PoseSource> sources;
+  std::vector<Health> health;
   double ate = 0;      ///< SE3-aligned [m]
   bool finite = true;  ///< all poses
   int map_restarts = 0;
@@ -253,6 +260,7 @@ inline Flown fly(const ShortFlight& flight, const Profile& profile) {
       flown.trajectory[flown.trajectory.size() - 1 - static_cast<std::size_t>(earlier.frames_ago)]
           .T_world_body = body_pose(earlier, flight.T_body_camera);
     flown.sources.push_back(report.source);
+    flown.health.push_back(static_cast<Health>(report.health));
     flown.map_restarts += report.map_restarts;
   }
   if (flown.finite) flown.ate = traces::evaluate(flown.trajectory, flight.truth).translation.rmse;

@@ -19,9 +19,15 @@ struct AnchoredTerms {
     return {arena, window.keyframes, options.use_imu};
   }
 
-  F add(const ReducedSystem<P>& system, F cost) const {
-    if (options.use_imu) cost += add_inertial_terms<P>(window, interval, system);
-    cost += add_anchor<P>(window, options.anchor, system);
+  F add(const ReducedSystem<P>& system, F cost, IterationReport& report) const {
+    if (options.use_imu) {
+      const F inertial = add_inertial_terms<P>(window, interval, system);
+      report.inertial = work::value(inertial);
+      cost += inertial;
+    }
+    const F anchor = add_anchor<P>(window, options.anchor, system);
+    report.prior = work::value(anchor);
+    cost += anchor;
     return cost;
   }
   void step(const ReducedSystem<P>&) {}
@@ -49,9 +55,14 @@ struct JointTerms {
     return {arena, window.keyframes, true, kBiasUnknowns};
   }
 
-  F add(const ReducedSystem<P>& system, F cost) const {
-    cost += add_joint_inertial_terms<P>(window, 1, window.keyframes - 1, interval, system);
-    cost += add_prior<P>(*prior, window, system);
+  F add(const ReducedSystem<P>& system, F cost, IterationReport& report) const {
+    const F inertial =
+        add_joint_inertial_terms<P>(window, 1, window.keyframes - 1, interval, system);
+    const F past = add_prior<P>(*prior, window, system);
+    report.inertial = work::value(inertial);
+    report.prior = work::value(past);
+    cost += inertial;
+    cost += past;
     cost += hold_gauge<P>(*prior, window.state, options.prior, system);
     return cost;
   }
@@ -117,16 +128,22 @@ void step_keyframes(const Window<P>& window, const ReducedSystem<P>& solved,
 }
 
 /// Linearises everything at the window's state.
+/// @param report  what took part, and the parts of the cost
 /// @return the cost there
 template <class P, class Terms>
 typename P::F32 build(const Window<P>& window, const OptimiserOptions& options,
-                      typename P::F32 lambda, const WorkMemory<P, Terms>& memory, VisualUse& use) {
+                      typename P::F32 lambda, const WorkMemory<P, Terms>& memory,
+                      IterationReport& report) {
   using F = typename P::F32;
   memory.system.clear();
   F cost = 0.0f;
-  use = add_visual_terms<P>(window, PixelModel<P>(options.visual), lambda, memory.records,
-                            memory.elimination, memory.system, cost);
-  cost = memory.terms.add(memory.system, cost);
+  const VisualUse use =
+      add_visual_terms<P>(window, PixelModel<P>(options.visual), lambda, memory.records,
+                          memory.elimination, memory.system, cost);
+  report.landmarks = use.landmarks;
+  report.observations = use.observations;
+  report.visual = work::value(cost);
+  cost = memory.terms.add(memory.system, cost, report);
   memory.system.damp(lambda);
   return cost;
 }
@@ -161,8 +178,7 @@ IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   const work::Arena::Frame frame(fc.local());
   WorkMemory<P, Terms> memory(fc.local(), window, options);
   prepare(memory.terms);
-  VisualUse use;
-  const F cost = build<P>(window, options, lm.lambda, memory, use);
+  const F cost = build<P>(window, options, lm.lambda, memory, report);
   F trial_cost = cost;
   report.positive_definite = memory.system.solve();
   if (report.positive_definite) {
@@ -182,8 +198,6 @@ IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   }
   report.cost_before = work::value(cost);
   report.cost_after = work::value(trial_cost);
-  report.landmarks = use.landmarks;
-  report.observations = use.observations;
   return report;
 }
 

@@ -55,6 +55,10 @@ struct IterationReport {
   float lambda = 0;       ///< damping of this iteration
   int landmarks = 0;      ///< that took part
   int observations = 0;   ///< that took part
+  // Parts of cost_before.
+  float visual = 0;
+  float inertial = 0;
+  float prior = 0;  ///< of the past: the prior, or the anchor that stands in for it
 };
 
 /// One iteration; changes `window.state`. Must run in a stage of `fc`, whose local memory it uses

@@ -52,6 +52,12 @@ constexpr std::optional<PoseSource> source_named(std::string_view name) {
   return std::nullopt;
 }
 
+/// What the odometry knows of its map without the truth (odometry/map_health.h).
+enum class Health : std::uint8_t { good, unreliable, lost };
+
+/// In files, by number.
+inline constexpr std::array<std::string_view, 3> kHealthNames{"good", "unreliable", "lost"};
+
 struct FrameFacts {
   PoseSource source = PoseSource::First;
   bool keyframe = false;
@@ -64,6 +70,7 @@ struct FrameFacts {
   int places = 0;
   int places_forgotten = 0;
   int loop_closures = 0;
+  int health = 0;  ///< as Health numbers it
 };
 
 /// A number that is never negative.
@@ -71,6 +78,7 @@ struct FrameFact {
   std::string_view name;  ///< in files
   std::string_view meaning;
   int FrameFacts::*of;
+  bool adds_up = true;  ///< over frames
 };
 
 inline constexpr std::array kFrameFacts{
@@ -86,6 +94,8 @@ inline constexpr std::array kFrameFacts{
     FrameFact{"places_forgotten", "places given up for this frame, where places lay densest",
               &FrameFacts::places_forgotten},
     FrameFact{"loop_closures", "loops closed with this frame", &FrameFacts::loop_closures},
+    FrameFact{"health", "what the estimator knows of its map: 0 good, 1 unreliable, 2 lost",
+              &FrameFacts::health, false},
 };
 
 }  // namespace leviosim::vio

@@ -3,6 +3,15 @@
 
 namespace leviosim::vio {
 
+/// How well what was found explains a window: mean squares of whitened residuals, of which noise as
+/// it is assumed leaves 1 or less.
+struct WindowFit {
+  float visual = 0;
+  float inertial = 0;
+  float prior = 0;       ///< of the past; less than nothing where the prior's minimum lies elsewhere
+  float accel_bias = 0;  ///< in standard deviations of what is known of it beforehand
+};
+
 struct MapStatus {
   /// Velocity, gravity and scale are known: from rest, or from the initialisation. Until then a map
   /// that has an initialisation has landmarks without a distance.
@@ -11,6 +20,7 @@ struct MapStatus {
   bool converged = false;
   /// Of what is seen, 1/m, as the alignment has it; 0 before there is one.
   float inverse_depth = 0;
+  WindowFit fit;  ///< of the last window since the alignment
 };
 
 }  // namespace leviosim::vio

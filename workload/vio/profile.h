@@ -61,6 +61,22 @@ struct RestOptions {
   float wrong_match = 0.03f;  ///< a match that moved farther is rejected, in normalised coordinates
 };
 
+/// From where on the odometry does not call its map good (odometry/map_health.h).
+struct HealthOptions {
+  /// Of whitened residuals: they are twice as large as their noise. What is assumed of the IMU is
+  /// several times its data sheet's, so that good windows lie at a tenth, and one with samples that
+  /// come 10 ms late at two to three.
+  float mean_square = 4;
+  float accel_bias = 5;        ///< in standard deviations of the prior
+  float lost_accel_bias = 10;  ///< likewise; the poses are of no use
+  float memory_s = 1;          ///< for which an inconsistent window counts, and tracking is averaged
+  float tracked = 0.7f;        ///< share of the matches that agree
+  float drift = 0.1f;          ///< share of the path
+  // Of a pose that the IMU alone moves on: what velocity and tilt, with the bias, are wrong by.
+  float blind_velocity = 0.05f;      ///< m/s
+  float blind_acceleration = 0.05f;  ///< m/s²
+};
+
 struct Profile {
   std::string name;
 
@@ -86,6 +102,7 @@ struct Profile {
   PatchAlignmentOptions patches;  ///< of features with those of the last keyframe
   RecoveryOptions recovery;
   RestOptions rest;
+  HealthOptions health;
   AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser
   float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
   float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]

@@ -127,7 +127,12 @@ void add_frames(StatisticList& list, const RunResult& run) {
              count([&](const FrameResult& f) { return f.source == info.source; }));
   list.add("frames.keyframes", "1", "frames that became keyframes",
            count([](const FrameResult& f) { return f.keyframe; }));
+  for (std::size_t h = 0; h < vio::kHealthNames.size(); ++h)
+    list.add(fmt::format("frames.health.{}", vio::kHealthNames[h]), "1",
+             "frames by what the estimator knows of its map",
+             count([&](const FrameResult& f) { return f.health == static_cast<int>(h); }));
   for (const vio::FrameFact& fact : vio::kFrameFacts) {
+    if (!fact.adds_up) continue;
     std::int64_t sum = 0;
     for (const FrameResult& frame : run.frames) sum += frame.*fact.of;
     list.add(fmt::format("frames.{}.sum", fact.name), "1", "summed over the frames", sum);

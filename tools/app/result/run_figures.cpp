@@ -11,18 +11,12 @@
 namespace leviosim::tools {
 namespace {
 
-std::optional<int> health_of(const FrameResult& frame) {
-  for (const vio::FrameFact& fact : vio::kFrameFacts)
-    if (fact.name == "health") return frame.*fact.of;
-  return std::nullopt;
-}
-
 RecordedFrame recorded(const FrameResult& frame, bool timed) {
   RecordedFrame row;
   row.t_ns = frame.t_ns;
   row.source = frame.source;
   row.map_restarts = frame.map_restarts;
-  row.health = health_of(frame);
+  row.health = frame.health;
   if (timed)
     row.timing = {frame.end_ns - frame.arrival_ns, frame.end_ns - frame.start_ns,
                   static_cast<double>(frame.cycles.count()),

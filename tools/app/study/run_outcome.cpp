@@ -110,12 +110,6 @@ class Numbers {
   std::map<std::string, double> read_;
 };
 
-std::optional<Health> health_of(const vio::FrameFacts& frame) {
-  for (const vio::FrameFact& fact : vio::kFrameFacts)
-    if (fact.name == "health") return static_cast<Health>(frame.*fact.of);
-  return std::nullopt;
-}
-
 RunOutcome compute(const Point& point, const Measure& how) {
   RunRequest request = point.request;
   request.evaluate = false;  // outcome_of() does, and takes note of what diverged
@@ -166,7 +160,7 @@ RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, con
   outcome.frames = expected;
   for (const FrameResult& frame : run.frames)
     outcome.map_restarts += static_cast<std::size_t>(frame.map_restarts);
-  if (!run.frames.empty()) outcome.health = health_of(run.frames.back());
+  if (!run.frames.empty()) outcome.health = static_cast<Health>(run.frames.back().health);
   if (run.camera) outcome.loop = loop_of(run);
   return outcome;
 }

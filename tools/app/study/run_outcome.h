@@ -16,6 +16,7 @@
 #include "traces/trajectories/end_drift.h"
 #include "traces/trajectories/scale_windows.h"
 #include "traces/trajectories/trajectory.h"
+#include "workload/vio/frame_facts.h"
 
 namespace leviosim::tools {
 
@@ -32,8 +33,7 @@ struct LoopOutcome {
   std::optional<Banded> frame_j;  ///< per processed frame, idle time included
 };
 
-/// What a front end says of its map: its frame fact "health", if it has one.
-enum class Health : std::uint8_t { good, unreliable, lost };
+using vio::Health;
 
 struct RunOutcome {
   std::string failure;          ///< why there are no errors; empty if there are
@@ -45,7 +45,7 @@ struct RunOutcome {
   std::size_t matched = 0;
   double completion = 0;
   std::size_t map_restarts = 0;
-  std::optional<Health> health;       ///< at the last frame
+  std::optional<Health> health;       ///< at the last frame; none if none was processed
   traces::ScaleSummary scale;         ///< of the estimate over the truth
   std::optional<double> end_drift_m;  ///< traces::end_drift(); none if the path is too short
   double path_m = 0;                  ///< of the truth

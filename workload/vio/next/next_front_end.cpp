@@ -86,6 +86,7 @@ void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& 
   prior.gyro_information = 1.0f / (stddev * stddev);
   state_.graph_in_l2.set_bias_prior(prior);
   map_.aligned = true;
+  map_.fit = {};
 }
 
 /// What became of the map cannot be true: another one begins where the camera was seen last.

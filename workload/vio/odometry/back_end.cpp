@@ -108,7 +108,25 @@ OptimiserReport BackEnd<P>::optimise() {
   if (profile_.use_imu && !options_.joint)
     estimate_biases<P>(window_, profile_.imu_noise, profile_.biases);
   solved_ = solved_ || report.positive_definite;
+  fit_ = fit_of(report);
   return {true, report.accepted, report.cost_before, report.cost_after};
+}
+
+/// Each observation has two residuals and each landmark takes three unknowns; each interval has
+/// six, for its velocities are free.
+template <class P>
+WindowFit BackEnd<P>::fit_of(const IterationReport& report) const {
+  const auto mean_square = [](float cost, int number) {
+    return number > 0 ? 2 * cost / static_cast<float>(number) : 0.0f;
+  };
+  const Vec3<P>&bias = window_.bias.accel, &expected = window_.bias_prior.mean.accel;
+  const Vec3<work::Native> off{work::value(bias.x) - work::value(expected.x),
+                               work::value(bias.y) - work::value(expected.y),
+                               work::value(bias.z) - work::value(expected.z)};
+  return {mean_square(report.visual, 2 * report.observations - 3 * report.landmarks),
+          mean_square(report.inertial, 6 * (window_.keyframes - 1)),
+          mean_square(report.prior, options_.joint ? prior_.unknowns() : 9),
+          work::sqrt(dot(off, off)) / options_.prior.accel_bias};
 }
 
 template <class P>
@@ -123,6 +141,7 @@ void BackEnd<P>::publish() {
   if (aligns_) return publish_alignment();
   vio::publish<P>(window_, graph_);
   if (still_there) move_newer_keyframes(window_.state.pose(last) * inverse(before));
+  map_.fit = fit_;
 }
 
 /// A map is aligned as a whole: keyframes that are newer than the snapshot follow its last one.

@@ -29,6 +29,7 @@ class BackEnd {
   using I32 = typename P::I32;
 
   bool is_settled();
+  WindowFit fit_of(const IterationReport& report) const;
   void publish_alignment();
   void retire_unplaced();
   void update_prior();
@@ -46,6 +47,7 @@ class BackEnd {
   AlignmentState<P> alignment_;
   int newest_ = -1;          ///< serial number of the newest keyframe
   int snapshots_ = 0;        ///< that were taken of it
+  WindowFit fit_;            ///< before the last iteration
   bool solved_ = false;      ///< the system of this snapshot could be solved
   bool aligns_ = false;      ///< this snapshot is of a map that is not aligned yet
   bool ambiguous_ = false;   ///< when it last began from several starts, two scales were left

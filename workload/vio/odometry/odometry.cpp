@@ -6,6 +6,7 @@
 #include "workload/vio/levio/levio_front_end.h"
 #include "workload/vio/next/next_front_end.h"
 #include "workload/vio/odometry/back_end.h"
+#include "workload/vio/odometry/map_health.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
@@ -77,10 +78,17 @@ class OdometryOf : public Odometry {
     graph_.clear(ImuBias<P>::zero(), {0.0f, 0.0f, 0.0f});
   }
 
-  FrameReport process_frame(const FrameInput& input) override { return front_end_->process(input); }
+  FrameReport process_frame(const FrameInput& input) override {
+    FrameReport report = front_end_->process(input);
+    report.health = static_cast<int>(health_.after_frame(report, input.dt));
+    return report;
+  }
   bool begin_optimisation() override { return back_end_.begin(); }
   OptimiserReport optimise() override { return back_end_.optimise(); }
-  void publish() override { back_end_.publish(); }
+  void publish() override {
+    back_end_.publish();
+    health_.take_window();
+  }
   const work::Arena& last_keyframe_memory() const override { return keyframe_memory_; }
   const work::Arena& pose_graph_memory() const override { return graph_memory_; }
   const work::Arena& loop_memory() const override { return loop_memory_; }
@@ -95,6 +103,7 @@ class OdometryOf : public Odometry {
   std::unique_ptr<FrontEnd<P>> front_end_;
   Reservation reserved_;
   BackEnd<P> back_end_;
+  MapHealth health_{profile_, map_};
 };
 
 }  // namespace

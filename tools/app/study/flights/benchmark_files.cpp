@@ -12,10 +12,8 @@ namespace leviosim::tools {
 
 namespace {
 
-/// As front ends name it; nothing of those that say nothing.
 std::string health_text(const std::optional<Health>& health) {
-  if (!health) return {};
-  return *health == Health::good ? "good" : *health == Health::lost ? "lost" : "unreliable";
+  return health ? std::string(vio::kHealthNames[static_cast<std::size_t>(*health)]) : "";
 }
 
 }  // namespace

@@ -1,0 +1,134 @@
+// What the odometry says of its map without the truth: each sign by itself.
+#include "workload/vio/odometry/map_health.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace leviosim::vio::test {
+namespace {
+
+constexpr float kFrame = 0.05f;  // s
+
+class MapHealthOf : public ::testing::Test {
+ protected:
+  MapHealthOf() { map_.aligned = true; }
+
+  /// A frame, a decimetre further on.
+  Health frame(PoseSource source = PoseSource::Tracked, int restarts = 0) {
+    FrameReport report;
+    report.source = source;
+    report.world_matches = 100;
+    report.inliers = inliers_;
+    report.map_restarts = restarts;
+    report.p_world_camera = {0.1f * static_cast<float>(++frames_), 0, 0};
+    return health_.after_frame(report, kFrame);
+  }
+  Health frames(int number, PoseSource source = PoseSource::Tracked) {
+    Health last = Health::good;
+    for (int i = 0; i < number; ++i) last = frame(source);
+    return last;
+  }
+  void window(const WindowFit& fit) {
+    map_.fit = fit;
+    health_.take_window();
+  }
+
+  const Profile profile_ = profile_named("next", 1);
+  MapStatus map_;
+  MapHealth health_{profile_, map_};
+  int inliers_ = 95;
+  int frames_ = 0;
+};
+
+TEST_F(MapHealthOf, TrackedFramesOfAnAlignedMapAreGood) {
+  EXPECT_EQ(frame(), Health::good);
+  window({.visual = 0.5f, .inertial = 0.2f, .prior = -0.1f, .accel_bias = 2});
+  EXPECT_EQ(frames(40), Health::good);
+}
+
+TEST_F(MapHealthOf, AMapWithoutScaleIsUnreliable) {
+  map_.aligned = false;
+  EXPECT_EQ(frame(PoseSource::Initialising), Health::unreliable);
+  map_.aligned = true;
+  EXPECT_EQ(frame(), Health::good);
+}
+
+/// levio has no alignment to wait for.
+TEST(MapHealth, NeedsNoAlignmentWhereThereIsNone) {
+  const Profile profile = profile_named("levio", 1);
+  const MapStatus map;
+  MapHealth health(profile, map);
+  FrameReport report;
+  report.source = PoseSource::First;
+  EXPECT_EQ(health.after_frame(report, 0), Health::good);
+}
+
+TEST_F(MapHealthOf, AWindowThatContradictsItselfCountsForASecond) {
+  window({.visual = 20});
+  EXPECT_EQ(frame(), Health::unreliable);
+  window({.visual = 0.5f});
+  EXPECT_EQ(frames(18), Health::unreliable);
+  EXPECT_EQ(frames(3), Health::good);  // nothing of the path is in doubt
+}
+
+/// The scale may be anything then.
+TEST_F(MapHealthOf, APathThatContradictsTheImuStaysInDoubt) {
+  EXPECT_EQ(frames(50), Health::good);
+  window({.visual = 0.5f, .inertial = 20});
+  frames(20);
+  window({.visual = 0.5f, .inertial = 0.2f});
+  EXPECT_EQ(frames(60), Health::unreliable);   // 2 m of 13 m
+  EXPECT_EQ(frames(100), Health::good);  // 2 m of 23 m
+}
+
+TEST_F(MapHealthOf, ABiasThatNoAccelerometerHasIsUnreliableAndThenLost) {
+  window({.accel_bias = 6});
+  EXPECT_EQ(frame(), Health::unreliable);
+  window({.accel_bias = 12});
+  EXPECT_EQ(frame(), Health::lost);
+}
+
+TEST_F(MapHealthOf, WhatIsNoNumberIsNotGood) {
+  window({.visual = NAN});
+  EXPECT_EQ(frame(), Health::unreliable);
+  window({.accel_bias = NAN});
+  EXPECT_EQ(frame(), Health::lost);
+}
+
+TEST_F(MapHealthOf, PosesOfTheImuAloneAreUnreliableAfterAMomentAndLostInTheEnd) {
+  EXPECT_EQ(frames(20), Health::good);
+  EXPECT_EQ(frames(2, PoseSource::Predicted), Health::good);
+  EXPECT_EQ(frames(20, PoseSource::Predicted), Health::unreliable);
+  EXPECT_EQ(frames(45, PoseSource::Predicted), Health::lost);
+}
+
+TEST_F(MapHealthOf, MatchesThatDisagreeAreUnreliable) {
+  inliers_ = 55;
+  EXPECT_EQ(frame(), Health::good);
+  EXPECT_EQ(frames(40), Health::unreliable);
+  inliers_ = 95;
+  EXPECT_EQ(frames(40), Health::good);
+}
+
+TEST_F(MapHealthOf, AMapThatIsGivenUpIsLostUntilTheNextOneIsAligned) {
+  frames(20);
+  map_.aligned = false;
+  EXPECT_EQ(frame(PoseSource::Initialising, 1), Health::lost);
+  EXPECT_EQ(frames(20, PoseSource::Initialising), Health::lost);
+  map_.aligned = true;
+  EXPECT_EQ(frame(), Health::unreliable);  // a metre of four may be missing
+  EXPECT_EQ(frames(80), Health::good);
+}
+
+/// Nothing depended on it.
+TEST_F(MapHealthOf, AMapThatIsGivenUpBeforeItsAlignmentIsOnlyUnreliable) {
+  map_.aligned = false;
+  frame(PoseSource::Initialising);
+  EXPECT_EQ(frame(PoseSource::Initialising, 1), Health::unreliable);
+  map_.aligned = true;
+  EXPECT_EQ(frame(), Health::good);
+}
+
+}  // namespace
+}  // namespace leviosim::vio::test
