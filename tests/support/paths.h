@@ -14,6 +14,9 @@ std::filesystem::path source_folder();
 /// one, such as that of an older commit.
 std::string program_path();
 
+/// Of this build, which `cmake --install` takes.
+std::filesystem::path build_folder();
+
 /// What each room may include, as the build knows it: lines "room: rooms and libraries".
 std::filesystem::path rooms_file();
 

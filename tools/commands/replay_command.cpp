@@ -17,7 +17,6 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload_overrides.h"
 #include "tools/app/timeline/requested_timeline.h"
 
 namespace leviosim::tools {
@@ -43,18 +42,6 @@ std::filesystem::path trace_file(const std::string& name) {
   return path / kWorkTraceFile;
 }
 
-RunRequest request_for(const traces::WorkTrace& trace, const RunOptions& options) {
-  for (const std::string& text : split_overrides(options.overrides).workload)
-    throw InputError(fmt::format(
-        "replay: the recorded work is that of a workload as it was; leave out --set {}", text));
-  RunRequest request;
-  request.platform = options.platform.empty()
-                         ? recorded_platform(trace, options.overrides)
-                         : platform::resolve_platform(options.platform, options.overrides);
-  request.cores = cores_of(options, request.platform.config.cluster);
-  return request;
-}
-
 Replay with_progress(const traces::WorkTrace& trace, const RunRequest& request,
                      ProgressLine::Style style) {
   ProgressLine line(style);
@@ -63,21 +50,6 @@ Replay with_progress(const traces::WorkTrace& trace, const RunRequest& request,
     line.show(p.done, p.total,
               [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
   });
-}
-
-Manifest manifest_of(const traces::WorkTrace& trace, const RunOptions& options,
-                     const Words& words) {
-  const InputDigest digest = digest_of_file(trace.name());
-  Manifest manifest;
-  manifest.command_line = words;
-  manifest.seed = trace.info().seed;
-  manifest.platform = options.platform;
-  manifest.overrides = options.overrides;
-  manifest.data = trace.info().data;
-  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
-  manifest.inputs = {digest};
-  manifest.recording = recording_json(trace, digest.sha256);
-  return manifest;
 }
 
 void run(const CLI::App& command, ReplayOptions options, const Words& words) {
@@ -92,13 +64,13 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   wanted.inputs.push_back(trace_file(options.trace));
   outputs::OutputFolder out(wanted);
   const traces::WorkTrace trace(trace_file(options.trace), trace_memory(options.memory));
-  RunRequest request = request_for(trace, options);
+  RunRequest request = replay_request(trace, options);
   std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);
   request.time_bands = TimeBandsOf::team;
   if (timeline) request.observer = &timeline->observer();
   const Replay result = with_progress(trace, request, style);
   if (options.platform.empty()) options.platform = trace.info().platform;
-  const Manifest manifest = manifest_of(trace, options, words);
+  const Manifest manifest = replay_manifest(trace, digest_of_file(trace.name()), options, words);
   options.data = trace.info().data;
   RunFiles files = run_files(result.run, manifest, platform::to_yaml(request.platform));
   files[kReplayFile] = replay_csv(result);

@@ -15,7 +15,7 @@ namespace leviosim::tools {
 namespace {
 
 struct WorkloadOptions {
-  std::string profile = "levio";
+  std::string profile{vio::default_profile()};
   bool json = false;
 };
 
@@ -23,16 +23,27 @@ std::string range_text(const vio::Parameter& p) {
   return fmt::format("{} … {}", vio::value_text(p, p.low), vio::value_text(p, p.high));
 }
 
+std::vector<vio::Parameter> parameters_of(const WorkloadOptions& options) {
+  std::vector<vio::Parameter> all;
+  for (const vio::Parameter& p : vio::parameters())
+    if (vio::has_parameter(options.profile, p)) all.push_back(p);
+  return all;
+}
+
+double value_in(const vio::Profile& profile, const vio::Parameter& p) {
+  return p.is_of_another() ? p.initial : p.get(profile);
+}
+
 std::string document(const WorkloadOptions& options, const vio::Profile& profile) {
   using P = vio::Parameter;
   const base::CsvTable<P> table{
       {"name", [](const P& p) { return p.name; }},
-      {"value", [&](const P& p) { return vio::value_text(p, p.get(profile)); }},
+      {"value", [&](const P& p) { return vio::value_text(p, value_in(profile, p)); }},
       {"low", [](const P& p) { return vio::value_text(p, p.low); }},
       {"high", [](const P& p) { return vio::value_text(p, p.high); }},
       {"unit", [](const P& p) { return p.unit; }},
       {"meaning", [](const P& p) { return p.description; }}};
-  return table_document("parameters of " + options.profile, table.text(vio::parameters()));
+  return table_document("parameters of " + options.profile, table.text(parameters_of(options)));
 }
 
 std::string lines(const WorkloadOptions& options, const vio::Profile& profile) {
@@ -44,8 +55,8 @@ std::string lines(const WorkloadOptions& options, const vio::Profile& profile) {
                    {"range", kLeft},
                    {"unit", kLeft},
                    {"meaning", kLeft}});
-  for (const vio::Parameter& p : vio::parameters())
-    table.add({std::string(p.name), vio::value_text(p, p.get(profile)), range_text(p),
+  for (const vio::Parameter& p : parameters_of(options))
+    table.add({std::string(p.name), vio::value_text(p, value_in(profile, p)), range_text(p),
                std::string(p.unit), std::string(p.description)});
   return fmt::format("{}\n{}", text, table.str());
 }
@@ -63,7 +74,9 @@ Command add_workload_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("workload", "List the profiles of the workload and its parameters");
   const auto options = std::make_shared<WorkloadOptions>();
-  command->add_option("--profile", options->profile, "whose values are shown [levio]")
+  command
+      ->add_option("--profile", options->profile,
+                   fmt::format("whose values are shown [{}]", options->profile))
       ->type_name("NAME");
   add_examples(*command, {"leviosim workload", "leviosim workload --profile next"});
   add_json_option(*command, options->json);

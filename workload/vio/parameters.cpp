@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "sim/base/check.h"
+#include "sim/base/error.h"
 
 namespace leviosim::vio {
 namespace {
@@ -403,14 +405,68 @@ constexpr std::array kParameters = {
 
 #undef LEVIOSIM_FIELD
 
+std::vector<Parameter>& all_parameters() {
+  static std::vector<Parameter> all(kParameters.begin(), kParameters.end());
+  return all;
+}
+
+/// Written by add_profile() only.
+std::vector<OtherProfile>& added_profiles() {
+  static std::vector<OtherProfile> all;
+  return all;
+}
+
 }  // namespace
 
-std::span<const Parameter> parameters() { return kParameters; }
+std::span<const Parameter> parameters() { return all_parameters(); }
 
 const Parameter* find_parameter(std::string_view name) {
-  const auto* it = std::find_if(kParameters.begin(), kParameters.end(),
-                                [&](const Parameter& p) { return p.name == name; });
-  return it == kParameters.end() ? nullptr : it;
+  const std::vector<Parameter>& all = all_parameters();
+  const auto it =
+      std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.name == name; });
+  return it == all.end() ? nullptr : &*it;
+}
+
+std::span<const OtherProfile> other_profiles() { return added_profiles(); }
+
+void add_profile(OtherProfile profile) {
+  const std::vector<std::string> names = profile_names();
+  if (std::find(names.begin(), names.end(), profile.name) != names.end())
+    throw InputError(
+        fmt::format("there is a profile '{}' already; expected another name for the "
+                    "workload",
+                    profile.name));
+  for (const Parameter& p : profile.parameters) {
+    if (!p.name.starts_with(kParameterPrefix) || find_parameter(p.name) != nullptr)
+      throw InputError(
+          fmt::format("the parameter '{}' of the workload '{}' has the name of another, "
+                      "or does not begin with '{}'",
+                      p.name, profile.name, kParameterPrefix));
+    if (!p.is_of_another() || !is_valid(p, p.initial))
+      throw InputError(
+          fmt::format("the parameter '{}' of the workload '{}' is not between its "
+                      "limits where nothing sets it",
+                      p.name, profile.name));
+    all_parameters().push_back(p);
+  }
+  added_profiles().push_back(std::move(profile));
+}
+
+const OtherProfile* other_profile(std::string_view name) {
+  for (const OtherProfile& profile : other_profiles())
+    if (profile.name == name) return &profile;
+  return nullptr;
+}
+
+bool has_parameter(std::string_view profile, const Parameter& parameter) {
+  const OtherProfile* const other = other_profile(profile);
+  if (other == nullptr) return !parameter.is_of_another();
+  return std::any_of(other->parameters.begin(), other->parameters.end(),
+                     [&](const Parameter& p) { return p.name == parameter.name; });
+}
+
+std::string_view default_profile() {
+  return other_profiles().empty() ? "levio" : std::string_view(other_profiles().back().name);
 }
 
 bool is_valid(const Parameter& parameter, double value) {
@@ -436,7 +492,7 @@ std::string Assignment::text() const {
 void set_parameters(std::span<const Assignment> assignments, Profile& profile) {
   for (const Assignment& a : assignments) {
     check(is_valid(*a.parameter, a.value), "a workload parameter has a valid value");
-    a.parameter->set(profile, a.value);
+    if (!a.parameter->is_of_another()) a.parameter->set(profile, a.value);
   }
 }
 

@@ -27,9 +27,42 @@ struct Parameter {
   bool needs_imu;  ///< has no effect on profiles without IMU
   double (*get)(const Profile&);
   void (*set)(Profile&, double);
+  double initial = 0;  ///< of a parameter of another workload: what it is where nothing sets it
+
+  /// Of another workload than the odometry, whose profiles do not have it.
+  bool is_of_another() const { return get == nullptr; }
 };
 
-/// In the order in which a frame meets them.
+/// A parameter of another workload. The texts are literals; `name` begins with "workload.".
+constexpr Parameter other_parameter(std::string_view name, Parameter::Kind kind,
+                                    std::string_view unit, double low, double high, double initial,
+                                    std::string_view description) {
+  return {name, kind, unit, low, high, description, false, nullptr, nullptr, initial};
+}
+
+/// Another workload than the odometry, which users name as they name a profile.
+struct OtherProfile {
+  std::string name;
+  std::string description;          ///< a few words
+  std::vector<std::string> stages;  ///< in the order of a frame
+  std::vector<Parameter> parameters;
+};
+
+/// From now on profile_named(), profile_names() and parameters() know it; before anything asks for
+/// them, and by one thread. @throws InputError for a name that there is already
+void add_profile(OtherProfile profile);
+
+std::span<const OtherProfile> other_profiles();
+/// nullptr for profiles of the odometry, and for names that nobody knows.
+const OtherProfile* other_profile(std::string_view name);
+
+/// Whether the parameter is one of the workload that the profile is of.
+bool has_parameter(std::string_view profile, const Parameter& parameter);
+
+/// What runs where no profile is named: the other workload, if there is one, or levio.
+std::string_view default_profile();
+
+/// In the order in which a frame meets them; those of other workloads last.
 std::span<const Parameter> parameters();
 
 /// The parameter of that name; nullptr if there is none.
@@ -54,7 +87,7 @@ struct Assignment {
   std::string text() const;
 };
 
-/// Sets all of them. The values must be valid.
+/// Sets all of them but those of other workloads. The values must be valid.
 void set_parameters(std::span<const Assignment> assignments, Profile& profile);
 
 }  // namespace leviosim::vio

@@ -8,6 +8,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "workload/vio/parameters.h"
 
 namespace leviosim::vio {
 namespace {
@@ -96,7 +97,8 @@ const NamedProfile* find(std::string_view name) {
 
 Profile profile_named(std::string_view name, std::uint32_t seed) {
   const NamedProfile* const it = find(name);
-  if (it == nullptr)
+  const bool is_other = it == nullptr && other_profile(name) != nullptr;
+  if (it == nullptr && !is_other)
     throw InputError(fmt::format("unknown profile '{}'; known profiles are {}", name,
                                  fmt::join(profile_names(), ", ")));
   Profile profile;
@@ -105,17 +107,19 @@ Profile profile_named(std::string_view name, std::uint32_t seed) {
   // Different streams for the two estimators; an odd factor keeps different seeds apart.
   profile.pnp.seed = seed * 0x9e3779b1u + 1;
   profile.essential.seed = seed * 0x85ebca6bu + 2;
-  it->adjust(profile);
+  if (!is_other) it->adjust(profile);
   return profile;
 }
 
 std::vector<std::string> profile_names() {
   std::vector<std::string> names;
   for (const NamedProfile& p : kProfiles) names.emplace_back(p.name);
+  for (const OtherProfile& p : other_profiles()) names.push_back(p.name);
   return names;
 }
 
 std::string_view profile_description(std::string_view name) {
+  if (const OtherProfile* const other = other_profile(name)) return other->description;
   const NamedProfile* const it = find(name);
   check(it != nullptr, "a profile of this name");
   return it->description;

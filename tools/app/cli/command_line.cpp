@@ -10,6 +10,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
+#include "tools/app/cli/manual.h"
 #include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
@@ -110,6 +111,10 @@ void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
 
 int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& typed) {
   refuse_empty_values(typed);
+  if (typed.size() == 3 && typed[0] == kHelp && typed[1] == "--as") {
+    print_result_text(manual(app, commands, typed[2]));
+    return 0;
+  }
   const Words words = in_present_spelling(help_as_option(typed, commands), commands);
   // CLI11 would go on to a later word that is a command.
   if (!words.empty() && words.front().front() != '-' &&

@@ -28,16 +28,6 @@ bool follows_offload(const RunRequest& request) {
   return request.recording || sim::has_accelerators(request.platform.config);
 }
 
-work::MachineConfig cluster_machine(const RunRequest& request, const vio::Profile& profile) {
-  return {.cores = request.cores,
-          .memory = "L1",
-          .capacity = request.native ? kUnlimited : request.platform.config.cluster.l1.size,
-          .alignment = profile.l1_alignment,
-          .record = !request.native,
-          .offload = follows_offload(request),
-          .code = &platform::compiled_code()};
-}
-
 work::MachineConfig controller_machine(const RunRequest& request) {
   Bytes l2 = request.platform.config.l2.size;
   if (request.camera) l2 -= soc::second_buffer(request.image_size.width, request.image_size.height);
@@ -75,11 +65,33 @@ traces::StampedPose body_pose(const vio::CameraPose& report, const traces::Camer
 
 }  // namespace
 
+work::MachineConfig cluster_machine(const RunRequest& request, int alignment) {
+  return {.cores = request.cores,
+          .memory = "L1",
+          .capacity = request.native ? kUnlimited : request.platform.config.cluster.l1.size,
+          .alignment = alignment,
+          .record = !request.native,
+          .offload = follows_offload(request),
+          .code = &platform::compiled_code()};
+}
+
+std::vector<StageResult> named_stages(const std::vector<vio::StageName>& names) {
+  std::vector<StageResult> stages;
+  for (const vio::StageName& name : names) {
+    StageResult stage;
+    stage.name = name.name;
+    stage.unit = name.per;
+    stage.on_controller = name.on_controller;
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
 LiveSource::LiveSource(const RunRequest& request)
     : profile_(profile_of(request)),
       evaluate_(request.evaluate),
       feed_(request),
-      cluster_(cluster_machine(request, profile_)),
+      cluster_(cluster_machine(request, profile_.l1_alignment)),
       controller_(controller_machine(request)),
       odometry_(vio::make_odometry(!request.native,
                                    with_delay(profile_, request.initial_delay_s * feed_.rate_hz()),
@@ -120,15 +132,7 @@ void LiveSource::publish() {
 }
 
 std::vector<StageResult> LiveSource::empty_stages() const {
-  std::vector<StageResult> stages;
-  for (const vio::StageName& name : vio::stage_names(profile_)) {
-    StageResult stage;
-    stage.name = name.name;
-    stage.unit = name.per;
-    stage.on_controller = name.on_controller;
-    stages.push_back(std::move(stage));
-  }
-  return stages;
+  return named_stages(vio::stage_names(profile_));
 }
 
 void LiveSource::describe(RunResult& result) const {

@@ -40,4 +40,10 @@ class LiveSource : public RunSource {
   work::Job optimiser_job_;
 };
 
+/// The machine of the request's cluster.
+work::MachineConfig cluster_machine(const RunRequest& request, int alignment);
+
+/// Stages that were not called yet.
+std::vector<StageResult> named_stages(const std::vector<vio::StageName>& names);
+
 }  // namespace leviosim::tools

@@ -35,7 +35,7 @@ void add_workload_options(CLI::App& command, RunOptions& options, const std::str
   add_text(command, "--data", options.data, "DIR|synthetic",
            "ASL/EuRoC folder, or the synthetic flight" + by_default);
   add_text(command, "--frames", options.frames, "A:B", "frames, B exclusive [all]");
-  add_text(command, "--profile", options.profile, "NAME", "of the workload [levio]");
+  add_text(command, "--profile", options.profile, "NAME", fmt::format("of the workload [{}]", options.profile));
   add_text(command, "--seed", options.seed, "N", "of the workload's random draws [1]");
   command.add_flag("--quiet", options.quiet, "no progress");
   command.get_option("--set")->description(

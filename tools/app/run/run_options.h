@@ -15,7 +15,7 @@ namespace leviosim::tools {
 struct RunOptions {
   std::string platform;
   std::string data;
-  std::string profile = "levio";
+  std::string profile{vio::default_profile()};
   std::string frames;
   std::string cores;
   std::string seed = "1";

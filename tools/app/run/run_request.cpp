@@ -1,5 +1,7 @@
 #include "tools/app/run/run_request.h"
 
+#include <fmt/core.h>
+
 #include "sim/base/error.h"
 
 namespace leviosim::tools {
@@ -24,7 +26,22 @@ void check_together(const vio::Profile& profile) {
         "workload.loop=off");
 }
 
+namespace {
+
+/// Each workload has parameters of its own.
+void check_parameters(const RunRequest& request) {
+  for (const vio::Assignment& a : request.workload)
+    if (!vio::has_parameter(request.profile, *a.parameter))
+      throw InputError(
+          fmt::format("{}: '{}' has no such parameter; expected one of its own "
+                      "(leviosim workload --profile {})",
+                      a.text(), request.profile, request.profile));
+}
+
+}  // namespace
+
 vio::Profile profile_of(const RunRequest& request) {
+  check_parameters(request);
   vio::Profile profile = vio::profile_named(request.profile, request.seed);
   vio::set_parameters(request.workload, profile);
   check_together(profile);

@@ -33,7 +33,7 @@ enum class TimeBandsOf : std::uint8_t {
 
 struct RunRequest {
   std::string data;  ///< ASL folder (the synthetic flight has been made)
-  std::string profile = "levio";
+  std::string profile{vio::default_profile()};
   std::optional<traces::FrameRange> frames;
   traces::Disturbance disturbance;  ///< of the data
   traces::ImageSize image_size{160, 120};
@@ -58,7 +58,8 @@ struct RunRequest {
 /// @throws InputError if they contradict each other
 void check_together(const vio::Profile& profile);
 
-/// The profile with the parameters that were set. @throws InputError as check_together() does
+/// The profile with the parameters that were set; of another workload only the name.
+/// @throws InputError as check_together() does, and for parameters of another workload
 vio::Profile profile_of(const RunRequest& request);
 
 }  // namespace leviosim::tools

@@ -11,6 +11,7 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"
+#include "tools/app/run/replay_report.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/workload_overrides.h"
 #include "traces/datasets/asl_reader.h"
@@ -106,6 +107,32 @@ std::string work_trace_of(WorkRecording recording, const RunOptions& options,
   for (const InputDigest& input : manifest.inputs)
     info.inputs.emplace_back(input.name, input.sha256);
   return recording.writer.finish(std::move(info));
+}
+
+RunRequest replay_request(const traces::WorkTrace& trace, const RunOptions& options) {
+  for (const std::string& text : split_overrides(options.overrides).workload)
+    throw InputError(fmt::format(
+        "replay: the recorded work is that of a workload as it was; leave out --set {}", text));
+  RunRequest request;
+  request.platform = options.platform.empty()
+                         ? recorded_platform(trace, options.overrides)
+                         : platform::resolve_platform(options.platform, options.overrides);
+  request.cores = cores_of(options, request.platform.config.cluster);
+  return request;
+}
+
+Manifest replay_manifest(const traces::WorkTrace& trace, const InputDigest& digest,
+                         const RunOptions& options, const Words& words) {
+  Manifest manifest;
+  manifest.command_line = words;
+  manifest.seed = trace.info().seed;
+  manifest.platform = options.platform;
+  manifest.overrides = options.overrides;
+  manifest.data = trace.info().data;
+  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
+  manifest.inputs = {digest};
+  manifest.recording = recording_json(trace, digest.sha256);
+  return manifest;
 }
 
 std::string heading(const RunOptions& options, const RunResult& run) {

@@ -45,6 +45,16 @@ Manifest make_manifest(const RunOptions& options, const RunRequest& request, con
 std::string work_trace_of(WorkRecording recording, const RunOptions& options,
                           const RunRequest& request, const Manifest& manifest);
 
+/// What a replay is timed on: the chip that the options name, or that of the recording with what
+/// they set.
+/// @throws InputError for unknown chips, and for parameters of the workload
+RunRequest replay_request(const traces::WorkTrace& trace, const RunOptions& options);
+
+/// @param digest   of the trace
+/// @param options  with the name of the chip
+Manifest replay_manifest(const traces::WorkTrace& trace, const InputDigest& digest,
+                         const RunOptions& options, const Words& words);
+
 /// "leviosim 0.1.0: levio on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, …"
 std::string heading(const RunOptions& options, const RunResult& run);
 

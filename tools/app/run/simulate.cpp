@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <utility>
 
 #include "sim/base/error.h"
 #include "sim/soc/simulation.h"
 #include "sim/work/memory_overflow.h"
-#include "tools/app/run/live_source.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/time_bands.h"
+#include "tools/app/run/workload.h"
 #include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::tools {
@@ -105,7 +106,8 @@ void add_l2_rows(RunResult& result) {
 /// The golden model: the same computation without a chip. The optimiser's result of a frame is
 /// published before the next one, as on a chip that keeps up.
 RunResult run_natively(const RunRequest& request, const ProgressCallback& progress) {
-  LiveSource source(request);
+  const std::unique_ptr<RunSource> made = make_source(request);
+  RunSource& source = *made;
   RunResult result;
   for (int i = 0; i < source.frames(); ++i) {
     const bool optimising = source.begin_frame({.frame = i});
@@ -127,6 +129,7 @@ RunResult run_natively(const RunRequest& request, const ProgressCallback& progre
 /// What of images larger than by default fills the memories, and how to have less of it; empty for
 /// other images.
 std::string advice_on_size(const RunRequest& request) {
+  if (vio::other_profile(request.profile) != nullptr) return {};
   const auto extractor = profile_of(request).extractor;
   const auto features = [&](const traces::ImageSize& size) {
     return extractor.max_features(size.width, size.height);
@@ -142,17 +145,17 @@ std::string advice_on_size(const RunRequest& request) {
 
 RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progress) {
   try {
-    LiveSource live(request);
-    if (request.recording == nullptr) return simulate_source(request, live, progress);
-    RecordingSource recorded(live, *request.recording);
+    const std::unique_ptr<RunSource> live = make_source(request);
+    if (request.recording == nullptr) return simulate_source(request, *live, progress);
+    RecordingSource recorded(*live, *request.recording);
     RunResult result = simulate_source(request, recorded, progress);
     recorded.finish();
     return result;
   } catch (const work::MemoryOverflow& overflow) {
-    throw InputError(fmt::format("{}; {} has more{}", overflow.what(),
-                                 overflow.memory() == "L2" ? "a larger l2.size"
-                                                           : "a larger cluster.l1.size",
-                                 advice_on_size(request)));
+    throw InputError(
+        fmt::format("{}; {} has more{}", overflow.what(),
+                    overflow.memory() == "L2" ? "a larger l2.size" : "a larger cluster.l1.size",
+                    advice_on_size(request)));
   }
 }
 

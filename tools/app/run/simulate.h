@@ -6,7 +6,7 @@
 
 namespace leviosim::tools {
 
-/// LEVIO over the data of the request, on its chip or natively.
+/// The workload of the request over its data, on its chip or natively.
 /// @throws InputError for data or requests that cannot be run
 RunResult simulate(const RunRequest& request, const ProgressCallback& progress);
 

@@ -5,6 +5,7 @@
 #include "platform_models/loader/platform_file.h"
 #include "sim/base/sha256.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/run/workload.h"
 
 namespace leviosim::tools {
 namespace {
@@ -14,7 +15,8 @@ std::string workload_lines(const RunRequest& request) {
                                  request.image_size.height, request.seed, request.profile);
   const vio::Profile profile = profile_of(request);
   for (const vio::Parameter& p : vio::parameters())
-    text += fmt::format("{} {}\n", p.name, value_text(p, p.get(profile)));
+    text += fmt::format("{} {}\n", p.name,
+                        value_text(p, p.is_of_another() ? value_of(request, p) : p.get(profile)));
   return text;
 }
 

@@ -54,6 +54,10 @@ Dimension parse_dimension(const std::string& text) {
   const std::string where = "--vary " + text;
   const std::size_t equals = text.find('=');
   const Parameter& parameter = workload_parameter(where, text.substr(0, equals));
+  if (parameter.is_of_another())
+    throw InputError(where +
+                     ": is no parameter of the odometry; expected one of leviosim workload "
+                     "--profile levio");
   if (parameter.kind == Parameter::Kind::toggle) {
     if (equals != std::string::npos)
       throw InputError(fmt::format("{}: is off or on; expected no range", where));

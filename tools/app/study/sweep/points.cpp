@@ -12,6 +12,7 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/run/replay.h"
 #include "tools/app/run/run_options.h"
+#include "tools/app/run/workload.h"
 #include "tools/app/run/workload_overrides.h"
 #include "traces/datasets/image_preparation.h"
 
@@ -90,7 +91,7 @@ class Resolver {
     if (has("frames")) request.frames = traces::parse_frame_range(text("frames"));
     request.image_size = parse_size(text("size", "160x120"));
     traces::make_decimation(data.camera, request.image_size);
-    request.profile = text("profile", "levio");
+    request.profile = text("profile", request.profile);
     request.seed = static_cast<std::uint32_t>(
         parse_whole("seed", text("seed", "1"), 0, std::numeric_limits<std::uint32_t>::max()));
     request.workload = parse_workload_overrides(with_prefix(vio::kParameterPrefix, true));
@@ -124,7 +125,7 @@ class ParameterReader {
     if (point_.trace != nullptr) return {key.name, set};
     switch (key.kind) {
       case SweepKey::Kind::workload: {
-        const double value = key.parameter->get(profile_of(request));
+        const double value = value_of(request, *key.parameter);
         return {key.name, value_text(*key.parameter, value), value,
                 std::string(key.parameter->unit)};
       }

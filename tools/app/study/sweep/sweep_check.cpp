@@ -12,8 +12,8 @@
 #include "tools/app/budget/figures.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/run/workload.h"
 #include "tools/app/study/sweep/points.h"
-#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::tools {
 namespace {
@@ -28,7 +28,7 @@ std::vector<StageName> stages_of(const ResolvedPoint& point) {
   if (point.trace != nullptr)
     for (const auto& stage : point.trace->info().stages) add(stage.name, stage.on_controller);
   else
-    for (const auto& stage : vio::stage_names(profile_of(point.request)))
+    for (const auto& stage : stages_of(point.request))
       add(std::string(stage.name), stage.on_controller);
   return stages;
 }

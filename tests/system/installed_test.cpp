@@ -1,0 +1,111 @@
+// leviosim is installed from this build, and a project of its own uses it in an empty folder, as
+// the page tests/examples/outside/README.md says.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "sim/base/input_file.h"
+#include "tests/support/paths.h"
+#include "tests/support/scratch.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::read_text;
+using tests::Scratch;
+
+/// What the page wants typed: the block of shell lines.
+std::string commands_of_page() {
+  const std::string page = read_text(tests::source_folder() / "tests/examples/outside/README.md");
+  const std::string begin = "\n```sh\n";
+  const std::size_t from = page.find(begin);
+  EXPECT_NE(from, std::string::npos);
+  const std::size_t at = from + begin.size();
+  return page.substr(at, page.find("```", at) - at);
+}
+
+/// An entry of this build's cache: "CMAKE_CXX_FLAGS".
+std::string entry_of_cache(const std::string& name) {
+  const std::string cache = '\n' + read_text(tests::build_folder() / "CMakeCache.txt");
+  const std::size_t at = cache.find('\n' + name + ':');
+  if (at == std::string::npos) return {};
+  const std::size_t equals = cache.find('=', at);
+  return cache.substr(equals + 1, cache.find('\n', equals) - equals - 1);
+}
+
+class Installed : public ::testing::Test {
+ protected:
+  /// @returns the exit status; what was printed is in log.txt
+  int sh(const std::string& lines) {
+    tests::write_text(folder_ / "lines.sh", lines);
+    const std::string home = folder_.path().string();
+    const std::string line =
+        "cd '" + home + "' && HOME='" + home + "' XDG_CACHE_HOME='" + home + "/cache' CXX='" +
+        entry_of_cache("CMAKE_CXX_COMPILER") + "' CXXFLAGS='" +
+        entry_of_cache("CMAKE_CXX_FLAGS") +  // sanitizers, for what links the library
+        "' bash -euo pipefail lines.sh >log.txt 2>&1";
+    const int status = std::system(line.c_str());  // NOLINT: the lines are the page's
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  }
+  std::string log() const { return read_text(folder_ / "log.txt"); }
+  void install() {
+    ASSERT_EQ(sh("cmake --install '" + tests::build_folder().string() + "' --prefix leviosim"), 0)
+        << log();
+    fs::copy(tests::source_folder() / "tests/examples/outside", folder_ / "outside",
+             fs::copy_options::recursive);
+  }
+  bool has(const char* file) const { return fs::exists(folder_ / file); }
+
+  Scratch folder_;
+};
+
+TEST_F(Installed, AProjectOfItsOwnHasEveryCommand) {
+  install();
+  ASSERT_EQ(sh(commands_of_page()), 0) << log();
+  for (const char* file : {"recorded/work.trace", "replayed/stages.csv", "on-mychip/stages.csv",
+                           "points/sweep.csv", "budgets.yaml", "page.html", "frame.svg"})
+    EXPECT_TRUE(has(file)) << file << '\n' << log();
+  EXPECT_NE(log().find("workload.row_step"), std::string::npos);
+  EXPECT_NE(read_text(folder_ / "recorded/stages.csv").find("exposure"), std::string::npos);
+  // A recorded run needs no program of its own to be timed.
+  EXPECT_EQ(sh("leviosim/bin/leviosim replay recorded --out by-leviosim && cmp recorded/stages.csv "
+               "by-leviosim/stages.csv"),
+            0)
+      << log();
+  EXPECT_EQ(sh("build/exposure run --data flight -p workload.window=4 --out refused"), 2);
+  EXPECT_NE(log().find("'exposure' has no such parameter"), std::string::npos) << log();
+  EXPECT_EQ(sh("build/exposure run --data flight --profile levio -p workload.row_step=2 --out no"),
+            2);
+  EXPECT_NE(log().find("'levio' has no such parameter"), std::string::npos) << log();
+  EXPECT_FALSE(has("refused") || has("no"));
+}
+
+TEST_F(Installed, ThePagesForPeopleAndShellsNameEveryCommandAndOption) {
+  ASSERT_EQ(sh("cmake --install '" + tests::build_folder().string() +
+               "' --component program --prefix leviosim && leviosim/bin/leviosim run --help"),
+            0)
+      << log();
+  const std::string share = "leviosim/share/";
+  for (const char* file :
+       {"man/man1/leviosim.1", "bash-completion/completions/leviosim",
+        "zsh/vendor-completions/_leviosim", "fish/vendor_completions.d/leviosim.fish"}) {
+    const std::string text = read_text(folder_ / (share + file));
+    for (const char* word : {"replay", "whatif", "deadline", "record"})
+      EXPECT_NE(text.find(word), std::string::npos) << file << " lacks " << word;
+  }
+  // The shell completes what begins with "re" and an option of a command.
+  ASSERT_EQ(
+      sh("source leviosim/share/bash-completion/completions/leviosim\n"
+         "COMP_WORDS=(leviosim re) COMP_CWORD=1; _leviosim; echo \"${COMPREPLY[*]}\"\n"
+         "COMP_WORDS=(leviosim run --dead) COMP_CWORD=2; _leviosim; echo \"${COMPREPLY[*]}\""),
+      0)
+      << log();
+  EXPECT_EQ(log(), "replay report\n--deadline\n");
+  EXPECT_EQ(sh("leviosim/bin/leviosim help --as latex"), 2);
+  EXPECT_NE(log().find("expected man, bash, zsh, fish"), std::string::npos) << log();
+}
+
+}  // namespace
+}  // namespace leviosim::tools

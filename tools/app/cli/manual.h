@@ -1,0 +1,16 @@
+// The command line as others describe it: a manual page, and what shells complete. All of it
+// follows from what the commands declare.
+#pragma once
+
+#include <string>
+
+#include "tools/app/cli/command_line.h"
+
+namespace leviosim::tools {
+
+/// @param format  "man", "bash", "zsh" or "fish"
+/// @throws InputError for others
+std::string manual(const CLI::App& app, const std::vector<Command>& commands,
+                   const std::string& format);
+
+}  // namespace leviosim::tools

@@ -1,0 +1,131 @@
+#include "tools/app/run/workload.h"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "platform_models/loader/compiled_code.h"
+#include "sim/base/check.h"
+#include "sim/soc/job_timer.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/run/digest.h"
+#include "tools/app/run/feed.h"
+#include "tools/app/run/live_source.h"
+
+namespace leviosim::tools {
+namespace {
+
+/// Written by add_workload() only.
+std::map<std::string, Workload, std::less<>>& workloads() {
+  static std::map<std::string, Workload, std::less<>> all;
+  return all;
+}
+
+constexpr int kAlignment = 4;  // bytes, of blocks in L1
+
+/// The frames of a data set, each of which a function computes; nothing runs on the controller.
+class FrameByFrame : public RunSource {
+ public:
+  /// Both outlive the source.
+  FrameByFrame(const Workload& workload, const RunRequest& request)
+      : workload_(workload),
+        request_(request),
+        feed_(request),
+        machine_(cluster_machine(request, kAlignment)),
+        process_(workload.begin(request)) {}
+
+  int frames() const override { return feed_.size(); }
+  std::int64_t time_ns(int frame) const override { return feed_.time_ns(frame); }
+  std::int64_t arrival_ns(int frame) const override { return feed_.arrival_ns(frame); }
+  bool begin_frame(const soc::FrameStart& start) override {
+    frame_ = start.frame;
+    return false;
+  }
+  const work::Job& process(FrameResult& result) override {
+    result.index = frame_;
+    result.t_ns = result.pose.t_ns = feed_.time_ns(frame_);
+    process_(machine_, feed_.frame(frame_), result);
+    job_ = machine_.take_job();
+    return job_;
+  }
+  int iterations() const override { return 0; }
+  const work::Job& optimise() override { check_failed("this workload has no optimiser", {}); }
+  void publish() override {}
+  std::vector<StageResult> empty_stages() const override {
+    return named_stages(stages_of(request_));
+  }
+  void describe(RunResult& result) const override {
+    result.profile = workload_.name;
+    result.frame_period_ns = std::llround(1e9 / feed_.rate_hz());
+    if (result.camera) result.camera->fps = feed_.rate_hz();
+    result.image_width = feed_.rig().width;
+    result.image_height = feed_.rig().height;
+  }
+
+ private:
+  const Workload& workload_;
+  const RunRequest& request_;
+  Feed feed_;
+  work::Machine machine_;
+  FrameFunction process_;
+  int frame_ = 0;  ///< begun last
+  work::Job job_;
+};
+
+}  // namespace
+}  // namespace leviosim::tools
+
+namespace leviosim {
+
+Cycles cycles_on(const platform::ResolvedPlatform& chip,
+                 const std::function<void(work::Machine&)>& body, int cores) {
+  tools::RunRequest request;
+  request.platform = chip;
+  request.cores = cores > 0 ? cores : chip.config.cluster.workers;
+  work::Machine machine(tools::cluster_machine(request, tools::kAlignment));
+  body(machine);
+  soc::JobTimer timer(chip.config, request.cores);
+  return timer.front_end_cycles(timer.front_end(machine.take_job()));
+}
+
+}  // namespace leviosim
+
+namespace leviosim::tools {
+
+void add_workload(Workload workload) {
+  check(workload.begin || workload.source, "a workload says how a run of it begins");
+  vio::add_profile(workload);
+  include_own_code(digest_of_file("/proc/self/exe").sha256);
+  std::string name = workload.name;
+  workloads().emplace(std::move(name), std::move(workload));
+}
+
+std::unique_ptr<RunSource> make_source(const RunRequest& request) {
+  const auto it = workloads().find(request.profile);
+  if (it == workloads().end()) return std::make_unique<LiveSource>(request);
+  if (it->second.source) return it->second.source(request);
+  return std::make_unique<FrameByFrame>(it->second, request);
+}
+
+double value_of(const RunRequest& request, const vio::Parameter& parameter) {
+  if (!parameter.is_of_another()) return parameter.get(profile_of(request));
+  for (const vio::Assignment& a : request.workload)
+    if (a.parameter == &parameter) return a.value;
+  return parameter.initial;
+}
+
+double value_of(const RunRequest& request, std::string_view parameter) {
+  const vio::Parameter* const found = vio::find_parameter(parameter);
+  check(found != nullptr, "a parameter of this name");
+  return value_of(request, *found);
+}
+
+std::vector<vio::StageName> stages_of(const RunRequest& request) {
+  const vio::OtherProfile* const other = vio::other_profile(request.profile);
+  if (other == nullptr) return vio::stage_names(profile_of(request));
+  std::vector<vio::StageName> names;
+  for (const std::string& name : other->stages) names.push_back({name, "frame", false});
+  return names;
+}
+
+}  // namespace leviosim::tools

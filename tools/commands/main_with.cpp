@@ -1,0 +1,237 @@
+#include "tools/commands/main_with.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstddef>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <string_view>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "sim/base/error.h"
+
+#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/limit_not_met.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/report/text_table.h"
+#include "tools/commands/ablate_command.h"
+#include "tools/commands/benchmark_flights_command.h"
+#include "tools/commands/budget_command.h"
+#include "tools/commands/calibrate_command.h"
+#include "tools/commands/check_command.h"
+#include "tools/commands/compare_command.h"
+#include "tools/commands/demo_command.h"
+#include "tools/commands/eval_command.h"
+#include "tools/commands/explore_command.h"
+#include "tools/commands/flow_command.h"
+#include "tools/commands/microbench_command.h"
+#include "tools/commands/platforms_command.h"
+#include "tools/commands/replay_command.h"
+#include "tools/commands/report_command.h"
+#include "tools/commands/run_command.h"
+#include "tools/commands/sensitivity_command.h"
+#include "tools/commands/sweep_command.h"
+#include "tools/commands/synth_command.h"
+#include "tools/commands/trace_command.h"
+#include "tools/commands/tune_command.h"
+#include "tools/commands/validate_command.h"
+#include "tools/commands/whatif_command.h"
+#include "tools/commands/workload_command.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr int kLimitNotMet = 1;
+constexpr int kBadInput = 2;
+constexpr int kSignalled = 128;  // and its number; seen if the signal does not end the process
+
+int fail(const std::exception& error) {
+  print_error(error.what());
+  return kBadInput;
+}
+
+/// Takes none.
+int fail_without_memory() {
+  std::fputs("leviosim: out of memory\n", stderr);
+  return kBadInput;
+}
+
+/// Given back when memory ends. With the first, work goes on to where it may stop: destructors
+/// allocate, too, as those of JSON documents do, and may throw nothing. With the other, what was
+/// begun is unwound.
+std::array<std::atomic<char*>, 2> reserves{new char[std::size_t{4} << 20],
+                                           new char[std::size_t{4} << 20]};
+
+std::atomic<bool> is_over{false};  ///< what follows stops nowhere
+
+bool memory_ended() { return reserves[0] == nullptr; }
+
+/// Of operator new, which tries again when this returns. The request to stop is seen by whatever
+/// looks for a signal (sim/base/interruption.h).
+void end_memory() {
+  if (char* const first = reserves[0].exchange(nullptr)) {
+    delete[] first;
+    if (!is_over) ::kill(::getpid(), SIGTERM);
+    return;
+  }
+  delete[] reserves[1].exchange(nullptr);
+  throw std::bad_alloc();
+}
+
+/// So that the program does not end by its own signal.
+void withdraw_request() {
+  is_over = true;
+  sigset_t own;
+  sigemptyset(&own);
+  sigaddset(&own, SIGTERM);
+  constexpr timespec kAtOnce{};
+  if (memory_ended()) sigtimedwait(&own, nullptr, &kAtOnce);
+}
+
+/// Where nothing may be thrown. The next run removes what was staged.
+[[noreturn]] void end_terminated() {
+  try {
+    if (const std::exception_ptr failure = std::current_exception())
+      std::rethrow_exception(failure);
+  } catch (const std::bad_alloc&) {
+    std::_Exit(fail_without_memory());
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  std::abort();
+}
+
+/// What was printed may be refused only now.
+int end_after_report() {
+  try {
+    flush_results();
+    return kLimitNotMet;
+  } catch (const InputError& error) {
+    return fail(error);
+  } catch (const Interrupted& stop) {  // nobody reads it any more
+    return memory_ended() ? fail_without_memory() : kSignalled + stop.signal();
+  }
+}
+
+/// Of commands that find again what they finished.
+bool goes_on(const Words& words) {
+  constexpr std::array<std::string_view, 5> kCommands{"sweep", "ablate", "explore", "tune",
+                                                      "benchmark-flights"};
+  return !words.empty() &&
+         std::find(kCommands.begin(), kCommands.end(), words.front()) != kCommands.end();
+}
+
+/// Says what was kept, to whoever asked the program to stop.
+int end_interrupted(const Interrupted& stop, const Words& words) {
+  if (memory_ended()) return fail_without_memory();
+  if (stop.signal() == SIGINT || stop.signal() == SIGTERM)
+    print_error(goes_on(words)
+                    ? "interrupted: what was finished is kept; the same command goes on from there"
+                    : "interrupted: nothing unfinished was kept; the same command begins anew");
+  return kSignalled + stop.signal();
+}
+
+/// As results record them: none depends on how many are computed at a time.
+Words without_jobs(const Words& typed) {
+  Words words;
+  for (std::size_t i = 0; i < typed.size(); ++i)
+    if (typed[i] == "--jobs")
+      ++i;
+    else if (!typed[i].starts_with("--jobs="))
+      words.push_back(typed[i]);
+  return words;
+}
+
+int run_program(const Words& typed) {
+  const Words words = without_jobs(typed);
+  CLI::App app("Runs visual-inertial odometry on models of ultra-low-power multicore chips.",
+               "leviosim");
+  app.footer("leviosim help COMMAND: its options, with examples");
+  app.set_version_flag("--version", fmt::format("leviosim {}", version()));
+  try {
+    const int status = run_command_line(app,
+                                        {add_demo_command(app, words),
+                                         add_run_command(app, words),
+                                         add_synth_command(app),
+                                         add_platforms_command(app),
+                                         add_workload_command(app),
+                                         add_eval_command(app),
+                                         add_ablate_command(app, words),
+                                         add_explore_command(app, words),
+                                         add_benchmark_flights_command(app, words),
+                                         add_validate_command(app, words),
+                                         add_calibrate_command(app),
+                                         add_sensitivity_command(app),
+                                         add_microbench_command(app),
+                                         add_replay_command(app, words),
+                                         add_trace_command(app),
+                                         add_whatif_command(app, words),
+                                         add_tune_command(app, words),
+                                         add_sweep_command(app),
+                                         add_flow_command(app, words),
+                                         add_compare_command(app),
+                                         add_check_command(app),
+                                         add_budget_command(app),
+                                         add_report_command(app)},
+                                        typed);
+    flush_results();
+    if (!memory_ended()) throw_if_interrupted();
+    return status;
+  } catch (const InputError& error) {
+    return fail(error);
+  } catch (const LimitNotMet&) {
+    return end_after_report();
+  } catch (const Interrupted& stop) {
+    return end_interrupted(stop, words);
+  } catch (const std::bad_alloc&) {
+    return fail_without_memory();
+  } catch (const std::exception& error) {  // of a library or the system
+    return fail(error);
+  }
+}
+
+void add(std::vector<Workload> workloads) {
+  for (Workload& workload : workloads) add_workload(std::move(workload));
+}
+
+int begin(const Words& typed, std::vector<Workload> workloads) {
+  std::set_new_handler(end_memory);
+  std::set_terminate(end_terminated);
+  try {
+    add(std::move(workloads));
+  } catch (const InputError& error) {
+    return fail(error);
+  }
+  return run_program(typed);
+}
+
+}  // namespace
+}  // namespace leviosim::tools
+
+namespace leviosim {
+
+int main_with(int argc, char** argv, std::vector<Workload> workloads) {
+  const tools::DeferredInterrupts deferred;
+  std::signal(SIGXFSZ, SIG_IGN);  // writing fails then, as on a full disk
+  if (const auto width = tools::terminal_width()) tools::set_table_width(*width);
+  int status = 0;
+  try {
+    status = tools::begin(tools::Words(argv + 1, argv + argc), std::move(workloads));
+  } catch (const std::bad_alloc&) {  // while it was begun, or a message was made
+    status = tools::fail_without_memory();
+  }
+  tools::withdraw_request();
+  return status;
+}
+
+}  // namespace leviosim
