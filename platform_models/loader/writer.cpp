@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "platform_models/loader/loader.h"
+#include "platform_models/loader/new_platform.h"
 #include "platform_models/loader/override.h"
 #include "platform_models/loader/schema.h"
 #include "platform_models/loader/variants.h"
@@ -113,14 +113,17 @@ std::string line_of(const Record& record) {
 /// Writes nested sections: each line opens those that the record before was not in.
 class SectionWriter {
  public:
-  void add(const Record& record) {
+  /// @param before,after  a comment on a line of its own, and one behind the record; none if empty
+  void add(const Record& record, std::string_view before = {}, std::string_view after = {}) {
     const std::vector<std::string> parts = base::split(record.path, '.');
     const std::size_t depth = parts.size() - 1;
     std::size_t same = 0;
     while (same < depth && same < open_.size() && open_[same] == parts[same]) ++same;
     for (std::size_t level = same; level < depth; ++level)
       out_ += fmt::format("{:{}}{}:\n", "", 2 * level, parts[level]);
-    out_ += fmt::format("{:{}}{}: {}\n", "", 2 * depth, parts[depth], line_of(record));
+    if (!before.empty()) out_ += fmt::format("{:{}}# {}\n", "", 2 * depth, before);
+    out_ += fmt::format("{:{}}{}: {}{}{}\n", "", 2 * depth, parts[depth], line_of(record),
+                        after.empty() ? "" : "  # ", after);
     open_.assign(parts.begin(), parts.end() - 1);
   }
   const std::string& text() const { return out_; }
@@ -130,14 +133,96 @@ class SectionWriter {
   std::string out_;
 };
 
+std::string head_of(const std::string& name, const std::string& description,
+                    const ResolvedPlatform& platform) {
+  std::string out = fmt::format("name: {}\ndescription: {}\n\nsources:\n", in_quotes(name),
+                                in_quotes(description));
+  for (const auto& [key, meaning] : platform.sources)
+    out += fmt::format("  {}: {}\n", in_quotes(key), in_quotes(meaning));
+  return out;
+}
+
+/// A kind of dependence, and which parameters have it.
+struct DependenceRule : Dependence {
+  std::vector<std::string_view> units;  ///< of all quantities in them …
+  std::vector<std::string_view>
+      paths;  ///< … and of these, which are ends of paths or whole sections
+};
+
+/// Cycles of what lies behind a core's own memory pass at the clock of a bus or a memory; an energy
+/// is that of a cell at a voltage; and an access of a larger memory takes longer, and more energy.
+const std::vector<DependenceRule>& rules() {
+  static const std::vector<DependenceRule> kRules = {
+      {{"clock",
+        "clocks, and cycles that are the time of a memory or a bus with a clock of its own"},
+       {"MHz", "GHz", "kHz", "Hz"},
+       {"icache.shared_miss", "icache.miss", "dma.first_data", "dma.bytes_per_cycle", "ops.load_l2",
+        "ops.store_l2", "events.offload"}},
+      {{"voltage", "energies, leakage, and clocks that a supply allows"},
+       {"V", "mV", "J", "uJ", "nJ", "pJ", "fJ", "W", "mW", "uW", "nW"},
+       {"supply", "leakage_exponent"}},
+      {{"memory",
+        "sizes, and what an access takes in a memory of that size, number of banks and place"},
+       {"MiB", "KiB", "MB", "kB"},
+       {"l1.banks", "l1.stream_conflicts", "icache.shared_banks", "icache.shared_hit",
+        "icache.shared_miss", "icache.miss", "ops.load_l2", "ops.store_l2", "dma.first_data",
+        "energy.l1", "energy.l2", "l1_leakage", "l2_leakage", "external"}}};
+  return kRules;
+}
+
+/// "events.offload" is at the end of a path, or of the section that holds it.
+bool is_on(const std::string& path, std::string_view part) {
+  return ('.' + path + '.').find('.' + std::string(part) + '.') != std::string::npos;
+}
+
+std::string marks_text(const Record& record) {
+  std::string text;
+  for (const DependenceRule& rule : rules()) {
+    const auto has = [&](const auto& column) {
+      const std::vector<std::string_view> marks = marks_of(*column.second);
+      return std::find(marks.begin(), marks.end(), rule.mark) != marks.end();
+    };
+    if (std::any_of(record.columns.begin(), record.columns.end(), has))
+      text += fmt::format("{}({})", text.empty() ? "" : " ", rule.mark);
+  }
+  return text;
+}
+
 }  // namespace
+
+std::vector<Dependence> dependences() { return {rules().begin(), rules().end()}; }
+
+std::vector<std::string_view> marks_of(const Parameter& parameter) {
+  std::vector<std::string_view> marks;
+  for (const DependenceRule& rule : rules())
+    if (std::find(rule.units.begin(), rule.units.end(), parameter.unit) != rule.units.end() ||
+        std::any_of(rule.paths.begin(), rule.paths.end(),
+                    [&](std::string_view part) { return is_on(parameter.path, part); }))
+      marks.push_back(rule.mark);
+  return marks;
+}
+
+std::string new_platform(const std::string& name, const ResolvedPlatform& from,
+                         const std::string& from_name) {
+  const Schema schema;
+  std::string out = fmt::format(
+      "# {0}, begun with everything of {1}. Change what differs: a number takes its unit, a source "
+      "and a\n"
+      "# confidence with it. Of a chip that differs in a few numbers only, a file with `extends: "
+      "{1}` and these\n"
+      "# numbers is enough. Behind a number that was taken over stands what it depends on:\n",
+      name, from_name);
+  for (const Dependence& d : dependences()) out += fmt::format("#   ({}) {}\n", d.mark, d.meaning);
+  out += head_of(name, fmt::format("begun with {}", from.name), from);
+  SectionWriter sections;
+  for (const Record& record : records_of(schema, from))
+    sections.add(record, record.columns.front().first->description, marks_text(record));
+  return out + "\n" + sections.text();
+}
 
 std::string to_yaml(const ResolvedPlatform& platform) {
   const Schema schema;
-  std::string out = fmt::format("name: {}\ndescription: {}\n\nsources:\n", in_quotes(platform.name),
-                                in_quotes(platform.description));
-  for (const auto& [key, meaning] : platform.sources)
-    out += fmt::format("  {}: {}\n", in_quotes(key), in_quotes(meaning));
+  const std::string out = head_of(platform.name, platform.description, platform);
   SectionWriter sections;
   for (const Record& record : records_of(schema, platform)) sections.add(record);
   return out + "\n" + sections.text();

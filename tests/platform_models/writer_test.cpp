@@ -1,4 +1,5 @@
 // The resolved platform as a file: it loads to the same configuration.
+#include "platform_models/loader/new_platform.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {
@@ -30,6 +31,41 @@ TEST(Writer, Gap9ReadsBackInFull) {
     EXPECT_EQ(a.range->low, b.range->low) << a.path;
     EXPECT_EQ(a.range->high, b.range->high) << a.path;
   }
+}
+
+TEST(Writer, ANewPlatformBeginsWithAllNumbersOfAnother) {
+  for (const std::string& name : platform_names()) {
+    const ResolvedPlatform before = resolve_platform(name);
+    const std::string text = new_platform("mychip", before, name);
+    const ResolvedPlatform after = resolve_platform_text("mychip.yaml", text);
+    EXPECT_EQ(after.name, "mychip");
+    EXPECT_EQ(numbers_of(after.config), numbers_of(before.config)) << name;
+  }
+}
+
+/// The line of a key whose record has no other columns.
+std::string line_of_key(const std::string& text, const std::string& key) {
+  const std::size_t at = text.find('\n' + key);
+  EXPECT_NE(at, std::string::npos) << key;
+  return text.substr(at + 1, text.find('\n', at + 1) - at - 1);
+}
+
+TEST(Writer, ANewPlatformMarksWhatDependsOnClockVoltageAndMemory) {
+  const std::string text = new_platform("mychip", resolve_platform("gap9"), "gap9");
+  const auto ends = [&](const std::string& key, const std::string& marks) {
+    EXPECT_TRUE(line_of_key(text, key).ends_with(marks)) << line_of_key(text, key);
+  };
+  ends("  clock: ", "}  # (clock)");
+  ends("  workers: ", "}");
+  ends("    shared_miss: ", "}  # (clock) (memory)");
+  ends("    load_l2: ", "}  # (clock) (memory)");
+  ends("    f32_add: ", "}");
+  ends("    instruction: ", "}  # (voltage)");
+  ends("    access: ", "}  # (voltage) (memory)");
+  ends("    banks: ", "}  # (memory)");
+  ends("  core: ", "}");  // kilogates of the section area
+  for (const Dependence& d : dependences())
+    EXPECT_NE(text.find("#   (" + std::string(d.mark) + ") "), std::string::npos) << d.mark;
 }
 
 /// Traces that were recorded before the key came into being have a platform without it.

@@ -11,7 +11,7 @@
 #include <memory>
 #include <optional>
 
-#include "platform_models/loader/loader.h"
+#include "platform_models/loader/new_platform.h"
 #include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
@@ -36,12 +36,13 @@ struct PlatformsOptions {
   RunOptions run;  ///< of feasibility and stages; the overrides are those of all actions
   std::string jobs;
   std::string svg;
+  std::string from = "gap9";  ///< of a new chip
 };
 
 constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
 /// Options that some actions take.
-constexpr std::array kOfSome{"--data", "--frames", "--profile", "--seed", "--csv",
-                             "--svg",  "--force",  "--quiet",   "--jobs"};
+constexpr std::array kOfSome{"--from", "--data", "--frames", "--profile", "--seed",
+                             "--csv",  "--svg",  "--force",  "--quiet",   "--jobs"};
 
 void list(const PlatformsOptions& options) {
   const auto lines = [] {
@@ -287,6 +288,30 @@ void show_differences(const PlatformsOptions& options) {
        platform::resolve_platform(options.names[1], options.run.overrides), options.run.json);
 }
 
+/// A file to begin a chip with, in this folder or where the name says.
+void begin_new(const PlatformsOptions& options) {
+  const std::string& wanted = options.names[0];
+  const std::filesystem::path file = wanted.ends_with(".yaml") ? wanted : wanted + ".yaml";
+  if (const auto known = platform::platform_names();
+      std::find(known.begin(), known.end(), file.stem()) != known.end())
+    throw InputError(
+        fmt::format("platforms new: '{}' is a chip that is built in; expected another name",
+                    file.stem().string()));
+  outputs::OutputRequest request = out_request(options.run, "NAME");
+  request.path = file.string();
+  const platform::ResolvedPlatform from =
+      platform::resolve_platform(options.from, options.run.overrides);
+  request.inputs.emplace_back(options.from);
+  std::optional<outputs::OutputFile> out = claimed_file(request);
+  const std::string text = platform::new_platform(file.stem().string(), from, options.from);
+  publish({{out, text, "platform"}}, printout(
+                                         options.run.json, [] { return std::string(); },
+                                         [&] {
+                                           return table_document("platform " + file.stem().string(),
+                                                                 csv_of(from.parameters));
+                                         }));
+}
+
 struct Action {
   std::string name;
   std::size_t names;  ///< of platforms that it takes
@@ -295,9 +320,10 @@ struct Action {
   void (*run)(const PlatformsOptions&);
 };
 
-const std::array<Action, 7> kActions = {{
+const std::array<Action, 8> kActions = {{
     {"list", 0, "no platform", {}, list},
     {"show", 1, "one platform", {}, show},
+    {"new", 1, "a name for the new chip", {"--from", "--force"}, begin_new},
     {"diff", 2, "two platforms", {}, show_differences},
     {"area", 1, "one platform", {}, area},
     {"feasibility",
@@ -347,10 +373,10 @@ Command add_platforms_command(CLI::App& app) {
   const auto options = std::make_shared<PlatformsOptions>();
   RunOptions& run_options = options->run;
   run_options.data = "synthetic";
-  command->add_option(
-      "ACTION", options->action,
-      "list (the default), show NAME, diff NAME NAME, area NAME, feasibility or stages [NAME ...], "
-      "systems");
+  command->add_option("ACTION", options->action,
+                      "list (the default), show NAME, new NAME, diff NAME NAME, area NAME, "
+                      "feasibility or stages [NAME ...], "
+                      "systems");
   command->add_option("NAME", options->names, "chips: names or files");
   command
       ->add_option("-p,--set", run_options.overrides,
@@ -358,6 +384,8 @@ Command add_platforms_command(CLI::App& app) {
       ->type_name("PATH=VALUE")
       ->take_all()
       ->allow_extra_args(false);
+  command->add_option("--from", options->from, "new: the chip that its file begins with [gap9]")
+      ->type_name("NAME|FILE");
   const char* const group = "With feasibility, stages and systems";
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     command->add_option(name, value, help)->type_name(type)->group(group);
@@ -373,13 +401,14 @@ Command add_platforms_command(CLI::App& app) {
   add_jobs_option(*command, options->jobs, "chip");
   command->get_option("--jobs")->group(group);
   command->add_flag("--quiet", run_options.quiet, "no progress")->group(group);
-  add_examples(*command, {"leviosim platforms", "leviosim platforms show gap9 -p cluster.workers=4",
-                          "leviosim platforms diff gap9 gap8",
-                          "leviosim platforms area gap9 -p cluster.fpu.units=8",
-                          "leviosim platforms feasibility gap9 cortex-m7 --data flight "
-                          "--csv chips.csv",
-                          "leviosim platforms stages gap9 gap9-eigen --data flight",
-                          "leviosim platforms systems --data flight --svg systems.svg"});
+  add_examples(*command,
+               {"leviosim platforms", "leviosim platforms show gap9 -p cluster.workers=4",
+                "leviosim platforms new mychip --from gap9", "leviosim platforms diff gap9 gap8",
+                "leviosim platforms area gap9 -p cluster.fpu.units=8",
+                "leviosim platforms feasibility gap9 cortex-m7 --data flight "
+                "--csv chips.csv",
+                "leviosim platforms stages gap9 gap9-eigen --data flight",
+                "leviosim platforms systems --data flight --svg systems.svg"});
   add_json_option(*command, run_options.json);
   return {command, [=] { run(*command, *options); }, {{"--out", "--csv"}}};
 }
