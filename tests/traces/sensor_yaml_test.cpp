@@ -54,8 +54,25 @@ TEST(SensorYaml, WhatIsWrittenReadsBackExactly) {
 TEST(SensorYaml, UnknownModelsListTheSupportedOnes) {
   expect_broken_camera("camera_model: pinhole", "camera_model: omni",
                        {"cam0/sensor.yaml line 15, key 'camera_model'", "'omni'", "pinhole"});
-  expect_broken_camera("radial-tangential", "equidistant",
-                       {"line 17, key 'distortion_model'", "'equidistant'", "radial-tangential"});
+  expect_broken_camera(
+      "radial-tangential", "fov",
+      {"line 17, key 'distortion_model'", "'fov'", "radial-tangential, equidistant"});
+}
+
+TEST(SensorYaml, AnEquidistantLensReadsBack) {
+  const testing::TempFolder folder;
+  CameraModel camera = euroc_cam0();
+  camera.lens = Lens::equidistant;
+  camera.p1 = camera.p2 = 0;
+  camera.k3 = -0.002;
+  camera.k4 = 0.0002;
+  outputs::write_file_atomically(folder / "cam.yaml", format_camera_yaml(camera, "c"));
+  const CameraModel read = read_camera_model(folder / "cam.yaml");
+  EXPECT_EQ(read.lens, Lens::equidistant);
+  EXPECT_EQ(read.k1, camera.k1);
+  EXPECT_EQ(read.k3, camera.k3);
+  EXPECT_EQ(read.k4, camera.k4);
+  EXPECT_EQ(read.p1, 0);
 }
 
 TEST(SensorYaml, MissingKeyNamesTheNearestOne) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double kQuaternionTolerance = 1e-3;
 constexpr const char* kTruth = "state_groundtruth_estimate0";
+constexpr const char* kMocap = "mocap0";
 constexpr double kGapSlack = 1.01;  // recorded stamps jitter by a few hundred nanoseconds
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -171,10 +173,14 @@ std::vector<ImuSample> read_imu_csv(const fs::path& data_csv) {
 }
 
 std::vector<GroundTruthPose> read_ground_truth_csv(const fs::path& data_csv) {
-  base::CsvReader csv(data_csv, base::Separator::comma,
-                      {"timestamp", "p_RS_R_x", "p_RS_R_y", "p_RS_R_z", "q_RS_w", "q_RS_x",
-                       "q_RS_y", "q_RS_z", "v_RS_R_x", "v_RS_R_y", "v_RS_R_z", "b_w_RS_S_x",
-                       "b_w_RS_S_y", "b_w_RS_S_z", "b_a_RS_S_x", "b_a_RS_S_y", "b_a_RS_S_z"});
+  std::vector<std::string> names{
+      "timestamp",  "p_RS_R_x",   "p_RS_R_y",   "p_RS_R_z",   "q_RS_w",    "q_RS_x",
+      "q_RS_y",     "q_RS_z",     "v_RS_R_x",   "v_RS_R_y",   "v_RS_R_z",  "b_w_RS_S_x",
+      "b_w_RS_S_y", "b_w_RS_S_z", "b_a_RS_S_x", "b_a_RS_S_y", "b_a_RS_S_z"};
+  constexpr std::size_t kOfPose = 8;
+  const bool only_poses = base::first_row(data_csv).columns == kOfPose;
+  if (only_poses) names.resize(kOfPose);
+  base::CsvReader csv(data_csv, base::Separator::comma, std::move(names));
   base::RisingStamps stamps;
   std::vector<GroundTruthPose> poses;
   while (const base::CsvRow* row = csv.next()) {
@@ -183,9 +189,11 @@ std::vector<GroundTruthPose> read_ground_truth_csv(const fs::path& data_csv) {
     stamps.add(*row, pose.t_ns);
     pose.T_world_body =
         Eigen::Translation3d(vector_at(*row, 1, kPosition)) * quaternion_at(*row, 4);
-    pose.velocity = vector_at(*row, 8, kVelocity);
-    pose.bias_gyro = vector_at(*row, 11, kGyro);
-    pose.bias_accel = vector_at(*row, 14, kAccel);
+    if (!only_poses) {
+      pose.velocity = vector_at(*row, 8, kVelocity);
+      pose.bias_gyro = vector_at(*row, 11, kGyro);
+      pose.bias_accel = vector_at(*row, 14, kAccel);
+    }
     poses.push_back(pose);
   }
   require_rows(poses.size(), data_csv);
@@ -207,6 +215,8 @@ Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
   data.imu = read_imu_csv(imu_csv);
   if (base::exists(mav0 / kTruth))
     data.ground_truth = read_ground_truth_csv(require_file(mav0, kTruthCsv));
+  else if (base::exists(mav0 / kMocap))
+    data.ground_truth = read_ground_truth_csv(require_file(mav0, kMocapCsv));
 
   if (options.frames) select_frames(data.frames, *options.frames, frames_csv);
   require_images(data.frames, frames_csv);

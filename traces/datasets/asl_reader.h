@@ -1,6 +1,6 @@
 // Reader of ASL/EuRoC folders (Burri et al., "The EuRoC micro aerial vehicle datasets", 2016):
 //   mav0/cam0/{sensor.yaml,data.csv,data/*.png}, mav0/imu0/{sensor.yaml,data.csv} and, optionally,
-//   mav0/state_groundtruth_estimate0/data.csv
+//   mav0/state_groundtruth_estimate0/data.csv, or, as TUM-VI has it, mav0/mocap0/data.csv
 // Everything but the pixels is read and checked at once, so that a run does not fail halfway for a
 // reason that was visible at its start. Left out: cam1, the Leica and Vicon streams, colour,
 // rosbag.
@@ -28,6 +28,8 @@ struct OpenOptions {
 
 /// Where ground truth lies in a mav0 folder, if there is any.
 constexpr const char* kTruthCsv = "state_groundtruth_estimate0/data.csv";
+/// The same in folders of TUM-VI: poses without velocity and biases.
+constexpr const char* kMocapCsv = "mocap0/data.csv";
 
 /// Opens `folder`, which is a mav0 folder or contains one. Throws InputError (with file, line,
 /// column or key) for anything missing, broken, out of order, or not covered by the IMU; that the
@@ -55,6 +57,7 @@ MotionRecord open_motion(const std::filesystem::path& folder);
 /// there is no row.
 std::vector<FrameRef> read_frames_csv(const std::filesystem::path& data_csv);
 std::vector<ImuSample> read_imu_csv(const std::filesystem::path& data_csv);
+/// With 17 columns, or the first 8 of them: the rest is then 0.
 std::vector<GroundTruthPose> read_ground_truth_csv(const std::filesystem::path& data_csv);
 
 }  // namespace leviosim::traces

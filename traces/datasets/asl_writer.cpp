@@ -31,12 +31,14 @@ void append(std::string& out, const Eigen::Vector3d& vector) {
 }  // namespace
 
 std::string format_camera_yaml(const CameraModel& camera, const std::string& comment) {
+  const bool radial = camera.lens == Lens::radial_tangential;
   std::string out = fmt::format(
       "sensor_type: camera\ncomment: {}\n\n# Camera frame to body frame.\n{}\nrate_hz: {}\n"
       "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: [{}, {}, {}, {}] # fu, fv, cu, cv\n"
-      "distortion_model: radial-tangential\ndistortion_coefficients: [{}, {}, {}, {}]\n",
+      "distortion_model: {}\ndistortion_coefficients: [{}, {}, {}, {}]\n",
       comment, format_extrinsics(camera.T_body_camera), camera.rate_hz, camera.width, camera.height,
-      camera.fx, camera.fy, camera.cx, camera.cy, camera.k1, camera.k2, camera.p1, camera.p2);
+      camera.fx, camera.fy, camera.cx, camera.cy, radial ? "radial-tangential" : "equidistant",
+      camera.k1, camera.k2, radial ? camera.p1 : camera.k3, radial ? camera.p2 : camera.k4);
   if (camera.prepared)
     out += "prepared: true # undistorted and decimated: leviosim uses the images as they are\n";
   return out;

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 #include "sim/base/error.h"
 
@@ -25,9 +27,50 @@ Eigen::Matrix2d distortion_jacobian(const CameraModel& camera, const Eigen::Vect
   return jacobian;
 }
 
+constexpr int kMaxSteps = 50;
+constexpr double kTolerance = 1e-12;
+
+/// θd / θ as a polynomial in θ², and θd of the equidistant lens.
+double bent_angle(const CameraModel& c, double theta) {
+  const double t = theta * theta;
+  return theta * (1 + t * (c.k1 + t * (c.k2 + t * (c.k3 + t * c.k4))));
+}
+double bent_angle_slope(const CameraModel& c, double theta) {
+  const double t = theta * theta;
+  return 1 + t * (3 * c.k1 + t * (5 * c.k2 + t * (7 * c.k3 + t * 9 * c.k4)));
+}
+
+[[noreturn]] void fail_to_invert(const CameraModel& c, const Eigen::Vector2d& distorted) {
+  const bool radial = c.lens == Lens::radial_tangential;
+  throw InputError(fmt::format(
+      "the distortion coefficients [{}, {}, {}, {}] cannot be inverted at the image "
+      "point ({}, {}) (normalised coordinates)",
+      c.k1, c.k2, radial ? c.p1 : c.k3, radial ? c.p2 : c.k4, distorted.x(), distorted.y()));
+}
+
+Eigen::Vector2d undo_equidistant(const CameraModel& c, const Eigen::Vector2d& distorted) {
+  constexpr double kWidest = 1.57;  // just below 90 degrees
+  const double wanted = distorted.norm();
+  if (wanted == 0) return distorted;
+  double theta = std::min(wanted, kWidest);
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const double error = bent_angle(c, theta) - wanted;
+    const double slope = bent_angle_slope(c, theta);
+    if (slope <= 0 || theta < 0 || theta > kWidest) break;
+    if (std::abs(error) < kTolerance) return distorted * (std::tan(theta) / wanted);
+    theta -= error / slope;
+  }
+  fail_to_invert(c, distorted);
+}
+
 }  // namespace
 
 Eigen::Vector2d CameraModel::distort(const Eigen::Vector2d& normalized) const {
+  if (lens == Lens::equidistant) {
+    const double r = normalized.norm();
+    return r == 0 ? normalized
+                  : Eigen::Vector2d(normalized * (bent_angle(*this, std::atan(r)) / r));
+  }
   const double x = normalized.x();
   const double y = normalized.y();
   const double r2 = x * x + y * y;
@@ -37,8 +80,7 @@ Eigen::Vector2d CameraModel::distort(const Eigen::Vector2d& normalized) const {
 }
 
 Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& distorted) const {
-  constexpr int kMaxSteps = 50;
-  constexpr double kTolerance = 1e-12;
+  if (lens == Lens::equidistant) return undo_equidistant(*this, distorted);
   Eigen::Vector2d point = distorted;
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Vector2d error = distort(point) - distorted;
@@ -51,10 +93,7 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& distorted) const {
     }
     point -= jacobian.inverse() * error;
   }
-  throw InputError(
-      fmt::format("the distortion coefficients [{}, {}, {}, {}] cannot be inverted at the image "
-                  "point ({}, {}) (normalised coordinates)",
-                  k1, k2, p1, p2, distorted.x(), distorted.y()));
+  fail_to_invert(*this, distorted);
 }
 
 Eigen::Vector2d CameraModel::project(const Eigen::Vector3d& point_camera) const {

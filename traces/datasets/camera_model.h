@@ -3,17 +3,24 @@
 //   xd = x d + 2 p1 x y + p2 (r² + 2 x²),  yd = y d + p1 (r² + 2 y²) + 2 p2 x y
 //   u = fx xd + cx,  v = fy yd + cy
 // (Brown 1966, in the order of coefficients k1, k2, p1, p2 that the ASL format shares with OpenCV).
-// Pixel centres have whole-number coordinates. Left out: k3 and higher terms, fish-eye and
-// rectified models, rolling shutter.
+// and the fish-eye lens of TUM-VI, `equidistant` (Kannala and Brandt 2006, as Kalibr and OpenCV's
+// fisheye have it):
+//   θ = atan r,  θd = θ (1 + k1 θ² + k2 θ⁴ + k3 θ⁶ + k4 θ⁸),  xd = x θd / r,  yd = y θd / r
+// Pixel centres have whole-number coordinates. Left out: k3 and higher terms of the first, what a
+// fish-eye sees at 90 degrees and beyond, rectified models, rolling shutter.
 #pragma once
 
 #include <Eigen/Geometry>
 
 namespace leviosim::traces {
 
+enum class Lens { radial_tangential, equidistant };
+
 struct CameraModel {
   double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px] of the full-resolution image
+  Lens lens = Lens::radial_tangential;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0;  ///< distortion coefficients
+  double k3 = 0, k4 = 0;                  ///< of the equidistant lens, which has no p1 and p2
   int width = 0, height = 0;              ///< [px]
   /// Camera frame (x right, y down, z forward) to body frame: `T_BS` of sensor.yaml [m].
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
@@ -25,7 +32,8 @@ struct CameraModel {
   Eigen::Vector2d distort(const Eigen::Vector2d& normalized) const;
 
   /// Undoes distort() by Newton's method to 1e-12; exact within the image of EuRoC's lens. Throws
-  /// InputError if there is no solution before the bend of the distortion polynomial.
+  /// InputError if there is no solution before the bend of the distortion polynomial, or if it lies
+  /// at 90 degrees or beyond.
   Eigen::Vector2d undistort(const Eigen::Vector2d& distorted) const;
 
   /// The pixel that sees a point of the camera frame with z > 0.

@@ -99,7 +99,8 @@ CameraModel ImagePreparation::prepared_camera() const {
   camera.fy = intrinsics_.fy;
   camera.cx = intrinsics_.cx;
   camera.cy = intrinsics_.cy;
-  camera.k1 = camera.k2 = camera.p1 = camera.p2 = 0;
+  camera.lens = Lens::radial_tangential;
+  camera.k1 = camera.k2 = camera.p1 = camera.p2 = camera.k3 = camera.k4 = 0;
   camera.width = intrinsics_.width;
   camera.height = intrinsics_.height;
   camera.prepared = true;

@@ -1,8 +1,10 @@
 #include "traces/datasets/sensor_yaml.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -55,21 +57,28 @@ int read_pixels(const YamlMap& sensor, double value) {
   return static_cast<int>(value);
 }
 
-void require_model(const YamlMap& sensor, const std::string& key, const std::string& supported) {
+/// A model by its name in sensor.yaml. @returns its index in `supported`
+std::size_t read_model(const YamlMap& sensor, const std::string& key,
+                       const std::vector<std::string>& supported) {
   const std::string found = sensor.text(key);
-  if (found != supported)
-    sensor.fail(key, fmt::format("'{}' is not supported; supported: {}", found, supported));
+  const auto it = std::find(supported.begin(), supported.end(), found);
+  if (it == supported.end())
+    sensor.fail(key, fmt::format("'{}' is not supported; supported: {}", found,
+                                 fmt::join(supported, ", ")));
+  return static_cast<std::size_t>(it - supported.begin());
 }
 
 }  // namespace
 
 CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
   const YamlMap sensor = YamlMap::load(sensor_yaml);
-  require_model(sensor, "camera_model", "pinhole");
-  require_model(sensor, "distortion_model", "radial-tangential");
+  read_model(sensor, "camera_model", {"pinhole"});
+  const std::size_t model =
+      read_model(sensor, "distortion_model", {"radial-tangential", "equidistant"});
   const auto resolution = sensor.numbers("resolution", 2, "width, height");
   const auto intrinsics = sensor.numbers("intrinsics", 4, "fu, fv, cu, cv");
-  const auto distortion = sensor.numbers("distortion_coefficients", 4, "k1, k2, p1, p2");
+  const auto distortion = sensor.numbers("distortion_coefficients", 4,
+                                         model == 0 ? "k1, k2, p1, p2" : "k1, k2, k3, k4");
   if (intrinsics[0] <= 0 || intrinsics[1] <= 0)
     sensor.fail("intrinsics", "the focal lengths fu, fv must be above 0");
   require_within(sensor, "intrinsics", intrinsics, kMostFocalPixels);
@@ -82,8 +91,9 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
   camera.cy = intrinsics[3];
   camera.k1 = distortion[0];
   camera.k2 = distortion[1];
-  camera.p1 = distortion[2];
-  camera.p2 = distortion[3];
+  camera.lens = model == 0 ? Lens::radial_tangential : Lens::equidistant;
+  (model == 0 ? camera.p1 : camera.k3) = distortion[2];
+  (model == 0 ? camera.p2 : camera.k4) = distortion[3];
   camera.width = read_pixels(sensor, resolution[0]);
   camera.height = read_pixels(sensor, resolution[1]);
   if (static_cast<std::int64_t>(camera.width) * camera.height > kMostPixels)

@@ -14,8 +14,8 @@ namespace leviosim::traces {
 /// of which a picture and the tables that undistort it take 120 MB.
 constexpr int kMostPixels = 1 << 24;
 
-/// Reads cam0/sensor.yaml. Supported: camera_model pinhole, distortion_model radial-tangential.
-/// The optional key `prepared: true` is ours: CameraModel::prepared.
+/// Reads cam0/sensor.yaml. Supported: camera_model pinhole, distortion_model radial-tangential and
+/// equidistant. The optional key `prepared: true` is ours: CameraModel::prepared.
 CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
 
 /// Reads imu0/sensor.yaml. Its T_BS must be the identity: the body frame is the IMU frame.

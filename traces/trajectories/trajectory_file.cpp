@@ -9,6 +9,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "traces/datasets/asl_reader.h"
 #include "traces/trajectories/kitti.h"
 
 namespace leviosim::traces {
@@ -31,7 +32,6 @@ constexpr std::array<FormatRow, 3> kFormats{{
 }};
 
 constexpr const char* kRunTrajectory = "trajectory.tum";
-constexpr const char* kAslTruth = "state_groundtruth_estimate0/data.csv";
 
 Trajectory numbered(const std::vector<Eigen::Isometry3d>& poses) {
   Trajectory trajectory;
@@ -80,6 +80,9 @@ TrajectoryFormat detect_format(const fs::path& file) {
   const base::FirstRow first = base::first_row(file);
   for (const FormatRow& row : kFormats)
     if (row.separator == first.separator && row.columns == first.columns) return row.format;
+  constexpr std::size_t kPoseOnly = 8;  // as TUM-VI has them
+  if (first.separator == base::Separator::comma && first.columns == kPoseOnly)
+    return TrajectoryFormat::euroc;
   throw InputError(fmt::format(
       "{}: {} columns separated by {}; expected 8 (TUM) or 12 (KITTI) separated by blanks, or 17 "
       "(EuRoC) by commas",
@@ -92,15 +95,15 @@ fs::path find_trajectory(const fs::path& path) {
     throw InputError(fmt::format("{}: no such file or folder", path.string()));
   if (!base::is_folder(path)) return path;
   std::vector<fs::path> found;
-  for (const fs::path& candidate :
-       {path / kRunTrajectory, path / "mav0" / kAslTruth, path / kAslTruth})
+  for (const fs::path& candidate : {path / kRunTrajectory, path / "mav0" / kTruthCsv,
+                                    path / kTruthCsv, path / "mav0" / kMocapCsv, path / kMocapCsv})
     if (base::is_file(candidate)) found.push_back(candidate);
   if (found.size() == 1) return found.front();
   if (found.empty())
     throw InputError(
         fmt::format("{}: holds no trajectory; expected a run folder with {}, or an ASL folder with "
                     "mav0/{}",
-                    path.string(), kRunTrajectory, kAslTruth));
+                    path.string(), kRunTrajectory, kTruthCsv));
   throw InputError(fmt::format("{}: holds {} and {}; name the file that is meant", path.string(),
                                found[0].string(), found[1].string()));
 }

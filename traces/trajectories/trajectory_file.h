@@ -13,7 +13,7 @@ namespace leviosim::traces {
 
 enum class TrajectoryFormat {
   tum,    ///< "t x y z qx qy qz qw", t in seconds
-  euroc,  ///< the 17 columns of state_groundtruth_estimate0/data.csv
+  euroc,  ///< the 17 columns of state_groundtruth_estimate0/data.csv, or the first 8 of them
   kitti,  ///< 12 numbers, no time stamp
 };
 
