@@ -22,6 +22,7 @@ tests=(
   parallel                                                    # an example of sweeps
   chromium                                                    # pages (120 MB, half a minute)
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
+  python3-dev pybind11-dev python3-numpy                      # the Python module (preset python)
 )
 compilers=(clang libclang-rt-14-dev)  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh)
 case ${1:-program} in

@@ -1,0 +1,177 @@
+"""The Python module gives what the command gives: the same files, the same refusals. Run by ctest with the
+program and the folder of the module; where the module was not built, the tests are skipped (exit status 77)."""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+PROGRAM, MODULE, EXAMPLES = sys.argv[1:4]
+if not os.path.isdir(os.path.join(MODULE, "leviosim")):
+    print(f"skipped: there is no module in {MODULE}; tools/build.sh python leviosim_python builds it")
+    sys.exit(77)
+sys.path.insert(0, MODULE)
+import numpy as np  # noqa: E402
+
+import leviosim  # noqa: E402
+
+FOLDER = tempfile.TemporaryDirectory()
+os.environ["XDG_CACHE_HOME"] = os.path.join(FOLDER.name, "cache")
+DATA = os.path.join(FOLDER.name, "flight")
+
+
+def command(*words):
+    return subprocess.run([PROGRAM, *words], cwd=FOLDER.name, capture_output=True, text=True)
+
+
+def setUpModule():
+    assert command("synth", "--duration", "2", "--out", DATA).returncode == 0
+
+
+def files_of(folder):
+    found = {}
+    for name in os.listdir(folder):
+        with open(os.path.join(folder, name), "rb") as file:
+            found[name] = file.read()
+    found.pop(".leviosim-files", None)
+    found.pop("manifest.json")  # names the command line and the host
+    return found
+
+
+class Module(unittest.TestCase):
+    def assert_same_files(self, run, folder):
+        own = os.path.join(FOLDER.name, "own-" + os.path.basename(folder))
+        run.write(own)
+        expected, found = files_of(folder), files_of(own)
+        self.assertEqual(sorted(expected), sorted(found))
+        for name, content in expected.items():
+            if name != "work.trace":  # whose header names the program that wrote it
+                self.assertEqual(content, found[name], name)
+
+    def test_a_run_and_its_replay_leave_the_files_of_the_commands(self):
+        chip = leviosim.Platform("gap9", {"cluster.fpu.units": 2})
+        run = leviosim.run(chip, data=DATA, frames="0:12", record=True)
+        folder = os.path.join(FOLDER.name, "run")
+        done = command("run", "-p", "cluster.fpu.units=2", "--data", DATA, "--frames", "0:12", "--record", "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same_files(run, folder)
+        slow = {"cluster.fpu.units": 1}
+        again = os.path.join(FOLDER.name, "replay")
+        done = command("replay", folder, "-p", "cluster.fpu.units=1", "--out", again)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same_files(leviosim.replay(folder, set=slow), again)
+        self.assertEqual(run.replay(set=slow)["latency.all.p50"], leviosim.replay(folder, set=slow)["latency.all.p50"])
+
+    def test_a_native_run_leaves_the_files_of_the_command(self):
+        folder = os.path.join(FOLDER.name, "native")
+        done = command("run", "--native", "--profile", "next", "-p", "workload.window=6", "--data", DATA, "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same_files(leviosim.run(data=DATA, profile="next", set={"workload.window": 6}), folder)
+
+    def test_whatif_is_the_table_of_the_command(self):
+        run = leviosim.run(leviosim.Platform("gap9"), data=DATA, frames="0:8", record=True)
+        table = run.whatif("cluster.fpu.units=1,8")
+        self.assertEqual(list(table["variant"]), ["as it is", "cluster.fpu.units=1", "cluster.fpu.units=8"])
+        self.assertGreater(table["frame_mean_ms"][1], table["frame_mean_ms"][0])
+
+    def test_tables_are_arrays_and_statistics_say_what_they_are(self):
+        run = leviosim.run(leviosim.Platform("gap9"), data=DATA, frames="0:8")
+        frames = run.table("frames")
+        self.assertEqual(frames["frame"].dtype, np.int64)
+        self.assertEqual(list(frames["frame"]), list(range(8)))
+        self.assertEqual(frames["source"].dtype.kind, "U")
+        t, position, attitude = run.trajectory
+        self.assertEqual((t.shape, position.shape, attitude.shape), ((8,), (8, 3), (8, 4)))
+        self.assertTrue(np.allclose(np.linalg.norm(attitude, axis=1), 1))
+        self.assertEqual(run.statistics["frames.count"].value, 8)
+        self.assertTrue(all(s.description for s in run.statistics.values()))
+
+    def test_platforms_are_read_and_changed(self):
+        gap9 = leviosim.Platform("gap9")
+        self.assertIn("gap9", leviosim.platforms())
+        self.assertEqual(gap9["cluster.workers"], 8)
+        self.assertEqual(gap9.with_({"cluster.workers": 4})["cluster.workers"], 4)
+        self.assertEqual(gap9.parameters()["cluster.clock"]["unit"], "MHz")
+        self.assertGreater(len(gap9.area()), 2)
+        shown = command("platforms", "show", "gap9").stdout
+        self.assertEqual(gap9.yaml(), shown)
+        self.assertIn("next", leviosim.profiles())
+        window = [p for p in leviosim.workload_parameters("next") if p["name"] == "workload.window"]
+        self.assertEqual(window[0]["value"], "12")
+
+    def test_evaluation_is_that_of_the_command(self):
+        run = leviosim.run(data=DATA)
+        folder = os.path.join(FOLDER.name, "evaluated")
+        run.write(folder)
+        found = leviosim.evaluate(folder, DATA, relative=[])
+        self.assertEqual(found["accuracy.ate.rmse"].value, run["accuracy.ate.rmse"])
+
+    def test_bad_input_is_refused_with_the_line_of_the_command(self):
+        def refusal(act):
+            with self.assertRaises(leviosim.InputError) as caught:
+                act()
+            return str(caught.exception)
+
+        for words, act in (
+            (["--platform", "gap99"], lambda: leviosim.Platform("gap99")),
+            (["-p", "cluster.fpus=1"], lambda: leviosim.Platform("gap9", {"cluster.fpus": 1})),
+            (["--profile", "best"], lambda: leviosim.run(leviosim.Platform("gap9"), data=DATA, profile="best")),
+            (["--frames", "9:3"], lambda: leviosim.run(leviosim.Platform("gap9"), data=DATA, frames="9:3")),
+        ):
+            refused = command("run", "--data", DATA, "--out", "refused", *words)
+            self.assertEqual(refused.returncode, 2)
+            self.assertEqual(refused.stderr.strip(), "leviosim: " + refusal(act))
+        self.assertIn("record=True", refusal(lambda: leviosim.run(data=DATA, frames="0:3").replay()))
+        self.assertIsInstance(leviosim.InputError("x"), ValueError)
+
+    def test_progress_is_told_and_may_end_the_run(self):
+        seen = []
+        leviosim.run(data=DATA, frames="0:5", progress=lambda done, total: seen.append((done, total)))
+        self.assertEqual(seen, [(k, 5) for k in range(1, 6)])
+
+        def stop(done, total):
+            raise RuntimeError("enough")
+
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            leviosim.run(data=DATA, progress=stop)
+
+    def test_other_threads_of_the_interpreter_run_meanwhile(self):
+        ticks = []
+        done = threading.Event()
+
+        def tick():
+            while not done.is_set():
+                ticks.append(1)
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        before = len(ticks)
+        leviosim.run(leviosim.Platform("gap9"), data=DATA, frames="0:10")
+        during = len(ticks) - before
+        done.set()
+        thread.join()
+        self.assertGreater(during, 5)
+
+    def test_ctrl_c_ends_a_run(self):
+        def interrupt(done, total):
+            os.kill(os.getpid(), signal.SIGINT)
+
+        with self.assertRaises(KeyboardInterrupt):
+            leviosim.run(data=DATA, progress=interrupt)
+
+    def test_the_examples_run(self):
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join([MODULE, os.environ.get("PYTHONPATH", "")])}
+        for name in sorted(os.listdir(EXAMPLES)):
+            done = subprocess.run([sys.executable, os.path.join(EXAMPLES, name), DATA], env=environment,
+                                  cwd=FOLDER.name, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, name + done.stderr)
+            self.assertGreater(len(done.stdout.splitlines()), 1, name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,237 @@
+"""leviosim in Python: platforms, runs, replays, what-ifs and evaluations, in the process of the interpreter.
+
+What a run yields is what the command `leviosim run` would write, file by file, as arrays and dictionaries:
+
+    import leviosim
+    gap9 = leviosim.Platform("gap9")
+    run = leviosim.run(gap9, data="synthetic", frames="0:100", record=True)
+    run["latency.all.p50"]                       # a statistic by its name
+    slow = run.replay(gap9.with_({"cluster.fpu.units": 1}))
+    slow.table("stages")["cycles_parallel"]         # a column as an array; pandas.DataFrame takes all of it
+
+Bad input raises InputError with the one line that the command prints. Between two frames Ctrl-C ends a run,
+and `progress(done, total)` is called.
+"""
+
+from __future__ import annotations
+
+import io
+import csv
+import itertools
+import json
+import os
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _core
+from ._core import InputError
+
+__version__: str = _core.version
+Progress = Callable[[int, int], None]
+Settings = Mapping[str, Union[str, int, float]]
+Table = Dict[str, np.ndarray]
+
+__all__ = ["InputError", "Platform", "Run", "Statistic", "evaluate", "platforms", "profiles", "replay", "run",
+           "sweep", "whatif", "workload_parameters"]
+
+
+class Statistic(NamedTuple):
+    """A row of stats.json."""
+
+    name: str
+    unit: str
+    description: str
+    value: Any
+
+
+def _array(column: List[str]) -> np.ndarray:
+    """Whole numbers, numbers with nan for what is empty, or text."""
+    for kind in (np.int64, np.float64):
+        try:
+            filled = column if kind is np.int64 else [text or "nan" for text in column]
+            return np.array([kind(text) for text in filled], dtype=kind)
+        except ValueError:
+            continue
+    return np.array(column, dtype=str)
+
+
+def _table(text: str) -> Table:
+    rows = list(csv.reader(line for line in io.StringIO(text) if not line.startswith("# ")))
+    if not rows:
+        return {}
+    return {name: _array([row[i] for row in rows[1:]]) for i, name in enumerate(rows[0])}
+
+
+def _statistics(rows: List[Dict[str, Any]]) -> Dict[str, Statistic]:
+    return {r["name"]: Statistic(r["name"], r["unit"], r["description"], r["value"]) for r in rows}
+
+
+def _words(settings: Settings) -> List[str]:
+    return [f"{path}={value}" for path, value in settings.items()]
+
+
+class Platform:
+    """A chip: the name of one that is built in, or a file, with what was set beyond it."""
+
+    def __init__(self, name: str, set: Optional[Settings] = None) -> None:  # noqa: A002
+        self.request = os.fspath(name)
+        self.settings: Dict[str, Union[str, int, float]] = dict(set or {})
+        self._resolved = _core.Platform(self.request, _words(self.settings))
+
+    def with_(self, set: Settings) -> "Platform":  # noqa: A002
+        """The same chip with other values: {"cluster.clock": "240MHz"}."""
+        return Platform(self.request, {**self.settings, **set})
+
+    @property
+    def name(self) -> str:
+        return self._resolved.name
+
+    @property
+    def description(self) -> str:
+        return self._resolved.description
+
+    def parameters(self) -> Dict[str, Dict[str, Any]]:
+        """By path: value, unit, source, confidence, low, high, description."""
+        return {row["path"]: row for row in self._resolved.parameters()}
+
+    def __getitem__(self, path: str) -> Union[float, str]:
+        """The value of a parameter, in the unit that parameters() gives."""
+        value = self.parameters()[path]["value"]
+        try:
+            return float(value)
+        except ValueError:
+            return value
+
+    def yaml(self) -> str:
+        """The text of a platform file that gives the same chip."""
+        return self._resolved.yaml()
+
+    def area(self) -> Table:
+        """Part by part in um2; empty for a chip without areas."""
+        return _table(self._resolved.area_csv())
+
+    def __repr__(self) -> str:
+        return f"leviosim.Platform({self.request!r}, {self.settings!r})"
+
+
+class Run(Mapping[str, Any]):
+    """What a run or replay yielded. As a mapping: values of statistics by name."""
+
+    def __init__(self, files: Dict[str, Union[str, bytes]]) -> None:
+        self.files = files
+        self.statistics: Dict[str, Statistic] = _statistics(json.loads(files["stats.json"])["statistics"])
+
+    def __getitem__(self, name: str) -> Any:
+        return self.statistics[name].value
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.statistics)
+
+    def __len__(self) -> int:
+        return len(self.statistics)
+
+    def table(self, name: str) -> Table:
+        """Of frames, stages, cycles, memory, energy, errors, replay: columns by name."""
+        return _table(str(self.files[f"{name}.csv"]))
+
+    @property
+    def trajectory(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Times [s], positions [m], quaternions (x y z w) of the body."""
+        rows = [line.split() for line in str(self.files["trajectory.tum"]).splitlines() if line[:1] != "#"]
+        poses = np.array(rows, dtype=np.float64).reshape(-1, 8)
+        return poses[:, 0], poses[:, 1:4], poses[:, 4:8]
+
+    def replay(self, platform: Optional[Platform] = None, *, set: Optional[Settings] = None,  # noqa: A002
+               progress: Optional[Progress] = None) -> "Run":
+        """The recorded work on another chip; the run needs record=True."""
+        return _replay("recording", self._recording(), platform, set, progress)
+
+    def whatif(self, *changes: str, jobs: int = 1) -> Table:
+        """A row per variant, as `leviosim whatif`; without a change its standard set."""
+        return _table(_core.whatif_csv("recording", self._recording(), list(changes), jobs))
+
+    def _recording(self) -> bytes:
+        if "work.trace" not in self.files:
+            raise InputError("the run holds no work.trace; expected run(..., record=True)")
+        return bytes(self.files["work.trace"])  # type: ignore[arg-type]
+
+    def write(self, folder: str) -> None:
+        """The files as the command leaves them, in a folder that is not there yet."""
+        os.makedirs(folder)
+        for name, content in self.files.items():
+            data = content if isinstance(content, bytes) else content.encode()
+            with open(os.path.join(folder, name), "xb") as out:
+                out.write(data)
+
+
+def platforms() -> List[str]:
+    """Names of the chips that are built in."""
+    return list(_core.platform_names())
+
+
+def profiles() -> Dict[str, str]:
+    """Name and description of each profile of the workload."""
+    return dict(_core.profiles())
+
+
+def workload_parameters(profile: str = "levio") -> List[Dict[str, Any]]:
+    """Name, value in the profile, unit, limits, description."""
+    return list(_core.workload_parameters(profile))
+
+
+def run(platform: Optional[Platform] = None, *, data: str = "synthetic", profile: str = "levio",
+        frames: Optional[str] = None, cores: Optional[int] = None, seed: int = 1, size: str = "160x120",
+        fps: Optional[float] = None, deadline: Optional[str] = None, initial_delay: Optional[float] = None,
+        set: Optional[Settings] = None, record: bool = False,  # noqa: A002
+        progress: Optional[Progress] = None) -> Run:
+    """As `leviosim run`; without a platform natively, without timing. `set`: {"workload.window": 6}."""
+    words: Dict[str, Any] = {"data": data, "profile": profile, "seed": str(seed), "size": size,
+                             "record": record, "set": _words(set or {})}
+    if platform is None:
+        words["native"] = True
+    else:
+        words["platform"] = platform.request
+        words["set"] = _words(platform.settings) + words["set"]
+    optional = {"frames": frames, "cores": cores, "fps": fps, "deadline": deadline, "initial_delay": initial_delay}
+    words.update({name: str(value) for name, value in optional.items() if value is not None})
+    return Run(_core.run(words, progress))
+
+
+def _replay(name: str, recording: bytes, platform: Optional[Platform], set: Optional[Settings],  # noqa: A002
+            progress: Optional[Progress]) -> Run:
+    settings = {**(platform.settings if platform else {}), **(set or {})}
+    return Run(_core.replay(name, recording, platform.request if platform else "", _words(settings), progress))
+
+
+def _bytes_of(recording: str) -> bytes:
+    path = os.path.join(recording, "work.trace") if os.path.isdir(recording) else recording
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; expected a work trace, or the folder of a run with one") from None
+
+
+def replay(recording: str, platform: Optional[Platform] = None, *, set: Optional[Settings] = None,  # noqa: A002
+           progress: Optional[Progress] = None) -> Run:
+    """A work trace, or the folder of a run with --record, on a chip [that of the recording]."""
+    return _replay(recording, _bytes_of(recording), platform, set, progress)
+
+
+def whatif(recording: str, *changes: str, jobs: int = 1) -> Table:
+    """As Run.whatif(), of a work trace or the folder of a run."""
+    return _table(_core.whatif_csv(recording, _bytes_of(recording), list(changes), jobs))
+
+
+def sweep(over: Mapping[str, Sequence[Any]], point: Callable[[Dict[str, Any]], Run]) -> Iterator[Tuple[Dict[str, Any], Run]]:
+    """All combinations, one after the other as they are asked for: sweep({"cluster.fpu.units": [1, 2]},
+    lambda s: recorded.replay(gap9.with_(s)))."""
+    for values in itertools.product(*over.values()):
+        settings = dict(zip(over.keys(), values))
+        yield settings, point(settings)
+
+
+def evaluate(estimate: str, truth: str, *, align: str = "se3", relative: Sequence[float] = (40,)) -> Dict[str, Statistic]:
+    """As `leviosim eval`: statistics by name. Files or folders; `relative`: lengths in m."""
+    return _statistics(json.loads(_core.evaluate_json(os.fspath(estimate), os.fspath(truth), align, list(relative))))

@@ -1,0 +1,49 @@
+"""What `pip install .` calls (PEP 517): builds the preset python and packs the package as a wheel. It needs
+nothing but Python, CMake and the packages of `tools/setup.sh tests`."""
+
+import base64
+import hashlib
+import os
+import re
+import subprocess
+import sysconfig
+import zipfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PACKAGE = os.path.join(ROOT, "build", "python", "python", "leviosim")
+
+
+def _version():
+    with open(os.path.join(ROOT, "CMakeLists.txt")) as file:
+        return re.search(r"project\(leviosim VERSION (\S+)", file.read()).group(1)
+
+
+def _metadata():
+    return f"Metadata-Version: 2.1\nName: leviosim\nVersion: {_version()}\nRequires-Dist: numpy\n"
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    return []
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    subprocess.run([os.path.join(ROOT, "tools", "build.sh"), "python", "leviosim_python"], check=True)
+    tag = "cp{0}-cp{0}-{1}".format(sysconfig.get_config_var("py_version_nodot"),
+                                   re.sub(r"[-.]", "_", sysconfig.get_platform()))
+    about = f"leviosim-{_version()}.dist-info"
+    files = {f"{about}/METADATA": _metadata().encode(),
+             f"{about}/WHEEL": f"Wheel-Version: 1.0\nGenerator: leviosim\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()}
+    for name in sorted(os.listdir(PACKAGE)):
+        if name != "__pycache__":
+            with open(os.path.join(PACKAGE, name), "rb") as file:
+                files[f"leviosim/{name}"] = file.read()
+    record = ""
+    for name, content in files.items():
+        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+        record += f"{name},sha256={digest},{len(content)}\n"
+    files[f"{about}/RECORD"] = (record + f"{about}/RECORD,,\n").encode()
+    wheel = f"leviosim-{_version()}-{tag}.whl"
+    with zipfile.ZipFile(os.path.join(wheel_directory, wheel), "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(zipfile.ZipInfo(name), content)
+    return wheel
