@@ -99,7 +99,7 @@ output_of() { # output_of NAME COMMAND
   local output
   output=$work/outputs/$(sha256sum <<<"$2" | head -c 16)
   if [[ ! -e $output ]]; then
-    if ! (cd "$work/folder" && COLUMNS=1000 PATH=$work/bin:$PATH bash -c "$2" >"$output" 2>"$output.errors" </dev/null); then
+    if ! (cd "$work/folder" && COLUMNS=1000 LINES=0 PATH=$work/bin:$PATH bash -c "$2" >"$output" 2>"$output.errors" </dev/null); then
       echo "figures: $1: the command failed: $(tail -1 "$output.errors")" >&2
       exit 2
     fi

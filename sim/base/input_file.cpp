@@ -32,6 +32,7 @@ constexpr std::array kKinds{
     InputKindInfo{InputKind::run_file, "a file of a run folder", 64 * kMiB},
     InputKindInfo{InputKind::budget, "a budget file", 1 * kMiB},
     InputKindInfo{InputKind::baseline, "a baseline", 4 * kMiB},
+    InputKindInfo{InputKind::history, "a history", 256 * kMiB},
 };
 
 std::string reason_of(int error) { return std::system_category().message(error); }

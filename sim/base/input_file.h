@@ -20,7 +20,8 @@ enum class InputKind {
   cached_result,
   run_file,
   budget,
-  baseline
+  baseline,
+  history
 };
 
 struct InputKindInfo {

@@ -7,13 +7,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/support/paths.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/cli/screen.h"
 
 namespace leviosim::tools::testing {
 
@@ -27,6 +32,23 @@ struct ProgramResult {
 struct ProgramLimits {
   std::uint64_t cpu_seconds = 0;
   std::uint64_t data_bytes = 0;  ///< private memory that it can write to
+  bool one_screen = false;       ///< as users have it; else all results are printed
+};
+
+/// The environment of programs that print all of their results, instead of a screen of them.
+class AllLines {
+ public:
+  AllLines() {
+    for (char** variable = environ; *variable != nullptr; ++variable)
+      if (std::string_view(*variable).rfind("LINES=", 0) != 0) variables_.push_back(*variable);
+    variables_.push_back(lines_.data());
+    variables_.push_back(nullptr);
+  }
+  char** data() { return variables_.data(); }
+
+ private:
+  std::string lines_ = "LINES=0";
+  std::vector<char*> variables_;
 };
 
 /// A running program with its output in files of `folder`.
@@ -45,8 +67,8 @@ class Program {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    const int error =
-        posix_spawn(&pid_, program.c_str(), &files, nullptr, arguments.data(), environ);
+    const int error = posix_spawn(&pid_, program.c_str(), &files, nullptr, arguments.data(),
+                                  limits.one_screen ? environ : AllLines().data());
     posix_spawn_file_actions_destroy(&files);
     EXPECT_EQ(error, 0) << program;
     limit(RLIMIT_CPU, limits.cpu_seconds);
@@ -86,6 +108,33 @@ class Program {
 inline ProgramResult run_program(const std::filesystem::path& folder,
                                  std::vector<std::string> words) {
   return Program(folder, std::move(words)).wait();
+}
+
+/// The same with a screen of results.
+inline ProgramResult run_on_screen(const std::filesystem::path& folder,
+                                   std::vector<std::string> words) {
+  return Program(folder, std::move(words), {.one_screen = true}).wait();
+}
+
+/// What is wrong with a screen of 24 lines of 80 columns that says what came out and what to do
+/// next; empty if it is one. Paths and command lines may be wider.
+inline std::string screen_fault(const std::string& text) {
+  std::istringstream in(text);
+  int lines = 0;
+  bool concludes = false;
+  bool goes_on = false;
+  for (std::string line; std::getline(in, line); ++lines) {
+    concludes = concludes || line.rfind("verdict: ", 0) == 0 || line.rfind("in short: ", 0) == 0;
+    const bool is_next = line.rfind("next: ", 0) == 0 || line.rfind("Next: ", 0) == 0;
+    goes_on = goes_on || is_next;
+    const bool has_blanks = line.find(' ', line.find(": ") + 2) != std::string::npos;
+    if (display_width(line) > kScreenColumns && !is_next && has_blanks &&
+        line.rfind("      leviosim ", 0) != 0)
+      return "too wide: " + line;
+  }
+  if (lines > kScreenLines) return fmt::format("{} lines", lines);
+  if (!concludes) return "it does not say what came out";
+  return goes_on ? std::string() : "it does not say what to do next";
 }
 
 /// The program refused: exit status 2 and one message, which contains all parts.

@@ -190,6 +190,71 @@ TEST_F(Check, RefusesBadInput) {
       {"cannot be compared", "--allow seed"});
 }
 
+/// Unused room goes, what is tight stays, and all else of the file does.
+TEST_F(Check, TightenTakesBackUnusedRoom) {
+  const std::string loose = write("loose.yaml",
+                                  "# ours\nbudgets:\n  - limits:\n"
+                                  "      - L1 peak <= 128 kB  # of 128 KiB\n"
+                                  "      - { stage: frame matching, limit: cycles <= 90 Mcycles }\n"
+                                  "      - frame latency p99 <= +3 %\n");
+  const ProgramResult tight = program({"budget", "tighten", path("run"), "--budget", loose,
+                                       "--slack", "2 %", "--baseline", path("baseline.json")});
+  ASSERT_EQ(tight.status, 0) << tight.err;
+  expect_holds(tight.out, {"# ours\n", "kB  # of 128 KiB", "frame latency p99 <= +3 %"});
+  EXPECT_EQ(tight.out.find("90 Mcycles"), std::string::npos) << tight.out;
+  const std::string file = write("tight2.yaml", tight.out);
+  const std::string again = program({"budget", "tighten", path("run"), "--budget", file,
+                                     "--slack", "2 %", "--baseline", path("baseline.json")})
+                                .out;
+  EXPECT_EQ(again, tight.out) << "a second time changes nothing";
+  const std::vector<std::string> check{"check", path("run"), "--budget", file, "--baseline",
+                                       path("baseline.json"), "--quiet"};
+  EXPECT_EQ(program(check).status, 0);
+  std::vector<std::string> slower = check;
+  slower.insert(slower.end(), {"-p", "isa.instruction_overhead=1.4"});
+  EXPECT_EQ(program(slower).status, 1);
+}
+
+TEST_F(Check, AnAcceptedMissPassesUntilItsDay) {
+  const std::string tight = write("miss.yaml", "budgets:\n  - limits: [L1 peak <= 1 kB]\n");
+  const auto accept = [&](const std::string& until) {
+    return program({"budget", "accept", path("run"), "--budget", tight, "--reason", "the radio moves",
+                    "--until", until});
+  };
+  const ProgramResult accepted = accept("2099-12-31");
+  ASSERT_EQ(accepted.status, 0) << accepted.err;
+  const ProgramResult passes =
+      program({"check", path("run"), "--budget", write("accepted.yaml", accepted.out)});
+  EXPECT_EQ(passes.status, 0) << passes.out;
+  expect_holds(passes.out, {"warning", "accepted until 2099-12-31: the radio moves"});
+  const ProgramResult over =
+      program({"check", path("run"), "--budget", write("over.yaml", accept("2001-01-01").out)});
+  EXPECT_EQ(over.status, 1) << over.out;
+  expect_refused(accept("soon"), {"--until 'soon'", "2026-12-24"});
+  expect_refused(program({"budget", "accept", path("run"), "--budget", path("budgets.yaml"),
+                          "--reason", "r", "--until", "2099-12-31"}),
+                 {"meets all limits"});
+}
+
+TEST_F(Check, AWarningDoesNotFail) {
+  const std::string warn = write(
+      "warn.yaml", "budgets:\n  - limits:\n      - { limit: L1 peak <= 1 kB, level: warn }\n");
+  fs::remove(path("warned.xml"));
+  const ProgramResult result =
+      program({"check", path("run"), "--budget", warn, "--annotations", "github", "--junit",
+               path("warned.xml"), "--markdown", path("warned.md")});
+  EXPECT_EQ(result.status, 0) << result.out;
+  expect_holds(result.out, {"warning", "::warning file=", "0 not met, 1 warnings"});
+  EXPECT_EQ(junit_fault(base::read_text_file(path("warned.xml"))), "");
+  EXPECT_EQ(schema_fault(path("warned.xml")), "");
+  expect_holds(base::read_text_file(path("warned.md")), {"met, with warnings", "**⚠ L1 peak"});
+  expect_refused(
+      program({"check", path("run"), "--budget",
+               write("level.yaml",
+                     "budgets:\n  - limits:\n      - { limit: L1 peak <= 1 kB, level: loud }\n")}),
+      {"level.yaml:3", "level 'loud'", "fail or warn"});
+}
+
 /// Lines of an example that call the program.
 std::string commands_of(const std::string& file) {
   std::istringstream lines(base::read_text_file((tests::source_folder() / ("tools/ci/" + file))));

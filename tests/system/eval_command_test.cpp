@@ -252,14 +252,14 @@ TEST_F(EvalCommand, AgreesWithTheRunThatMadeTheTrajectory) {
   const auto of_eval = statistics_in(folder_ / "e.json");
   int compared = 0;
   for (const auto& [name, entry] : of_run) {
-    // Eval gives tilt and heading in the place of the angle of a rotation.
-    if (name.rfind("accuracy.", 0) != 0 || name.rfind("accuracy.rotation.", 0) == 0) continue;
+    EXPECT_EQ(name.find("rotation"), std::string::npos) << "tilt and heading are meant";
+    if (name.rfind("accuracy.", 0) != 0) continue;
     ++compared;
     EXPECT_NEAR(entry.at("value").get<double>(), of_eval.at(name).at("value").get<double>(), 1e-5)
         << name;
     EXPECT_EQ(entry.at("protocol"), of_eval.at(name).at("protocol"));
   }
-  EXPECT_EQ(compared, 7);
+  EXPECT_EQ(compared, 9);
 }
 
 TEST(EvalOptions, TolerancesHaveUnits) {

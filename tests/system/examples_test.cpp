@@ -13,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ProgramResult;
 using testing::run_program;
+using testing::screen_fault;
 using tests::Scratch;
 
 /// The lines after a heading, without their indentation, to the next empty line.
@@ -44,6 +45,17 @@ std::vector<std::string> commands_in_order(const Scratch& folder) {
   return names;
 }
 
+/// Not what goes into a file, nor a list or a document for programs.
+bool is_for_people(const std::string& example) {
+  // The demonstration's screen is a table of two verdicts (demo_command_test.cpp), and compare has
+  // one of its own.
+  for (const char* part :
+       {">", "--list", "--json", "echo ", "leviosim demo", "leviosim compare"})
+    if (example.find(part) != std::string::npos) return false;
+  return true;
+}
+
+/// All in one folder, and what they print is a screen that ends with what came out.
 TEST(Examples, OfEveryHelpWorkAsTheyStand) {
   const Scratch folder;
   fs::create_directory(folder / "bin");
@@ -59,11 +71,13 @@ TEST(Examples, OfEveryHelpWorkAsTheyStand) {
       const std::string line = "cd '" + (folder / "work").string() + "' && PATH='" +
                                (folder / "bin").string() + "':$PATH XDG_CACHE_HOME='" +
                                (folder / "cache").string() + "' && export PATH XDG_CACHE_HOME && " +
-                               "{ " + example +
-                               "\n} >/dev/null 2>../errors.txt || [ $? = 1 ]";  // a limit not met
+                               "unset LINES COLUMNS && { " + example +
+                               "\n} >../screen.txt 2>../errors.txt || [ $? = 1 ]";  // a limit not met
       EXPECT_EQ(std::system(line.c_str()), 0)  // NOLINT: the command is leviosim's own
           << example << '\n'
           << base::read_text_file(folder / "errors.txt");
+      const std::string screen = base::read_text_file(folder / "screen.txt");
+      if (is_for_people(example)) EXPECT_EQ(screen_fault(screen), "") << example << '\n' << screen;
     }
   }
 }

@@ -272,6 +272,21 @@ TEST_F(InBrowser, APageOfASweepIsToo) {
   expect_fine("sweep.html");
 }
 
+/// One kernel became slower at the third of four commits, whose subject is HTML.
+TEST_F(InBrowser, APageOfAHistoryIsToo) {
+  std::ofstream(path("limits.yaml"))
+      << "budgets:\n  - limits:\n      - { stage: frame matching, limit: cycles <= +1 % }\n";
+  for (int n = 1; n <= 4; ++n)
+    expect_done({"history", "add", path("a/work.trace"), "-p",
+                 fmt::format("isa.ops.popcount.issue={}", n < 3 ? 1 : 2), "--commit",
+                 fmt::format("c{}", n), "--branch", "main", "--time", fmt::format("{}", 1000 * n),
+                 "--subject", "</script><script>document.title='evil'</script>", "--file",
+                 path("history.jsonl"), "--quiet"});
+  expect_done({"history", "page", "--file", path("history.jsonl"), "--budget", path("limits.yaml"),
+               "--out", path("history.html")});
+  expect_fine("history.html");
+}
+
 TEST_F(InBrowser, FramesThatInitialiseHaveAColour) {
   fs::copy(path("a"), path("initialising"));
   fs::remove(path("initialising/.leviosim-files"));

@@ -135,6 +135,8 @@ TEST(Budget, RefusesBadFiles) {
 TEST(Budget, RefusesWhatARunCannotSay) {
   expect_input_error([] { met(one("stages.feature_extraction.spedup >= 4")); },
                      {"b.yaml:4", "did you mean 'stages.feature_extraction.speedup'"});
+  expect_input_error([] { met(of_stage("feature extraction", "cycles <= 3 %")); },
+                     {"per cent of what", "<= +3 %"});
   expect_input_error([] { met(of_stage("feature extractoin", "cycles <= 1 cycles")); },
                      {"b.yaml:4", "did you mean 'feature extraction'"});
   expect_input_error([] { met(one("ATE <= +1 %")); }, {"b.yaml:4", "--baseline"});
@@ -226,9 +228,9 @@ TEST(Budget, AFirstBudgetIsMetAndTight) {
   EXPECT_EQ(check_budget(record_of(more), parse_budget("first.yaml", first_budget(run, 5)), nullptr)
                 .missed(),
             1u);
-  EXPECT_EQ(parse_margin("5%"), 5);
+  EXPECT_EQ(parse_share("--margin", "5%"), 5);
   for (const char* bad : {"5", "", "-1 %", "x", "5 ms"})
-    expect_input_error([&] { parse_margin(bad); }, {"--margin"});
+    expect_input_error([&] { parse_share("--margin", bad); }, {"--margin"});
 }
 
 TEST(Baseline, IsReadBackAndStandsForItsRun) {

@@ -55,6 +55,7 @@ class JUnitSchema {
         {"testsuites", {"", {"tests", "failures"}}},
         {"testsuite", {"testsuites", {"name", "tests", "failures", "errors", "time"}}},
         {"testcase", {"testsuite", {"classname", "name", "time"}}},
+        {"system-out", {"testcase", {}}},
         {"failure", {"testcase", {"message", "type"}}}};
     const auto rule = rules.find(name);
     if (rule == rules.end()) return say("unknown element " + name), stack_.push_back({name, {}});

@@ -1,23 +1,27 @@
 #!/usr/bin/env bash
 # Holds the profiles levio and next on the synthetic flight against tools/ci/budgets.yaml and the baselines beside it.
 # Exit status as that of leviosim: 0 all limits are met, 1 one is not, 2 bad input.
-#   tools/ci/guard.sh [--renew] [--program FILE] [--data DIR]
+# Each run is added to a history (build/ci/history.jsonl), which servers keep as an artifact, and its page drawn.
+#   tools/ci/guard.sh [--renew] [--program FILE] [--data DIR] [--history FILE]
 #     --renew    record the baselines anew instead; the difference shows in git
 #     --program  leviosim [build/release/leviosim]
 #     --data     instead of the synthetic flight
+#     --history  of the runs [build/ci/history.jsonl]; a page lies beside it for each profile
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 program=build/release/leviosim
 data=synthetic
 renew=no
+history=build/ci/history.jsonl
 while (($# > 0)); do
   case $1 in
     --renew) renew=yes ;;
     --program) program=${2:?"--program: expected a file"} && shift ;;
     --data) data=${2:?"--data: expected a folder"} && shift ;;
+    --history) history=${2:?"--history: expected a file"} && shift ;;
     *)
-      echo "guard: unknown option $1; expected --renew, --program or --data" >&2
+      echo "guard: unknown option $1; expected --renew, --program, --data or --history" >&2
       exit 2
       ;;
   esac
@@ -38,7 +42,12 @@ for profile in levio next; do
     continue
   fi
   code=0
-  "$program" check "$work/$profile" --budget "$budget" --baseline "$baseline" >"$work/check" || code=$?
+  "$program" check "$work/$profile" --budget "$budget" --baseline "$baseline" --all >"$work/check" || code=$?
+  mkdir -p "$(dirname "$history")"
+  # A second run of a commit is refused: it is there already.
+  if "$program" history add "$work/$profile" --budget "$budget" --baseline "$baseline" --file "$history" >/dev/null 2>&1; then
+    "$program" history page --file "$history" --budget "$budget" --out "${history%.jsonl}-$profile.html" --force >/dev/null
+  fi
   if ((code == 0)); then
     echo "guard: $profile: $(head -n 1 "$work/check" | sed 's/.*: //')"
   else

@@ -22,9 +22,10 @@ void run(const CLI::App& command, const BatchWords& words, const Words& command_
   const Printout text = printout(
       words.json,
       [&] {
-        return fmt::format("leviosim {}: {} native runs\n{}{}", version(), runs.size(),
-                           ablation_text(plan, rows),
-                           accuracy_comparison(plan, rows, paper_accuracy(), other_accuracy()));
+        return Printout({fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
+                                     ablation_text(plan, rows)),
+                         accuracy_comparison(plan, rows, paper_accuracy(), other_accuracy())})
+            .ending(ablation_conclusion(rows), after_batch(plan));
       },
       [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
   publish(*plan.out, text, [&] {

@@ -9,7 +9,6 @@
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/study/flights/benchmark_files.h"
@@ -87,7 +86,7 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
   FlightPlan plan = plan_of(words);
   const RunnerOptions options = runner_options(words.runner, "run", words.quiet);
   if (words.list) {
-    print_result("{}", list_text(make_benchmark(std::move(plan), words.motions)));
+    print(Printout(list_text(make_benchmark(std::move(plan), words.motions)), true));
     return;
   }
   std::optional<outputs::OutputFile> page = claimed_report(words.report, words.force);
@@ -100,12 +99,16 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
   const BenchmarkResult result = condense(benchmark, runs, outcomes);
   const std::string csv = benchmark_runs_csv(benchmark, runs, outcomes, how);
   const std::string json = json_text(benchmark_json(benchmark, result), 1) + '\n';
+  const std::vector<std::string> next{fmt::format(
+      "leviosim run --profile {} --data {} --record --out mine",
+      benchmark.plan.variants.front().profile, printable(benchmark.motions.front().sequence.folder))};
   const Printout text = printout(
       words.json,
       [&] {
-        return fmt::format("leviosim {}: {}, {} pieces, {} native runs\n{}", version(),
-                           printable(benchmark.plan.name), benchmark.pieces.size(), runs.size(),
-                           benchmark_text(benchmark, result));
+        return Printout(fmt::format("leviosim {}: {}, {} pieces, {} native runs\n{}", version(),
+                                    printable(benchmark.plan.name), benchmark.pieces.size(),
+                                    runs.size(), benchmark_text(benchmark, result)))
+            .ending(benchmark_conclusion(benchmark, result), next);
       },
       [&] { return json; });
   publish(out, text, [&] {

@@ -1,15 +1,19 @@
 #include "tools/commands/budget_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
+#include "sim/base/input_file.h"
 #include "tools/app/budget/baseline.h"
+#include "tools/app/budget/budget_edits.h"
 #include "tools/app/budget/first_budget.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/budget/gate.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/comparison/record_source.h"
 
 namespace leviosim::tools {
@@ -18,41 +22,67 @@ namespace {
 struct BudgetOptions : RecordOptions {
   std::string action;
   std::string run;
-  std::string budget;
+  GateOptions gate;
   std::string margin = "5 %";
+  std::string slack = "2 %";
+  std::string reason;
+  std::string until;
 };
 
+/// The file of budgets as it would be, for people to review.
+std::string edited(const CLI::App& command, const BudgetOptions& options) {
+  require(command, "--budget", "the file of budgets to change");
+  const std::string text = base::read_file(options.gate.budget, base::InputKind::budget);
+  const Gate gate(options.gate, options);
+  if (options.action == "tighten")
+    return tightened(gate.budget(), text, read_record(options.run, options),
+                     parse_share("--slack", options.slack));
+  require(command, "--reason", "why the limit may be missed");
+  require(command, "--until", "the last day, such as 2026-12-24");
+  parse_day("--until", options.until);
+  return with_accepted(text, gate.check(read_record(options.run, options)), options.reason,
+                       options.until);
+}
+
 void run(const CLI::App& command, const BudgetOptions& options) {
-  const std::vector<std::string> actions{"record", "init"};
-  require(command, "ACTION", "record or init");
+  const std::vector<std::string> actions{"record", "init", "tighten", "accept"};
+  require(command, "ACTION", fmt::format("{}", fmt::join(actions, ", ")));
   if (std::find(actions.begin(), actions.end(), options.action) == actions.end())
-    throw InputError(fmt::format("budget: unknown action '{}'; expected record or init{}",
-                                 options.action, base::did_you_mean(options.action, actions)));
+    throw InputError(fmt::format("budget: unknown action '{}'; expected {}{}", options.action,
+                                 fmt::join(actions, ", "),
+                                 base::did_you_mean(options.action, actions)));
   require(command, "RUN", "a run folder or a work trace");
-  const double margin = parse_margin(options.margin);
+  const double margin = parse_share("--margin", options.margin);
+  if (options.action == "tighten" || options.action == "accept")
+    return print(Printout(edited(command, options), true));
   std::optional<Budget> budget;
-  if (!options.budget.empty()) budget = read_budget(options.budget);
+  if (!options.gate.budget.empty()) budget = read_budget(options.gate.budget);
   const RunRecord record = read_record(options.run, options);
-  print_result("{}", options.action == "init" ? first_budget(record, margin)
-                                              : baseline_text(record, budget ? &*budget : nullptr));
+  print(Printout(options.action == "init" ? first_budget(record, margin)
+                                          : baseline_text(record, budget ? &*budget : nullptr),
+                 true));
 }
 
 }  // namespace
 
 Command add_budget_command(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("budget", "Print a baseline of a run, or a first budget for it");
+      app.add_subcommand("budget", "Print a baseline of a run, or a budget that fits it");
   const auto options = std::make_shared<BudgetOptions>();
-  command->add_option("ACTION", options->action, "record: a baseline; init: a budget");
+  command->add_option("ACTION", options->action, "record: a baseline; init: a first budget; tighten: a budget without the room that "
+                      "is not used; accept: one in which what is missed may be, for a while");
   command->add_option("RUN", options->run, "run folder, or a work trace to replay");
-  command
-      ->add_option("--budget", options->budget, "record also the statistics that its limits name")
-      ->type_name("FILE");
+  add_gate_options(*command, options->gate);
   command->add_option("--margin", options->margin, "init: what limits leave [5 %]")
       ->type_name("PERCENT");
+  command->add_option("--slack", options->slack, "tighten: what limits leave at most [2 %]")
+      ->type_name("PERCENT");
+  command->add_option("--reason", options->reason, "accept: why")->type_name("TEXT");
+  command->add_option("--until", options->until, "accept: the last day")->type_name("DATE");
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim budget record recorded >baseline.json",
-                          "leviosim budget init recorded --margin '3 %' >first.yaml"});
+                          "leviosim budget init recorded --margin '3 %' >first.yaml",
+                          "leviosim budget tighten recorded --budget first.yaml >tighter.yaml"});
   return {command, [=] { run(*command, *options); }};
 }
 

@@ -48,7 +48,12 @@ void run(const CalibrateOptions& given) {
   publish({{out, yaml, "platform file"}},
           printout(
               options.run.json,
-              [&] { return heading(options.run, result) + calibration_report(calibration); },
+              [&] {
+                std::vector<std::string> parts = calibration_report(calibration);
+                parts.front().insert(0, heading(options.run, result));
+                return Printout(std::move(parts))
+                    .ending(calibration_conclusion(calibration), {"leviosim sensitivity"});
+              },
               [&] { return json_text(calibration_json(calibration), 2) + '\n'; }));
 }
 

@@ -6,16 +6,21 @@
 #include <memory>
 
 #include "sim/base/error.h"
+#include "sim/base/printable_text.h"
 #include "tools/app/budget/check_report.h"
 #include "tools/app/budget/ci_files.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/history/trend.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
 
 namespace leviosim::tools {
 namespace {
+
+/// Drift over more runs is a matter of a new baseline.
+constexpr std::size_t kRunsBefore = 200;
 
 struct CheckOptions : RecordOptions {
   std::string run;
@@ -23,6 +28,9 @@ struct CheckOptions : RecordOptions {
   std::string junit;
   std::string annotations;
   std::string report;
+  std::string markdown;
+  std::string history;
+  std::string branch;
   bool json = false;
 };
 
@@ -37,14 +45,20 @@ void check_options(const CLI::App& command, const CheckOptions& options) {
     throw InputError("check: --json and --annotations both print to stdout; leave out one");
 }
 
-std::string text_report(const CheckOptions& options, const CheckResult& result) {
-  if (options.annotations == "gitlab") return gitlab_report(result);
-  return check_text(result);
+/// The page says more about what is not met.
+Printout text_report(const CheckOptions& options, const CheckResult& result) {
+  if (options.annotations == "gitlab") return Printout(gitlab_report(result), true);
+  std::string page = fmt::format("leviosim check {} --budget {}", options.run, options.gate.budget);
+  if (!options.gate.baseline.empty()) page += " --baseline " + options.gate.baseline;
+  for (const std::string& set : options.overrides) page += " -p " + set;
+  return check_printout(result, {printable(page) + " --report check.html"});
 }
 
 void run(const CLI::App& command, const CheckOptions& options) {
   check_options(command, options);
-  const Gate gate(options.gate, options);
+  std::optional<History> history;
+  if (!options.history.empty()) history = History::read(options.history);
+  Gate gate(options.gate, options);
   std::optional<outputs::OutputFile> junit =
       claimed_file({.option = "--junit",
                     .path = options.junit,
@@ -53,16 +67,29 @@ void run(const CLI::App& command, const CheckOptions& options) {
   std::optional<outputs::OutputFile> page = claimed_report(
       options.report, options.force, {options.run, options.gate.budget, options.gate.baseline});
   expect_different(junit, "--junit", page, "--report");
+  std::optional<outputs::OutputFile> comment =
+      claimed_file({.option = "--markdown",
+                    .path = options.markdown,
+                    .replace = options.force,
+                    .inputs = {options.run, options.gate.budget, options.gate.baseline}});
+  expect_different(junit, "--junit", comment, "--markdown");
   RunFiles files;
   const RunRecord record = read_record(options.run, options, &files);
-  const CheckResult result = gate.check(record);
+  std::vector<PastRun> before;
+  if (history) before = history->like(record, options.branch, kRunsBefore);
+  if (!before.empty()) gate.use_baseline(before.back().record);
+  CheckResult result = gate.check(record);
+  add_history(result, record, gate.budget(), before);
   std::string html;
   if (page) html = html_page(runs_report({{record, files}}, {}, &result));
   Printout report = printout(
       options.json, [&] { return text_report(options, result); },
       [&] { return json_text(check_json(result), 2) + '\n'; });
   if (options.annotations == "github") report.ci_commands = github_annotations(result);
-  publish({{junit, junit_xml(result), ""}, {page, html, ""}}, report);
+  publish({{junit, junit_xml(result), ""},
+           {comment, comment ? markdown_comment(result, record, gate.baseline()) : "", ""},
+           {page, html, ""}},
+          report);
   if (result.missed() > 0) throw LimitNotMet();
 }
 
@@ -76,6 +103,16 @@ Command add_check_command(CLI::App& app) {
   add_gate_options(*command, options->gate);
   command->add_option("--junit", options->junit, "report for CI servers to write")
       ->type_name("FILE");
+  command
+      ->add_option("--markdown", options->markdown,
+                   "comment for a pull request, or the summary of a job, to write")
+      ->type_name("FILE.md");
+  command
+      ->add_option("--history", options->history,
+                   "runs before (leviosim history add): the last is the baseline, unless there is "
+                   "another, and slow drift is found")
+      ->type_name("FILE");
+  command->add_option("--branch", options->branch, "of the history [all]")->type_name("NAME");
   add_report_option(*command, options->report);
   command->add_flag("--force", options->force, "replace these files");
   command

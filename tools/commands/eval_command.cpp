@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/evaluation/eval_options.h"
 #include "tools/app/evaluation/trajectory_plot.h"
 #include "tools/app/report/accuracy.h"
@@ -74,7 +74,7 @@ Json protocol_json(const EvalRequest& request) {
 Json figures(const traces::TrajectoryPair& pair, const EvalRequest& request,
              const Accuracy& accuracy) {
   StatisticList list;
-  add_ate(list, accuracy.evaluation, attitude_errors(accuracy.evaluation));
+  add_ate(list, accuracy.evaluation);
   list.add("accuracy.longest_gap", "s", "between successive matched poses",
            value_of(accuracy.evaluation.longest_gap_s));
   list.add("accuracy.scale", "1", "that the alignment applied to the estimate",
@@ -140,6 +140,28 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
   return table.str();
 }
 
+/// The least error, with the share of the path that it is.
+std::string conclusion(const std::vector<Evaluated>& all) {
+  const Evaluated& best =
+      *std::min_element(all.begin(), all.end(), [](const Evaluated& a, const Evaluated& b) {
+        return a.accuracy.evaluation.translation.rmse < b.accuracy.evaluation.translation.rmse;
+      });
+  const Evaluation& e = best.accuracy.evaluation;
+  std::string text =
+      fmt::format("in short: {}: {:.3f} m RMSE", printable(best.pair.estimate.file.string()),
+                  e.translation.rmse);
+  if (e.path_length_m > 0)
+    text += fmt::format(", {:.2f} % of the path", 100 * e.translation.rmse / e.path_length_m);
+  return text;
+}
+
+std::string after(const EvalOptions& options) {
+  std::string also;
+  for (const std::string& estimate : options.also) also += " --also " + estimate;
+  return printable(fmt::format("leviosim eval {} {}{} --plot errors.svg", options.estimate,
+                               options.truth, also));
+}
+
 /// One estimate: its figures. Several: a list of such documents.
 std::string json_of(const std::vector<Evaluated>& all, const EvalRequest& request) {
   if (all.size() == 1)
@@ -159,7 +181,8 @@ void run(const CLI::App& command, const EvalOptions& options) {
   const auto lines = [&] {
     std::string text;
     for (const Evaluated& one : all) text += report(one.pair, request, one.accuracy);
-    return all.size() > 1 ? text + side_by_side(all) : text;
+    const std::string table = all.size() > 1 ? side_by_side(all) : std::string();
+    return Printout({text, table}).ending(conclusion(all), {after(options)});
   };
   const bool prints_json = command.count("--json") > 0 && !request.json;
   const Printout text = printout(prints_json, lines, [&] { return json_of(all, request); });

@@ -79,8 +79,9 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   const Printout text = printout(
       words.batch.json,
       [&] {
-        return fmt::format("leviosim {}: {} points, {} native runs\n{}", version(), points.size(),
-                           runs.size(), best_text(plan, explored));
+        return Printout(fmt::format("leviosim {}: {} points, {} native runs\n{}", version(),
+                                    points.size(), runs.size(), best_text(plan, explored)))
+            .ending(exploration_conclusion(plan, explored), after_batch(plan));
       },
       [&] { return table_document("exploration", points_csv(dimensions, explored)); });
   publish(*plan.out, text, [&] {

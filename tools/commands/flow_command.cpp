@@ -81,7 +81,13 @@ void run(const CLI::App& command, const FlowOptions& options, const Words& words
   const FlowRun flow = run_flow(options, request, style);
   const Manifest manifest = make_manifest(options, request, words);
   const Printout shown = printout(
-      options.json, [&] { return heading(options, flow.run) + flow_report(flow); },
+      options.json,
+      [&] {
+        std::vector<std::string> parts = flow_report(flow);
+        parts.front().insert(0, heading(options, flow.run));
+        return Printout(std::move(parts))
+            .ending(flow_conclusion(flow), {"leviosim platforms systems"});
+      },
       [&] { return table_document("flow", flow_csv(flow)); });
   publish(out, shown,
           [&] { write_folder(out, flow, manifest, platform::to_yaml(request.platform)); });

@@ -23,9 +23,9 @@
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/text_table.h"
 #include "tools/commands/ablate_command.h"
 #include "tools/commands/benchmark_flights_command.h"
+#include "tools/commands/bisect_command.h"
 #include "tools/commands/budget_command.h"
 #include "tools/commands/calibrate_command.h"
 #include "tools/commands/check_command.h"
@@ -34,6 +34,7 @@
 #include "tools/commands/eval_command.h"
 #include "tools/commands/explore_command.h"
 #include "tools/commands/flow_command.h"
+#include "tools/commands/history_command.h"
 #include "tools/commands/microbench_command.h"
 #include "tools/commands/platforms_command.h"
 #include "tools/commands/replay_command.h"
@@ -51,11 +52,15 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr int kLimitNotMet = 1;
 constexpr int kBadInput = 2;
 constexpr int kSignalled = 128;  // and its number; seen if the signal does not end the process
 
 int fail(const std::exception& error) {
+  try {
+    flush_results();  // what was done is shown all the same
+  } catch (const std::exception&) {
+    // It cannot be; if that is the error, it is said below.
+  }
   print_error(error.what());
   return kBadInput;
 }
@@ -112,10 +117,10 @@ void withdraw_request() {
 }
 
 /// What was printed may be refused only now.
-int end_after_report() {
+int end_after_report(int status) {
   try {
     flush_results();
-    return kLimitNotMet;
+    return status;
   } catch (const InputError& error) {
     return fail(error);
   } catch (const Interrupted& stop) {  // nobody reads it any more
@@ -141,13 +146,13 @@ int end_interrupted(const Interrupted& stop, const Words& words) {
   return kSignalled + stop.signal();
 }
 
-/// As results record them: none depends on how many are computed at a time.
+/// As results record them: none depends on how many are computed at a time, nor on what is shown.
 Words without_jobs(const Words& typed) {
   Words words;
   for (std::size_t i = 0; i < typed.size(); ++i)
     if (typed[i] == "--jobs")
       ++i;
-    else if (!typed[i].starts_with("--jobs="))
+    else if (!typed[i].starts_with("--jobs=") && typed[i] != "--all")
       words.push_back(typed[i]);
   return words;
 }
@@ -182,6 +187,8 @@ int run_program(const Words& typed) {
                                          add_compare_command(app),
                                          add_check_command(app),
                                          add_budget_command(app),
+                                         add_history_command(app),
+                                         add_bisect_command(app),
                                          add_report_command(app)},
                                         typed);
     flush_results();
@@ -189,8 +196,8 @@ int run_program(const Words& typed) {
     return status;
   } catch (const InputError& error) {
     return fail(error);
-  } catch (const LimitNotMet&) {
-    return end_after_report();
+  } catch (const EndsWith& end) {
+    return end_after_report(end.status());
   } catch (const Interrupted& stop) {
     return end_interrupted(stop, words);
   } catch (const std::bad_alloc&) {
@@ -223,7 +230,6 @@ namespace leviosim {
 int main_with(int argc, char** argv, std::vector<Workload> workloads) {
   const tools::DeferredInterrupts deferred;
   std::signal(SIGXFSZ, SIG_IGN);  // writing fails then, as on a full disk
-  if (const auto width = tools::terminal_width()) tools::set_table_width(*width);
   int status = 0;
   try {
     status = tools::begin(tools::Words(argv + 1, argv + argc), std::move(workloads));

@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "platform_models/loader/loader.h"
+#include "sim/base/printable_text.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/validation/microbench/board_kernels.h"
 #include "tools/app/validation/microbench/library_kernels.h"
@@ -48,9 +48,9 @@ void run(const MicrobenchOptions& options) {
   const bool is_board = chip.name == kBoard;
   std::vector<MicrobenchRow> rows;
   std::vector<double> needed;
-  std::string tables;
+  std::vector<std::string> tables;
   const auto add = [&](std::string_view name, const std::vector<MicrobenchRow>& more) {
-    tables += microbench_table(name, more) + '\n';
+    tables.push_back(microbench_table(name, more) + '\n');
     rows.insert(rows.end(), more.begin(), more.end());
   };
   const auto add_needed = [&](const std::vector<KernelJob>& kernels,
@@ -69,10 +69,14 @@ void run(const MicrobenchOptions& options) {
   add(kBoard, board_rows(kernels, board));
   add_needed(kernels, board);
   std::sort(needed.begin(), needed.end());
-  tables += coverage_text(rows, needed);
+  tables.push_back(coverage_text(rows, needed));
   publish({{out, microbench_csv(rows), ""}},
           printout(
-              options.json, [&] { return tables; },
+              options.json,
+              [&] {
+                return Printout(tables).ending(microbench_conclusion(rows),
+                                               {"leviosim validate"});
+              },
               [&] { return table_document("microbenchmarks", microbench_csv(rows)); }));
   if (std::any_of(rows.begin(), rows.end(),
                   [](const MicrobenchRow& row) { return row.verdict() == Verdict::Worse; }))

@@ -37,12 +37,13 @@ struct PlatformsOptions {
   std::string jobs;
   std::string svg;
   std::string from = "gap9";  ///< of a new chip
+  bool yaml = false;
 };
 
 constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
 /// Options that some actions take.
-constexpr std::array kOfSome{"--from", "--data", "--frames", "--profile", "--seed",
-                             "--csv",  "--svg",  "--force",  "--quiet",   "--jobs"};
+constexpr std::array kOfSome{"--from", "--data",  "--frames", "--profile", "--seed", "--csv",
+                             "--svg",  "--force", "--quiet",  "--jobs",    "--yaml"};
 
 void list(const PlatformsOptions& options) {
   const auto lines = [] {
@@ -50,7 +51,9 @@ void list(const PlatformsOptions& options) {
     for (const std::string& name : platform::platform_names())
       text +=
           fmt::format("{}: {}\n", name, printable(platform::resolve_platform(name).description));
-    return text;
+    return Printout(text).ending(
+        fmt::format("in short: {} chips", platform::platform_names().size()),
+        {"leviosim platforms show gap9", "leviosim platforms feasibility"});
   };
   const auto document = [] {
     const base::CsvTable<std::string> table{{"name", [](const std::string& name) { return name; }},
@@ -100,8 +103,10 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
   const auto lines = [&] {
     TextTable table({{"parameter", TextTable::Align::Left}, {a.name}, {b.name}});
     for (const Difference& d : all) table.add({d.path, in_words(d.a), in_words(d.b)});
-    return fmt::format("{}{} of {} parameters differ\n", all.empty() ? "" : table.str(), all.size(),
-                       std::max(a.parameters.size(), b.parameters.size()));
+    return Printout(all.empty() ? std::string() : table.str())
+        .ending(fmt::format("in short: {} of {} parameters differ", all.size(),
+                            std::max(a.parameters.size(), b.parameters.size())),
+                {fmt::format("leviosim platforms stages {} {}", a.name, b.name)});
   };
   const auto document = [&] {
     using D = Difference;
@@ -147,6 +152,12 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
   return study.on(points, {.noun = "chip", .threads = jobs, .progress = style});
 }
 
+/// The workload on a chip.
+std::string run_on(const std::string& platform, const RunOptions& options) {
+  return fmt::format("leviosim run --platform {} --profile {} --data {} --out mine",
+                     printable(platform), options.profile, printable(options.data));
+}
+
 void feasibility(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
   outputs::OutputRequest wanted = out_request(run, "--csv");
@@ -154,7 +165,9 @@ void feasibility(const PlatformsOptions& options) {
   std::optional<outputs::OutputFile> out = claimed_file(wanted);
   const std::vector<Feasibility> rows = rows_for(options, true);
   const auto lines = [&] {
-    return fmt::format("{} on {}\n\n{}", run.profile, printable(run.data), feasibility_table(rows));
+    return Printout(fmt::format("{} on {}\n\n{}", run.profile, printable(run.data),
+                                feasibility_table(rows)))
+        .ending(feasibility_conclusion(rows), {run_on(rows.front().platform, run)});
   };
   publish({{out, feasibility_csv(rows), "table"}}, printout(run.json, lines, [&] {
             return table_document("feasibility", feasibility_csv(rows));
@@ -187,8 +200,10 @@ void stages(const PlatformsOptions& options) {
   std::vector<Feasibility> rows = rows_for(options, false);
   const std::string left_out = without_small_chips(rows, !options.names.empty());
   const auto lines = [&] {
-    return fmt::format("{} on {}\n\n{}{}", options.run.profile, printable(options.run.data),
-                       stage_comparison(rows), left_out);
+    return Printout({fmt::format("{} on {}\n\n{}", options.run.profile,
+                                 printable(options.run.data), stage_comparison(rows)),
+                     left_out})
+        .ending(feasibility_conclusion(rows), {run_on(rows.front().platform, options.run)});
   };
   const auto document = [&] { return table_document("stages", stage_comparison_csv(rows)); };
   print(printout(options.run.json, lines, document));
@@ -225,11 +240,14 @@ void systems(const PlatformsOptions& options) {
           printout(
               run.json,
               [&] {
-                return fmt::format("systems that estimate motion; predictions on {}\n\n{}",
-                                   printable(run.data), systems_table(rows));
+                return Printout(fmt::format("systems that estimate motion; predictions on {}\n\n{}",
+                                            printable(run.data), systems_table(rows)))
+                    .ending(systems_conclusion(rows), {"leviosim platforms feasibility"});
               },
               [&] { return table_document("systems", systems_csv(rows)); }));
 }
+
+std::string mm2(sim::SquareMicrometres area) { return fmt::format("{:.2f}", area.count() * 1e-6); }
 
 std::string csv_of(const std::vector<platform::Parameter>& parameters) {
   using P = platform::Parameter;
@@ -263,8 +281,13 @@ void area(const PlatformsOptions& options) {
       sources.add({p.path, in_words(&p),
                    p.range ? fmt::format("{:g}–{:g}", p.range->low, p.range->high) : "–",
                    p.confidence, printable(p.source)});
-    return fmt::format("area of {}\n\n{}\n{}", printable(chip.name), area_table(chip.config),
-                       sources.str());
+    const sim::AreaItem total = sim::total_area(chip.config);
+    return Printout({fmt::format("area of {}\n\n{}\n", printable(chip.name),
+                                 area_table(chip.config)),
+                     sources.str()})
+        .ending(fmt::format("in short: {} mm2 ({}–{})", mm2(total.area), mm2(total.low),
+                            mm2(total.high)),
+                {"leviosim whatif"});
   };
   print(printout(options.run.json, lines, [&] {
     return table_document("area of " + chip.name, area_csv(chip.config),
@@ -278,8 +301,19 @@ void show(const PlatformsOptions& options) {
   const auto document = [&] {
     return table_document("platform " + chip.name, csv_of(chip.parameters));
   };
-  print(printout(
-      options.run.json, [&] { return platform::to_yaml(chip); }, document));
+  const auto lines = [&] {
+    TextTable table({{"number", kLeft}, {"value"}, {"confidence", kLeft}, {"source", kLeft, 1}});
+    for (const platform::Parameter& p : chip.parameters)
+      table.add({p.path, in_words(&p), p.confidence, printable(p.source)});
+    return Printout(fmt::format("{}: {}\n\n{}", printable(chip.name),
+                                printable(chip.description), table.str()))
+        .ending(fmt::format("in short: {} numbers, each with its source", chip.parameters.size()),
+                {fmt::format("leviosim platforms show {} --yaml", options.names[0])});
+  };
+  if (options.yaml && !options.run.json)
+    print(Printout(platform::to_yaml(chip), true));
+  else
+    print(printout(options.run.json, lines, document));
 }
 
 /// Changes are of the second: what a chip would differ in from itself can be asked too.
@@ -322,7 +356,7 @@ struct Action {
 
 const std::array<Action, 8> kActions = {{
     {"list", 0, "no platform", {}, list},
-    {"show", 1, "one platform", {}, show},
+    {"show", 1, "one platform", {"--yaml"}, show},
     {"new", 1, "a name for the new chip", {"--from", "--force"}, begin_new},
     {"diff", 2, "two platforms", {}, show_differences},
     {"area", 1, "one platform", {}, area},
@@ -398,6 +432,7 @@ Command add_platforms_command(CLI::App& app) {
   add("--csv", run_options.out, "FILE", "write the rows to a file; not of stages");
   add("--svg", options->svg, "FILE", "systems: draw power over frame rate");
   command->add_flag("--force", run_options.force, "replace these files")->group(group);
+  command->add_flag("--yaml", options->yaml, "show: the platform file, all of it");
   add_jobs_option(*command, options->jobs, "chip");
   command->get_option("--jobs")->group(group);
   command->add_flag("--quiet", run_options.quiet, "no progress")->group(group);

@@ -1,10 +1,14 @@
 #include "tools/commands/report_command.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "sim/base/printable_text.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/html_report/report_file.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -32,7 +36,13 @@ void run(const CLI::App& command, const ReportOptions& options) {
     comparisons.push_back(
         compare_runs(runs.front().record, runs[i].record,
                      check_comparable(runs.front().record, runs[i].record, allowed)));
+  const RunRecord& first = runs.front().record;
   publish_report(page, runs_report(runs, comparisons, nullptr));
+  print(Printout(std::string())
+            .ending("verdict: " + verdicts(first).text(),
+                    {runs.size() > 1 ? fmt::format("leviosim compare {} {}", printable(first.name),
+                                                   printable(runs[1].record.name))
+                                     : fmt::format("leviosim whatif {}", printable(first.name))}));
 }
 
 }  // namespace

@@ -34,7 +34,12 @@ void run(const SensitivityOptions& options) {
   publish({{out, sensitivity_csv(found), "table"}},
           printout(
               options.json,
-              [&] { return heading(options, result) + sensitivity_table(found, result.cores); },
+              [&] {
+                std::vector<std::string> parts = sensitivity_tables(found, result.cores);
+                parts.front().insert(0, heading(options, result));
+                return Printout(std::move(parts))
+                    .ending(sensitivity_conclusion(found), {"leviosim microbench"});
+              },
               [&] { return table_document("sensitivity", sensitivity_csv(found)); }));
 }
 

@@ -14,7 +14,6 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/printout.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
@@ -117,6 +116,10 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
   return run_points(batch, options);
 }
 
+Printout with_conclusion(std::string report, SweepStore& store, const std::string& folder) {
+  return Printout(std::move(report)).ending(sweep_conclusion(store), after_sweep(store, folder));
+}
+
 void merge(const SweepWords& words) {
   if (words.merge.size() < 2)
     throw InputError("--merge: expected OUT IN..., the folder to merge into and those to merge");
@@ -134,10 +137,12 @@ void merge(const SweepWords& words) {
   }
   const std::optional<std::string> elsewhere = store.publish(out.csv());
   const auto lines = [&] {
-    return fmt::format("leviosim {}: {} folders merged\n{}results: {}\n", version(),
-                       words.merge.size() - 1, sweep_report(store), printable(words.merge.front()));
+    return with_conclusion(fmt::format("leviosim {}: {} folders merged\n{}", version(),
+                                       words.merge.size() - 1, sweep_report(store)),
+                           store, words.merge.front());
   };
-  print(printout(words.json, lines, [&] { return document(out.csv()); }));
+  print(printout(words.json, lines, [&] { return document(out.csv()); }),
+        {{"results", words.merge.front()}});
   if (elsewhere) throw InputError(*elsewhere);
 }
 
@@ -152,6 +157,15 @@ std::string expansion_text(const Expansion& expansion) {
   return text;
 }
 
+std::string list_text(const Expansion& expansion) {
+  std::string text;
+  for (std::size_t i = 0; i < expansion.points.size(); ++i) {
+    throw_if_interrupted();
+    text += fmt::format("{}\t{}\n", i + 1, printable(expansion.points[i].settings_text()));
+  }
+  return text;
+}
+
 bool has_failures(SweepStore& store) {
   const std::vector<SweepOutcome> outcomes = store.outcomes();
   return std::any_of(outcomes.begin(), outcomes.end(),
@@ -163,13 +177,7 @@ void run_plan(const SweepWords& words) {
                      ProgressLine::style_of_stderr(words.quiet), trace_memory(words.memory));
   const SweepPlan plan = read_plan(words.plan, inputs);
   const Expansion expansion = expand(plan, inputs);
-  if (words.list) {
-    for (std::size_t i = 0; i < expansion.points.size(); ++i) {
-      throw_if_interrupted();
-      print_result("{}\t{}\n", i + 1, printable(expansion.points[i].settings_text()));
-    }
-    return;
-  }
+  if (words.list) return print(Printout(list_text(expansion), true));
   if (words.out.empty())
     throw InputError("sweep: --out is missing; expected a folder for the results");
   expect_json_or_budget(words.json, words.budget);
@@ -189,19 +197,20 @@ void run_plan(const SweepWords& words) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto lines = [&] {
-    return fmt::format(
-        "leviosim {}: {}\n{} computed in {:.1f} s, {} found in the cache, {} done before\n{}"
-        "results: {}\n",
-        version(), expansion_text(expansion), tally.computed, seconds, tally.found, tally.before,
-        sweep_report(store), printable(words.out));
+    return with_conclusion(
+        fmt::format(
+            "leviosim {}: {}\n{} computed in {:.1f} s, {} found in the cache, {} done before\n{}",
+            version(), expansion_text(expansion), tally.computed, seconds, tally.found,
+            tally.before, sweep_report(store)),
+        store, words.out);
   };
-  print(printout(words.json, lines, [&] { return document(out.csv()); }));
+  print(printout(words.json, lines, [&] { return document(out.csv()); }), {{"results", words.out}});
   if (page) publish_report(page, sweep_page(store), !words.json);
   if (elsewhere) throw InputError(*elsewhere);
   bool is_met = !has_failures(store);
   if (budget) {
     const SweepCheck check = check_sweep(*budget, plan, expansion.points, inputs, store);
-    print_result("\n{}", check.text);
+    print(Printout(check.text).ending(check.verdict, after_sweep(store, words.out)));
     is_met = is_met && check.missed == 0;
   }
   if (!is_met) throw LimitNotMet();

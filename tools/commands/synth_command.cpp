@@ -7,7 +7,8 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "tools/app/cli/terminal.h"
+#include "sim/base/printable_text.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_options.h"
 #include "traces/synthesis/rendered_flight.h"
@@ -64,13 +65,19 @@ traces::RenderedFlightOptions rendered_options(const CLI::App& command,
   return rendered;
 }
 
+/// @param has_size  the images are prepared for that size only
+std::string after(const SynthOptions& options, bool has_size) {
+  return fmt::format("leviosim run --data {}{} --record --out mine", printable(options.out),
+                     has_size ? " --size " + options.size : "");
+}
+
 void render(const CLI::App& command, const SynthOptions& options) {
   const traces::RenderedFlightOptions rendered = rendered_options(command, options);
   render_flight(options.motion, options.out, rendered, "rendered flight",
                 ProgressLine::style_of_stderr(options.quiet));
-  print_result("rendered flight: {}\n", printable(options.out));
-  if (!options.full_size && options.size != SynthOptions().size)
-    print_result("its images are prepared for one size: run --size {}\n", options.size);
+  const bool has_size = !options.full_size && options.size != SynthOptions().size;
+  print(Printout(std::string()).ending("", {after(options, has_size)}),
+        {{"rendered flight", options.out}});
 }
 
 void run(const CLI::App& command, const SynthOptions& options) {
@@ -84,7 +91,8 @@ void run(const CLI::App& command, const SynthOptions& options) {
   flight.duration_s = parse_positive("--duration", options.duration);
   flight.overwrite = options.overwrite;
   write_flight(options.out, flight, ProgressLine::style_of_stderr(options.quiet));
-  print_result("synthetic flight: {}\n", printable(options.out));
+  print(Printout(std::string()).ending("", {after(options, false)}),
+        {{"synthetic flight", options.out}});
 }
 
 void add_motion_options(CLI::App& command, SynthOptions& options) {

@@ -46,9 +46,21 @@ std::string trace_document(const traces::WorkTrace& trace) {
   return json_text(document, 2) + '\n';
 }
 
+std::string after(const traces::WorkTrace& trace) {
+  return fmt::format("leviosim whatif {}", printable(trace.name()));
+}
+
 void show_trace(const traces::WorkTrace& trace, bool json) {
   print(printout(
-      json, [&] { return trace_summary(trace); }, [&] { return trace_document(trace); }));
+      json,
+      [&] {
+        return Printout(trace_summary(trace))
+            .ending(fmt::format("in short: {} frames of {}, recorded on {} with {} cores",
+                                trace.frames(), printable(trace.info().profile),
+                                printable(trace.info().platform), trace.info().cores),
+                    {after(trace)});
+      },
+      [&] { return trace_document(trace); }));
 }
 
 /// Everything that replay reads, its platform too.
@@ -58,8 +70,9 @@ void check_trace(const traces::WorkTrace& trace, bool json) {
   for (traces::WorkFrame frame; reader.next(frame);) {
   }
   const auto lines = [&] {
-    return fmt::format("{}: {} frames, all of them can be replayed\n", printable(trace.name()),
-                       trace.frames());
+    return Printout(fmt::format("work trace of {}\n", printable(trace.name())))
+        .ending(fmt::format("verdict: met: all {} frames can be replayed", trace.frames()),
+                {after(trace)});
   };
   print(printout(json, lines, [&] { return trace_document(trace); }));
 }

@@ -12,7 +12,6 @@
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/printout.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/html_report/report_file.h"
@@ -76,7 +75,7 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
 void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
           const std::optional<ChosenRun>& again, const Words& command_line) {
   if (!again) {
-    print_result("\nno point to hold against the budget\n");
+    print(Printout("no point to hold against the budget\n"));
     throw LimitNotMet();
   }
   print_check(
@@ -96,14 +95,21 @@ void run(const CLI::App& command, const GatedTuneWords& words, const Words& comm
   const TunePoint* best = chosen(all);
   std::optional<ChosenRun> again;
   if (best != nullptr) again = run_again(plan, *best);
-  std::string text =
-      fmt::format("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n{}\n{}",
-                  version(), plan.request.profile, printable(plan.options.platform),
-                  plan.request.cores, plan.sequence.frames, printable(plan.options.data),
-                  runs.size(), tune_table(plan, points), choice_text(plan, all));
-  if (again) text += "run again by itself, it gave the same figures: confirmed\n";
+  const auto lines = [&] {
+    const std::string head =
+        fmt::format("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n",
+                    version(), plan.request.profile, printable(plan.options.platform),
+                    plan.request.cores, plan.sequence.frames, printable(plan.options.data),
+                    runs.size());
+    std::string choice = choice_text(plan, all);
+    if (again) choice += "run again by itself, it gave the same figures: confirmed\n";
+    std::vector<std::string> next;
+    if (best != nullptr) next.push_back(printable(run_command_text(plan, *best)));
+    return Printout({head + tune_table(plan, points), tune_notes(plan), choice})
+        .ending(tune_conclusion(all), next);
+  };
   const Printout shown = printout(
-      words.run.json, [&] { return text; },
+      words.run.json, lines,
       [&] { return table_document("tuning", tune_csv(plan, points), choice_json(plan, all)); });
   if (plan.out)
     publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });

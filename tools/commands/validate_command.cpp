@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <memory>
 
+#include "sim/base/printable_text.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_folder.h"
@@ -30,12 +30,6 @@ void write_folder(outputs::OutputFolder& out, const Validation& validation, cons
             updated_references("paper.csv", paper_references_text(), values, kNotExamined));
 }
 
-/// Whether a figure is outside its tolerance, or the guard of what was missed before.
-bool is_worse(const Validation& validation) {
-  return std::any_of(validation.comparisons.begin(), validation.comparisons.end(),
-                     [](const Comparison& c) { return c.verdict == Verdict::Worse; });
-}
-
 void run(const RunOptions& given, const Words& words) {
   const RunOptions options = as_released(given);
   RunRequest request = make_chip_request(options);
@@ -49,9 +43,16 @@ void run(const RunOptions& given, const Words& words) {
   request.time_bands = TimeBandsOf::team_and_one_core;
   const RunResult result = simulate_with_progress(request, style);
   const Validation validation = validate(result, log, profile_of(request), references);
+  const auto lines = [&] {
+    std::vector<std::string> parts = validation_report(validation, result.cores);
+    parts.front().insert(0, heading(options, result));
+    return Printout(std::move(parts))
+        .ending(validation_conclusion(validation),
+                {fmt::format("leviosim run --platform {} --data {} --out mine",
+                             printable(options.platform), printable(options.data))});
+  };
   const Printout text = printout(
-      options.json,
-      [&] { return heading(options, result) + validation_report(validation, result.cores); },
+      options.json, lines,
       [&] { return json_text(validation_json(validation), 2) + '\n'; });
   if (!out) {
     print(text);

@@ -101,6 +101,15 @@ std::string heading(const std::string& run, const traces::WorkTraceInfo& info, i
                      printable(info.platform), info.cores);
 }
 
+/// Command lines that say more.
+std::vector<std::string> after(const std::string& run, const std::vector<std::string>& changes) {
+  if (run.empty()) return {"leviosim run --record --out mine", "leviosim whatif mine"};
+  for (const std::string& change : changes)
+    if (change.find('=') != std::string::npos && change.find_first_of(",:") == std::string::npos)
+      return {fmt::format("leviosim compare {} -p {}", printable(run), printable(change))};
+  return {fmt::format("leviosim whatif {} --report whatif.html", printable(run))};
+}
+
 void run(const WhatIfWords& typed, const Words& words) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(typed.quiet);
   std::vector<std::string> changes = typed.words;
@@ -129,7 +138,11 @@ void run(const WhatIfWords& typed, const Words& words) {
   const traces::WorkTrace& trace = *inputs.trace(asked.name, {asked.name}).work;
   const std::string head = heading(asked.name, trace.info(), trace.frames());
   print(printout(
-      typed.json, [&] { return head + (advises ? advice_text(results) : whatif_table(results)); },
+      typed.json,
+      [&] {
+        return Printout(head + (advises ? advice_text(results) : whatif_table(results)))
+            .ending(whatif_conclusion(results), after(name, changes));
+      },
       [&] { return table_document("whatif", whatif_csv(results)); }));
   if (page) publish_report(page, whatif_page("What if", head, results), !typed.json);
   const bool failed = std::any_of(results.begin(), results.end(),

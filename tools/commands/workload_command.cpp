@@ -46,7 +46,7 @@ std::string document(const WorkloadOptions& options, const vio::Profile& profile
   return table_document("parameters of " + options.profile, table.text(parameters_of(options)));
 }
 
-std::string lines(const WorkloadOptions& options, const vio::Profile& profile) {
+Printout lines(const WorkloadOptions& options, const vio::Profile& profile) {
   std::string text = "profiles (--profile NAME)\n";
   for (const std::string& name : vio::profile_names())
     text += fmt::format("  {}: {}\n", name, vio::profile_description(name));
@@ -58,7 +58,11 @@ std::string lines(const WorkloadOptions& options, const vio::Profile& profile) {
   for (const vio::Parameter& p : parameters_of(options))
     table.add({std::string(p.name), vio::value_text(p, value_in(profile, p)), range_text(p),
                std::string(p.unit), std::string(p.description)});
-  return fmt::format("{}\n{}", text, table.str());
+  return Printout({text + '\n', table.str()})
+      .ending(fmt::format("in short: {} profiles, {} parameters of {}", vio::profile_names().size(),
+                          vio::parameters().size(), options.profile),
+              {fmt::format("leviosim run --profile {} -p workload.window=8 --out mine",
+                           options.profile)});
 }
 
 void run(const WorkloadOptions& options) {

@@ -1,6 +1,6 @@
 # The figures of the pages: tools/figures.sh reads this file and says what its words mean. `data` are
 # 300 real frames, euroc/MH_01_easy_t05_t20 in the folder of recorded data; `slow` takes minutes.
-# Tables have all their columns: 1000 fit.
+# Tables have all their columns: 1000 fit, and all their lines.
 # No figure shows the host's times, the commit, or anything else that differs from run to run.
 
 # README.md
@@ -181,7 +181,7 @@ cut 'table frames/s | rows " (130|160|250|310|370)  "'
 figure tune-choice
 needs data slow
 shows 'leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130:370:30 --fps 10,15,20 --seed 1,2,3 --out tuned'
-cut 'sed -n "/^the lowest of these/,/^run again/p"'
+cut 'sed -n "/^the lowest clocks/,/^run again/p"'
 
 figure replay
 needs data
@@ -248,7 +248,7 @@ cut 'table frames/s frames/s MHz V "missed %" "p99 ms" mW mJ/frame "ATE m" "meet
 figure story-choice
 needs data slow
 shows 'leviosim tune --profile next --data euroc/MH_01_easy_t05_t20 --clock 130:370:60 --fps 20 --ate 0.15 --out clock'
-cut 'sed -n "/^the lowest of these/,/^the lowest of all/p"'
+cut 'sed -n "/^the lowest clocks/,/^run again/p"'
 
 figure story-gate
 needs data
@@ -285,5 +285,5 @@ photo 1280x1200 report.html
 
 figure demo
 needs aha
-shows 'COLUMNS=80 leviosim demo --quiet | sed "s|file://.*/|file://…/|" | aha --black --title leviosim >demo.html'
+shows 'COLUMNS=80 LINES=24 leviosim demo --quiet | sed "s|file://.*/|file://…/|" | aha --black --title leviosim >demo.html'
 photo 680x420 demo.html

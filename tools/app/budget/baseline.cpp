@@ -113,31 +113,84 @@ StageParts stage_of(const Json& json) {
   return stage;
 }
 
-RunRecord record_of_baseline(const std::string& name, const Json& document) {
-  RunRecord run;
-  run.name = name;
-  run.facts = facts_of_json(name, document.at("facts"));
-  for (const auto& [statistic, value] : document.at("statistics").items())
+void add_figures(const Json& figures, RunRecord& run) {
+  for (const auto& [name, value] : figures.items())
     run.statistics.push_back(
-        {statistic, value.at(1).get<std::string>(), "",
+        {name, value.at(1).get<std::string>(), "",
          value.at(0).is_null() ? std::nullopt : std::optional<double>(value.at(0).get<double>())});
-  for (const Json& stage : document.at("stages")) {
-    run.cycles.push_back(stage_of(stage));
-    const auto key = stage.at("key").get<std::string>();
-    if (!key.empty())
-      run.stages.push_back({run.cycles.back().stage, key, run.cycles.back().on_controller});
-  }
-  return run;
 }
 
-}  // namespace
-
-std::string baseline_text(const RunRecord& run, const Budget* budget) {
+void expect_cycles(const RunRecord& run) {
   if (run.cycles.empty())
     throw InputError(fmt::format(
         "{}: has no {}, so a baseline of it could not say why a limit is not met; run or replay it "
         "again",
         run.name, kCyclesFile));
+}
+
+/// Without a key: what is no stage.
+StageName name_of(const StageParts& parts, const RunRecord& run) {
+  for (const StageName& stage : run.stages)
+    if (stage.name == parts.stage) return stage;
+  return {};
+}
+
+bool is_of(const StageName& stage, const std::string& statistic) {
+  return statistic.rfind("stages." + stage.key + '.', 0) == 0 ||
+         statistic.rfind("energy." + stage.key + '.', 0) == 0;
+}
+
+bool is_of_a_stage(const std::string& statistic, const RunRecord& run) {
+  return std::any_of(run.stages.begin(), run.stages.end(),
+                     [&](const StageName& stage) { return is_of(stage, statistic); });
+}
+
+RunRecord record_of_baseline(const std::string& name, const Json& document) {
+  RunRecord run;
+  run.name = name;
+  run.facts = facts_of_json(name, document.at("facts"));
+  add_figures(document.at("statistics"), run);
+  for (const Json& stage : document.at("stages")) add_baseline_stage(stage, run);
+  return run;
+}
+
+}  // namespace
+
+std::vector<BaselineFigure> baseline_figures(const RunRecord& run) {
+  const std::set<std::string> names = names_in_baseline(run, nullptr);
+  std::vector<BaselineFigure> figures;
+  for (const Statistic& s : run.statistics)
+    if (names.count(s.name) > 0 && !is_of_a_stage(s.name, run))
+      figures.push_back({s.name, s.unit, number_json(s.value)});
+  return figures;
+}
+
+std::vector<Json> baseline_stages(const RunRecord& run) {
+  expect_cycles(run);
+  const std::set<std::string> names = names_in_baseline(run, nullptr);
+  std::vector<Json> stages;
+  for (const StageParts& parts : run.cycles) {
+    const StageName name = name_of(parts, run);
+    Json stage = Json::parse(stage_lines(name, parts));
+    stage["figures"] = Json::object();
+    for (const Statistic& s : run.statistics)
+      if (names.count(s.name) > 0 && !name.key.empty() && is_of(name, s.name))
+        stage["figures"][s.name] = {number_json(s.value), s.unit};
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
+void add_baseline_stage(const Json& stage, RunRecord& run) {
+  run.cycles.push_back(stage_of(stage));
+  const auto key = stage.at("key").get<std::string>();
+  if (!key.empty())
+    run.stages.push_back({run.cycles.back().stage, key, run.cycles.back().on_controller});
+  if (stage.contains("figures")) add_figures(stage.at("figures"), run);
+}
+
+std::string baseline_text(const RunRecord& run, const Budget* budget) {
+  expect_cycles(run);
   const std::set<std::string> names = names_in_baseline(run, budget);
   std::string statistics;
   for (const Statistic& s : run.statistics)
@@ -146,12 +199,8 @@ std::string baseline_text(const RunRecord& run, const Budget* budget) {
           fmt::format("{}  {}: [{}, {}]", statistics.empty() ? "\n" : ",\n", json_text(s.name),
                       json_text(number_json(s.value)), json_text(s.unit));
   std::string stages;
-  for (const StageParts& parts : run.cycles) {
-    StageName name;  // without a key: what is no stage
-    for (const StageName& stage : run.stages)
-      if (stage.name == parts.stage) name = stage;
-    stages += (stages.empty() ? "\n" : ",\n") + stage_lines(name, parts);
-  }
+  for (const StageParts& parts : run.cycles)
+    stages += (stages.empty() ? "\n" : ",\n") + stage_lines(name_of(parts, run), parts);
   return fmt::format(
       "{{\"format\": \"{}\", \"version\": 1,\n\"facts\": {},\n\"statistics\": {{{}\n}},\n"
       "\"stages\": [{}\n]}}\n",

@@ -9,6 +9,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/nearest.h"
+#include "tools/app/budget/budget_edits.h"
 #include "tools/app/budget/figures.h"
 
 namespace leviosim::tools {
@@ -25,7 +26,11 @@ class BudgetReader {
   Budget read(const std::string& text) {
     bool any = false;
     for (const YamlEntry& entry : entries(platform::parse_yaml(budget_.file, text), "")) {
-      if (entry.key != "budgets") unknown(entry, "", {"budgets"});
+      if (entry.key == "accepted") {
+        for (const YamlNode& node : items(entry, "")) read_accepted(node);
+        continue;
+      }
+      if (entry.key != "budgets") unknown(entry, "", {"budgets", "accepted"});
       any = true;
       for (const YamlNode& node : items(entry, "")) read_section(node);
     }
@@ -90,6 +95,23 @@ class BudgetReader {
     budget_.sections.push_back(std::move(section));
   }
 
+  void read_accepted(const YamlNode& node) {
+    AcceptedMiss& miss = budget_.accepted.emplace_back();
+    for (const YamlEntry& entry : entries(node, "accepted"))
+      if (entry.key == "limit")
+        miss.limit = text(entry, "accepted");
+      else if (entry.key == "reason")
+        miss.reason = text(entry, "accepted");
+      else if (entry.key == "until")
+        miss.until = parse_day(fmt::format("{}:{}: until", budget_.file, entry.line),
+                               text(entry, "accepted"));
+      else
+        unknown(entry, "accepted", {"limit", "reason", "until"});
+    if (miss.limit.empty() || miss.reason.empty() || miss.until.empty())
+      platform::place_of(budget_.file, node.line(), "accepted")
+          .fail("expected limit, reason and until");
+  }
+
   /// A text, or a map with it.
   Limit read_limit(const YamlNode& node) const {
     const Place here = platform::place_of(budget_.file, node.line(), "limits");
@@ -98,6 +120,7 @@ class BudgetReader {
       limit = parse_limit(node.scalar(), here);
     } else {
       std::string stage;
+      std::string level = "fail";
       std::string reason;
       std::string owner;
       for (const YamlEntry& entry : entries(node, "limits")) {
@@ -105,14 +128,19 @@ class BudgetReader {
           limit = parse_limit(text(entry, "limits"), place(entry, "limits"));
         else if (entry.key == "stage")
           stage = text(entry, "limits");
+        else if (entry.key == "level")
+          level = text(entry, "limits");
         else if (entry.key == "reason")
           reason = text(entry, "limits");
         else if (entry.key == "owner")
           owner = text(entry, "limits");
         else
-          unknown(entry, "limits", {"limit", "stage", "reason", "owner"});
+          unknown(entry, "limits", {"limit", "stage", "level", "reason", "owner"});
       }
       if (limit.text.empty()) here.fail("has no 'limit'");
+      if (level != "fail" && level != "warn")
+        here.fail(fmt::format("level '{}': expected fail or warn", level));
+      limit.warns = level == "warn";
       limit.stage = stage;
       limit.reason = reason;
       limit.owner = owner;

@@ -17,9 +17,17 @@ struct BudgetSection {
   std::vector<Limit> limits;   ///< with reason and owner of the section where they have none
 };
 
+/// A limit that may be missed for a while.
+struct AcceptedMiss {
+  std::string limit;  ///< title of what is held: "EPnP RANSAC: cycles <= +3 %"
+  std::string reason;
+  std::string until;  ///< the last day, "2026-12-24"
+};
+
 struct Budget {
   std::string file;
   std::vector<BudgetSection> sections;
+  std::vector<AcceptedMiss> accepted;
   /// What every budget holds unless a limit names that verdict: none may be the worst.
   BudgetSection verdicts;
 };

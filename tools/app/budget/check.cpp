@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "platform_models/loader/yaml_entries.h"
+#include "tools/app/budget/budget_edits.h"
 #include "tools/app/budget/explanation.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/result/verdict.h"
@@ -77,9 +78,16 @@ void add_bad_verdicts(CheckResult& result, const RunRecord& run, const Budget& b
 }  // namespace
 
 std::string Finding::title() const {
-  if (!limit->stage.empty()) return stage + ": " + limit->text;
-  if (limit->figure.find('*') == std::string::npos) return limit->text;
-  return statistic + limit->text.substr(limit->figure.size());
+  const std::string end = since.empty() ? std::string() : " since " + since;
+  if (!limit->stage.empty()) return stage + ": " + limit->text + end;
+  if (limit->figure.find('*') == std::string::npos) return limit->text + end;
+  return statistic + limit->text.substr(limit->figure.size()) + end;
+}
+
+bool Finding::was_over() const {
+  if (met || !before || !value || !bound) return false;
+  const auto over = [&](double v) { return limit->bound.at_most ? v > *bound : v < *bound; };
+  return over(*before) && (limit->bound.at_most ? *value <= *before : *value >= *before);
 }
 
 std::string Finding::excess() const {
@@ -94,14 +102,20 @@ std::string Finding::excess() const {
                                    : fmt::format("{}, {:.2f} % {} {}", found,
                                                  100 * std::abs(over / *bound), side, limit_text);
   if (baseline && *baseline != 0)
-    text += fmt::format("; {:+.2f} % of the baseline's {}", 100 * (*value - *baseline) / *baseline,
-                        figure_text(*baseline, unit));
-  return text;
+    text += fmt::format("; {:+.2f} % of {} {}", 100 * (*value - *baseline) / *baseline,
+                        since.empty() ? "the baseline's" : since + "'s", figure_text(*baseline, unit));
+  if (!accepted.empty()) text += "; " + accepted;
+  return was_over() ? text + "; was over before this change" : text;
 }
 
 std::size_t CheckResult::missed() const {
   return static_cast<std::size_t>(
-      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return !f.met; }));
+      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.fails(); }));
+}
+
+std::size_t CheckResult::warned() const {
+  return static_cast<std::size_t>(std::count_if(
+      findings.begin(), findings.end(), [](const Finding& f) { return !f.met && !f.fails(); }));
 }
 
 CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline) {
@@ -117,7 +131,11 @@ CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRe
       }
     }
   add_bad_verdicts(result, run, budget);
-  if (result.missed() > 0) explain(result, run, baseline);
+  for (Finding& finding : result.findings)
+    for (const AcceptedMiss& miss : budget.accepted)
+      if (!finding.met && finding.title() == miss.limit && today() <= miss.until)
+        finding.accepted = fmt::format("accepted until {}: {}", miss.until, miss.reason);
+  if (result.missed() + result.warned() > 0) explain(result, run, baseline);
   return result;
 }
 

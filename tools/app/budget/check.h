@@ -21,12 +21,19 @@ struct Finding {
   std::optional<double> value;
   std::optional<double> bound;     ///< absent if the baseline has no value
   std::optional<double> baseline;  ///< where the bound is relative to it
+  std::string since = {};  ///< the run that it is relative to, where that is not the baseline's
+  std::optional<double> before = {};  ///< of what is not met: in the run before, where one is known
+  std::string accepted = {};  ///< why it may be missed, and until when
   bool met = false;
   std::string where;             ///< stage, fork, block; of what is not met
   std::vector<std::string> why;  ///< parts that explain it, the largest first
 
   /// What is held: "8-point RANSAC: cycles <= +3 %", with the statistic in place of a pattern.
   std::string title() const;
+  /// Whether it is not met, but no worse than in the run before.
+  bool was_over() const;
+  /// Whether it is not met and fails the check; else a warning is all that it is.
+  bool fails() const { return !met && !limit->warns && accepted.empty() && !was_over(); }
   /// By how much: "10259.8 kcycles, 5.84 % above 9693.3 kcycles".
   std::string excess() const;
 };
@@ -37,7 +44,8 @@ struct CheckResult {
   std::string baseline;  ///< empty: none
   std::vector<Finding> findings;
 
-  std::size_t missed() const;
+  std::size_t missed() const;  ///< that fail the check
+  std::size_t warned() const;  ///< that are not met, but do not
 };
 
 /// @param budget    outlives the result

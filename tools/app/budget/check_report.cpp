@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/base/printable_text.h"
@@ -49,24 +50,60 @@ std::string place(const Finding& f) {
                             : fmt::format("{}:{}", f.limit->file, f.limit->line);
 }
 
-}  // namespace
-
-std::string check_text(const CheckResult& result) {
+std::string table_of(const CheckResult& result) {
   const std::size_t limits = result.findings.size();
   const std::string count = fmt::format("{} limit{}", limits, limits == 1 ? "" : "s");
-  std::string text = fmt::format("{} against {}: {}, {} not met\n", printable(result.run),
+  std::string text = fmt::format("{} against {}: {}, {} not met", printable(result.run),
                                  printable(result.budget), count, result.missed());
+  text += result.warned() == 0 ? "\n" : fmt::format(", {} warnings\n", result.warned());
   if (!result.baseline.empty()) text += fmt::format("baseline: {}\n", printable(result.baseline));
   TextTable table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
-    table.add({f.met ? "met" : "NOT MET", shortened(f.title(), kWidest),
+    table.add({f.met ? "met" : f.fails() ? "NOT MET" : "warning", shortened(f.title(), kWidest),
                f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–", margin(f)});
-  text += table.str();
+  return text + table.str();
+}
+
+std::string misses_of(const CheckResult& result) {
+  std::string text;
   for (const Finding& f : result.findings)
     if (!f.met)
-      text += fmt::format("\nNOT MET  {}: {}\n", printable(place(f)), printable(f.title())) +
+      text += fmt::format("\n{}  {}: {}\n", f.fails() ? "NOT MET" : "warning", printable(place(f)),
+                          printable(f.title())) +
               details(f);
   return text;
+}
+
+/// The first that is not met, by how much and why.
+std::string verdict_of(const CheckResult& result) {
+  const std::size_t limits = result.findings.size();
+  const auto missed = std::find_if(result.findings.begin(), result.findings.end(),
+                                   [](const Finding& f) { return f.fails(); });
+  if (missed == result.findings.end() && result.warned() > 0)
+    return fmt::format("verdict: met: all {} limits of {}, but {} with a warning", limits,
+                       result.budget, result.warned());
+  if (missed == result.findings.end())
+    return fmt::format("verdict: met: {} of {}",
+                       limits == 1 ? "the limit" : fmt::format("all {} limits", limits),
+                       result.budget);
+  std::string text = fmt::format("verdict: NOT met: {} of {} limits, {}{}: {}", result.missed(),
+                                 limits, result.missed() > 1 ? "first " : "", missed->title(),
+                                 missed->excess());
+  return missed->why.empty() ? text : text + "; " + missed->why.front();
+}
+
+}  // namespace
+
+std::string check_text(const CheckResult& result) { return table_of(result) + misses_of(result); }
+
+Printout check_printout(const CheckResult& result, std::vector<std::string> next) {
+  return Printout({table_of(result), misses_of(result)})
+      .ending(verdict_of(result),
+              result.missed() > 0
+                  ? std::move(next)
+                  : std::vector<std::string>{fmt::format("leviosim history add {} --budget {}",
+                                                         printable(result.run),
+                                                         printable(result.budget))});
 }
 
 Json check_json(const CheckResult& result) {
@@ -78,6 +115,7 @@ Json check_json(const CheckResult& result) {
   if (!result.baseline.empty()) json["baseline"] = result.baseline;
   json["limits"] = result.findings.size();
   json["not_met"] = result.missed();
+  json["warnings"] = result.warned();
   json["findings"] = Json::array();
   for (const Finding& f : result.findings) {
     Json& entry = json["findings"].emplace_back(Json::object());
@@ -90,6 +128,13 @@ Json check_json(const CheckResult& result) {
     entry["value"] = value_of(f.value);
     entry["bound"] = value_of(f.bound);
     if (f.baseline) entry["baseline"] = *f.baseline;
+    if (!f.since.empty()) entry["since"] = f.since;
+    if (!f.met) entry["level"] = f.fails() ? "fail" : "warn";
+    if (f.was_over()) entry["was_over_before"] = true;
+    const auto shown = [&](const std::optional<double>& v) {
+      return v ? Json(figure_text(*v, f.unit, f.limit->bound)) : Json(nullptr);
+    };
+    entry["shown"] = {{"value", shown(f.value)}, {"bound", shown(f.bound)}};
     entry["met"] = f.met;
     if (!f.limit->reason.empty()) entry["reason"] = f.limit->reason;
     if (!f.limit->owner.empty()) entry["owner"] = f.limit->owner;

@@ -5,7 +5,11 @@
 
 #include "sim/base/printable_text.h"
 #include "sim/base/sha256.h"
+#include "tools/app/budget/figures.h"
+#include "tools/app/comparison/comparison_report.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/report/text_table.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -36,7 +40,10 @@ std::string xml(const std::string& raw) {
 std::string test_case(const Finding& f) {
   const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"",
                                        xml(f.section->name), xml(f.title()));
-  if (f.met) return head + "/>\n";
+  if (!f.fails())
+    return f.met ? head + "/>\n"
+                 : fmt::format("{}>\n      <system-out>warning: {}</system-out>\n    </testcase>\n",
+                               head, xml(f.excess()));
   std::string body;
   body += xml(fmt::format("{}:{}", f.limit->file, f.limit->line)) + '\n';
   if (!f.where.empty()) body += "where: " + xml(f.where) + '\n';
@@ -49,6 +56,20 @@ std::string test_case(const Finding& f) {
       head, xml(f.excess()), body);
 }
 
+/// Text from outside, in which no character means something to Markdown or HTML.
+std::string markdown(const std::string& raw) {
+  std::string text;
+  for (const char c : printable(raw)) {
+    if (c == '<')
+      text += "&lt;";
+    else if (std::string_view("\\`*_[]#|>").find(c) != std::string_view::npos)
+      text += {'\\', c};
+    else
+      text += c;
+  }
+  return text;
+}
+
 /// Findings stand in the order of the sections.
 template <class F>
 void for_each_section(const CheckResult& result, F&& f) {
@@ -59,7 +80,7 @@ void for_each_section(const CheckResult& result, F&& f) {
     for (; end < result.findings.size() &&
            result.findings[end].section == result.findings[begin].section;
          ++end) {
-      if (!result.findings[end].met) ++missed;
+      if (result.findings[end].fails()) ++missed;
       cases += test_case(result.findings[end]);
     }
     f(*result.findings[begin].section, end - begin, missed, cases);
@@ -95,6 +116,37 @@ std::string junit_xml(const CheckResult& result) {
       result.findings.size(), result.missed(), suites);
 }
 
+std::string markdown_comment(const CheckResult& result, const RunRecord& run,
+                             const RunRecord* baseline) {
+  std::string text = fmt::format("### leviosim: {}\n\n", result.missed() == 0
+                                     ? result.warned() == 0 ? "all limits are met"
+                                                            : "met, with warnings"
+                                     : fmt::format("{} of {} limits are not met", result.missed(),
+                                                   result.findings.size()));
+  for (const RunVerdict& verdict : verdicts(run).list)
+    text += fmt::format("- **{}**: {}{}\n", verdict.about, markdown(std::string(verdict.word())),
+                        verdict.reason().empty() ? "" : ": " + markdown(verdict.reason()));
+  for (const Finding& f : result.findings) {
+    if (f.met) continue;
+    text += fmt::format("\n**{} {}**: {}\n", f.fails() ? "✗" : "⚠", markdown(f.title()),
+                        markdown(f.excess()));
+    if (!f.where.empty()) text += fmt::format("- where: {}\n", markdown(f.where));
+    for (const std::string& why : f.why) text += fmt::format("- why: {}\n", markdown(why));
+    if (!f.limit->owner.empty()) text += fmt::format("- owner: {}\n", markdown(f.limit->owner));
+  }
+  if (baseline != nullptr)
+    text += fmt::format("\n<details><summary>What moved against {}</summary>\n\n{}\n</details>\n",
+                        markdown(baseline->name),
+                        comparison_report(compare_runs(*baseline, run), ReportFormat::markdown));
+  TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"bound"}});
+  for (const Finding& f : result.findings)
+    table.add({f.met ? "met" : f.fails() ? "**not met**" : "warning", f.title(),
+               f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–",
+               f.bound ? figure_text(*f.bound, f.unit, f.limit->bound) : "–"});
+  return text + fmt::format("\n<details><summary>All {} limits</summary>\n\n{}\n</details>\n",
+                            result.findings.size(), table.markdown());
+}
+
 std::string github_annotations(const CheckResult& result) {
   const auto escaped = [](const std::string& text, bool property) {
     std::string out;
@@ -108,7 +160,7 @@ std::string github_annotations(const CheckResult& result) {
   std::string text;
   for (const Finding& f : result.findings)
     if (!f.met)
-      text += fmt::format("::error file={},line={},title={}::{}\n",
+      text += fmt::format("::{} file={},line={},title={}::{}\n", f.fails() ? "error" : "warning",
                           escaped(printable(f.limit->file), true), f.limit->line,
                           escaped(printable(f.title()), true), escaped(message(f), false));
   return text;
@@ -126,7 +178,7 @@ std::string gitlab_report(const CheckResult& result) {
     entry["check_name"] = "leviosim budget";
     // Of the limit, not of what was found: the same fault of two commits is the same one.
     entry["fingerprint"] = base::sha256_of(f.section->name + '\n' + f.title());
-    entry["severity"] = "major";
+    entry["severity"] = f.fails() ? "major" : "info";
     entry["location"]["path"] = f.limit->file;
     entry["location"]["lines"]["begin"] = f.limit->line;
   }

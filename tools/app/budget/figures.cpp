@@ -35,7 +35,8 @@ constexpr std::array kOfTheRun{
     FigurePhrase{"energy per frame", "energy.frame", "mJ"},
     FigurePhrase{"mean power", "energy.mean_power", "mW"},
     FigurePhrase{"ATE", "accuracy.ate.rmse", "m"},
-    FigurePhrase{"rotation error", "accuracy.rotation.rmse", "deg"},
+    FigurePhrase{"tilt error", "accuracy.tilt.rmse", "deg"},
+    FigurePhrase{"heading error", "accuracy.heading.rmse", "deg"},
     FigurePhrase{"completion", "accuracy.completion", "1"},
     FigurePhrase{"time verdict", "verdict.time", "time verdict"},
     FigurePhrase{"memory verdict", "verdict.memory", "memory verdict"},
@@ -215,6 +216,9 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
                             limit.text, statistic_unit));
   for (const Unit& unit : known->units)
     if (unit.name == bound.unit) return bound.number * unit.factor / known->factor;
+  if (bound.unit == "%")
+    fail(limit, fmt::format("'{}': per cent of what? With a sign, {} +{:g} %, it is of the baseline",
+                            limit.text, bound.at_most ? "<=" : ">=", bound.number));
   std::vector<std::string> names;
   for (const Unit& unit : known->units) names.emplace_back(unit.name.empty() ? "none" : unit.name);
   fail(limit, fmt::format(

@@ -63,11 +63,11 @@ std::string first_budget(const RunRecord& run, double margin) {
   return text;
 }
 
-double parse_margin(const std::string& text) {
+double parse_share(const std::string& option, const std::string& text) {
   const auto measure = platform::split_measure(text);
   if (!measure || measure->unit != "%" || !(measure->number >= 0 && measure->number <= 1000))
     throw InputError(
-        fmt::format("--margin '{}': expected a share from 0 to 1000 %, such as 5 %", text));
+        fmt::format("{} '{}': expected a share from 0 to 1000 %, such as 5 %", option, text));
   return measure->number;
 }
 

@@ -8,7 +8,6 @@
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/check_report.h"
 #include "tools/app/cli/limit_not_met.h"
-#include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
 namespace {
@@ -45,9 +44,13 @@ Gate::Gate(const GateOptions& options, const RecordOptions& chip)
   if (!options.baseline.empty()) baseline_ = read_any(options.baseline, chip);
 }
 
+void Gate::use_baseline(RunRecord baseline) {
+  if (!baseline_) baseline_ = std::move(baseline);
+}
+
 CheckResult Gate::check(const RunRecord& run) const {
   if (baseline_) check_comparable(*baseline_, run, allowed_);
-  return check_budget(run, budget_, baseline_ ? &*baseline_ : nullptr);
+  return check_budget(run, budget_, this->baseline());
 }
 
 std::optional<Gate> optional_gate(const GateOptions& options, const RecordOptions& chip) {
@@ -58,7 +61,7 @@ std::optional<Gate> optional_gate(const GateOptions& options, const RecordOption
 }
 
 void print_check(const CheckResult& result) {
-  print_result("\n{}", check_text(result));
+  print(check_printout(result, {}));
   if (result.missed() > 0) throw LimitNotMet();
 }
 

@@ -30,6 +30,12 @@ class Gate {
   /// @throws InputError for what is no baseline, or names another run
   Gate(const GateOptions& options, const RecordOptions& chip);
 
+  /// A baseline where none was named; one that was named stays.
+  void use_baseline(RunRecord baseline);
+  const Budget& budget() const { return budget_; }
+  /// Null if there is none.
+  const RunRecord* baseline() const { return baseline_ ? &*baseline_ : nullptr; }
+
   /// @throws InputError as check_comparable() and check_budget()
   CheckResult check(const RunRecord& run) const;
 

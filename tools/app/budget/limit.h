@@ -22,6 +22,7 @@ struct Limit {
   std::string stage;   ///< pattern of names of stages; empty: none
   std::string figure;  ///< a phrase of figures.h, or a pattern of names of statistics
   Bound bound;
+  bool warns = false;  ///< is a warning if it is not met
   std::string reason;
   std::string owner;
   std::string file;

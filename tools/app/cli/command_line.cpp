@@ -124,22 +124,29 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands, const 
   app.allow_extras();
   // One command: after it, a folder may be called "run".
   app.require_subcommand(0, 1);
-  for (const Command& command : commands) command.app->allow_extras();
+  for (const Command& command : commands) {
+    command.app->allow_extras();
+    if (command.app->get_option_no_throw("--all") == nullptr)
+      command.app->add_flag("--all", "print all lines, instead of a screen of them");
+  }
   try {
     app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front
   } catch (const CLI::Success& help_or_version) {
     std::ostringstream text;
     const int status = app.exit(help_or_version, text, text);
-    print_result_text(text.str());
+    print_piece(ScreenPiece::Kind::document, text.str());
     return status;
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
   for (const Command& command : commands) {
     if (!app.got_subcommand(command.app)) continue;
-    const Words unknown = command.app->remaining();
+    Words unknown = command.app->remaining();
+    std::erase(unknown, "--");  // what stands behind it was taken
     if (!unknown.empty())
       fail_unknown(command.app->get_name() + ": ", first_fault(unknown), options_of(*command.app));
+    if (command.app->count("--all") > 0) show_all_results();
+    fit_tables();
     command.run();
     return 0;
   }

@@ -4,7 +4,6 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
 namespace {
@@ -30,8 +29,7 @@ void publish(outputs::OutputFolder& out, const Printout& report, const std::func
     is_written = true;
     return elsewhere;
   });
-  print(report);
-  if (is_written && !report.is_whole) print_result("{}: {}\n", label, printable(out.shown_path()));
+  print(report, is_written ? std::vector<ShownPath>{{label, out.shown_path()}} : std::vector<ShownPath>());
   if (fault) throw InputError(*fault);
 }
 
@@ -48,9 +46,9 @@ void expect_different(const std::optional<outputs::OutputFile>& first, const cha
 }
 
 void publish(std::initializer_list<FileOutput> files, const Printout& report) {
-  std::string lines;
   std::optional<std::string> first_fault;
   throw_if_interrupted();
+  std::vector<ShownPath> places;
   for (const FileOutput& output : files) {
     if (!output.file) continue;
     bool is_written = false;
@@ -59,12 +57,11 @@ void publish(std::initializer_list<FileOutput> files, const Printout& report) {
       is_written = true;
       return elsewhere;
     });
-    if (is_written && !output.label.empty() && !report.is_whole)
-      lines += fmt::format("{}: {}\n", output.label, printable(output.file->shown_path()));
+    if (is_written && !output.label.empty())
+      places.push_back({output.label, output.file->shown_path()});
     if (fault && !first_fault) first_fault = fault;
   }
-  print(report);
-  print_result_text(lines);
+  print(report, places);
   if (first_fault) throw InputError(*first_fault);
 }
 

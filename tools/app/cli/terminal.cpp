@@ -3,22 +3,24 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
-#include <string>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
+#include "sim/base/printable_text.h"
 
 namespace leviosim::tools {
 namespace {
-
-constexpr int kWidthByDefault = 80;
 
 struct Colour {
   std::string_view beginning;  ///< of the lines that have it
@@ -29,6 +31,7 @@ constexpr std::string_view kPlain = "\x1b[0m";
 /// The first that fits is taken.
 constexpr std::array kColours{Colour{"verdict: fits: ", "\x1b[32m"},
                               Colour{"verdict: map good", "\x1b[32m"},
+                              Colour{"verdict: met: ", "\x1b[32m"},
                               Colour{"verdict: fits on average", "\x1b[33m"},
                               Colour{"verdict: map unreliable", "\x1b[33m"},
                               Colour{"verdict: ", "\x1b[31m"},
@@ -50,31 +53,55 @@ bool stdout_has_colours() {
       fmt::format("stdout: cannot be written: {}", std::generic_category().message(error)));
 }
 
-void write(std::string_view text) {
+void write(const ScreenPiece& piece) {
+  const bool is_ours = piece.kind == ScreenPiece::Kind::commands;
+  std::string text = is_ours ? piece.text : printable_lines(piece.text);
+  if (!is_ours && stdout_has_colours()) text = coloured_lines(text);
   if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size()) fail(errno);
+}
+
+/// What the environment says, if it is a whole number.
+std::optional<int> number_in(const char* name) {
+  const std::string_view text = variable(name);
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || number < 0) return std::nullopt;
+  return number;
+}
+
+/// Columns of the terminal, where stdout is one or the environment says.
+std::optional<int> terminal_width() {
+  if (const auto columns = number_in("COLUMNS").value_or(0); columns > 0) return columns;
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  if (::isatty(STDOUT_FILENO) == 1) return kScreenColumns;
+  return std::nullopt;
+}
+
+struct Results {
+  std::vector<ScreenPiece> pieces;
+  bool all = false;
+
+  int lines() const { return all ? 0 : number_in("LINES").value_or(kScreenLines); }
+};
+Results& results() {
+  static Results all;
+  return all;
 }
 
 }  // namespace
 
-void print_ci_commands(std::string_view lines) { write(lines); }
-
-void print_result_text(std::string_view text) {
-  const std::string safe = printable_lines(text);
-  write(stdout_has_colours() ? coloured_lines(safe) : safe);
+void print_piece(ScreenPiece::Kind kind, std::string text) {
+  if (!text.empty()) results().pieces.push_back({kind, std::move(text)});
 }
 
-std::optional<int> terminal_width() {
-  const std::string_view asked = variable("COLUMNS");
-  int columns = 0;
-  std::from_chars(asked.data(), asked.data() + asked.size(), columns);
-  if (columns > 0) return columns;
-  winsize size{};
-  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
-  if (::isatty(STDOUT_FILENO) == 1) return kWidthByDefault;
-  return std::nullopt;
-}
+void show_all_results() { results().all = true; }
 
-int output_width() { return terminal_width().value_or(kWidthByDefault); }
+int output_width() { return terminal_width().value_or(kScreenColumns); }
+
+void fit_tables() {
+  set_table_width(terminal_width().value_or(results().lines() == 0 ? kAnyWidth : kScreenColumns));
+}
 
 std::string coloured_lines(std::string_view text) {
   std::string coloured;
@@ -95,6 +122,10 @@ std::string coloured_lines(std::string_view text) {
 }
 
 void flush_results() {
+  const int lines = results().lines();
+  for (const ScreenPiece& piece :
+       on_screen(std::exchange(results().pieces, {}), lines, output_width()))
+    write(piece);
   if (std::fflush(stdout) != 0) fail(errno);
   if (std::ferror(stdout) != 0) fail(EIO);  // of an earlier write
 }

@@ -11,28 +11,22 @@
 namespace leviosim::tools {
 namespace {
 
-struct Figure {
-  const char* statistic;
-  const char* name;
-  const char* unit;
-  double scale;  ///< from the statistic's unit
-};
 constexpr std::array kFigures{
-    Figure{"frame.time.mean", "frame time, mean", "ms", 1e-6},
-    Figure{"frame.time.p99", "frame time, 99 %", "ms", 1e-6},
-    Figure{"frame.time.worst", "frame time, worst", "ms", 1e-6},
-    Figure{"frame.sustainable_rate", "sustainable rate", "frames/s", 1},
-    Figure{"frame.missed_share", "frames that missed", "%", 100},
-    Figure{"frame.latency.p99", "latency, 99 %", "ms", 1e-6},
-    Figure{"frame.latency.worst", "latency, worst", "ms", 1e-6},
-    Figure{"frame.cycles.single.mean", "frame on one core", "kcycles", 1e-3},
-    Figure{"frame.cycles.parallel.mean", "frame on N cores", "kcycles", 1e-3},
-    Figure{"run.cluster_clock", "clock of the cluster", "MHz", 1e-6},
-    Figure{"memory.l1.peak", "L1 peak", "kB", 1e-3},
-    Figure{"memory.l2.peak", "L2 peak", "kB", 1e-3},
-    Figure{"energy.frame", "energy of a frame", "mJ", 1},
-    Figure{"energy.mean_power", "mean power", "mW", 1},
-    Figure{"accuracy.ate.rmse", "ATE (RMSE)", "m", 1},
+    QuantityOfRuns{"frame.time.mean", "frame time, mean", "ms", 1e-6},
+    QuantityOfRuns{"frame.time.p99", "frame time, 99 %", "ms", 1e-6},
+    QuantityOfRuns{"frame.time.worst", "frame time, worst", "ms", 1e-6},
+    QuantityOfRuns{"frame.sustainable_rate", "sustainable rate", "frames/s", 1},
+    QuantityOfRuns{"frame.missed_share", "frames that missed", "%", 100},
+    QuantityOfRuns{"frame.latency.p99", "latency, 99 %", "ms", 1e-6},
+    QuantityOfRuns{"frame.latency.worst", "latency, worst", "ms", 1e-6},
+    QuantityOfRuns{"frame.cycles.single.mean", "frame on one core", "kcycles", 1e-3},
+    QuantityOfRuns{"frame.cycles.parallel.mean", "frame on N cores", "kcycles", 1e-3},
+    QuantityOfRuns{"run.cluster_clock", "clock of the cluster", "MHz", 1e-6},
+    QuantityOfRuns{"memory.l1.peak", "L1 peak", "kB", 1e-3},
+    QuantityOfRuns{"memory.l2.peak", "L2 peak", "kB", 1e-3},
+    QuantityOfRuns{"energy.frame", "energy of a frame", "mJ", 1},
+    QuantityOfRuns{"energy.mean_power", "mean power", "mW", 1},
+    QuantityOfRuns{"accuracy.ate.rmse", "ATE (RMSE)", "m", 1},
 };
 
 std::optional<double> scaled(std::optional<double> value, double scale) {
@@ -52,7 +46,7 @@ class Comparer {
   std::vector<ComparedQuantity> figures() const {
     std::vector<ComparedQuantity> list;
     const bool has_camera = a_.value("camera.arrived") || b_.value("camera.arrived");
-    for (const Figure& f : kFigures) {
+    for (const QuantityOfRuns& f : kFigures) {
       // Where no camera runs, frames queue as long as the flight is.
       if (!has_camera && std::string_view(f.statistic).starts_with("frame.latency.")) continue;
       ComparedQuantity q = of(f.name, f.unit, f.statistic, f.scale);
@@ -227,6 +221,8 @@ void collect_leaves(const ComparedQuantity& q, const std::string& prefix,
 }
 
 }  // namespace
+
+std::span<const QuantityOfRuns> quantities_of_runs() { return kFigures; }
 
 std::optional<double> ComparedQuantity::difference() const {
   if (!a || !b) return std::nullopt;

@@ -7,12 +7,22 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {
+
+/// A figure of a run as a whole, by which runs are compared.
+struct QuantityOfRuns {
+  const char* statistic;
+  const char* name;
+  const char* unit;
+  double scale;  ///< from the statistic's unit
+};
+std::span<const QuantityOfRuns> quantities_of_runs();
 
 struct ComparedQuantity {
   std::string name;

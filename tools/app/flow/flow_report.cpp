@@ -95,14 +95,27 @@ std::string flow_summary(const FlowRun& flow) {
   return text;
 }
 
-std::string flow_report(const FlowRun& flow) {
+std::vector<std::string> flow_report(const FlowRun& flow) {
   const RunResult timed = at_rate(flow.run, rate_of(flow));
-  std::string text;
+  std::string others;
   for (const std::string& lines :
-       {stage_table(timed), breakdown_table(timed), frame_rate_table(flow), memory_table(timed),
-        energy_table(timed), power_table(timed), published_table(flow), flow_summary(flow)})
-    if (!lines.empty()) text += lines + '\n';
-  return text + host_line(flow.run);
+       {breakdown_table(timed), memory_table(timed), energy_table(timed), power_table(timed),
+        flow_summary(flow)})
+    if (!lines.empty()) others += lines + '\n';
+  std::vector<std::string> parts{stage_table(timed) + '\n', frame_rate_table(flow) + '\n'};
+  if (const std::string published = published_table(flow); !published.empty())
+    parts.push_back(published + '\n');
+  parts.push_back(others + host_line(flow.run));
+  return parts;
+}
+
+std::string flow_conclusion(const FlowRun& flow) {
+  const std::optional<FlowCycles> cycles = flow_cycles(flow.run);
+  if (!cycles || cycles->parallel == 0) return "verdict: no frames";
+  const double most = static_cast<double>(flow.run.cluster_clock.count()) / cycles->parallel;
+  const bool keeps_up = most >= rate_of(flow);
+  return fmt::format("verdict: {}: {} cores could do {:.0f} frames/s, the camera sends {:.0f}",
+                     keeps_up ? "fits" : "too slow", flow.run.cores, most, rate_of(flow));
 }
 
 std::string flow_csv(const FlowRun& flow) {

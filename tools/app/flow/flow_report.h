@@ -27,8 +27,11 @@ std::string published_table(const FlowRun& flow);
 /// How many frames have a flow, and how large it is.
 std::string flow_summary(const FlowRun& flow);
 
-/// All that is printed, with the tables that all workloads share.
-std::string flow_report(const FlowRun& flow);
+/// All that is printed, with the tables that all workloads share, as parts of a screen.
+std::vector<std::string> flow_report(const FlowRun& flow);
+
+/// Whether the chip keeps up with the camera, in a sentence.
+std::string flow_conclusion(const FlowRun& flow);
 
 /// A row per frame.
 std::string flow_csv(const FlowRun& flow);

@@ -20,7 +20,7 @@ std::string_view part(std::string_view name) {
 std::string scripts() {
   std::string text;
   for (const char* name : {"dom", "table", "charting", "figures", "frames", "stages", "memory",
-                           "energy", "trajectory", "runs", "compare", "check", "study", "main"})
+                           "energy", "trajectory", "runs", "compare", "check", "study", "history", "main"})
     text += part(name);
   return text;
 }

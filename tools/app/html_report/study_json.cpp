@@ -55,7 +55,9 @@ Json study_report(const StudyPage& page) {
   if (page.curves && known(page.curves->x) &&
       (page.curves->series.empty() || known(page.curves->series)))
     study["curves"] = {
-        {"x", page.curves->x}, {"series", page.curves->series}, {"y", page.curves->y}};
+        {"x", page.curves->x},       {"series", page.curves->series},
+        {"y", page.curves->y},       {"hint", page.curves->hint},
+        {"fromZero", page.curves->from_zero}};
   if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
   return data;
 }

@@ -25,6 +25,8 @@ struct StudyCurves {
   std::string x;
   std::string series;  ///< empty: one line
   std::vector<std::string> y;
+  std::string hint = {};   ///< in place of one about medians
+  bool from_zero = true;  ///< where the axes of the figures begin
 };
 
 /// A bar for each row.

@@ -84,8 +84,7 @@ std::string relative_text(const Evaluation& evaluation, const std::vector<Relati
   return text;
 }
 
-void add_ate(StatisticList& list, const Evaluation& evaluation,
-             const std::optional<traces::AttitudeErrors>& attitude) {
+void add_ate(StatisticList& list, const Evaluation& evaluation) {
   const auto add = [&](const char* name, const char* unit, const char* description, Json value) {
     list.add_with_protocol(std::string("accuracy.") + name, unit, description, std::move(value),
                            evaluation.protocol);
@@ -95,14 +94,11 @@ void add_ate(StatisticList& list, const Evaluation& evaluation,
   add("ate.mean", "m", "absolute trajectory error, mean", rounded(t.mean));
   add("ate.median", "m", "absolute trajectory error, median", rounded(t.median));
   add("ate.worst", "m", "absolute trajectory error, worst", rounded(t.max));
-  if (attitude) {
+  if (const auto attitude = attitude_errors(evaluation)) {
     add("tilt.rmse", "deg", "of the vertical, attitudes best aligned, root mean square",
         rounded(attitude->tilt_rmse_deg));
     add("heading.rmse", "deg", "about the vertical, attitudes best aligned, root mean square",
         rounded(attitude->heading_rmse_deg));
-  } else {
-    add("rotation.rmse", "deg", "rotation error after alignment, root mean square",
-        rounded(evaluation.rotation_rmse_deg));
   }
   add("matched", "1", "poses matched with the ground truth", evaluation.matched);
   add("completion", "1", "how much of the flight has an estimate", rounded(evaluation.completion));

@@ -162,7 +162,7 @@ std::string stage_lines(const RunResult& run, int rows, int width) {
 std::string verdict(const RunResult& run) { return "verdict: " + verdicts(figures_of(run)).text(); }
 
 std::string run_summary(const std::string& heading, const RunResult& run, int width,
-                        const std::string& remarks) {
+                        int others) {
   std::vector<std::string> below;
   if (run.timed)
     below = {frame_time_line(run), latency_line(run), memory_line(run), energy_line(run)};
@@ -177,11 +177,11 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
   end += "more: --tables all, or some of them\n";
   std::string text = wrapped(heading, width) + '\n';
   text += wrapped(verdict(run), width);
-  if (!run.timed) return text + remarks + end;
-  constexpr int kTitleRuleAndFolder = 3;
+  if (!run.timed) return text + end;
+  constexpr int kTitleRuleFolderAndNext = 4;
   const auto lines = std::count(text.begin(), text.end(), '\n') +
-                     std::count(end.begin(), end.end(), '\n') + kTitleRuleAndFolder;
-  return text + remarks + stage_lines(run, kSummaryLines - static_cast<int>(lines), width) + end;
+                     std::count(end.begin(), end.end(), '\n') + kTitleRuleFolderAndNext + others;
+  return text + stage_lines(run, kScreenLines - static_cast<int>(lines), width) + end;
 }
 
 }  // namespace leviosim::tools

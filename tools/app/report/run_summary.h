@@ -9,18 +9,15 @@
 
 namespace leviosim::tools {
 
-/// Lines that the summary of a run has at most, with the one that names its folder, which is added
-/// where results are put in place.
-inline constexpr int kSummaryLines = 24;
-
 /// "verdict: fits: …": the three verdicts (result/verdict.h). One line, without its end.
 std::string verdict(const RunResult& run);
 
-/// At most kSummaryLines - 1 lines of `width` columns, where these are 80 or more. Of stages for
-/// which there is no line, those with the least cycles are left out.
+/// At most kScreenLines lines of `width` columns, where these are 80 or more, with those that are
+/// added: where results are, and what to do next. Of stages for which there is no line, those with
+/// the least cycles are left out.
 /// @param heading  one line, without its end
-/// @param remarks  lines that stand above the stages, beyond that number
+/// @param others   lines of the screen that others take
 std::string run_summary(const std::string& heading, const RunResult& run, int width,
-                        const std::string& remarks = {});
+                        int others = 0);
 
 }  // namespace leviosim::tools

@@ -17,32 +17,9 @@ constexpr std::string_view kMore = " …";
 /// What is left of a column of text that is cut.
 constexpr int kLeastText = 20;
 
-int default_width = kAnyWidth;
-
 std::string blanks(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
 
 }  // namespace
-
-int table_width() { return default_width; }
-
-void set_table_width(int columns) { default_width = columns; }
-
-int display_width(std::string_view text) {
-  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; };
-  return static_cast<int>(text.size()) -
-         static_cast<int>(std::count_if(text.begin(), text.end(), continues));
-}
-
-std::string shortened(const std::string& text, int width) {
-  if (display_width(text) <= width) return text;
-  std::string shorter;
-  for (const char c : text) {
-    const bool begins = (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
-    if (begins && display_width(shorter) >= width - 1) break;
-    shorter += c;
-  }
-  return shorter + "…";
-}
 
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {
   for (Column& column : columns_) column.title = printable(column.title);
@@ -140,25 +117,6 @@ std::string TextTable::str(int width) const {
   for (int i = 0; i < total; ++i) text += "─";
   text += '\n';
   for (const auto& row : rows_) text += line(row, widths);
-  return text;
-}
-
-std::string wrap(const std::vector<std::string>& items, std::string_view separator, int indent,
-                 int width) {
-  std::string text;
-  int used = indent;
-  for (const std::string& item : items) {
-    const bool first = text.empty();
-    const int needed = display_width(item) + (first ? 0 : display_width(separator));
-    if (!first && used + needed > width) {
-      text += '\n' + blanks(indent);
-      used = indent + display_width(item);
-    } else {
-      if (!first) text += separator;
-      used += needed;
-    }
-    text += item;
-  }
   return text;
 }
 

@@ -1,26 +1,12 @@
 // Text in aligned columns for terminals.
 #pragma once
 
-#include <limits>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "tools/app/cli/screen.h"
+
 namespace leviosim::tools {
-
-/// Of text that may be as wide as it likes.
-inline constexpr int kAnyWidth = std::numeric_limits<int>::max();
-
-/// Columns that tables may take where no width is asked for: any, until the program says what its
-/// terminal has. Files and pipes so get all columns.
-int table_width();
-void set_table_width(int columns);
-
-/// Columns that text takes on a terminal: code points of UTF-8.
-int display_width(std::string_view text);
-
-/// Cut to so many columns, with "…" at the end.
-std::string shortened(const std::string& text, int width);
 
 class TextTable {
  public:
@@ -54,11 +40,6 @@ class TextTable {
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
-
-/// `items` joined by `separator`. Where a line would exceed `width` columns, a line break and
-/// `indent` blanks stand in its place; the first line is taken to begin at column `indent`.
-std::string wrap(const std::vector<std::string>& items, std::string_view separator, int indent,
-                 int width);
 
 inline constexpr auto kLeft = TextTable::Align::Left;
 inline constexpr auto kRight = TextTable::Align::Right;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/base/error.h"
+#include "sim/base/printable_text.h"
 #include "sim/base/nearest.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/report/run_summary.h"
@@ -18,6 +19,8 @@ namespace leviosim::tools {
 namespace {
 
 constexpr const char* kAll = "all";
+/// Lines of remarks for which stages make room.
+constexpr int kMostRemarks = 8;
 
 /// The names in "latency,memory"; none for all.
 std::vector<std::string> parse_tables(const std::string& text) {
@@ -61,8 +64,15 @@ Printout run_printout(const RunOptions& options, const RunResult& run, const std
     const std::string title = heading(options, run);
     const int width = output_width();
     if (!options.tables.empty())
-      return title + remarks + report(run, parse_tables(options.tables), width);
-    return run_summary(title.substr(0, title.find('\n')), run, width, remarks);
+      return Printout(title + remarks + report(run, parse_tables(options.tables), width), false);
+    const auto lines_of_remarks = std::count(remarks.begin(), remarks.end(), '\n');
+    const int others = static_cast<int>(std::min<std::ptrdiff_t>(lines_of_remarks, kMostRemarks));
+    const std::string summary =
+        run_summary(title.substr(0, title.find('\n')), run, width, others);
+    return Printout({summary, remarks})
+        .ending("", {fmt::format("leviosim {} {}", options.record ? "whatif" : "report",
+                                 printable(options.out)) +
+                     (options.record ? "" : " --out report.html")});
   };
   return printout(options.json, lines, [&] { return statistics_text(run); });
 }

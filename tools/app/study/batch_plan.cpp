@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/base/error.h"
+#include "sim/base/printable_text.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"
@@ -176,6 +177,11 @@ Json batch_manifest(const BatchPlan& plan, const Words& command_line) {
                                      {"path_m", rounded(s.path_m)},
                                      {"inputs_sha256", s.inputs}});
   return document;
+}
+
+std::vector<std::string> after_batch(const BatchPlan& plan) {
+  return {fmt::format("leviosim run --profile {} --data {} --record --out mine",
+                      plan.profiles.front(), printable(plan.sequences.front().folder))};
 }
 
 std::string measure_text(const Measure& how) {

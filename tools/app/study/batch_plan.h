@@ -78,6 +78,9 @@ Json study_manifest(const std::string& format, const Words& command_line);
 /// The content of manifest.json. Nothing in it depends on the host or on cache hits.
 Json batch_manifest(const BatchPlan& plan, const Words& command_line);
 
+/// A command line to try next: the first of the sequences on a chip.
+std::vector<std::string> after_batch(const BatchPlan& plan);
+
 /// "SE3-aligned, relative errors over 40 m, …": how the errors of the plan are formed.
 std::string measure_text(const Measure& how);
 

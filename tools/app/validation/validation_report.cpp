@@ -217,16 +217,34 @@ std::string band_table(const Validation& validation, int cores) {
       table.str(), in_weighed, validation.bands.size(), in_run);
 }
 
-std::string validation_report(const Validation& validation, int cores) {
+std::vector<std::string> validation_report(const Validation& validation, int cores) {
+  return {compute_table(validation, cores) + '\n',
+          reference_table(validation) + '\n',
+          input_table(validation) + '\n',
+          distribution_table(validation),
+          normalised_table(validation, cores) + '\n',
+          path_table(validation, cores) + '\n',
+          band_table(validation, cores)};
+}
+
+bool is_worse(const Validation& validation) {
+  return std::any_of(validation.comparisons.begin(), validation.comparisons.end(),
+                     [](const Comparison& c) { return c.verdict == Verdict::Worse; });
+}
+
+std::string validation_conclusion(const Validation& validation) {
   const auto within = std::count_if(
       validation.comparisons.begin(), validation.comparisons.end(), [](const Comparison& c) {
         return c.value && std::abs(*c.error()) <= c.reference.tolerance.value;
       });
-  return fmt::format("{}\n{}\n{}\n{}{}\n{}\n{}{} of {} references within their tolerance\n",
-                     compute_table(validation, cores), reference_table(validation),
-                     input_table(validation), distribution_table(validation),
-                     normalised_table(validation, cores), path_table(validation, cores),
-                     band_table(validation, cores), within, validation.comparisons.size());
+  std::string text = fmt::format("{} of {} references within their tolerance", within,
+                                 validation.comparisons.size());
+  if (!is_worse(validation)) return "verdict: met: " + text + ", no other worse than its guard";
+  for (const Comparison& c : validation.comparisons)
+    if (c.verdict == Verdict::Worse)
+      return fmt::format("verdict: NOT met: {}; first of those that are too far off: {}, {}", text,
+                         c.reference.name, error_text(c));
+  return text;
 }
 
 }  // namespace leviosim::tools

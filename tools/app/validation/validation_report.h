@@ -20,6 +20,12 @@ std::string normalised_table(const Validation& validation, int cores);
 /// The paper's table of cycles beside the bands of the run; empty if it has none.
 std::string band_table(const Validation& validation, int cores);
 
-std::string validation_report(const Validation& validation, int cores);
+/// All of them, as parts of a screen.
+std::vector<std::string> validation_report(const Validation& validation, int cores);
+
+/// Whether a figure is outside its tolerance, or the guard of what was missed before; and in a
+/// sentence how many are not.
+bool is_worse(const Validation& validation);
+std::string validation_conclusion(const Validation& validation);
 
 }  // namespace leviosim::tools

@@ -1,8 +1,9 @@
 // What a budget says of the run: each limit, and of those that are not met where and why.
 
 function checkSection(check) {
-  const status = (met) =>
-      element('span', {class: met ? 'status-good' : 'status-bad'}, met ? '✓ met' : '✗ not met');
+  const status = (word) => element(
+      'span', {class: word === 'not met' ? 'status-bad' : 'status-good'},
+      {'met': '✓ met', 'warning': '! warning', 'not met': '✗ not met'}[word]);
   const margin = (finding) => {
     if (finding.value === null || !finding.bound) return null;
     const atMost = !finding.limit.includes('>=');
@@ -10,15 +11,15 @@ function checkSection(check) {
         Math.abs(finding.bound);
   };
   const columns = [
-    {title: '', text: true, node: (met) => status(met === 'met')},
+    {title: '', text: true, node: status},
     {title: 'limit', text: true, wrap: true}, {title: 'stage', text: true},
-    {title: 'margin, %', node: (value) => signed(value)}, {title: 'found', digits: 5},
-    {title: 'bound', digits: 5}, {title: 'unit', text: true}, {title: 'statistic', text: true}
+    {title: 'margin, %', node: (value) => signed(value)}, {title: 'found'}, {title: 'bound'},
+    {title: 'statistic', text: true}
   ];
   const rows = check.findings.map(
       (f) =>
-          [f.met ? 'met' : 'not met', f.limit, f.stage || '', margin(f), f.value, f.bound, f.unit,
-           f.statistic]);
+          [f.met ? 'met' : f.level === 'warn' ? 'warning' : 'not met', f.limit, f.stage || '',
+           margin(f), f.shown.value, f.shown.bound, f.statistic]);
   rows.sort((a, b) => (a[0] === b[0] ? 0 : a[0] === 'met' ? 1 : -1));
   const missed = check.findings.filter((finding) => !finding.met);
   return section(

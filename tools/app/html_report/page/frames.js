@@ -89,6 +89,7 @@ function latencyFigure(run, data, onpick) {
                         ...bar,
                         label: name,
                         stack: 'time',
+                        grouped: false,
                         backgroundColor: partColour(name),
                         data: frames.map((frame) => frame.parts[names.indexOf(name)])
                       })),
@@ -96,6 +97,7 @@ function latencyFigure(run, data, onpick) {
                          ...bar,
                          label: `pose: ${kKinds[kind]}`,
                          stack: 'kind',
+                         grouped: false,
                          yAxisID: 'kind',
                          categoryPercentage: 1,
                          backgroundColor: kKindColours[kind],

@@ -27,6 +27,11 @@ function chipText(run) {
 function runsTable(runs, names) {
   const titles = [...new Set(runs.flatMap((run) => run.figures.map((figure) => figure.title)))];
   const columns = [{title: '', text: true}, ...names.map((name) => ({title: name}))];
+  const abouts = [...new Set(runs.flatMap((run) => run.verdict.list.map((v) => v.about)))];
+  const verdict = (run, about) => {
+    const found = run.verdict.list.find((v) => v.about === about);
+    return found ? `${gradeMark[found.grade]} ${found.word}` : null;
+  };
   const cell = (run, title) => {
     const figure = run.figures.find((f) => f.title === title);
     return figure ? `${figure.value} ${figure.unit}` : null;
@@ -34,14 +39,8 @@ function runsTable(runs, names) {
   return sortableTable(
       columns,
       [
-        [
-          'Verdict',
-          ...runs.map(
-              (run) => run.verdict.list
-                           .map((v) => `${gradeMark[v.grade]} ${v.about} ${v.word}`)
-                           .join(', ') ||
-                  '–')
-        ],
+        ...abouts.map(
+            (about) => [`Verdict: ${about}`, ...runs.map((run) => verdict(run, about))]),
         ...titles.map((title) => [title, ...runs.map((run) => cell(run, title))])
       ],
       {whole: true, label: 'Runs'});

@@ -57,8 +57,13 @@ function curveFigure(study, yName) {
   });
   const limit = (study.limits || {})[yName];
   return chartFigure({
+    onpick: (item, chart) => {
+      const point = chart.data.datasets[item.datasetIndex].data[item.index];
+      if (point && historyCards.compare) historyCards.compare(Math.max(0, point.x - 1), point.x);
+    },
     title: `${capital(column(yName).title)} over ${column(xName).title}`,
-    hint: 'Medians of what else varies, such as seeds; a point shows the least and the greatest.',
+    hint: study.curves.hint ||
+        'Medians of what else varies, such as seeds; a point shows the least and the greatest.',
     config: () => ({
       type: 'scatter',
       data: {
@@ -78,7 +83,10 @@ function curveFigure(study, yName) {
         interaction: {mode: 'nearest', intersect: false},
         scales: {
           x: {title: {display: true, text: axisTitle(column(xName))}, grid: {display: false}},
-          y: {title: {display: true, text: axisTitle(column(yName))}, beginAtZero: true}
+          y: {
+            title: {display: true, text: axisTitle(column(yName))},
+            beginAtZero: study.curves.fromZero
+          }
         },
         plugins: {
           limitLines: {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/base/printable_text.h"
+
 #include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 
@@ -109,6 +111,18 @@ Json spread_json(const Spread& spread, std::string_view unit,
 
 std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
   return table_of(plan, rows).str() + notes(plan, rows, "  ");
+}
+
+std::string ablation_conclusion(const std::vector<AblationRow>& rows) {
+  const AblationRow* best = nullptr;
+  for (const AblationRow& row : rows)
+    if (!row.sequence.empty() && row.ate.median &&
+        (best == nullptr || *row.ate.median < *best->ate.median))
+      best = &row;
+  if (best == nullptr) return "verdict: all diverged";
+  return fmt::format("in short: {} at {} on {} has the least absolute error, {:.3f} m, of {} rows",
+                     best->profile, size_text(best->size), printable(best->sequence),
+                     *best->ate.median, rows.size());
 }
 
 std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationRow>& rows) {

@@ -65,6 +65,19 @@ std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& e
   return best_table(plan, explored).str() + "  " + note(plan);
 }
 
+std::string exploration_conclusion(const BatchPlan& plan,
+                                   const std::vector<ExploredPoint>& explored) {
+  const std::string& profile = plan.profiles.front();
+  const ExploredPoint* best = best_of(explored, profile, &ExploredPoint::mean_ate);
+  if (best == nullptr) return fmt::format("verdict: {} diverged at all points", profile);
+  std::string text = fmt::format("in short: {} has its least absolute error, {} m, at point {}",
+                                 profile, error_text(best->mean_ate, 3), best->point);
+  for (const ExploredPoint& point : explored)
+    if (point.point == 0 && point.profile == profile)
+      text += fmt::format("; as it is, {} m", error_text(point.mean_ate, 3));
+  return text;
+}
+
 std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
   return best_table(plan, explored).markdown() + '\n' + note(plan);
 }

@@ -11,6 +11,9 @@ namespace leviosim::tools {
 
 /// Per profile: as it is, the point of least absolute error, and that of least relative error.
 std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
+/// What the first profile gains by its best point, in a sentence.
+std::string exploration_conclusion(const BatchPlan& plan,
+                                   const std::vector<ExploredPoint>& explored);
 std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
 
 /// A row per point, profile and sequence, with the value of every dimension; empty where it has no

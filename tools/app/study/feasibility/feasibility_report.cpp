@@ -92,6 +92,25 @@ std::string feasibility_table(const std::vector<Feasibility>& rows) {
   return text;
 }
 
+std::string feasibility_conclusion(const std::vector<Feasibility>& rows) {
+  const Feasibility* fastest = nullptr;
+  std::size_t fit = 0;
+  for (const Feasibility& row : rows) {
+    if (!row.fits()) continue;
+    ++fit;
+    if (fastest == nullptr || row.frame_ms() < fastest->frame_ms()) fastest = &row;
+  }
+  if (fastest == nullptr)
+    return fmt::format("verdict: does not fit: {}: {}", rows.front().platform,
+                       memory_verdict(rows.front()));
+  return fmt::format("{} rows have the memory; the fastest of them, {} with {} {}, does {:.1f} "
+                     "frames/s",
+                     fit == rows.size() ? fmt::format("verdict: fits: all {}", fit)
+                                        : fmt::format("in short: {} of {}", fit, rows.size()),
+                     fastest->platform, fastest->cores, fastest->cores == 1 ? "core" : "cores",
+                     fastest->frames_per_second());
+}
+
 std::string stage_comparison(const std::vector<Feasibility>& rows) {
   std::vector<TextTable::Column> columns{{"kilocycles of a call", TextTable::Align::Left}};
   for (const Feasibility& row : rows) columns.push_back({row.platform});

@@ -15,6 +15,9 @@ std::string memory_verdict(const Feasibility& row);
 /// A row per chip, and how to read it.
 std::string feasibility_table(const std::vector<Feasibility>& rows);
 
+/// On how many the workload fits, and the fastest of them, in a sentence.
+std::string feasibility_conclusion(const std::vector<Feasibility>& rows);
+
 /// Stages by chip: kilocycles of a call, and how many times as fast as on the first; then the
 /// frame, and what L1 and L2 are filled to.
 std::string stage_comparison(const std::vector<Feasibility>& rows);

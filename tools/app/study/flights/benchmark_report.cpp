@@ -189,6 +189,23 @@ std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& re
   return table_of(benchmark, result).str(width) + notes(benchmark, result, "  ");
 }
 
+std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResult& result) {
+  std::string text;
+  for (std::size_t v = 0; v < benchmark.plan.variants.size(); ++v) {
+    const BenchmarkRow* worst = nullptr;
+    for (const BenchmarkRow& row : result.rows)
+      if (row.variant == v && !row.motion &&
+          (worst == nullptr || !row.percent.median ||
+           (worst->percent.median && *row.percent.median > *worst->percent.median)))
+        worst = &row;
+    if (worst != nullptr)
+      text += fmt::format("{}{}: at most {} % of the path in the median, {} of {} runs diverged",
+                          text.empty() ? "in short: " : "; ", benchmark.plan.variants[v].name(),
+                          error_text(worst->percent.median, 2), worst->diverged, worst->runs);
+  }
+  return text;
+}
+
 std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult& result) {
   return table_of(benchmark, result).markdown() + '\n' + notes(benchmark, result, "- ");
 }

@@ -59,7 +59,16 @@ std::string bands_table(const Sensitivity& sensitivity) {
 
 }  // namespace
 
-std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
+std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
+  if (sensitivity.swings.empty()) return "in short: no number of this chip has a range";
+  const Swing& swing = sensitivity.swings.front();
+  return fmt::format(
+      "in short: {} has the largest effect: {} % of the front end between {:g} and {:g} {}",
+      swing.parameter.path, change_text(swing, sensitivity.base, &MeanTimes::frame),
+      swing.parameter.range->low, swing.parameter.range->high, swing.parameter.unit);
+}
+
+std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers) {
   std::vector<TextTable::Column> columns{
       {"number", kLeft}, {"confidence", kLeft, 2}, {"value"}, {"range", kLeft, 1}};
   for (const TimeColumn& column : kColumns) columns.push_back({column.title});
@@ -79,15 +88,15 @@ std::string sensitivity_table(const Sensitivity& sensitivity, int workers) {
     table.add(std::move(cells));
   }
   const MeanTimes& base = sensitivity.base;
-  return fmt::format(
+  return {fmt::format(
              "mean times with all numbers as they are: front end {} on {} cores (EPnP {}, 8-point "
              "{}), optimiser {} for an iteration\n"
              "change of them in per cent at the low and at the high end of a number's range\n{}",
              ms(base.frame), workers, ms(base.epnp), ms(base.eight_point), ms(base.iteration),
-             table.str()) +
-         bands_table(sensitivity) +
+             table.str()),
+         bands_table(sensitivity),
          list_line("changing nothing by 0.005 % or more:", without_effect) +
-         list_line("not certain, but without a range:", sensitivity.unbounded);
+             list_line("not certain, but without a range:", sensitivity.unbounded)};
 }
 
 std::string sensitivity_csv(const Sensitivity& sensitivity) {

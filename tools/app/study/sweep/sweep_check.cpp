@@ -114,11 +114,17 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
       miss = Miss{"cannot run", outcome->failure};
     }
     if (!miss) continue;
+    if (check.missed == 0)
+      check.verdict = fmt::format("point {}: {}: {}", number, miss->limit, miss->found);
     if (++check.missed <= kMostMisses)
       table.add({fmt::format("{}", number), miss->limit, miss->found, points[i].settings_text()});
   }
   check.text = fmt::format("{} points against {}: {} do not meet it\n", check.held,
                            printable(budget.file), check.missed);
+  check.verdict = check.missed == 0
+                      ? fmt::format("verdict: met: all {} points meet {}", check.held, budget.file)
+                      : fmt::format("verdict: NOT met by {} of {} points, first {}", check.missed,
+                                    check.held, check.verdict);
   if (check.missed > 0) check.text += table.str();
   if (check.missed > kMostMisses)
     check.text += fmt::format("  and {} more\n", check.missed - kMostMisses);

@@ -16,6 +16,7 @@ namespace leviosim::tools {
 struct SweepCheck {
   std::size_t held = 0;
   std::size_t missed = 0;  ///< points with a limit that is not met, or that cannot run
+  std::string verdict;     ///< in a sentence
   std::string text;        ///< how many, and a table of them
 };
 

@@ -94,13 +94,26 @@ StudyBox sweep_box(SweepStore& store) {
     box.lines.push_back(
         fmt::format("point {} ({}): {}", o.point, store.settings_of(o.point), o.failure));
   }
-  box.sentence = fmt::format("{} of them cannot run, and {} are beaten by no other.",
+  box.sentence = fmt::format("{} of them cannot run, and no other point beats {}.",
                              box.lines.size(), pareto_front(outcomes).size());
   if (box.lines.size() > kMostFailures) {
     box.lines.resize(kMostFailures);
     box.lines.push_back("and more: column failure of the points");
   }
   return box;
+}
+
+std::string sweep_conclusion(SweepStore& store) {
+  const StudyBox box = sweep_box(store);
+  if (box.lines.empty()) return fmt::format("in short: {}; {}", box.mark, box.sentence);
+  return fmt::format("verdict: {}; {}", box.lines.front(), box.sentence);
+}
+
+std::vector<std::string> after_sweep(SweepStore& store, const std::string& folder) {
+  for (const SweepOutcome& best : pareto_front(store.outcomes()))
+    if (best.point != 1)
+      return {fmt::format("leviosim compare {0}:1 {0}:{1}", printable(folder), best.point)};
+  return {};
 }
 
 std::string sweep_report(SweepStore& store) {

@@ -71,6 +71,21 @@ std::string systems_table(const std::vector<SystemRow>& rows) {
          small + "sources\n" + sources;
 }
 
+std::string systems_conclusion(const std::vector<SystemRow>& rows) {
+  const SystemRow* least = nullptr;
+  std::size_t modelled = 0;
+  for (const SystemRow& row : rows) {
+    if (!row.here) continue;
+    ++modelled;
+    if (row.here->frame && (least == nullptr || row.here->frame->value < least->here->frame->value))
+      least = &row;
+  }
+  std::string text = fmt::format("in short: {} of {} systems are modelled", modelled, rows.size());
+  if (least != nullptr)
+    text += fmt::format("; {} takes {} mJ per frame", model_of(*least), banded(least->here->frame));
+  return text;
+}
+
 std::string systems_csv(const std::vector<SystemRow>& rows) {
   using S = const SystemRow&;
   const auto text = [](const std::optional<double>& value) {

@@ -15,6 +15,9 @@ inline constexpr double kMilli = 1e3;
 /// A row per system, how to read it, and the sources.
 std::string systems_table(const std::vector<SystemRow>& rows);
 
+/// How many are modelled, and the one that takes the least energy per frame, in a sentence.
+std::string systems_conclusion(const std::vector<SystemRow>& rows);
+
 /// The rows of systems_table() with all digits, as CSV.
 std::string systems_csv(const std::vector<SystemRow>& rows);
 

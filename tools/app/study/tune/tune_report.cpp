@@ -219,7 +219,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
     cells.push_back(is_enough(point, plan) ? "yes" : "");
     table.add(std::move(cells));
   }
-  return table.str() + tune_notes(plan);
+  return table.str();
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
@@ -236,11 +236,14 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
       "m:\n",
       100 * plan.miss_rate, plan.ate_m);
   for (const Choice& choice : choices) text += choice_line(choice);
+  return text;
+}
+
+std::string tune_conclusion(const std::vector<Choice>& choices) {
   const TunePoint* best = chosen(choices);
-  if (best == nullptr) return text + "no point meets the limits\n";
-  return text + fmt::format("the lowest of all: {} at {:g} frames/s\n  {}\n",
-                            clock_text(best->setting), best->fps,
-                            printable(run_command_text(plan, *best)));
+  if (best == nullptr) return "verdict: NOT met: no point meets the limits";
+  return fmt::format("verdict: met: the lowest of all: {} at {:g} frames/s: {}",
+                     clock_text(best->setting), best->fps, point_text(*best));
 }
 
 std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices) {

@@ -17,8 +17,11 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
 std::string tune_notes(const TunePlan& plan);
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points);
 
-/// The lowest clock at each frame rate, and that of all.
+/// The lowest clock at each frame rate.
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices);
+
+/// That of all, in a sentence.
+std::string tune_conclusion(const std::vector<Choice>& choices);
 
 /// The same as boxes of a page, one for each frame rate.
 std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices);

@@ -18,6 +18,9 @@ std::string whatif_bars(const std::vector<VariantResult>& results);
 /// The same ranked: time gained per area and per energy; what changes nothing, and what cannot be.
 std::string advice_text(const std::vector<VariantResult>& results);
 
+/// In a sentence: the variant that cannot run, else the fastest.
+std::string whatif_conclusion(const std::vector<VariantResult>& results);
+
 /// In one line, why a variant takes another time: "waiting for code -11.2 ms, most in EPnP RANSAC".
 std::string reason_of(const VariantResult& base, const VariantResult& variant);
 

@@ -73,9 +73,20 @@ std::string left_out_table(const Calibration& calibration) {
          fmt::format("mean absolute error: {:.1f} %\n", mean_error_left_out(calibration));
 }
 
-std::string calibration_report(const Calibration& calibration) {
-  return fmt::format("{}\n{}\n{}", constants_table(calibration), residual_table(calibration),
-                     left_out_table(calibration));
+std::vector<std::string> calibration_report(const Calibration& calibration) {
+  return {constants_table(calibration) + '\n', residual_table(calibration) + '\n',
+          left_out_table(calibration)};
+}
+
+std::string calibration_conclusion(const Calibration& calibration) {
+  std::string text = "in short: ";
+  for (std::size_t i = 0; i < calibration.constants.size(); ++i)
+    text += fmt::format("{} {:.4f} instead of {:g}, ", calibration.constants[i].path,
+                        calibration.fitted[i], calibration.constants[i].value);
+  return text + fmt::format("mean absolute error {:.1f} % instead of {:.1f} %, {:.1f} % of stages "
+                            "left out",
+                            mean_error_after(calibration), mean_error_before(calibration),
+                            mean_error_left_out(calibration));
 }
 
 Json calibration_json(const Calibration& calibration) {

@@ -11,7 +11,10 @@ namespace leviosim::tools {
 std::string constants_table(const Calibration& calibration);
 std::string residual_table(const Calibration& calibration);
 std::string left_out_table(const Calibration& calibration);
-std::string calibration_report(const Calibration& calibration);
+/// All of them, as parts of a screen.
+std::vector<std::string> calibration_report(const Calibration& calibration);
+/// What the fit is worth, in a sentence.
+std::string calibration_conclusion(const Calibration& calibration);
 
 /// Constants, residuals and stages left out, in the units of Calibration.
 Json calibration_json(const Calibration& calibration);

@@ -103,6 +103,21 @@ std::string coverage_text(const std::vector<MicrobenchRow>& rows,
              needed.front(), needed.back(), needed.size(), at(0.5), at(0.1), at(0.9));
 }
 
+std::string microbench_conclusion(const std::vector<MicrobenchRow>& rows) {
+  std::string worse;
+  std::size_t met = 0;
+  for (const MicrobenchRow& row : rows) {
+    met += row.met();
+    if (worse.empty() && row.verdict() == Verdict::Worse)
+      worse = fmt::format("{}, {}, cores {}: error {:+.1f} %", row.group, row.name, row.cores,
+                          100 * row.error());
+  }
+  const std::string text =
+      fmt::format("{} of {} rows within their tolerance", met, rows.size());
+  return worse.empty() ? fmt::format("verdict: met: {}, no other beyond its guard", text)
+                       : fmt::format("verdict: NOT met: {}; {}", text, worse);
+}
+
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
   using R = MicrobenchRow;
   const auto all_digits = [](double value) { return fmt::format("{}", value); };

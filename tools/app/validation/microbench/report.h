@@ -16,7 +16,8 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
 /// @param needed  needed_instructions(), rising
 std::string coverage_text(const std::vector<MicrobenchRow>& rows,
                           const std::vector<double>& needed);
-
+/// Whether all rows are as near as they have to be, in a sentence.
+std::string microbench_conclusion(const std::vector<MicrobenchRow>& rows);
 std::string microbench_csv(const std::vector<MicrobenchRow>& rows);
 
 /// Mean of the absolute errors.

@@ -1,0 +1,281 @@
+#include "tools/app/history/history_report.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "sim/base/csv_table.h"
+#include "sim/base/error.h"
+#include "sim/base/nearest.h"
+#include "sim/base/printable_text.h"
+#include "tools/app/budget/figures.h"
+#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/history/trend.h"
+#include "tools/app/html_report/study_json.h"
+#include "tools/app/report/number_text.h"
+#include "tools/app/report/text_table.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr const char* kFrameCycles = "frame.cycles.parallel.mean";
+/// Runs of a page at most, and distinct stages of which it says where their cycles went.
+constexpr std::size_t kMostRuns = 1000;
+constexpr std::size_t kNewest = 100;
+constexpr std::size_t kMostStages = 400;
+
+std::string change_text(const std::optional<double>& before, const std::optional<double>& now) {
+  if (!before || !now || *before == 0) return kNothing;
+  const double percent = 100 * (*now - *before) / *before;
+  return percent == 0 ? "0" : fmt::format("{:+.2f} %", percent);
+}
+
+std::string limits_text(const LimitsThen& limits) {
+  if (limits.held == 0) return kNothing;
+  if (limits.missed.empty()) return "met";
+  return fmt::format("{} not met", limits.missed.size());
+}
+
+bool is_same(const RunRecord& a, const RunRecord& b) {
+  for (const QuantityOfRuns& q : quantities_of_runs())
+    if (a.value(q.statistic) != b.value(q.statistic)) return false;
+  return true;
+}
+
+std::string trend_lines(const std::vector<PastRun>& runs, const Budget& budget) {
+  std::string text;
+  for (const Trend& trend : trends(budget, runs)) {
+    const std::string title =
+        trend.limit->stage.empty() ? trend.limit->text : trend.stage + ": " + trend.limit->text;
+    for (const FigureChange& step : trend.steps)
+      text += fmt::format("{}: {}\n", printable(title), printable(step_text(trend, step, runs)));
+    if (!trend.drift.empty())
+      text += fmt::format("{}: {}\n", printable(title), printable(drift_text(trend, runs)));
+  }
+  return text;
+}
+
+std::string conclusion_of(const std::vector<PastRun>& runs) {
+  std::size_t changed = 0;
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    changed += !is_same(runs[i - 1].record, runs[i].record);
+  return fmt::format("in short: {} runs, {} of which changed something; cycles of a frame {} in all",
+                     runs.size(), changed,
+                     change_text(runs.front().record.value(kFrameCycles),
+                                 runs.back().record.value(kFrameCycles)));
+}
+
+/// Those of which a page has room.
+std::vector<const PastRun*> shown_runs(const std::vector<PastRun>& runs) {
+  std::vector<const PastRun*> shown;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (i == 0 || i + kNewest >= runs.size() || !is_same(runs[i - 1].record, runs[i].record))
+      shown.push_back(&runs[i]);
+  if (shown.size() > kMostRuns)
+    shown.erase(shown.begin(), shown.end() - static_cast<std::ptrdiff_t>(kMostRuns));
+  return shown;
+}
+
+/// kcycles of a mean frame: of the stage, and of its parts in words.
+Json stage_json(const StageParts& stage, double frames) {
+  Json parts = Json::object();
+  for (const CyclePart& part : stage.parts) {
+    std::string name = part.where.empty() ? std::string() : part.where + ": ";
+    name += part_label(part.mechanism) + (part.operation.empty() ? "" : " " + part.operation);
+    parts[name] = parts.value(name, 0.0) + rounded(part.cycles / frames / 1e3).get<double>();
+  }
+  return {{"name", stage.stage},
+          {"kcycles", rounded(stage.cycles / frames / 1e3)},
+          {"parts", std::move(parts)}};
+}
+
+/// The runs with indices of their stages, each of which stands once.
+Json runs_json(const std::vector<const PastRun*>& runs) {
+  Json history{{"runs", Json::array()}, {"stages", Json::array()}};
+  std::map<std::string, std::size_t> known;
+  std::vector<Json> newest_first;
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
+    const RunRecord& record = (*run)->record;
+    const double frames = std::max(1.0, record.value("frames.count").value_or(1));
+    Json stages = Json::array();
+    for (const StageParts& stage : record.cycles) {
+      Json json = stage_json(stage, frames);
+      const auto [at, is_new] = known.emplace(json_text(json), known.size());
+      if (is_new && known.size() <= kMostStages) history["stages"].push_back(std::move(json));
+      stages.push_back(at->second);
+    }
+    newest_first.push_back({{"commit", record.name},
+                            {"subject", (*run)->origin.subject},
+                            {"stages", std::move(stages)}});
+  }
+  history["runs"] = Json(std::vector<Json>(newest_first.rbegin(), newest_first.rend()));
+  history["from"] = 0;
+  history["to"] = runs.size() - 1;
+  return history;
+}
+
+/// Limits of the budget on figures of the run, in the units of the page: absolute ones, and those
+/// relative to the first of the runs.
+std::map<std::string, double> limits_of(const Budget& budget, const RunRecord& first,
+                                        const RunRecord& last) {
+  std::map<std::string, double> limits;
+  for (const BudgetSection* section : sections_for(budget, last))
+    for (const Limit& limit : section->limits)
+      for (const FigureOf& figure : figures_of(limit, last))
+        for (const QuantityOfRuns& q : quantities_of_runs()) {
+          if (figure.statistic->name != q.statistic) continue;
+          const double bound = bound_in(limit, figure.statistic->unit);
+          const auto base = first.value(q.statistic);
+          if (!limit.bound.relative)
+            limits[q.statistic] = bound * q.scale;
+          else if (base && is_percent_of_baseline(limit.bound))
+            limits[q.statistic] = *base * (1 + bound / 100) * q.scale;
+        }
+  return limits;
+}
+
+/// A cell of a CSV file, whatever is in it.
+std::string quoted(const std::string& text) {
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
+  return cell + '"';
+}
+
+/// A row a run; columns are named as the statistics are.
+std::string points_csv(const std::vector<const PastRun*>& runs) {
+  struct Row {
+    std::size_t number;
+    const PastRun& run;
+  };
+  using R = const Row&;
+  base::CsvTable<Row> table{
+      {"run", [](R r) { return r.number; }},
+      {"commit", [](R r) { return r.run.record.name; }},
+      {"subject", [](R r) { return quoted(r.run.origin.subject); }},
+      {"date", [](R r) { return date_text(r.run.origin.time_s); }},
+      {"limits", [](R r) { return limits_text(r.run.limits); }}};
+  for (const QuantityOfRuns& q : quantities_of_runs())
+    table.add(q.statistic, [&q](R r) { return base::fixed(r.run.record.value(q.statistic), 6); });
+  std::vector<Row> rows;
+  for (const PastRun* run : runs) rows.push_back({rows.size(), *run});
+  return table.text(rows);
+}
+
+}  // namespace
+
+std::string date_text(std::int64_t time_s) {
+  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(time_s)));
+}
+
+Printout history_printout(const std::vector<PastRun>& runs, const Budget* budget,
+                          std::vector<std::string> next) {
+  TextTable table({{"commit", kLeft},
+                   {"date", kLeft, 1},
+                   {"kcycles of a frame"},
+                   {"change"},
+                   {"p99 ms", kRight, 2},
+                   {"mJ", kRight, 2},
+                   {"ATE m", kRight, 3},
+                   {"limits", kLeft, 1},
+                   {"subject", kLeft}});
+  for (std::size_t i = runs.size(); i > 0; --i) {
+    const PastRun& run = runs[i - 1];
+    const auto value = [&](const char* statistic, double scale) {
+      auto v = run.record.value(statistic);
+      if (v) *v *= scale;
+      return v;
+    };
+    table.add({run.record.name, date_text(run.origin.time_s),
+               figure_text(value(kFrameCycles, 1e-3), 1),
+               i > 1 ? change_text(runs[i - 2].record.value(kFrameCycles),
+                                   run.record.value(kFrameCycles))
+                     : kNothing,
+               figure_text(value("frame.latency.p99", 1e-6), 2),
+               figure_text(value("energy.frame", 1), 3),
+               figure_text(value("accuracy.ate.rmse", 1), 3), limits_text(run.limits),
+               run.origin.subject});
+  }
+  const RunFacts& facts = runs.back().record.facts;
+  const std::string head = fmt::format("{} on {}, {} cores, {} frames; the newest run first\n",
+                                       printable(facts.profile), printable(facts.platform),
+                                       facts.cores, facts.frames);
+  return Printout({head + table.str(), budget == nullptr ? "" : trend_lines(runs, *budget)})
+      .ending(conclusion_of(runs), std::move(next));
+}
+
+std::string history_document(const std::vector<PastRun>& runs) {
+  Json document{{"format", "leviosim history"}, {"version", 1}, {"runs", Json::array()}};
+  for (const PastRun& run : runs) {
+    Json& entry = document["runs"].emplace_back(Json::object());
+    entry["commit"] = run.origin.commit;
+    entry["branch"] = run.origin.branch;
+    entry["time"] = run.origin.time_s;
+    entry["subject"] = run.origin.subject;
+    entry["limits"] = run.limits.held;
+    entry["missed"] = run.limits.missed;
+    for (const QuantityOfRuns& q : quantities_of_runs())
+      entry["figures"][q.statistic] = value_of(run.record.value(q.statistic));
+  }
+  return json_text(document, 1) + '\n';
+}
+
+std::string exported(const PastRun& run, const std::string& format) {
+  Json list = Json::array();
+  Json map = Json::object();
+  for (const QuantityOfRuns& q : quantities_of_runs()) {
+    const auto value = run.record.value(q.statistic);
+    if (!value) continue;
+    list.push_back({{"name", q.name}, {"unit", q.unit}, {"value", rounded(*value * q.scale)}});
+    map[q.name] = {{q.unit, {{"value", rounded(*value * q.scale)}}}};
+  }
+  if (format == "github-action-benchmark") return json_text(list, 1) + '\n';
+  if (format == "bencher") return json_text(map, 1) + '\n';
+  const std::vector<std::string> known{"github-action-benchmark", "bencher"};
+  throw InputError(fmt::format("--export '{}': expected {}{}", format, fmt::join(known, " or "),
+                               base::did_you_mean(format, known)));
+}
+
+Json history_page(const std::string& title, const std::vector<PastRun>& runs,
+                  const Budget* budget) {
+  const std::vector<const PastRun*> shown = shown_runs(runs);
+  StudyPage page;
+  page.title = title;
+  page.summary = conclusion_of(runs);
+  if (budget != nullptr) {
+    for (const Trend& trend : trends(*budget, runs)) {
+      if (trend.steps.empty() && trend.drift.empty()) continue;
+      StudyBox& box = page.boxes.emplace_back();
+      box.good = false;
+      box.mark = trend.limit->stage.empty() ? trend.limit->text
+                                            : trend.stage + ": " + trend.limit->text;
+      box.sentence = fmt::format("{} steps{}", trend.steps.size(),
+                                 trend.drift.empty() ? "." : ", and a drift.");
+      for (const FigureChange& step : trend.steps)
+        box.lines.push_back(step_text(trend, step, runs));
+      if (!trend.drift.empty()) box.lines.push_back(drift_text(trend, runs));
+    }
+    page.limits = limits_of(*budget, runs.front().record, runs.back().record);
+  }
+  page.points = points_csv(shown);
+  page.columns = {{"run", "run", "", true},
+                  {"commit", "commit", "", true},
+                  {"subject", "subject", "", true},
+                  {"date", "date", "", true},
+                  {"limits", "limits", ""}};
+  page.curves = StudyCurves{"run", "", {}, "A point a run, in the order of their commits.", false};
+  for (const QuantityOfRuns& q : quantities_of_runs()) {
+    page.columns.push_back({q.statistic, q.name, q.unit, false, false, q.scale});
+    page.curves->y.emplace_back(q.statistic);
+  }
+  page.x = "run";
+  page.y = kFrameCycles;
+  Json data = study_report(page);
+  data["history"] = runs_json(shown);
+  return data;
+}
+
+}  // namespace leviosim::tools
