@@ -52,11 +52,6 @@ needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
 cut 'table "cycles of" | sed "/^How to read/,\$d"'
 
-figure paper-paths
-needs data
-shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
-cut 'table "kcycles of"'
-
 figure paper-bands
 needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
@@ -66,11 +61,6 @@ figure more-keypoints
 needs data
 shows 'leviosim calibrate -p workload.fast_threshold=14 --data euroc/MH_01_easy_t05_t20 --constants isa.instruction_overhead'
 cut 'sed -n "/^constant/,/^mean/p"'
-
-figure input-distributions
-needs data
-shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
-cut 'table input'
 
 figure breakdown
 needs data
@@ -82,11 +72,6 @@ figure sensitivity
 needs data
 shows 'leviosim sensitivity --data euroc/MH_01_easy_t05_t20 --frames 0:100'
 cut 'table number number confidence value range frame optimiser | first 10'
-
-figure bands
-needs data
-shows 'leviosim sensitivity --data euroc/MH_01_easy_t05_t20 --frames 0:100'
-cut 'sed -n "/^a mean call/,/^changing/p" | grep -v "^changing"'
 
 figure calibrate
 needs data
