@@ -43,6 +43,7 @@ ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
   std::optional<ChosenRun> first;
   for (std::size_t i = 0; i < plan.variations.size(); ++i) {
     RunRequest request = request_of(plan, point.fps, point.setting, plan.variations[i]);
+    if (i == 0) request.time_bands = TimeBandsOf::team;  // as in the folder of a run
     RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
     const RunOutcome outcome = outcome_of(result, plan.sequence.truth, plan.measure);
     if (to_text(figures_of(outcome)) != to_text(figures_of(point.outcomes[i])))
