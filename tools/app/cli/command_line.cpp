@@ -112,7 +112,7 @@ void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
 int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& typed) {
   refuse_empty_values(typed);
   if (typed.size() == 3 && typed[0] == kHelp && typed[1] == "--as") {
-    print_result_text(manual(app, commands, typed[2]));
+    print_piece(ScreenPiece::Kind::document, manual(app, commands, typed[2]));
     return 0;
   }
   const Words words = in_present_spelling(help_as_option(typed, commands), commands);
@@ -127,7 +127,8 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands, const 
   for (const Command& command : commands) {
     command.app->allow_extras();
     if (command.app->get_option_no_throw("--all") == nullptr)
-      command.app->add_flag("--all", "print all lines, instead of a screen of them");
+      command.app->add_flag_function(
+          "--all", [](std::int64_t) {}, "print all lines, instead of a screen of them");
   }
   try {
     app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/base/printable_text.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/comparison/main_causes.h"
 #include "tools/app/report/number_text.h"
@@ -14,8 +15,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr int kScreenWidth = 80;
-constexpr std::size_t kScreenLines = 24;
 constexpr std::size_t kMostFigures = 6;
 constexpr std::size_t kMostStages = 4;
 constexpr std::size_t kMostCauses = 5;
@@ -23,7 +22,7 @@ constexpr double kPerKilo = 1e3;
 /// Of the whole difference: a cause with less goes without saying.
 constexpr double kLeastCause = 0.02;
 
-std::string screen_line(const std::string& text) { return shortened(text, kScreenWidth) + '\n'; }
+std::string screen_line(const std::string& text) { return shortened(text, kScreenColumns) + '\n'; }
 
 /// The name last, which may be long.
 std::string described(std::string_view letter, const RunRecord& run) {
@@ -62,7 +61,7 @@ std::string figure_lines(const RunComparison& c) {
     table.add({q.name, figure_text(q.a, decimals), figure_text(q.b, decimals), q.unit,
                q.percent() ? fmt::format("{:+.1f} %", *q.percent()) : kNothing});
   }
-  return table.str(kScreenWidth);
+  return table.str(kScreenColumns);
 }
 
 /// Those whose part of a frame differs most.
@@ -81,7 +80,7 @@ std::string stages_of_summary(const RunComparison& c) {
     table.add({shortened(stages[i]->name, 30), figure_text(*stages[i]->a / kPerKilo, 1),
                figure_text(*stages[i]->b / kPerKilo, 1),
                stages[i]->percent() ? fmt::format("{:+.1f} %", *stages[i]->percent()) : kNothing});
-  return table.str(kScreenWidth);
+  return table.str(kScreenColumns);
 }
 
 std::vector<std::string> cause_lines(const RunComparison& c) {
@@ -102,7 +101,7 @@ std::vector<std::string> cause_lines(const RunComparison& c) {
   if (!unused.empty())
     lines.push_back(wrap({unused.substr(0, unused.find(", because")) + ",",
                           unused.substr(unused.find("because"))},
-                         " ", 2, kScreenWidth) +
+                         " ", 2, kScreenColumns) +
                     '\n');
   if (lines.empty()) lines.push_back(screen_line("no stage differs"));
   return lines;
@@ -115,7 +114,7 @@ std::string comparison_summary(const RunComparison& c) {
   for (const std::string& note : c.notes) text += screen_line("note: " + printable(note));
   text += screen_line(work_line(c)) + verdict_line(c) + figure_lines(c) + stages_of_summary(c);
   const auto count = [](const std::string& of) {
-    return static_cast<std::size_t>(std::count(of.begin(), of.end(), '\n'));
+    return static_cast<int>(std::count(of.begin(), of.end(), '\n'));
   };
   for (const std::string& cause : cause_lines(c))
     if (count(text) + count(cause) < kScreenLines) text += cause;
