@@ -24,12 +24,19 @@ constexpr double kLeastCause = 0.02;
 
 std::string screen_line(const std::string& text) { return shortened(text, kScreenColumns) + '\n'; }
 
-/// The name last, which may be long.
-std::string described(std::string_view letter, const RunRecord& run) {
+/// With the settings that the other run does not have. The name last, which may be long.
+std::string described(std::string_view letter, const RunRecord& run, const RunRecord& other) {
   const RunFacts& f = run.facts;
-  std::string text = fmt::format("{}  {} on {}", letter, printable(f.profile),
-                                 f.platform.empty() ? "the host" : printable(f.platform));
-  for (const std::string& override : f.overrides) text += ", " + printable(override);
+  std::string text = fmt::format("{}  {}", letter, printable(f.profile)) +
+                     (f.platform.empty() ? " on the host" : " on " + printable(f.platform));
+  const auto add = [&](const std::vector<std::string>& sets,
+                       const std::vector<std::string>& others) {
+    for (const std::string& set : sets)
+      if (std::find(others.begin(), others.end(), set) == others.end())
+        text += ", " + printable(set);
+  };
+  add(f.workload, other.facts.workload);
+  add(f.overrides, other.facts.overrides);
   if (f.cores > 0) text += fmt::format(", {} cores", f.cores);
   if (!f.camera.empty()) text += ", camera at " + printable(f.camera);
   return screen_line(text + ": " + printable(run.name));
@@ -110,7 +117,7 @@ std::vector<std::string> cause_lines(const RunComparison& c) {
 }  // namespace
 
 std::string comparison_summary(const RunComparison& c) {
-  std::string text = described("A", c.a) + described("B", c.b);
+  std::string text = described("A", c.a, c.b) + described("B", c.b, c.a);
   for (const std::string& note : c.notes) text += screen_line("note: " + printable(note));
   text += screen_line(work_line(c)) + verdict_line(c) + figure_lines(c) + stages_of_summary(c);
   const auto count = [](const std::string& of) {
