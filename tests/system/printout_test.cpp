@@ -70,7 +70,7 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
   EXPECT_LE(lines.size(), 24u) << recorded_.out;
   for (const std::string& line : lines)
     EXPECT_TRUE(line.starts_with("results: ") || display_width(line) <= 80) << line;
-  for (const char* part : {"verdict: fits: all 30 frames", "feature extraction", "latency: p50 ",
+  for (const char* part : {"verdict: fits: all 30 frames", "feature extraction", "frame time: mean ",
                            "memory: L1 ", "energy: ", "trajectory: ", "--tables all"})
     EXPECT_NE(recorded_.out.find(part), std::string::npos) << part << " is not in:\n"
                                                            << recorded_.out;
