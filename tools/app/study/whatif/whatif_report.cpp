@@ -144,11 +144,11 @@ std::string whatif_conclusion(const std::vector<VariantResult>& results) {
   const VariantResult* fastest = nullptr;
   for (std::size_t i = 1; i < results.size(); ++i) {
     if (!results[i].failure.empty()) continue;
-    if (fastest == nullptr || results[i].mean_ms < fastest->mean_ms) fastest = &results[i];
+    if (fastest == nullptr || results[i].mean_ms() < fastest->mean_ms()) fastest = &results[i];
   }
   if (fastest == nullptr) return "verdict: none of the variants can run";
   return fmt::format("in short: {} is the fastest of these: a mean frame {:.2f} ms instead of {:.2f}",
-                     printable(fastest->name), fastest->mean_ms, results.front().mean_ms);
+                     printable(fastest->name), fastest->mean_ms(), results.front().mean_ms());
 }
 
 std::string whatif_table(const std::vector<VariantResult>& results) {
