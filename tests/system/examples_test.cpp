@@ -77,7 +77,9 @@ TEST(Examples, OfEveryHelpWorkAsTheyStand) {
           << example << '\n'
           << base::read_text_file(folder / "errors.txt");
       const std::string screen = base::read_text_file(folder / "screen.txt");
-      if (is_for_people(example)) EXPECT_EQ(screen_fault(screen), "") << example << '\n' << screen;
+      if (is_for_people(example)) {
+        EXPECT_EQ(screen_fault(screen), "") << example << '\n' << screen;
+      }
     }
   }
 }

@@ -20,7 +20,7 @@ using tests::lines_of;
 /// Thirty commits: a chip's numbers in a file, by which a recorded second of flight is replayed.
 /// Matching takes longer from commit 17 on; extraction drifts at ten others. Four commits
 /// do not build.
-constexpr const char* kStory = R"(
+constexpr const char* kStory = R"sh(
 set -eu
 export GIT_AUTHOR_NAME=a GIT_AUTHOR_EMAIL=a@example.org GIT_COMMITTER_NAME=a
 export GIT_COMMITTER_EMAIL=a@example.org GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_SYSTEM=/dev/null
@@ -60,7 +60,7 @@ git bisect start c30 c1 >../bisect.txt 2>&1
 git bisect run leviosim bisect ../bisected --budget ../matching.yaml --baseline ../baseline.json \
   -- sh -e ../build.sh >>../bisect.txt 2>&1
 git rev-parse c17 >../c17.txt
-)";
+)sh";
 
 class HistoryCommand : public tests::ProgramSuite {
  protected:

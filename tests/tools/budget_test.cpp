@@ -300,7 +300,8 @@ TEST(Baseline, NoTextIsTooBroken) {
 TEST(BudgetShares, AreShownAsTheirLimitIs) {
   Limit limit;
   limit.bound = {.at_most = true, .relative = false, .number = 3.5, .unit = "%"};
-  Finding finding{&limit, nullptr, "frame.missed_share", "", "1", 0.1033, 0.035, {}, false, "", {}};
+  Finding finding{.limit = &limit, .section = nullptr, .statistic = "frame.missed_share", .stage = "",
+                  .unit = "1", .value = 0.1033, .bound = 0.035, .baseline = {}, .where = "", .why = {}};
   EXPECT_EQ(finding.excess(), "10.33 %, 195.14 % above 3.50 %");
   limit.bound.unit = "";
   EXPECT_EQ(finding.excess(), "0.1033, 195.14 % above 0.0350");

@@ -2,6 +2,7 @@
 #include "tools/app/study/sensitivity/sensitivity.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,6 +73,10 @@ double overhead() { return gap9().config({}).cluster.core.instruction_overhead; 
 
 constexpr double kOffloads = 2 * 300;  // there and back
 
+std::string joined(const std::vector<std::string>& parts) {
+  return fmt::format("{}", fmt::join(parts, ""));
+}
+
 TEST(Sensitivity, TheBaseIsWhatTheJobsTake) {
   const MeanTimes base = time_on(gap9().config({}), 8, example());
   EXPECT_NEAR(base.epnp.value(), (10'000 * overhead() + kOffloads) * kMsPerCycle, 1e-9);
@@ -121,7 +126,7 @@ TEST(Sensitivity, BandsOfStagesAreRootsOfSumsOfSquares) {
               1.044 + std::hypot(std::hypot(slow, later), std::hypot(programming, completion)),
               1e-9);
   EXPECT_NEAR(bands[2].kcycles.low, 1.044 - std::hypot(programming, earlier, completion), 1e-9);
-  EXPECT_NE(sensitivity_table(s, 8).find("if all these numbers are uncertain"), std::string::npos);
+  EXPECT_NE(joined(sensitivity_tables(s, 8)).find("if all these numbers are uncertain"), std::string::npos);
 }
 
 /// A sample that holds all jobs has the bands of the sweep over all; but of code that was not
@@ -187,7 +192,7 @@ TEST(Sensitivity, NamesUncertainNumbersWithoutARange) {
       platform::resolve_platform("gap9", {"isa.load_use_fraction=0.3"}));
   const Sensitivity s = sensitivity(platform, 8, nothing(), {.threads = 1});
   EXPECT_EQ(std::count(s.unbounded.begin(), s.unbounded.end(), "isa.load_use_fraction"), 1);
-  EXPECT_NE(sensitivity_table(s, 8).find("without a range"), std::string::npos);
+  EXPECT_NE(joined(sensitivity_tables(s, 8)).find("without a range"), std::string::npos);
 }
 
 TEST(Sensitivity, DoesNotDependOnTheHostsThreads) {
@@ -198,12 +203,12 @@ TEST(Sensitivity, WhatARunDoesNotHaveIsAbsent) {
   const Sensitivity s = sensitivity(gap9(), 8, nothing(), {.threads = 2});
   EXPECT_FALSE(s.base.frame.has_value());
   EXPECT_FALSE(percent_change(s.swings[0].low.frame, s.base.frame).has_value());
-  EXPECT_NE(sensitivity_table(s, 8).find("front end – on 8 cores"), std::string::npos);
+  EXPECT_NE(joined(sensitivity_tables(s, 8)).find("front end – on 8 cores"), std::string::npos);
 }
 
 TEST(Sensitivity, TableAndFileShowTheEffect) {
   const Sensitivity s = sweep();
-  const std::string text = sensitivity_table(s, 8);
+  const std::string text = joined(sensitivity_tables(s, 8));
   const double factor = overhead();
   const std::string effect = fmt::format(
       "{:+.2f} … {:+.2f}", 100 * 10'000 * (0.9 - factor) / (10'000 * factor + kOffloads),

@@ -15,7 +15,8 @@ struct Published {
   explicit Published(const char* profile_name) {
     Profile profile = profile_named(profile_name, 1);
     profile.optimiser.visual = scene.options.visual;
-    MapStatus map{.aligned = true};
+    MapStatus map;
+    map.aligned = true;
     BackEnd<Native> back_end(profile, Rig{}, scene.fc, scene.graph, map);
     EXPECT_TRUE(back_end.begin());
     EXPECT_TRUE(back_end.optimise().accepted);

@@ -66,7 +66,8 @@ TEST(Marginalisation, WhatThePriorHoldsCountsNoMore) {
   OptimiserScene<Native> scene;
   Profile profile = profile_named("next", 1);
   profile.optimiser.visual = scene.options.visual;
-  MapStatus map{.aligned = true};
+  MapStatus map;
+  map.aligned = true;
   BackEnd<Native> back_end(profile, Rig{}, scene.fc, scene.graph, map);
   ASSERT_TRUE(back_end.begin());
   back_end.optimise();
