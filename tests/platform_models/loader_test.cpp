@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "  l1:\n",
                 {"cluster.l1.banks", "missing key", "word-interleaved banks"}},
         BadEdit{"missing_column",
-                "load_l2: { issue: 1, stall: 12,",
+                "load_l2: { issue: 1, stall: 14.5,",
                 "load_l2: { issue: 1,",
                 "load_l2: {",
                 {"isa.ops.load_l2", "missing key 'stall'"}},
@@ -280,9 +280,9 @@ TEST(Loader, BuiltInPlatformsAreListedAndLoad) {
 TEST(Loader, KeepsSourcesRangesAndNotes) {
   for (const Parameter& p : resolve_platform("gap9").parameters) {
     if (p.path != "cluster.dma.programming") continue;
-    EXPECT_EQ(p.value, "30");
+    EXPECT_EQ(p.value, "20");
     EXPECT_EQ(p.unit, "cycles");
-    EXPECT_EQ(p.source, "DOC-3, derived, SIM (FACTS.md#cluster-dma, FACTS.md#published-kernels)");
+    EXPECT_EQ(p.source, "DOC-3, derived (FACTS.md#cluster-dma)");
     EXPECT_EQ(p.confidence, "medium");
     ASSERT_TRUE(p.range);
     EXPECT_EQ(p.range->low, 10);

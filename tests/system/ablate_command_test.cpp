@@ -197,7 +197,7 @@ TEST_F(BatchCommands, ReplaceNothingButResults) {
   fs::create_directory(folder_ / "out");
   outputs::write_file_atomically(folder_ / "out/thesis.tex", "mine");
   expect_refused(run_program(folder_.path(), words("ablate", {"--force"})),
-                 {"something else than results"});
+                 {"something other than results"});
   EXPECT_TRUE(fs::exists(folder_ / "out/thesis.tex"));
 }
 

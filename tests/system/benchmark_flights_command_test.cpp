@@ -95,7 +95,7 @@ TEST_F(BenchmarkOfFewFrames, RefusesBadInputBeforeAnythingIsDrawn) {
   expect_refused(run(words("pieces: [3]\nevery: 0.1\nsize: 64x48", "out")), {"64x48", "32x24"});
   fs::create_directory(folder_ / "mine");
   outputs::write_file_atomically(folder_ / "mine/thesis.tex", "mine");
-  expect_refused(run(words(kPlan, "mine", {"--force"})), {"something else than results"});
+  expect_refused(run(words(kPlan, "mine", {"--force"})), {"something other than results"});
   expect_refused(run(words(kPlan, "motion", {"--force"})), {"motion"});
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   EXPECT_EQ(drawn(), 0u);

@@ -185,7 +185,7 @@ TEST_F(CommandLine, NeverReplacesWhatIsNoResult) {
   for (const bool force : {false, true}) {
     std::vector<std::string> words = run_words(data_.root().string(), out());
     if (force) words.push_back("--force");
-    expect_refusal(words, {"--out", "something else than results"});
+    expect_refusal(words, {"--out", "something other than results"});
     EXPECT_TRUE(fs::exists(folder_ / "out/thesis.txt"));
   }
   std::ofstream(folder_ / "file") << "x";

@@ -298,7 +298,7 @@ TEST_F(Outputs, SweepsOnlyAddToWhatSweepsWrote) {
   expect_done(anew);
   EXPECT_EQ(read_text(folder_ / "w/sweep.csv"), table);
   write_text(folder_ / "w/notes", "x");
-  expect_kept_by_force(sweep("w"), {"something else than a sweep: notes"});
+  expect_kept_by_force(sweep("w"), {"something other than a sweep: notes"});
   fs::remove(folder_ / "w/notes");
   write_text(folder_ / "w/sweep.csv", table + "edited");
   expect_kept_by_force(sweep("w"), {"sweep.csv", "changed since"});

@@ -84,7 +84,7 @@ TEST_F(StudyCommands, ReplaceNothingUnlessForced) {
   expect_refusal({"sensitivity", "--data", "x", "--csv", path("folder")}, {"is a folder"});
   expect_refusal({"sensitivity", "--data", "x", "--csv", path("none/a.csv")}, {"no folder"});
   expect_refusal({"validate", "--data", "x", "--out", path("folder"), "--force"},
-                 {"something else than results"});
+                 {"something other than results"});
   EXPECT_EQ(base::read_text_file(folder_ / "mine.yaml"), "mine");
   EXPECT_TRUE(fs::exists(folder_ / "folder/thesis.tex"));
 }

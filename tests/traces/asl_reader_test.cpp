@@ -204,9 +204,9 @@ TEST(AslReader, EmptySequences) {
   for (const char* name : {kFrames, kImu, kTruth}) {
     const AslFolder folder;
     outputs::write_file_atomically(folder.mav0(name), "#heading only\n");
-    expect_broken(folder, {name, "empty"});
+    expect_broken(folder, {name, std::string_view(name) == kTruth ? "holds no row" : "empty"});
     outputs::write_file_atomically(folder.mav0(name), "");
-    expect_broken(folder, {name, "empty"});
+    expect_broken(folder, {name, std::string_view(name) == kTruth ? "holds no row" : "empty"});
   }
 }
 

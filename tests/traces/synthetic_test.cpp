@@ -106,7 +106,7 @@ TEST(Synthetic, OverwritesOnlyWhatItMay) {
   EXPECT_EQ(open_asl(folder / "a").frames.size(), 4u);
   fs::create_directories(folder / "home/precious");
   expect_input_error([&] { write_synthetic_flight(folder / "home", options); },
-                     {"home", "something else than results: precious"});
+                     {"home", "something other than results: precious"});
   EXPECT_TRUE(fs::exists(folder / "home/precious"));
 }
 

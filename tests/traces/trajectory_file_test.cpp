@@ -71,7 +71,7 @@ TEST_F(TrajectoryFiles, AForcedFormatIsThatOfTheFile) {
                      {"a line 1", "8 columns instead of 12"});
   options.format = TrajectoryFormat::euroc;
   expect_input_error([&] { read_trajectory(write("a", kTum), options); },
-                     {"a line 1", "instead of 17"});
+                     {"a line 1", "instead of 8"});
 }
 
 TEST_F(TrajectoryFiles, BrokenKittiRows) {

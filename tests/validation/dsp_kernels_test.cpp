@@ -10,6 +10,7 @@
 
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/loader.h"
+#include "tools/app/validation/microbench/bench.h"
 #include "tools/app/validation/microbench/library_kernels.h"
 #include "tools/app/validation/microbench/library_programs.h"
 #include "tools/app/validation/microbench/report.h"
@@ -20,6 +21,8 @@ namespace {
 
 using work::Core;
 using work::Machine;
+using P = work::Counting;
+using I32 = P::I32;
 
 const std::vector<std::string> kByHand(kLibraryChip.begin(), kLibraryChip.end());
 /// With what compilers add.
@@ -94,7 +97,6 @@ TEST(ValidationDspKernels, HardwareRepeatsAllButTheColumns) {
   Machine machine({.cores = 1, .capacity = Bytes(65536), .record = true});
   {
     const auto stage = machine.stage("product");
-    using P = work::Counting;
     using Words = P::Span<P::I32>;
     const auto a = block<Words>(machine, "a", 256), b = block<Words>(machine, "b", 256);
     const auto c = block<Words>(machine, "c", 256);

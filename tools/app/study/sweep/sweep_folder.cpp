@@ -53,7 +53,7 @@ SweepFolder::SweepFolder(const Request& request) {
 
 void SweepFolder::check_entry(const Request& request, const std::string& name) const {
   const auto foreign = [&] {
-    refuse(request, fmt::format("exists and holds something else than a sweep: {}; choose a new "
+    refuse(request, fmt::format("exists and holds something other than a sweep: {}; choose a new "
                                 "folder",
                                 name));
   };
