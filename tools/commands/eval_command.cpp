@@ -74,7 +74,7 @@ Json protocol_json(const EvalRequest& request) {
 Json figures(const traces::TrajectoryPair& pair, const EvalRequest& request,
              const Accuracy& accuracy) {
   StatisticList list;
-  add_ate(list, accuracy.evaluation);
+  add_ate(list, accuracy.evaluation, attitude_errors(accuracy.evaluation));
   list.add("accuracy.longest_gap", "s", "between successive matched poses",
            value_of(accuracy.evaluation.longest_gap_s));
   list.add("accuracy.scale", "1", "that the alignment applied to the estimate",

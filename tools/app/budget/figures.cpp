@@ -35,8 +35,6 @@ constexpr std::array kOfTheRun{
     FigurePhrase{"energy per frame", "energy.frame", "mJ"},
     FigurePhrase{"mean power", "energy.mean_power", "mW"},
     FigurePhrase{"ATE", "accuracy.ate.rmse", "m"},
-    FigurePhrase{"tilt error", "accuracy.tilt.rmse", "deg"},
-    FigurePhrase{"heading error", "accuracy.heading.rmse", "deg"},
     FigurePhrase{"completion", "accuracy.completion", "1"},
     FigurePhrase{"time verdict", "verdict.time", "time verdict"},
     FigurePhrase{"memory verdict", "verdict.memory", "memory verdict"},

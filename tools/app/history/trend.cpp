@@ -34,7 +34,10 @@ void find_changes(Trend& trend) {
     else
       trend.drift.push_back({i, *change});
   }
-  for (const FigureChange& change : trend.drift) trend.drift_percent += change.percent;
+  const double worse = trend.limit->bound.at_most ? 1 : -1;
+  double ratio = 1;
+  for (const FigureChange& change : trend.drift) ratio *= 1 + worse * change.percent / 100;
+  trend.drift_percent = 100 * worse * (ratio - 1);
   if (trend.drift_percent <= trend.allowed + kRounding) trend.drift.clear();
 }
 

@@ -84,7 +84,8 @@ std::string relative_text(const Evaluation& evaluation, const std::vector<Relati
   return text;
 }
 
-void add_ate(StatisticList& list, const Evaluation& evaluation) {
+void add_ate(StatisticList& list, const Evaluation& evaluation,
+             const std::optional<traces::AttitudeErrors>& attitude) {
   const auto add = [&](const char* name, const char* unit, const char* description, Json value) {
     list.add_with_protocol(std::string("accuracy.") + name, unit, description, std::move(value),
                            evaluation.protocol);
@@ -94,7 +95,7 @@ void add_ate(StatisticList& list, const Evaluation& evaluation) {
   add("ate.mean", "m", "absolute trajectory error, mean", rounded(t.mean));
   add("ate.median", "m", "absolute trajectory error, median", rounded(t.median));
   add("ate.worst", "m", "absolute trajectory error, worst", rounded(t.max));
-  if (const auto attitude = attitude_errors(evaluation)) {
+  if (attitude) {
     add("tilt.rmse", "deg", "of the vertical, attitudes best aligned, root mean square",
         rounded(attitude->tilt_rmse_deg));
     add("heading.rmse", "deg", "about the vertical, attitudes best aligned, root mean square",

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/app/report/statistic_list.h"
+#include "traces/trajectories/attitude_error.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/relative_error.h"
 
@@ -23,9 +24,11 @@ std::string attitude_text(const traces::Evaluation& evaluation);
 std::string relative_text(const traces::Evaluation& evaluation,
                           const std::vector<traces::RelativeErrors>& errors);
 
-/// "accuracy.ate.rmse" and so on; of attitudes tilt and heading, for the angle that is left after an
-/// alignment of positions says little where these are wrong.
-void add_ate(StatisticList& list, const traces::Evaluation& evaluation);
+/// "accuracy.ate.rmse" and so on.
+/// @param attitude  where it is known, tilt and heading; runs leave it out, since replays do not
+///                  know it
+void add_ate(StatisticList& list, const traces::Evaluation& evaluation,
+             const std::optional<traces::AttitudeErrors>& attitude = {});
 
 /// "accuracy.relative.40m.translation.mean" and so on; null where a length has no sub-trajectory.
 void add_relative(StatisticList& list, const traces::Evaluation& evaluation,

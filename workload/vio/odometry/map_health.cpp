@@ -38,6 +38,7 @@ bool MapHealth::contradicts_imu() const {
 }
 
 Health MapHealth::after_frame(const FrameReport& report, float dt) {
+  if (!profile_.optimiser.joint) return Health::good;  // the limits are of its windows
   const HealthOptions& limits = profile_.health;
   doubted_s_ = inconsistent_ ? limits.memory_s : doubted_s_ - dt;
   track(report, dt);
