@@ -201,21 +201,5 @@ TEST_F(HistoryCommand, BisectSkipsWhatDoesNotRunAndStopsForABadBudget) {
   EXPECT_EQ(bisect(path("run"), path("none.yaml"), "true"), 128);
 }
 
-/// A wrapper that sets a number of the chip is another build.
-TEST_F(HistoryCommand, TwoProgramsAreComparedOnTheSameInput) {
-  write("slower", "#!/bin/sh\nexec leviosim \"$@\" -p isa.ops.popcount.issue=2\n");
-  fs::permissions(path("slower"), fs::perms::owner_all);
-  ::setenv("PATH", (path("bin") + ":" + std::getenv("PATH")).c_str(), 1);
-  const ProgramResult result =
-      program({"compare", "--programs", path("bin/leviosim"), path("slower"), "--", "--platform",
-               "gap9", "--data", path("flight"), "--frames", "0:12"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  expect_holds(result.out, {"A  " + path("bin/leviosim"), "B  " + path("slower"), "the same operations",
-                            "popcount"});
-  expect_refused(program({"compare", "--programs", path("bin/leviosim"), "/bin/false", "--", "--data",
-                          path("flight"), "--frames", "0:2"}),
-                 {"/bin/false: run ended with status 1"});
-}
-
 }  // namespace
 }  // namespace leviosim::tools

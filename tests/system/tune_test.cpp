@@ -147,7 +147,7 @@ TEST(Tuning, ChoosesTheLowestClockThatIsEnough) {
   equal.plan.ate_m = 0.05;
   EXPECT_EQ(chosen(choices(equal.plan, equal.points)), nullptr);
   EXPECT_NE(
-      choice_text(equal.plan, choices(equal.plan, equal.points)).find("no point meets the limits"),
+      tune_conclusion(choices(equal.plan, equal.points)).find("no point meets the limits"),
       std::string::npos);
 }
 
@@ -179,7 +179,8 @@ TEST(Tuning, SaysWhatItFound) {
             std::string::npos);
   example.points[2].outcomes[0].loop->camera.late = 5;
   const std::vector<Choice> all = choices(example.plan, example.points);
-  const std::string text = choice_text(example.plan, all);
+  const std::string text = choice_text(example.plan, all) + tune_conclusion(all) + "\nnext: " +
+                           run_command_text(example.plan, *chosen(all)) + '\n';
   for (const char* part :
        {"at most 5 % missed", "10 frames/s: 200 MHz, 0.65 V: 5.0 % missed, ATE 0.190 m, 12.5 mW",
         "the lowest of all: 200 MHz",
@@ -303,7 +304,7 @@ TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
     EXPECT_NE(first.out.find(part), std::string::npos) << part << " is not in:\n" << first.out;
   const Json manifest = Json::parse(base::read_text_file(folder_ / "out/manifest.json"));
   const auto line = manifest.at("chosen").get<std::string>();
-  EXPECT_NE(first.out.find("\n  " + line + '\n'), std::string::npos) << first.out;
+  EXPECT_NE(first.out.find("next: " + line + '\n'), std::string::npos) << first.out;
   auto files = contents(folder_ / "out");
   for (const char* name : {"runs.csv", "tune.svg", "manifest.json", "chosen/frames.csv"})
     EXPECT_TRUE(files.count(name)) << name;

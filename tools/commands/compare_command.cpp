@@ -11,7 +11,6 @@
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/comparison/record_source.h"
-#include "tools/app/comparison/two_programs.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/study/sweep/compared_point.h"
@@ -21,7 +20,6 @@ namespace {
 
 struct CompareOptions : RecordOptions {
   std::vector<std::string> runs;
-  std::vector<std::string> programs;
   std::string allow;
   std::string format = "text";
   bool json = false;
@@ -66,19 +64,6 @@ std::vector<ReportedRun> records(const CompareOptions& options) {
   return list;
 }
 
-/// Two builds on the same input: their runs, and the builds by name.
-std::vector<ReportedRun> runs_of_programs(const CompareOptions& options) {
-  const TwoPrograms programs(options.programs, options.runs);
-  std::vector<ReportedRun> list;
-  for (std::size_t i = 0; i < programs.folders().size(); ++i) {
-    ReportedRun& run = list.emplace_back();
-    run.files = read_run_files(programs.folders()[i]);
-    run.record = record_of_files(programs.folders()[i], run.files);
-    run.record.name = options.programs[i];
-  }
-  return list;
-}
-
 void run(const CLI::App& command, const CompareOptions& options) {
   require(command, "RUN", "two or more run folders, work traces or points of sweeps (SWEEP:3)");
   if (options.json && command.count("--format") > 0)
@@ -90,8 +75,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
     throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
   std::optional<outputs::OutputFile> page =
       claimed_report(options.report, options.force, {options.runs.begin(), options.runs.end()});
-  const std::vector<ReportedRun> runs =
-      options.programs.empty() ? records(options) : runs_of_programs(options);
+  const std::vector<ReportedRun> runs = records(options);
   std::vector<RunComparison> comparisons;
   for (std::size_t i = 1; i < runs.size(); ++i)
     comparisons.push_back(
@@ -113,12 +97,6 @@ Command add_compare_command(CLI::App& app) {
   command->add_option("RUN", options->runs,
                       "run folders, work traces, or points of sweeps (SWEEP:3); each against the "
                       "first");
-  command
-      ->add_option("--programs", options->programs,
-                   "two builds of leviosim that are compared on what stands after --: arguments of "
-                   "leviosim run")
-      ->type_name("OLD NEW")
-      ->expected(2);
   command->add_option("--allow", options->allow, "differences of the input that are meant")
       ->type_name("data,frames,profile,seed,size");
   command->add_option("--format", options->format, "text, markdown, json or csv [text]")

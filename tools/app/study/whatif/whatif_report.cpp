@@ -147,7 +147,7 @@ std::string whatif_conclusion(const std::vector<VariantResult>& results) {
     if (fastest == nullptr || results[i].mean_ms() < fastest->mean_ms()) fastest = &results[i];
   }
   if (fastest == nullptr) return "verdict: none of the variants can run";
-  return fmt::format("in short: {} is the fastest of these: a mean frame {:.2f} ms instead of {:.2f}",
+  return fmt::format("in short: fastest is {}: {:.2f} ms instead of {:.2f}",
                      printable(fastest->name), fastest->mean_ms(), results.front().mean_ms());
 }
 
