@@ -259,7 +259,7 @@ TEST_F(EvalCommand, AgreesWithTheRunThatMadeTheTrajectory) {
         << name;
     EXPECT_EQ(entry.at("protocol"), of_eval.at(name).at("protocol"));
   }
-  EXPECT_EQ(compared, 9);
+  EXPECT_EQ(compared, 7);  // of attitudes only eval says more
 }
 
 TEST(EvalOptions, TolerancesHaveUnits) {
