@@ -124,7 +124,11 @@ inline std::string screen_fault(const std::string& text) {
   bool concludes = false;
   bool goes_on = false;
   for (std::string line; std::getline(in, line); ++lines) {
-    concludes = concludes || line.rfind("verdict: ", 0) == 0 || line.rfind("in short: ", 0) == 0;
+    for (const char* conclusion : {"verdict: ", "in short: ", "synthetic flight: ",
+                                   "rendered flight: ", "platform: ", "report: ", "results: "})
+      concludes = concludes || line.rfind(conclusion, 0) == 0;
+    // Of a page nothing follows, nor of limits that no point meets.
+    goes_on = goes_on || line.rfind("report: ", 0) == 0 || line.rfind("verdict: NOT met", 0) == 0;
     const bool is_next = line.rfind("next: ", 0) == 0 || line.rfind("Next: ", 0) == 0;
     goes_on = goes_on || is_next;
     const bool has_blanks = line.find(' ', line.find(": ") + 2) != std::string::npos;
@@ -134,7 +138,8 @@ inline std::string screen_fault(const std::string& text) {
   }
   if (lines > kScreenLines) return fmt::format("{} lines", lines);
   if (!concludes) return "it does not say what came out";
-  return goes_on ? std::string() : "it does not say what to do next";
+  return goes_on || text.rfind("platform: ", 0) == 0 ? std::string()
+                                                     : "it does not say what to do next";
 }
 
 /// The program refused: exit status 2 and one message, which contains all parts.
