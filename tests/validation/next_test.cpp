@@ -32,7 +32,7 @@ TEST(ValidationNext, IsAccurateOnRealFramesAndFitsTheChip) {
 
   // An optimiser that is still busy at the start of a frame takes the next one. Three iterations of
   // a full window take 51 ms, a little more than a frame.
-  EXPECT_LT(run.optimiser_late, 150);
+  EXPECT_LT(run.optimiser_late, 170);
   double work_ms = 0;
   for (const StageResult& stage : run.stages)
     work_ms += milliseconds(static_cast<double>(stage.parallel.count()), clock_of(run, stage));
