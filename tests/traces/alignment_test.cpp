@@ -128,6 +128,14 @@ TEST(AlignPoints, RefusesTooLittle) {
                               {"Sim3", "coincide"});
 }
 
+/// Their covariance is infinite, and the SVD of that leaves whatever memory held.
+TEST(AlignPoints, RefusesPositionsWhoseSquaresAreNoNumbers) {
+  const Points huge = {{1e308, 0, 0}, {0, 0, 0}, {-1e308, 0, 0}};
+  const Points truth = {{0, 1, 2}, {2, 1, 2}, {4, 1, 2}};
+  for (const Alignment kind : {Alignment::posyaw, Alignment::se3, Alignment::sim3})
+    EXPECT_THROW(align_points(huge, truth, kind), NotComparable) << name_of(kind);
+}
+
 TEST(Alignment, NamesParse) {
   EXPECT_EQ(parse_alignment("posyaw"), Alignment::posyaw);
   EXPECT_EQ(parse_alignment("none"), Alignment::none);

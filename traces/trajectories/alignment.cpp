@@ -99,6 +99,8 @@ Similarity align_points(const std::vector<Eigen::Vector3d>& from,
     throw InputError(fmt::format("{} alignment needs at least {} matched poses; there are {}",
                                  row.name, row.least_points, from.size()));
   const Moments m = moments_of(from, to);
+  if (!m.covariance.allFinite() || !std::isfinite(m.variance_from))  // where an SVD means nothing
+    throw NotComparable("the positions are too large to be compared; expected metres");
   Similarity result =
       alignment == Alignment::posyaw ? yaw_only(m) : full_rotation(m, alignment == Alignment::sim3);
   result.translation = m.mean_to - result.scale * (result.rotation * m.mean_from);

@@ -44,7 +44,8 @@ struct Similarity {
 /// The transform of the given kind that brings `from` closest to `to` (least squares). If the
 /// points leave a rotation open (all on a line), any best one is returned. Throws InputError for
 /// fewer points than needed (none: 0, posyaw: 2, se3 and sim3: 3), and NotComparable for sim3 if
-/// all points of `from` coincide, which leaves the scale open.
+/// all points of `from` coincide, which leaves the scale open, and if squares of positions
+/// overflow.
 Similarity align_points(const std::vector<Eigen::Vector3d>& from,
                         const std::vector<Eigen::Vector3d>& to, Alignment alignment);
 
