@@ -113,7 +113,7 @@ TEST_F(Replayed, RecordingChangesNothing) {
 TEST_F(Replayed, OnAnotherChipIsTheLiveRunThere) {
   for (const std::vector<std::string>& overrides :
        {std::vector<std::string>{"cluster.fpu.units=1", "isa.instruction_overhead=1.3"},
-        {"cluster.clock=280MHz", "controller.clock=280MHz"},
+        {"cluster.clock=240MHz", "controller.clock=330MHz"},
         {"cluster.icache.shared_size=2KiB", "cluster.dma.bytes_per_cycle=2",
          "cluster.l1.banks=8"}}) {
     const Replay there = replayed(*on_gap9().trace, overrides);
