@@ -10,6 +10,7 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "sim/base/printable_text.h"
 #include "sim/base/sha256.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/limit_not_met.h"

@@ -18,7 +18,7 @@ table() {
     my ($header, $rule, @rows) = @lines;
     my $width = length $rule;
     my @cells = ($header);
-    for (@rows) { last if /^(¹|\*) |^\S+(?: \S+)*:( |$)/; push @cells, $_ }
+    for (@rows) { last if /^(¹|\*|…) |^\S+(?: \S+)*:( |$)/; push @cells, $_ }
     # A column is a run of places between two gaps of two blanks or more in every row.
     my $ink = "";
     for (@cells) { $ink = $ink | (s/\S/x/gr =~ s/\s/\0/gr) }

@@ -12,7 +12,7 @@ keeps tuned/tune.svg
 figure one-fpu
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
-shows 'leviosim replay recorded -p cluster.fpu.units=1 --out one-fpu'
+shows 'leviosim replay recorded -p cluster.fpu.units=1 --tables stages --out one-fpu'
 cut 'table stage stage "kcycles, 8 cores" speed-up ms | rows ^EPnP ^8-point'
 
 figure missed-deadlines
