@@ -47,6 +47,8 @@ function(leviosim_install_library)
   install(DIRECTORY tools/app tools/commands DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/leviosim/tools
           COMPONENT library FILES_MATCHING PATTERN "*.h")
   install(FILES tools/leviosim.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/leviosim COMPONENT library)
+  install(DIRECTORY tests/examples/outside COMPONENT library
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libleviosim-dev/examples)
 
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/leviosim)
   install(EXPORT leviosim NAMESPACE leviosim:: FILE leviosim-targets.cmake DESTINATION ${package}

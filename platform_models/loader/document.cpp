@@ -128,7 +128,9 @@ void DocumentReader::read_base(const std::vector<YamlEntry>& root,
   const YamlEntry* key = find(entries, kBase);
   if (other && key == nullptr)
     Place{other->where}.fail(
-        fmt::format("{} names no {} that could be replaced", file_, kBasePath));
+        fmt::format("{} names no {} that could be replaced; a chip's own file does, as --platform "
+                    "gap9 takes it",
+                    file_, kBasePath));
   if (key == nullptr) return;
   const Place named = other ? Place{other->where} : place(*key, kBasePath);
   const std::string name = other ? other->base : scalar(key->value, named);
@@ -258,12 +260,13 @@ void DocumentReader::read_bare(const YamlEntry& entry, const std::string& path) 
   const Place record = place(entry, path);
   const std::vector<std::size_t> indices = schema_.record(path);
   if (indices.size() > 1)
-    record.fail(fmt::format("is a single value; expected a map {{ {}: …, unit: …, source: …, "
-                            "confidence: … }}",
-                            schema_.fields()[indices.front()].name));
+    record.fail(
+        fmt::format("is a single value; expected a map {{ {}: …, unit: …, source: …, "
+                    "confidence: … }}",
+                    schema_.fields()[indices.front()].name));
   std::optional<Setting>& setting = document_.settings[indices.front()];
-  setting =
-      read_override(schema_.fields()[indices.front()], setting, scalar(entry.value, record), record);
+  setting = read_override(schema_.fields()[indices.front()], setting, scalar(entry.value, record),
+                          record);
   setting->where = fmt::format("{}:{}", file_, entry.line);
   setting->parameter.source = kWhatIfKey;
   setting->parameter.confidence = "assumed";

@@ -143,6 +143,14 @@ TEST(StageTable, TimesTheControllerByItsOwnClock) {
   EXPECT_NE(text.find("¹ on the fabric controller"), std::string::npos);
 }
 
+TEST(StageTable, SaysWhichProgramOneCoreRuns) {
+  RunResult run = example_run();
+  const std::string note = "1 core: this program on the master alone (--cores 1:";
+  EXPECT_NE(stage_table(run).find(note), std::string::npos);
+  run.cores = 1;
+  EXPECT_EQ(stage_table(run).find(note), std::string::npos);
+}
+
 TEST(StageTable, ShowsDashesForAStageWithoutCalls) {
   const std::string line = line_of(stage_table(example_run()), "EPnP RANSAC");
   EXPECT_EQ(cells_after(line, 11), (Cells{"frame", "0", "–", "–", "–", "–", "–"}));

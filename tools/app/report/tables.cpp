@@ -201,6 +201,9 @@ std::string stage_table(const RunResult& run, int width) {
                                              [](const StageResult& s) { return s.on_controller; });
   return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) +
          stages_of(run, all, " ¹").str(width) +
+         (run.cores == 1 ? ""
+                         : "1 core: this program on the master alone (--cores 1: the program for "
+                           "one core)\n") +
          (any_on_controller ? "¹ on the fabric controller, which is one core\n" : "") +
          unmeasured_note(run);
 }

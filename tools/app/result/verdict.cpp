@@ -11,10 +11,15 @@
 namespace leviosim::tools {
 namespace {
 
+constexpr std::string_view kNotJudged = "not judged";
+
 std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
 
-/// Of a few digits: 9.6, 54.
-std::string short_ms(double ns) { return fmt::format("{:.{}f}", ns * 1e-6, ns < 10e6 ? 1 : 0); }
+/// Of two digits: 0.026, 9.6, 54.
+std::string short_ms(double ns) {
+  if (ns < 1e6) return fmt::format("{:.2g}", ns * 1e-6);
+  return fmt::format("{:.{}f}", ns * 1e-6, ns < 10e6 ? 1 : 0);
+}
 
 /// A time of the run, "54.5 (48–62) ms" where its band is known.
 struct TimeFigure {
@@ -115,15 +120,20 @@ std::string_view name_of(Grade grade) {
 }
 
 const std::vector<VerdictWord>& verdict_words() {
-  static const std::vector<VerdictWord> words{
-      {"time", "fits", Grade::good},          {"time", "fits on average", Grade::doubtful},
-      {"time", "too slow", Grade::bad},       {"memory", "fits", Grade::good},
-      {"memory", "does not fit", Grade::bad}, {"map", "good", Grade::good},
-      {"map", "unreliable", Grade::doubtful}, {"map", "lost", Grade::bad}};
+  static const std::vector<VerdictWord> words{{"time", "fits", Grade::good},
+                                              {"time", "fits on average", Grade::doubtful},
+                                              {"time", "too slow", Grade::bad},
+                                              {"memory", "fits", Grade::good},
+                                              {"memory", "does not fit", Grade::bad},
+                                              {"map", "good", Grade::good},
+                                              {"map", kNotJudged, Grade::good},
+                                              {"map", "unreliable", Grade::doubtful},
+                                              {"map", "lost", Grade::bad}};
   return words;
 }
 
 std::string_view RunVerdict::word() const {
+  if (!judged) return kNotJudged;
   for (const VerdictWord& w : verdict_words())
     if (w.about == about && w.grade == grade) return w.word;
   return {};
@@ -180,6 +190,8 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   else if (signs.lost_frames > 0)
     fault(false, fmt::format("the estimator had lost its map in {} frames", signs.lost_frames));
   if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));
+  if (verdict.reasons.empty() && !signs.health && !signs.error_share && !signs.scale)
+    verdict.judged = false;
   return verdict;
 }
 

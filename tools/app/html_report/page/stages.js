@@ -158,6 +158,13 @@ function stagesSection(run) {
       {whole: true, label: 'Stages'});
   return section(
       'stages', 'Stages',
-      element('div', {class: 'card'}, element('h3', {}, 'Stages of the run, per call'), table),
+      element(
+          'div', {class: 'card'}, element('h3', {}, 'Stages of the run, per call'), table,
+          run.facts.cores > 1 ?
+              element(
+                  'p', {class: 'hint'},
+                  '1 core: the same program on the master alone. ' +
+                      'A run with --cores 1 has the program for one core.') :
+              null),
       breakdownFigure(run, rows));
 }
