@@ -101,11 +101,14 @@ std::optional<std::string> OutputFolder::commit() {
   if (const int error = staging_->finish())
     refuse(fmt::format("{} cannot be written: {}", kRecordName, reason(error)));
   // Held until the old results are gone, so that nobody takes them for those of a dead process.
+  Descriptor old_folder;
   Descriptor old_record;
   FolderContents old;
   const auto is_ours = [&](const fs::path& folder) {
+    old_folder =
+        Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     old_record = Descriptor(
-        ::open((folder / kRecordName).c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+        ::openat(old_folder.get(), kRecordName, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     if (!old_record || !lock(old_record.get(), kPatience)) return false;
     try {
       old = contents_of(folder, request().repair);
@@ -117,10 +120,8 @@ std::optional<std::string> OutputFolder::commit() {
   std::optional<std::string> elsewhere = put(*staging_, staging_->path(), is_ours);
   staging_->let_go();
   if (elsewhere || !old.is_ours()) return elsewhere;
-  const Descriptor folder(
-      ::open(staging_->path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
-  old.remove(folder);
-  ::unlinkat(folder.get(), kRecordName, 0);
+  old.remove(old_folder);
+  ::unlinkat(old_folder.get(), kRecordName, 0);
   ::rmdir(staging_->path().c_str());
   return std::nullopt;
 }

@@ -1,102 +1,112 @@
-// A library to be preloaded (LD_PRELOAD), by which one call of a kind fails: the N-th of the
-// program, counted from where main() holds back signals.
-//   LEVIOSIM_FAULT=KIND:N   KIND allocation, site, write, rename, open, mkdir or close; N from 1
-//   LEVIOSIM_FAULT_COUNT    a file of 16 bytes: how many calls there were, and how many failed
-// A site is a place that allocates, told by the callers of the allocation; its first call fails.
+// A library to be preloaded (LD_PRELOAD), by which one call of a kind fails: the N-th that a
+// command makes, counted from where main() holds back signals. Commands are tried many thousands of
+// times, so the program is started once and asks for requests at its standard input, a socket. Each
+// is carried out by a copy of the process: made at the N-th call, or where the first file is opened
+// to be written or the first folder made, if that comes before. Until then a command changes
+// nothing.
+//   request  KIND:N   KIND allocation, write, rename, open, mkdir or close; N from 1, and not below
+//                     that of the request before, or 0 for none. What is printed goes to .out, .err
+//   answer   FaultAnswer (tests/support/fault_injector.h)
 // What prints goes through stdio, whose writes are the C library's own and do not fail.
+#include "tests/support/fault_injector.h"
+
 #include <dlfcn.h>
-#include <execinfo.h>
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdarg>
-#include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <new>
+#include <string_view>
 
 namespace {
 
-struct Counts {
-  std::atomic<std::uint64_t> calls;
-  std::atomic<std::uint64_t> failed;
-};
+enum Kind { kAllocation, kWrite, kRename, kOpen, kMkdir, kClose, kKinds };
+constexpr std::string_view kNames[kKinds]{"allocation", "write", "rename",
+                                          "open",       "mkdir", "close"};
+using Calls = std::atomic<std::uint64_t>[kKinds + 1];  // the last: how many failed
 
-char kind[16];
+enum class Role { starting, serving, copy, none } role = Role::starting;
+Calls calls_before;            // of the process that serves
+Calls* calls = &calls_before;  // in copies, a place that the process sees
+int kind = kKinds;             // of the request
 std::uint64_t number = 0;
-Counts none;
-Counts* counts = &none;
-std::atomic<bool> has_begun{false};
-std::atomic<bool> has_output{false};
-thread_local bool is_inside = false;
-
-/// Hashes of the sites that were seen.
-constexpr std::size_t kSites = 1 << 18;
-std::atomic<std::uint64_t> sites[kSites];
 
 template <class Function>
 Function next(Function, const char* name) {
   return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
 }
 
-bool is_new_site() {
-  constexpr int kDepth = 8;
-  void* callers[kDepth];
-  const int depth = ::backtrace(callers, kDepth);
-  std::uint64_t hash = 1469598103934665603u;
-  for (int i = 2; i < depth; ++i)
-    hash = (hash ^ reinterpret_cast<std::uintptr_t>(callers[i])) * 1099511628211u;
-  for (std::size_t at = hash % kSites;; at = (at + 1) % kSites) {
-    std::uint64_t there = 0;
-    if (sites[at].compare_exchange_strong(there, hash)) return true;
-    if (there == hash) return false;
+void receive() {
+  char request[64]{};
+  if (::recv(STDIN_FILENO, request, sizeof(request) - 1, 0) <= 0) std::_Exit(0);
+  const char* const colon = std::strchr(request, ':');
+  if (colon == nullptr) std::_Exit(126);
+  const auto* const name =
+      std::find(kNames, kNames + kKinds,
+                std::string_view(request, static_cast<std::size_t>(colon - request)));
+  kind = static_cast<int>(name - kNames);
+  number = std::strtoull(colon + 1, nullptr, 10);
+}
+
+void redirect(const char* name, int flags, int place) {
+  const int file = ::open(name, flags | O_CREAT, 0600);
+  ::dup2(file, place);
+  ::close(file);
+}
+
+/// @returns whether this is the copy; the process itself has answered and has the next request
+bool carry_out() {
+  static void* const place =
+      ::mmap(nullptr, sizeof(Calls), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  role = Role::none;
+  auto& shared = *static_cast<Calls*>(place);
+  for (int k = 0; k <= kKinds; ++k) shared[k] = calls_before[k].load();
+  const pid_t copy = ::fork();
+  if (copy == 0) {
+    redirect("/dev/null", O_RDONLY, STDIN_FILENO);
+    redirect(".out", O_WRONLY | O_TRUNC, STDOUT_FILENO);
+    redirect(".err", O_WRONLY | O_TRUNC, STDERR_FILENO);
+    calls = &shared;
+    role = Role::copy;
+    return true;
   }
+  FaultAnswer answer;
+  ::waitpid(copy, &answer.wait_status, 0);
+  answer.calls = shared[kind];
+  answer.failed = shared[kKinds];
+  ::send(STDIN_FILENO, &answer, sizeof(answer), 0);
+  receive();
+  role = Role::serving;
+  return false;
 }
 
-bool fails(const char* what) {
-  if (!has_begun || is_inside || std::strcmp(what, kind) != 0) return false;
-  if (++counts->calls != number) return false;
-  ++counts->failed;
-  return true;
+/// Before the first change.
+void before_output() {
+  while (role == Role::serving)
+    if (carry_out()) return;
 }
 
-bool allocation_fails() {
-  if (!has_output || is_inside) return false;
-  bool result = fails("allocation");
-  if (kind[0] == 's') {
-    is_inside = true;  // the walk may allocate
-    const bool is_new = is_new_site();
-    is_inside = false;
-    result = is_new && fails("site");
-  }
-  return result;
-}
-
-struct Setup {
-  Setup() {
-    is_inside = true;
-    void* warm[2];
-    ::backtrace(warm, 2);  // loads a library
-    if (const char* const wanted = std::getenv("LEVIOSIM_FAULT")) {
-      const char* const colon = std::strchr(wanted, ':');
-      std::strncpy(kind, wanted, static_cast<std::size_t>(colon - wanted));
-      number = std::strtoull(colon + 1, nullptr, 10);
+bool fails(Kind what) {
+  if (what == kWrite || what == kRename || what == kMkdir) before_output();
+  if (role != Role::serving && role != Role::copy) return false;
+  const std::uint64_t call = ++(*calls)[what];
+  while (what == kind && call == number)
+    if (role == Role::copy || carry_out()) {
+      ++(*calls)[kKinds];
+      return true;
     }
-    if (const char* const file = std::getenv("LEVIOSIM_FAULT_COUNT")) {
-      const int descriptor = ::open(file, O_RDWR | O_CLOEXEC);
-      void* const place =
-          ::mmap(nullptr, sizeof(Counts), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-      if (place != MAP_FAILED) counts = static_cast<Counts*>(place);
-    }
-    is_inside = false;
-  }
-} setup;
+  return false;
+}
 
 }  // namespace
 
@@ -110,70 +120,72 @@ void* __libc_memalign(std::size_t, std::size_t);
 int pthread_sigmask(int how, const sigset_t* set, sigset_t* old) {
   static const auto real = next(&pthread_sigmask, "pthread_sigmask");
   const int result = real(how, set, old);
-  has_begun = true;
+  if (role == Role::starting) {
+    receive();
+    role = Role::serving;
+  }
   return result;
+}
+
+/// What a thread holds that locks it again is not held by its copy.
+int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
+  static const auto real = next(&pthread_mutex_lock, "pthread_mutex_lock");
+  if (mutex->__data.__kind == PTHREAD_MUTEX_RECURSIVE) before_output();
+  return real(mutex);
 }
 
 #define FAULT_NO_MEMORY(result) (errno = ENOMEM, result)
 
 void* malloc(std::size_t size) {
-  return allocation_fails() ? FAULT_NO_MEMORY(nullptr) : __libc_malloc(size);
+  return fails(kAllocation) ? FAULT_NO_MEMORY(nullptr) : __libc_malloc(size);
 }
 void* calloc(std::size_t number_of, std::size_t size) {
-  return allocation_fails() ? FAULT_NO_MEMORY(nullptr) : __libc_calloc(number_of, size);
+  return fails(kAllocation) ? FAULT_NO_MEMORY(nullptr) : __libc_calloc(number_of, size);
 }
 void* realloc(void* old, std::size_t size) {
-  return allocation_fails() ? FAULT_NO_MEMORY(nullptr) : __libc_realloc(old, size);
+  return fails(kAllocation) ? FAULT_NO_MEMORY(nullptr) : __libc_realloc(old, size);
 }
 int posix_memalign(void** result, std::size_t alignment, std::size_t size) {
-  if (allocation_fails()) return ENOMEM;
+  if (fails(kAllocation)) return ENOMEM;
   *result = __libc_memalign(alignment, size);
   return *result == nullptr ? ENOMEM : 0;
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  return allocation_fails() ? FAULT_NO_MEMORY(nullptr) : __libc_memalign(alignment, size);
+  return fails(kAllocation) ? FAULT_NO_MEMORY(nullptr) : __libc_memalign(alignment, size);
 }
 
-#define FAULT_CALL(kind_of, error, name, arguments) \
-  {                                                 \
-    static const auto real = next(&name, #name);    \
-    if (fails(kind_of)) {                           \
-      errno = error;                                \
-      return -1;                                    \
-    }                                               \
-    return real arguments;                          \
+#define FAULT_CALL(kind_of, error, result, name, parameters, arguments) \
+  result name parameters {                                              \
+    static const auto real = next(&name, #name);                        \
+    if (fails(kind_of)) {                                               \
+      errno = error;                                                    \
+      return -1;                                                        \
+    }                                                                   \
+    return real arguments;                                              \
   }
 
-ssize_t write(int d, const void* p, std::size_t n)
-    FAULT_CALL("write", ENOSPC, write, (d, p, n)) ssize_t
-    pwrite64(int d, const void* p, std::size_t n, off64_t at)
-        FAULT_CALL("write", ENOSPC, pwrite64, (d, p, n, at)) ssize_t
-    writev(int d, const iovec* p, int n)
-        FAULT_CALL("write", ENOSPC, writev, (d, p, n)) int fallocate64(int d, int mode, off64_t at,
-                                                                       off64_t n)
-            FAULT_CALL("write", ENOSPC, fallocate64,
-                       (d, mode, at, n)) int fallocate(int d, int mode, off_t at, off_t n)
-                FAULT_CALL("write", ENOSPC, fallocate, (d, mode, at, n)) int fsync(int d)
-                    FAULT_CALL("write", EIO, fsync, (d)) int fdatasync(int d)
-                        FAULT_CALL("write", EIO, fdatasync, (d)) int rename(const char* a,
-                                                                            const char* b) noexcept
-    FAULT_CALL("rename", EIO, rename, (a, b)) int renameat(int c, const char* a, int d,
-                                                           const char* b) noexcept
-    FAULT_CALL("rename", EIO, renameat, (c, a, d, b)) int renameat2(int c, const char* a, int d,
-                                                                    const char* b,
-                                                                    unsigned f) noexcept
-    FAULT_CALL("rename", EIO, renameat2, (c, a, d, b, f)) 
-int mkdir(const char* a, mode_t m) noexcept {
-  has_output = has_begun.load();
-  FAULT_CALL("mkdir", ENOSPC, mkdir, (a, m))
-}
-int mkdirat(int d, const char* a, mode_t m) noexcept
-    FAULT_CALL("mkdir", ENOSPC, mkdirat, (d, a, m))
+// clang-format off
+FAULT_CALL(kWrite, ENOSPC, ssize_t, write, (int d, const void* p, std::size_t n), (d, p, n))
+FAULT_CALL(kWrite, ENOSPC, ssize_t, pwrite64, (int d, const void* p, std::size_t n, off64_t at),
+           (d, p, n, at))
+FAULT_CALL(kWrite, ENOSPC, ssize_t, writev, (int d, const iovec* p, int n), (d, p, n))
+FAULT_CALL(kWrite, ENOSPC, int, fallocate64, (int d, int mode, off64_t at, off64_t n),
+           (d, mode, at, n))
+FAULT_CALL(kWrite, ENOSPC, int, fallocate, (int d, int mode, off_t at, off_t n), (d, mode, at, n))
+FAULT_CALL(kWrite, EIO, int, fsync, (int d), (d))
+FAULT_CALL(kWrite, EIO, int, fdatasync, (int d), (d))
+FAULT_CALL(kRename, EIO, int, rename, (const char* a, const char* b), (a, b))
+FAULT_CALL(kRename, EIO, int, renameat, (int c, const char* a, int d, const char* b), (c, a, d, b))
+FAULT_CALL(kRename, EIO, int, renameat2, (int c, const char* a, int d, const char* b, unsigned f),
+           (c, a, d, b, f))
+FAULT_CALL(kMkdir, ENOSPC, int, mkdir, (const char* a, mode_t m), (a, m))
+FAULT_CALL(kMkdir, ENOSPC, int, mkdirat, (int d, const char* a, mode_t m), (d, a, m))
+// clang-format on
 
-        int close(int descriptor) {
+int close(int descriptor) {
   static const auto real = next(&close, "close");
   const int result = real(descriptor);  // it is closed all the same [close(2)]
-  if (!fails("close")) return result;
+  if (!fails(kClose)) return result;
   errno = EIO;
   return -1;
 }
@@ -182,23 +194,26 @@ static mode_t mode_of(int flags, va_list more) {
   return (flags & (O_CREAT | O_TMPFILE)) != 0 ? static_cast<mode_t>(va_arg(more, int)) : 0;
 }
 
-#define FAULT_OPEN(name, ...)                    \
-  {                                              \
-    static const auto real = next(&name, #name); \
-    va_list more;                                \
-    va_start(more, flags);                       \
-    const mode_t mode = mode_of(flags, more);    \
-    va_end(more);                                \
-    if (fails("open")) {                         \
-      errno = EMFILE;                            \
-      return -1;                                 \
-    }                                            \
-    return real(__VA_ARGS__, flags, mode);       \
+#define FAULT_OPEN(name, parameters, ...)                             \
+  int name parameters {                                               \
+    static const auto real = next(&name, #name);                      \
+    va_list more;                                                     \
+    va_start(more, flags);                                            \
+    const mode_t mode = mode_of(flags, more);                         \
+    va_end(more);                                                     \
+    if ((flags & (O_ACCMODE | O_CREAT)) != O_RDONLY) before_output(); \
+    if (fails(kOpen)) {                                               \
+      errno = EMFILE;                                                 \
+      return -1;                                                      \
+    }                                                                 \
+    return real(__VA_ARGS__, flags, mode);                            \
   }
-int open(const char* path, int flags, ...)
-    FAULT_OPEN(open, path) int open64(const char* path, int flags, ...)
-        FAULT_OPEN(open64, path) int openat(int d, const char* path, int flags, ...)
-            FAULT_OPEN(openat, d, path) int openat64(int d, const char* path, int flags, ...)
-                FAULT_OPEN(openat64, d, path)
+
+// clang-format off
+FAULT_OPEN(open, (const char* path, int flags, ...), path)
+FAULT_OPEN(open64, (const char* path, int flags, ...), path)
+FAULT_OPEN(openat, (int d, const char* path, int flags, ...), d, path)
+FAULT_OPEN(openat64, (int d, const char* path, int flags, ...), d, path)
+// clang-format on
 
 }  // extern "C"

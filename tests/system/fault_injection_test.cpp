@@ -1,14 +1,17 @@
-// Each call of a kind fails once, in order: the first write of a command, the second, … until the
-// command has fewer. After each, nothing of others is touched, nothing half-written stays, and one
-// line says what happened. Of each kind some are tried, all with LEVIOSIM_ALL_FAULTS=1.
+// Each call of a kind fails once, in order: the first allocation of a command, the second, … until
+// the command has fewer. After each, nothing of others is touched, nothing half-written stays, and
+// one line says what happened. Of each kind some are tried, all with LEVIOSIM_ALL_FAULTS=1.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <cstdlib>
-#include <cstring>
 #include <regex>
-#include <set>
 
+#include "sim/outputs/file_system.h"
+#include "tests/support/fault_injector.h"
+#include "tests/support/paths.h"
 #include "tests/support/program_suite.h"
+#include "tests/support/run_program.h"
 #include "tests/support/scratch.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -16,7 +19,6 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ProgramResult;
 using tests::picture_of;
 using tests::read_text;
 using tests::Scratch;
@@ -27,9 +29,61 @@ using Picture = std::map<std::string, std::string>;
 /// Sampled: every one is tried where there are few, else the first, the last and some between.
 constexpr std::uint64_t kSamples = 8;
 
-struct Counts {
-  std::uint64_t calls = 0;
-  std::uint64_t failed = 0;
+std::vector<std::uint64_t> chosen(std::uint64_t calls) {
+  const bool all = std::getenv("LEVIOSIM_ALL_FAULTS") != nullptr;
+  const std::uint64_t tries = all ? calls : std::min(calls, kSamples);
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = 0; i < tries; ++i)
+    numbers.push_back(tries == 1 ? 1 : 1 + i * (calls - 1) / (tries - 1));
+  return numbers;
+}
+
+/// A command that works in a folder, as often as wanted (tests/support/fault_injector.cpp). The
+/// folder has to hold the same each time.
+class FaultyProgram {
+ public:
+  FaultyProgram(Words words, const fs::path& folder) {
+    int ends[2] = {-1, -1};
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) std::abort();
+    socket_ = outputs::Descriptor(ends[0]);
+    const outputs::Descriptor other(ends[1]);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
+    posix_spawn_file_actions_adddup2(&files, ends[1], STDIN_FILENO);
+    const std::string program = tests::program_path();
+    words.insert(words.begin(), program);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    ::setenv("LD_PRELOAD", LEVIOSIM_FAULT_INJECTOR, 1);
+    testing::AllLines environment;
+    const int error =
+        posix_spawn(&pid_, program.c_str(), &files, nullptr, arguments.data(), environment.data());
+    ::unsetenv("LD_PRELOAD");
+    posix_spawn_file_actions_destroy(&files);
+    if (error != 0) std::abort();
+  }
+  ~FaultyProgram() {
+    socket_ = outputs::Descriptor();
+    ::waitpid(pid_, nullptr, 0);
+  }
+  FaultyProgram(const FaultyProgram&) = delete;
+  FaultyProgram& operator=(const FaultyProgram&) = delete;
+
+  /// @returns nothing if nothing can be preloaded into the program
+  std::optional<FaultAnswer> run(const std::string& kind, std::uint64_t number) const {
+    const std::string request = fmt::format("{}:{}", kind, number);
+    FaultAnswer answer;
+    if (::send(socket_.get(), request.data(), request.size(), MSG_NOSIGNAL) < 0 ||
+        ::recv(socket_.get(), &answer, sizeof(answer), 0) != sizeof(answer))
+      return std::nullopt;
+    return answer;
+  }
+
+ private:
+  outputs::Descriptor socket_;
+  pid_t pid_ = -1;
 };
 
 class FaultInjection : public tests::ProgramSuite {
@@ -38,68 +92,54 @@ class FaultInjection : public tests::ProgramSuite {
     make_folder("faults");
     traces::write_synthetic_flight(path("flight"), {.duration_s = 0.5, .texel_m = 0.05});
     expect_done({"run", "--platform", "gap9", "--data", path("flight"), "--size", "32x24",
-                 "--record", "--quiet", "--out", path("recorded")});
+                 "--frames", "0:2", "--record", "--quiet", "--out", path("recorded")});
     write_text(path("budgets.yaml"), "budgets: [{ limits: [L1 peak <= 1 MB] }]\n");
     write_text(path("plan.yaml"),
                "base: { trace: recorded }\n"
-               "points: { grid: { platform.cluster.clock: [200, 370] } }\n");
+               "points: { grid: { platform.cluster.clock: [200] } }\n");
   }
 
-  /// Where a command writes, with files of others and what leviosim wrote before.
-  struct Place {
-    Scratch folder;
-    Scratch log;
-    std::string operator/(const std::string& name) const { return (folder / name).string(); }
+  /// What became of a command.
+  struct After {
+    int status = -1;
+    std::string err = {};
+    Picture files = {};
+    std::uint64_t calls = 0;
   };
-  static std::map<std::string, Words> commands(const Place& place) {
-    return {{"run",
-             {"run", "--native", "--data", path("flight"), "--size", "32x24", "--frames", "0:3",
-              "--force", "--quiet", "--out", place / "out"}},
-            {"sweep",
-             {"sweep", path("plan.yaml"), "--jobs", "1", "--quiet", "--cache", place / "cache",
-              "--out", place / "sweep"}},
-            {"report", {"report", path("recorded"), "--force", "-o", place / "r.html"}},
-            {"check",
-             {"check", path("recorded"), "--budget", path("budgets.yaml"), "--force", "--quiet",
-              "--junit", place / "c.xml"}}};
+  static After after(const FaultyProgram& program, const fs::path& place, const std::string& kind,
+                     std::uint64_t number) {
+    const FaultAnswer answer = program.run(kind, number).value_or(FaultAnswer());
+    EXPECT_EQ(answer.failed, number == 0 ? 0u : 1u);
+    After after{.status = WIFEXITED(answer.wait_status) ? WEXITSTATUS(answer.wait_status)
+                                                        : 128 + WTERMSIG(answer.wait_status),
+                .err = read_text(place / ".err"),
+                .calls = answer.calls};
+    for (const char* printed : {".err", ".out"}) fs::remove(place / printed);
+    after.files = picture_of(place);
+    return after;
   }
-  static ProgramResult with_fault(const Place& place, const Words& words, const std::string& kind,
-                                  std::uint64_t number, Counts& counts) {
-    const fs::path file = place.log / "counts";
-    write_text(file, std::string(sizeof(Counts), '\0'));
-    ::setenv("LD_PRELOAD", LEVIOSIM_FAULT_INJECTOR, 1);
-    ::setenv("LEVIOSIM_FAULT", fmt::format("{}:{}", kind, number).c_str(), 1);
-    ::setenv("LEVIOSIM_FAULT_COUNT", file.c_str(), 1);
-    const ProgramResult result = testing::run_program(place.log.path(), words);
-    for (const char* name : {"LD_PRELOAD", "LEVIOSIM_FAULT", "LEVIOSIM_FAULT_COUNT"})
-      ::unsetenv(name);
-    std::memcpy(&counts, read_text(file).data(), sizeof(Counts));
-    return result;
-  }
-  static std::set<std::uint64_t> chosen(std::uint64_t calls) {
-    const bool all = std::getenv("LEVIOSIM_ALL_FAULTS") != nullptr;
-    std::set<std::uint64_t> numbers;
-    const std::uint64_t tries = all ? calls : std::min(calls, kSamples);
-    for (std::uint64_t i = 0; i < tries; ++i)
-      numbers.insert(tries == 1 ? 1 : 1 + i * (calls - 1) / (tries - 1));
-    return numbers;
+  /// The folder itself stays.
+  static void fill(const fs::path& place, const fs::path& before) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(place))
+      fs::remove_all(entry.path());
+    fs::copy(before, place, fs::copy_options::recursive);
   }
 
-  static void expect_orderly(const ProgramResult& result, const Picture& before,
-                             const Picture& whole, const Picture& after, bool is_sweep) {
-    EXPECT_TRUE(result.status == 0 || result.status == 2) << result.status;
-    const auto lines = std::count(result.err.begin(), result.err.end(), '\n');
-    EXPECT_EQ(lines, result.status == 0 ? 0 : 1) << result.err;
-    EXPECT_TRUE(result.status == 0 || result.err.starts_with("leviosim: ")) << result.err;
-    for (const auto& [name, what] : before)
-      if (!name.ends_with(".leviosim-files")) {
-        EXPECT_EQ(after.count(name), 1u) << name << " is gone";
-      }
-    for (const auto& [name, what] : after) {
+  static void expect_orderly(const After& after, const Picture& before, const Picture& whole) {
+    EXPECT_TRUE(after.status == 0 || after.status == 2) << after.status;
+    const auto lines = std::count(after.err.begin(), after.err.end(), '\n');
+    EXPECT_EQ(lines, after.status == 0 ? 0 : 1) << after.err;
+    EXPECT_TRUE(after.status == 0 || after.err.starts_with("leviosim: ")) << after.err;
+    for (const auto& [name, what] : before) {
+      if (name.ends_with(".leviosim-files")) continue;
+      EXPECT_EQ(after.files.count(name), 1u) << name << " is gone";
+    }
+    static const std::regex aside("-2(?=/|\\.|$)");
+    for (const auto& [name, what] : after.files) {
       if (name.starts_with("cache") || fs::path(name).filename() == ".leviosim-files") continue;
-      if (is_sweep && name.starts_with("sweep/sweep.sqlite")) continue;  // gone on with
+      if (name.starts_with("sweep/sweep.sqlite")) continue;  // gone on with
       // What could not be given its name has another one, and is whole, too.
-      const std::string own = std::regex_replace(name, std::regex("-2(?=/|\\.|$)"), "");
+      const std::string own = std::regex_replace(name, aside, "");
       EXPECT_EQ(whole.count(own), 1u) << "left: " << name;
       const bool was = before.count(name) == 1 && before.at(name) == what;
       const bool is = whole.count(own) == 1 && whole.at(own) == what;
@@ -107,57 +147,63 @@ class FaultInjection : public tests::ProgramSuite {
     }
   }
 
-  void try_all(const std::string& name, const std::string& kind) {
-    const auto prepare = [](const Place& place) {
-      write_text(place.folder / "thesis.tex", "mine");
-      write_text(place.folder / "notes/a", "mine");
-    };
-    // Whole results, without faults; then all calls are counted where these are replaced.
-    Place first;
-    prepare(first);
-    Counts counts;
-    if (with_fault(first, {"--version"}, kind, 0, counts).status != 0)
-      GTEST_SKIP() << "nothing can be preloaded into this program";
-    ASSERT_EQ(with_fault(first, commands(first).at(name), kind, 0, counts).status, 0);
-    const std::uint64_t calls_when_new = counts.calls;
-    const Picture whole = picture_of(first.folder.path());
-    ASSERT_GT(calls_when_new, 0u);
-    std::uint64_t tried = 0;
-    for (const std::uint64_t number : chosen(calls_when_new)) {
-      SCOPED_TRACE(fmt::format("{} {}: {} of {}", name, kind, number, calls_when_new));
-      const Place place;
-      prepare(place);
-      const Picture before = picture_of(place.folder.path());
-      const ProgramResult result =
-          with_fault(place, commands(place).at(name), kind, number, counts);
-      ++tried;
-      expect_orderly(result, before, whole, picture_of(place.folder.path()), name == "sweep");
-      // The same command again ends well, where results of before were replaced, too.
-      const ProgramResult again = testing::run_program(place.log.path(), commands(place).at(name));
-      EXPECT_EQ(again.status, 0) << again.err;
-      for (const char* aside : {"out-2", "r-2.html", "c-2.xml"})
-        fs::remove_all(place.folder / aside);
-      const Picture old = picture_of(place.folder.path());
-      const ProgramResult replaced =
-          with_fault(place, commands(place).at(name), kind, number, counts);
-      expect_orderly(replaced, old, whole, picture_of(place.folder.path()), name == "sweep");
+  /// All faults of a kind where there was `before`; the same command given again ends well.
+  static void try_all(const Words& words, const std::string& kind, const fs::path& before,
+                      const std::string& where) {
+    const Scratch place;
+    fill(place.path(), before);
+    const FaultyProgram program(words, place.path());
+    const After whole = after(program, place.path(), kind, 0);
+    ASSERT_EQ(whole.status, 0) << whole.err;
+    fill(place.path(), before);
+    const FaultyProgram faulty(words, place.path());
+    const Picture was = picture_of(before);
+    const std::vector<std::uint64_t> numbers = chosen(whole.calls);
+    for (const std::uint64_t number : numbers) {
+      SCOPED_TRACE(fmt::format("{} {}: {} {} of {}", words[0], where, kind, number, whole.calls));
+      const After ended = after(faulty, place.path(), kind, number);
+      expect_orderly(ended, was, whole.files);
+      if (ended.files != was && ended.files != whole.files) {
+        const FaultyProgram again(words, place.path());
+        const After last = after(again, place.path(), kind, 0);
+        EXPECT_EQ(last.status, 0) << last.err;
+      }
+      if (ended.files != was) fill(place.path(), before);
     }
-    RecordProperty(kind, fmt::format("{} of {}", tried, calls_when_new));
-    std::printf("[   FAULTS ] %s: %s: %ld of %ld\n", name.c_str(), kind.c_str(),
-                static_cast<long>(tried), static_cast<long>(calls_when_new));
+    std::printf("[   FAULTS ] %s %s: %s: %ld of %ld\n", words[0].c_str(), where.c_str(),
+                kind.c_str(), static_cast<long>(numbers.size()), static_cast<long>(whole.calls));
+    std::fflush(stdout);
   }
-  void try_all(const std::string& name) {
-    // Single allocations that fail ("site") are left out: JSON documents allocate where they are
-    // destroyed, and end the program. Memory that ends for good is tried by HostileOutputs.
-    for (const char* kind : {"write", "rename", "open", "mkdir", "close"})
-      try_all(name, kind);
+  /// Into a new place, and where results of before are replaced; files of others are in both.
+  static void try_all(const Words& words) {
+    const Scratch before;
+    write_text(before / "thesis.tex", "mine");
+    write_text(before / "notes/a", "mine");
+    const Scratch done;
+    fill(done.path(), before.path());
+    if (!FaultyProgram(words, done.path()).run("none", 0))
+      GTEST_SKIP() << "nothing can be preloaded into this program";
+    for (const char* printed : {".err", ".out"}) fs::remove(done / printed);
+    for (const char* kind : {"write", "rename", "open", "mkdir", "close", "allocation"}) {
+      try_all(words, kind, before.path(), "anew");
+      try_all(words, kind, done.path(), "again");
+    }
   }
 };
 
-TEST_F(FaultInjection, Run) { try_all("run"); }
-TEST_F(FaultInjection, Sweep) { try_all("sweep"); }
-TEST_F(FaultInjection, Report) { try_all("report"); }
-TEST_F(FaultInjection, Check) { try_all("check"); }
+TEST_F(FaultInjection, Run) {
+  try_all({"run", "--native", "--data", path("flight"), "--size", "32x24", "--frames", "0:2",
+           "--force", "--quiet", "--out", "out"});
+}
+TEST_F(FaultInjection, Sweep) {
+  try_all(
+      {"sweep", path("plan.yaml"), "--jobs", "1", "--quiet", "--cache", "cache", "--out", "sweep"});
+}
+TEST_F(FaultInjection, Report) { try_all({"report", path("recorded"), "--force", "-o", "r.html"}); }
+TEST_F(FaultInjection, Check) {
+  try_all({"check", path("recorded"), "--budget", path("budgets.yaml"), "--force", "--quiet",
+           "--junit", "c.xml"});
+}
 
 }  // namespace
 }  // namespace leviosim::tools
