@@ -101,6 +101,16 @@ TEST_F(BenchmarkOfFewFrames, RefusesBadInputBeforeAnythingIsDrawn) {
   EXPECT_EQ(drawn(), 0u);
 }
 
+/// The system ends a program that goes on looking for pieces.
+TEST_F(BenchmarkOfFewFrames, RefusesStepsBeyondADay) {
+  for (const char* every : {"1e10", "1e300", "1e-300"}) {
+    const std::string plan = fmt::format("pieces: [3]\nevery: {}\nsize: 32x24\n", every);
+    const ProgramResult result =
+        testing::Program(folder_.path(), words(plan, "out", {"--list"}), {.cpu_seconds = 2}).wait();
+    expect_refused(result, {"every", every, "expected 0.01 to 86400 s"});
+  }
+}
+
 TEST_F(BenchmarkOfFewFrames, ListsItsPiecesWithoutDrawingThem) {
   const ProgramResult listed = run(words(kPlan, "out", {"--list"}));
   EXPECT_EQ(listed.status, 0) << listed.err;

@@ -169,6 +169,22 @@ TEST_F(HostileOutputs, HugeFilesOfARecordAreNotWaitedFor) {
   }
 }
 
+/// Long ones are not read, and of short lines no more than a flight has files.
+TEST_F(HostileOutputs, RecordsOfManyLinesTakeLittle) {
+  const std::string line = outputs::OutputRecord::line("some/file/of/a/flight.png", {});
+  for (const auto& [megabytes, words] :
+       {std::pair{std::size_t{16}, report("out/r.html")},
+        std::pair{std::size_t{60}, run(place("out"), {"--force"})}}) {
+    std::string record = outputs::OutputRecord::header();
+    while (record.size() + line.size() < megabytes << 20) record += line;
+    write_text(place_ / "out/.leviosim-files", record);
+    const ProgramResult result =
+        Program(log_.path(), words, {.cpu_seconds = 2, .data_bytes = 300'000'000}).wait();
+    expect_refused(result, {".leviosim-files"});
+    EXPECT_TRUE(read_text(place_ / "out/.leviosim-files") == record);
+  }
+}
+
 TEST_F(HostileOutputs, ALimitOfFileSizesIsAFullDisk) {
   for (const int kib : {1, 4, 16, 40, 100, 200, 400})
     for (const Words& words : commands()) {
