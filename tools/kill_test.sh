@@ -3,7 +3,8 @@
 # lost: what stands under the name of a result is whole, foreign files are untouched, and the same
 # command given again ends with the same bytes as one that was never killed and leaves nothing else.
 #   tools/kill_test.sh [--kills N] [--seed S] [--program LEVIOSIM]
-# The commands run, sweep, tune, synth and ablate take turns. Exit status 1 with the first loss.
+# The commands run, sweep, tune, synth and ablate take turns. Exit status 1 with the first loss. At
+# the end, also of a run that is interrupted, it says how many kills there were and what they left.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -23,31 +24,45 @@ while (($# > 0)); do
 done
 leviosim=$(realpath "$leviosim")
 
+names=(run sweep tune synth ablate)
+declare -A struck unfinished
+done_kills=0
+fifties=0
+missed=0
+loss=0
+end() {
+  for name in "${names[@]}"; do
+    printf 'kill_test: %-7s %4d kills, %d left something unfinished\n' "$name" \
+      "${struck[$name]:-0}" "${unfinished[$name]:-0}"
+  done
+  echo "kill_test: $done_kills kills, $missed came too late, $loss losses"
+  rm -rf "$work"
+}
+
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap end EXIT
+trap 'exit 130' INT TERM
 cd "$work"
 export XDG_CACHE_HOME=$work/cache
 
 # Inputs: a short flight, its recorded work, and a plan over that.
-"$leviosim" synth --duration 1.5 --quiet --out flight >/dev/null
-"$leviosim" run --platform gap9 --data flight --record --quiet --out recorded >/dev/null
+"$leviosim" synth --duration 0.5 --quiet --out flight >/dev/null
+"$leviosim" run --platform gap9 --data flight --size 32x24 --record --quiet --out recorded >/dev/null
 cat >plan.yaml <<'YAML'
 base: { trace: recorded/work.trace }
 points:
   - grid:
       platform.cluster.fpu.units: [1, 2, 4]
       platform.cluster.l1.banks: [8, 16]
-      platform.cluster.dma.programming: [10, 20, 30]
 YAML
 
-names=(run sweep tune synth ablate)
 command_of() { # command_of NAME: the words in `words`
   case $1 in
-    run) words=(run --platform gap9 --data flight --record --out out) ;;
+    run) words=(run --platform gap9 --data flight --size 32x24 --record --out out) ;;
     sweep) words=(sweep plan.yaml --cache points --out out) ;;
-    tune) words=(tune --data flight --clock 200:370:85 --fps 20 --seed 1 --cache runs --out out) ;;
-    synth) words=(synth --duration 1 --out out) ;;
-    ablate) words=(ablate --data flight --seed 1,2 --cache runs --out out) ;;
+    tune) words=(tune --data flight --size 32x24 --clock 200:370:85 --fps 20 --seed 1 --cache runs --out out) ;;
+    synth) words=(synth --duration 0.1 --out out) ;;
+    ablate) words=(ablate --data flight --size 32x24 --seed 1,2 --cache runs --out out) ;;
   esac
 }
 
@@ -70,6 +85,7 @@ for name in "${names[@]}"; do
 done
 
 lose() { # lose NAME MESSAGE
+  loss=1
   echo "kill_test: LOST after $done_kills kills, $1: $2" >&2
   find "$work/$1" -maxdepth 2 | sort >&2
   exit 1
@@ -95,9 +111,6 @@ resume() { # resume NAME: the same command again, undisturbed
   rm -rf "$1/out" "$1/points" "$1/runs"
 }
 
-declare -A struck
-done_kills=0
-missed=0
 while ((done_kills < kills)); do
   name=${names[$((done_kills % ${#names[@]}))]}
   command_of "$name"
@@ -107,18 +120,26 @@ while ((done_kills < kills)); do
     pid=$!
     hundredths=$((RANDOM % (duration[$name] + 1)))
     sleep "$((hundredths / 100)).$(printf %02d $((hundredths % 100)))"
-    if kill -KILL "$pid" 2>/dev/null; then
+    kill -KILL "$pid" 2>/dev/null || true
+    ended=0
+    wait "$pid" 2>/dev/null || ended=$?
+    if ((ended == 137)); then
       struck[$name]=$((${struck[$name]:-0} + 1))
       done_kills=$((done_kills + 1))
+      if compgen -G "$name/.*.leviosim" >/dev/null ||
+        [[ $name == sweep && -e $name/out && ! -e $name/out/sweep.csv ]]; then
+        unfinished[$name]=$((${unfinished[$name]:-0} + 1))
+      fi
     else
       missed=$((missed + 1))
     fi
-    wait "$pid" 2>/dev/null || true
     check_foreign "$name"
     [[ -e $name/out && $name != sweep ]] && break
   done
   [[ -e $name/out && $name != sweep ]] && rm -rf "$name/out"
   resume "$name"
+  if ((done_kills / 50 > fifties)); then
+    fifties=$((done_kills / 50))
+    echo "kill_test: $done_kills kills so far"
+  fi
 done
-for name in "${names[@]}"; do printf 'kill_test: %-7s %4d kills\n' "$name" "${struck[$name]:-0}"; done
-echo "kill_test: $done_kills kills, $missed came too late, nothing was lost"
