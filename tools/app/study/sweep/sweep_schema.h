@@ -3,12 +3,7 @@
 
 namespace leviosim::tools {
 
-/// 2 says where the plan lies. Files of 1 are read, too, and become such when their plan is run.
 inline constexpr const char* kSweepFormat = "leviosim sweep 2";
-inline constexpr const char* kSweepFormatBefore = "leviosim sweep 1";
-
-/// "lvio": marks a data base as a sweep's (PRAGMA application_id).
-inline constexpr int kSweepApplication = 0x6c76696f;
 
 /// Takes out all of a sweep, and nothing that others added.
 inline constexpr const char* kSweepEmpty = R"(

@@ -57,21 +57,27 @@ void say(Database& database, std::string_view name, std::string_view value) {
 /// Relative, so that a sweep and its plan can be moved together.
 void say_place(Database& database, const fs::path& plan, const fs::path& folder) {
   say(database, kPlanFile, fs::proximate(plan, folder).string());
-  say(database, "format", kSweepFormat);
 }
 
 enum class Schema { empty, of_sweep, foreign };
 
+constexpr const char* kEntries =
+    "SELECT name, type, sql, tbl_name FROM sqlite_master WHERE sql IS NOT NULL";
+
+/// Type and SQL of a sweep's tables and views, by their names.
+std::map<std::string, std::pair<std::string, std::string>> tables_of_sweep() {
+  Database in_memory("", Database::Mode::create);
+  in_memory.run(kSweepTables);
+  std::map<std::string, std::pair<std::string, std::string>> all;
+  for (Statement entry(in_memory, kEntries); entry.step();)
+    all[entry.text(0)] = {entry.text(1), entry.text(2)};
+  return all;
+}
+
 /// Whether the tables are those of a sweep, word by word: what else a stranger's would compute when
 /// they are read is not run. Tables and views of other names are not looked at.
 Schema schema_of(Database& database) {
-  static constexpr const char* kEntries =
-      "SELECT name, type, sql, tbl_name FROM sqlite_master WHERE sql IS NOT NULL";
-  Database expected("", Database::Mode::create);  // in memory
-  expected.run(kSweepTables);
-  std::map<std::string, std::pair<std::string, std::string>> ours;
-  for (Statement entry(expected, kEntries); entry.step();)
-    ours[entry.text(0)] = {entry.text(1), entry.text(2)};
+  static const auto ours = tables_of_sweep();
   bool is_empty = true;
   std::set<std::string> found;
   for (Statement entry(database, kEntries); entry.step();) {
@@ -85,10 +91,7 @@ Schema schema_of(Database& database) {
     }
   }
   if (is_empty) return Schema::empty;
-  const bool is_whole = std::all_of(ours.begin(), ours.end(), [&](const auto& entry) {
-    return entry.first == "front" || found.count(entry.first) > 0;  // later than the others
-  });
-  return is_whole ? Schema::of_sweep : Schema::foreign;
+  return found.size() == ours.size() ? Schema::of_sweep : Schema::foreign;
 }
 
 bool is_objective(const std::string& name) {
@@ -104,15 +107,13 @@ SweepStore::SweepStore(const fs::path& folder, const std::string& plan,
   Transaction transaction(database_);
   if (schema_of(database_) == Schema::foreign) database_.fail("is no file of leviosim sweep");
   database_.run(kSweepTables);
-  if (planned() > 0) expect_known_format();
-  database_.run(fmt::format("PRAGMA application_id = {}", kSweepApplication));
   if (planned() > 0) {
+    expect_known_format();
     if (!holds(points))
       database_.fail(
           "holds the results of another plan, of other data or of another leviosim; choose a new "
           "folder, or --force to begin anew (finished points come from the cache where they are "
-          "the "
-          "same)");
+          "the same)");
     transaction.commit();
     return;
   }
@@ -160,7 +161,7 @@ SweepStore::SweepStore(const fs::path& folder, Database::Mode mode)
 }
 
 void SweepStore::expect_known_format() {
-  if (const auto format = fact("format"); format != kSweepFormat && format != kSweepFormatBefore)
+  if (fact("format") != kSweepFormat)
     database_.fail(fmt::format("is of a version that is not known; expected '{}'", kSweepFormat));
 }
 

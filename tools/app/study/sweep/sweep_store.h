@@ -61,7 +61,7 @@ class SweepStore {
 
   /// Remembers where the plan lies, since what it names lies beside it.
   void keep_place(const std::filesystem::path& plan);
-  /// That file, which may be gone; nothing in folders from before it was remembered.
+  /// That file, which may be gone; nothing if none was remembered.
   std::optional<std::filesystem::path> place();
   std::string plan_text() { return fact("plan").value_or(""); }
   /// Digest of the sources of the program that made the file.
