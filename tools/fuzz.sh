@@ -3,15 +3,15 @@
 # their seeds, runs each for a while and shows a table. Exit status 0 if nothing was found, else 1
 # with the path of the input that found something.
 #   tools/fuzz.sh [--seconds N] [--light] [TARGET...]   N seconds for each target, 60 by default
-# --light leaves out those that need most of the program: baseline, budget and sweep_plan take as long to
-# build as all others.
+# --light leaves out those that need most of the program, and take as long to build as all others.
 # What a target learns stays in build/fuzz/corpus and serves the next time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-all=(asl_tables baseline budget evaluation image overrides platform_yaml sensor_yaml sweep_plan
-  work_trace work_trace_content)
-light=(asl_tables evaluation image overrides platform_yaml sensor_yaml work_trace work_trace_content)
+all=(asl_tables baseline budget cache_entry evaluation flight_plan image output_record overrides
+  platform_yaml run_folder sensor_yaml sweep_database sweep_plan work_trace work_trace_content)
+light=(asl_tables evaluation image output_record overrides platform_yaml sensor_yaml work_trace
+  work_trace_content)
 seconds=60
 targets=()
 while (($# > 0)); do
@@ -48,6 +48,7 @@ rm -rf "$build/seeds"
 tests/fuzz/make_corpus.sh "$build/tests/fuzz/fuzz_seeds" "$build/seeds"
 
 # Seconds for one input and MB for the process: readers are bounded, so both are generous.
+export ASAN_OPTIONS=quarantine_size_mb=16${ASAN_OPTIONS:+:$ASAN_OPTIONS}  # new pages take most of the time
 limits=(-timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=65536)
 status=0
 table=$(printf '%-20s %12s %12s  %s' target executions per-second found)

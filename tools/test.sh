@@ -79,7 +79,7 @@ else
   tools/build.sh "$preset"
   if [[ $kind == --full ]]; then
     check reproducible tools/check_reproducible.sh --quick
-    check fuzz tools/fuzz.sh --seconds 20 --light
+    check fuzz tools/fuzz.sh --seconds 18 --light
     check guard tools/ci/guard.sh
   fi
   check pages tools/check_pages.sh

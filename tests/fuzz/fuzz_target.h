@@ -46,14 +46,19 @@ int only_input_errors(const Read& read) {
 /// A file in memory, for readers that take names of files.
 class MemoryFile {
  public:
+  /// @param suffix  of its name; may begin with folders, "-cache/ab/entry.json"
   explicit MemoryFile(const std::string& suffix)
-      : path_("/dev/shm/leviosim-fuzz-" + std::to_string(::getpid()) + suffix),
-        file_(::open(path_.c_str(), O_CREAT | O_RDWR | O_TRUNC | O_CLOEXEC, 0600)) {
+      : path_("/dev/shm/leviosim-fuzz-" + std::to_string(::getpid()) + suffix) {
+    std::filesystem::create_directories(path_.parent_path());
+    file_ = ::open(path_.c_str(), O_CREAT | O_RDWR | O_TRUNC | O_CLOEXEC, 0600);
     if (file_ < 0) std::abort();
   }
   ~MemoryFile() {
     ::close(file_);
-    ::unlink(path_.c_str());
+    std::filesystem::path top = path_;
+    while (top.parent_path() != "/dev/shm") top = top.parent_path();
+    std::error_code error;
+    std::filesystem::remove_all(top, error);
   }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
@@ -68,7 +73,7 @@ class MemoryFile {
 
  private:
   std::filesystem::path path_;
-  int file_;
+  int file_ = -1;
 };
 
 }  // namespace leviosim::fuzz

@@ -8,7 +8,8 @@ mkdir -p "$2"
 folder=$(realpath "$2")
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables budget baseline; do
+for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables budget baseline cache_entry \
+  flight_plan output_record run_folder sweep_database; do
   mkdir -p "$folder/$target"
 done
 "$seeds" "$folder"
@@ -89,3 +90,52 @@ printf 'f#timestamp [ns],filename\n1403636579763555584,1.png\n140363657981355545
   >"$folder/asl_tables/frames"
 printf 'i#timestamp [ns],w\r\n1403636579758555392,-0.1,0.1,0.02,8.1,-0.3,-4.0\r\n1403636579763555584,0,0,0,8,0,-4\r\n' \
   >"$folder/asl_tables/imu"
+
+cp tools/app/study/flights/plans/*.yaml "$folder/flight_plan"
+printf 'recordings: [a]\nstarts: { even: [0, 20] }\npieces: [90, rest]\nevery: 2.5\ndisturbances: [none, noise=10]\nsize: 32x24\nvariants:\n  - { profile: next, workload.window: 8 }\n' \
+  >"$folder/flight_plan/recordings"
+printf 'leviosim files 1\n%064d 12 frames.csv\n%064d 0 deep/er/%%0A%%25x\n- - sweep.sqlite\n' 1 2 \
+  >"$folder/output_record/some"
+printf 'leviosim journal 1 9\n- - notes.md\n' >"$folder/output_record/journal"
+printf 'leviosim files 1\n- - ../x\n' >"$folder/output_record/outside"
+cat >"$folder/cache_entry/text" <<'END'
+t{"failure":"","figures":[["ate_m","","",0.25],["arrived","","",3],["processed","","",3],["health","","",1]],"format":"leviosim outcome 1","protocol":"SE(3)"}
+END
+printf 'fleviosim cache 2 ab-fuzzed %s\n{}' "$(printf '{}' | sha256sum | cut -c1-64)" >"$folder/cache_entry/file"
+
+# A journal that names the file which the target watches, as its super-journal (SQLite's file format).
+victim=/dev/shm/leviosim-fuzz-victim
+magic='\xd9\xd5\x05\xf9\x20\xa1\x63\xd7'
+sum=0
+for ((i = 0; i < ${#victim}; ++i)); do sum=$((sum + $(printf '%d' "'${victim:i:1}"))); done
+word() { printf "$(printf '\\x%02x' $(($1 >> 24 & 255)) $(($1 >> 16 & 255)) $(($1 >> 8 & 255)) $(($1 & 255)))"; }
+{
+  cat "$folder/sweep_database/clean"
+  printf '\n=%%%%=\n'
+  printf "$magic"
+  for value in 0 1 16777215 512 512; do word $value; done
+  head -c 484 /dev/zero
+  word $(((1 << 30) / 512 + 1))
+  printf %s "$victim"
+  word ${#victim}
+  word $sum
+  printf "$magic"
+} >"$folder/sweep_database/naming"
+
+# The fewest lines of each file of a run, in the order of the target.
+{
+  cat <<'END'
+{"format":"leviosim manifest","version":1,"program":{"version":"0.1.0","revision":"x"},"profile":"levio","seed":1,
+"platform":{"name":"gap9","overrides":[],"cores":8},"image":{"width":160,"height":120},
+"data":{"first_frame":0,"frames":1},"inputs":[{"name":"cam0/data.csv","sha256":"62"}]}
+=%%=
+{"format":"leviosim statistics","version":1,"statistics":[{"name":"frames.count","unit":"1","description":"d","value":1}]}
+=%%=
+frame,t_ns,source,keyframe,features,world_matches,frame_matches,inliers,landmarks,map_restarts,places,places_forgotten,loop_closures,arrival_ns,start_ns,end_ns,latency_ns,parallel_cycles,single_cycles,cycles_triangulation
+0,1000000000000,first,1,0,0,0,0,0,0,0,0,0,0,0,179827,179827,66536,181157,33830
+=%%=
+stage,runs_on,where,mechanism,operation,cycles,count
+triangulation,cluster,,total,,33830.000,0
+triangulation,cluster,solve,issue,int_alu,1500.000,1400
+END
+} >"$folder/run_folder/small"
