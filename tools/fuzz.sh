@@ -47,8 +47,8 @@ echo "fuzz: built in $((SECONDS - started)) s"
 rm -rf "$build/seeds"
 tests/fuzz/make_corpus.sh "$build/tests/fuzz/fuzz_seeds" "$build/seeds"
 
-# Seconds for one input and MB for the process: readers are bounded, so both are generous.
 export ASAN_OPTIONS=quarantine_size_mb=16${ASAN_OPTIONS:+:$ASAN_OPTIONS}  # new pages take most of the time
+# Seconds for one input and MB for the process: readers are bounded, so both are generous.
 limits=(-timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=65536)
 status=0
 table=$(printf '%-20s %12s %12s  %s' target executions per-second found)
