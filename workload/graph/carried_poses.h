@@ -75,6 +75,21 @@ class CarriedPoses {
   Span floats_;
 };
 
+/// A keyframe as the IMU carries it on.
+/// @param gravity    world frame, m/s²
+/// @param lever_arm  the IMU in the camera frame, m
+template <class P>
+KeyframeState<P> carried_on(const KeyframeState<P>& from, const ImuDelta<P>& delta,
+                            const Vec3<P>& gravity, const Vec3<P>& lever_arm) {
+  using F = typename P::F32;
+  const Pose<P>& T = from.T_world_camera;
+  const Mat3<P> R = orthonormalised<P>(T.R * delta.R);
+  const Vec3<P> fall = gravity * F(delta.dt * F(0.5f));
+  return {
+      {R, T.t + (from.velocity + fall) * delta.dt + T.R * (delta.p + lever_arm) - R * lever_arm},
+      from.velocity + gravity * delta.dt + T.R * delta.v};
+}
+
 /// Fills `to` for all keyframes of the window.
 template <class P>
 void carry(const Window<P>& window, const CarriedFrom<P>& from, const CarriedPoses<P>& to);

@@ -118,16 +118,13 @@ bool NextFrontEnd<P>::initialises() const {
   return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
 }
 
-/// While a map has few keyframes, or its alignment has not converged, its scale is a guess, and so
-/// is how far the camera has gone: it is reported where the map began. The map itself keeps the
-/// guess. The newest keyframe does not count, as the alignment has hardly seen it.
+/// While no alignment of more than few keyframes has converged, its scale is a guess, and so is how
+/// far the camera has gone: it is reported where the map began. The map itself keeps the guess.
 template <class P>
 void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {
-  using I32 = typename P::I32;
   const auto stage = state_.machine.stage(stages::kGuided);
   const auto& graph = state_.graph_in_l2;
-  if (!map_.converged ||
-      bool(graph.keyframe_count() <= I32(state_.profile.alignment.few_keyframes + 1)))
+  if (!map_.converged)
     frame.T_world_camera.t = graph.keyframe(graph.keyframe_slot(0)).T_world_camera.t;
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "workload/graph/carried_poses.h"
 #include "workload/graph/departing_visual_terms.h"
 #include "workload/vio/levio/optimiser/optimiser.h"
 #include "workload/vio/stages.h"
@@ -149,7 +150,8 @@ void BackEnd<P>::publish() {
 template <class P>
 void BackEnd<P>::publish_alignment() {
   const int last = window_.keyframes - 1;
-  map_.converged = map_.converged || converged_;
+  map_.converged =
+      map_.converged || (converged_ && window_.keyframes > profile_.alignment.few_keyframes);
   map_.inverse_depth = work::value(alignment_.inverse_depth);
   const I32 slot = window_.keyframe_slots[last];
   const bool still_there = bool(I32(graph_.keyframe_ids[slot]) == I32(window_.keyframe_ids[last]));
@@ -200,6 +202,7 @@ void BackEnd<P>::follow_positions() {
 /// Keyframes added since the snapshot were placed relative to the last one in it: they follow it.
 template <class P>
 void BackEnd<P>::move_newer_keyframes(const Pose<P>& T_new_old) {
+  if (options_.joint && profile_.use_imu) return carry_newer_keyframes(T_new_old);
   const int last = window_.keyframes - 1;
   const I32 last_id = window_.keyframe_ids[last];
   for (int k : P::range(0, work::value(graph_.keyframe_count()))) {
@@ -207,6 +210,28 @@ void BackEnd<P>::move_newer_keyframes(const Pose<P>& T_new_old) {
     if (I32(graph_.keyframe_ids[slot]) <= last_id) continue;
     const KeyframeState<P> state = graph_.keyframe(slot);
     graph_.set_keyframe(slot, {T_new_old * state.T_world_camera, T_new_old.R * state.velocity});
+  }
+}
+
+/// The same with what the IMU measured since the snapshot: the corrected velocity and biases are
+/// carried on with it. If that is all that their poses came from, it places them, too: moved as a
+/// whole they would keep the path that the old velocity led to, however late the result.
+template <class P>
+void BackEnd<P>::carry_newer_keyframes(const Pose<P>& T_new_old) {
+  const int last = window_.keyframes - 1;
+  const I32 last_id = window_.keyframe_ids[last];
+  const Vec3<P> gravity = graph_.gravity();
+  const ImuBias<P> bias = graph_.bias();
+  KeyframeState<P> before = window_.state.keyframe(last);
+  for (int k : P::range(0, work::value(graph_.keyframe_count()))) {
+    const I32 slot = graph_.keyframe_slot(k);
+    if (I32(graph_.keyframe_ids[slot]) <= last_id) continue;
+    const Preintegration<P> interval(graph_.interval_record(slot));
+    KeyframeState<P> now =
+        carried_on<P>(before, interval.corrected(bias), gravity, window_.lever_arm);
+    if (!aligns_) now.T_world_camera = T_new_old * graph_.keyframe(slot).T_world_camera;
+    graph_.set_keyframe(slot, now);
+    before = now;
   }
 }
 

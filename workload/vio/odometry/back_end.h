@@ -35,6 +35,7 @@ class BackEnd {
   void update_prior();
   void follow_positions();
   void move_newer_keyframes(const Pose<P>& T_new_old);
+  void carry_newer_keyframes(const Pose<P>& T_new_old);
 
   const Profile& profile_;
   const OptimiserOptions& options_;
