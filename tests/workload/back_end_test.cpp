@@ -55,9 +55,12 @@ TEST(BackEnd, WithAnImuVelocitiesAreThoseAtTheKeyframe) {
 /// A keyframe that was added while the optimiser worked on a snapshot without it, with the velocity
 /// to which the IMU carries the last one's as it was.
 struct Overtaken {
-  explicit Overtaken(bool aligned) {
+  Overtaken(bool aligned, int few) {
     Profile profile = profile_named("next", 1);
     profile.optimiser.visual = scene.options.visual;
+    profile.alignment.few_keyframes = few;
+    profile.alignment.max_surprise = profile.alignment.max_distance = 1e6f;
+    profile.alignment.min_explained = 0;
     map.aligned = aligned;
     BackEnd<Native> back_end(profile, Rig{}, scene.fc, scene.graph, map);
     EXPECT_TRUE(back_end.begin());
@@ -86,7 +89,7 @@ struct Overtaken {
 
 TEST(BackEnd, NewerKeyframesHaveTheCorrectedVelocity) {
   for (const bool aligned : {true, false}) {
-    const Overtaken late(aligned);
+    const Overtaken late(aligned, 4);
     EXPECT_GT(norm(late.keyframe(6).velocity - late.before.velocity), 0.1f) << aligned;
     EXPECT_LT(norm(late.keyframe(7).velocity - late.carried(late.keyframe(6)).velocity), 1e-4f)
         << aligned;
@@ -96,7 +99,7 @@ TEST(BackEnd, NewerKeyframesHaveTheCorrectedVelocity) {
 /// Images have placed a keyframe relative to the last one; before the alignment only the IMU has.
 TEST(BackEnd, NewerKeyframesKeepTheirPlaceOrAreCarriedAnew) {
   for (const bool aligned : {true, false}) {
-    const Overtaken late(aligned);
+    const Overtaken late(aligned, 4);
     const Pose<Native> followed = late.keyframe(6).T_world_camera *
                                   inverse(late.before.T_world_camera) * late.added.T_world_camera;
     const Vec3<Native> carried = late.carried(late.keyframe(6)).T_world_camera.t;
@@ -104,6 +107,12 @@ TEST(BackEnd, NewerKeyframesKeepTheirPlaceOrAreCarriedAnew) {
     EXPECT_LT(norm(late.keyframe(7).T_world_camera.t - (aligned ? followed.t : carried)), 1e-4f)
         << aligned;
   }
+}
+
+/// With few keyframes, landmarks are held to about the same distance, and the scale may be any.
+TEST(BackEnd, AnAlignmentOfFewKeyframesIsNoneToReport) {
+  EXPECT_FALSE(Overtaken(false, 7).map.converged);
+  EXPECT_TRUE(Overtaken(false, 6).map.converged);
 }
 
 }  // namespace
