@@ -255,13 +255,77 @@ TEST_F(Check, AWarningDoesNotFail) {
       {"level.yaml:3", "level 'loud'", "fail or warn"});
 }
 
-/// Lines of an example that call the program.
+TEST_F(Check, WhatBecameBetterIsSaidAndThatTheBaselineIsStale) {
+  const std::string budget = write(
+      "better.yaml", "budgets:\n  - limits: [{ stage: frame matching, limit: cycles <= +1 % }]\n");
+  const ProgramResult result =
+      program({"check", path("run/work.trace"), "-p", "isa.ops.popcount.issue=0.5", "--budget", budget,
+               "--baseline", path("baseline.json"), "--markdown", path("better.md"), "--quiet"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_holds(result.out, {"better  frame matching: cycles <= +1 %", "a figure is better than ",
+                            "budget record", "stale"});
+  expect_holds(base::read_text_file(path("better.md")),
+               {"**✓ frame matching: cycles", "% better than the baseline", "The baseline is stale"});
+}
+
+TEST_F(Check, ABaselineOfAnotherChipIsRefusedUnlessAllowed) {
+  const std::string budget =
+      write("chip.yaml", "budgets:\n  - limits: [frame cycles <= +900 %]\n");
+  std::vector<std::string> words{"check",    path("run/work.trace"), "--platform", "gap9-hamming",
+                                 "--budget", budget,                 "--baseline", path("baseline.json"),
+                                 "--quiet"};
+  expect_refused(program(words), {"other chip (gap9 and gap9-hamming)", "--allow chip"});
+  words.insert(words.end(), {"--allow", "chip"});
+  const ProgramResult allowed = program(words);
+  EXPECT_EQ(allowed.status, 0) << allowed.err;
+}
+
+/// A stage that the baseline ran without has no bound, and one that neither ran is not asked for.
+TEST_F(Check, AStageWithoutCallsIsNoMissAgainstAHistory) {
+  const std::string budget =
+      write("every.yaml", "budgets:\n  - limits: [{ stage: \"*\", limit: cycles <= +1 % }]\n");
+  const std::string file = path("every.jsonl");
+  ASSERT_EQ(program({"history", "add", path("run"), "--file", file, "--commit", "a1", "--branch", "main",
+                     "--time", "1", "--subject", "s"})
+                .status,
+            0);
+  const ProgramResult result =
+      program({"check", path("run"), "--budget", budget, "--history", file, "--commit", "a2"});
+  EXPECT_EQ(result.status, 0) << result.err << result.out;
+}
+
+/// A job that is run again does not find its own miss to be older than itself.
+TEST_F(Check, ItsOwnCommitIsNoHistory) {
+  const std::string budget = write(
+      "again.yaml", "budgets:\n  - limits: [{ stage: frame matching, limit: cycles <= +1 % }]\n");
+  const std::string file = path("again.jsonl");
+  const auto add = [&](const std::string& commit, const std::string& time, const std::string& popcount) {
+    EXPECT_EQ(program({"history", "add", path("run/work.trace"), "-p", "isa.ops.popcount.issue=" + popcount,
+                       "--file", file, "--commit", commit, "--branch", "main", "--time", time,
+                       "--subject", "s", "--quiet"})
+                  .status,
+              0);
+  };
+  const auto check = [&](const std::string& commit) {
+    return program({"check", path("run/work.trace"), "-p", "isa.ops.popcount.issue=2", "--budget", budget,
+                    "--history", file, "--commit", commit, "--quiet"})
+        .status;
+  };
+  add("a1", "1", "1");
+  EXPECT_EQ(check("a2"), 1);
+  add("a2", "2", "2");
+  EXPECT_EQ(check("a2"), 1);
+  EXPECT_EQ(check("a3"), 0) << "it was so before";
+}
+
+/// Lines of an example that a shell runs.
 std::string commands_of(const std::string& file) {
   std::istringstream lines(base::read_text_file((tests::source_folder() / ("tools/ci/" + file))));
   std::string commands;
   for (std::string line; std::getline(lines, line);)
     if (const auto begin = line.find_first_not_of(' ');
-        begin != std::string::npos && line.compare(begin, 9, "leviosim ") == 0)
+        begin != std::string::npos && (line.compare(begin, 9, "leviosim ") == 0 ||
+                                       line.compare(begin, 6, "touch ") == 0))
       commands += line.substr(begin) + '\n';
   return commands;
 }
@@ -274,6 +338,7 @@ int run_script(const fs::path& folder, const std::string& commands) {
   fs::create_symlink(tests::program_path(), bin / "leviosim");
   std::ofstream(folder / "script.sh") << "set -eu\ncd '" << folder.string() << "'\nPATH='"
                                       << bin.string() << "':$PATH\nexport DATA=../flight\n"
+                                      << "export GITHUB_REF_NAME=main CI_COMMIT_REF_NAME=main\n"
                                       << commands;
   const int status = std::system(
       fmt::format("sh {} >{} 2>&1", (folder / "script.sh").string(), (folder / "log").string())
@@ -281,7 +346,16 @@ int run_script(const fs::path& folder, const std::string& commands) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// A repository with the commit that is checked out.
+constexpr const char* kCheckout = R"sh(
+export GIT_AUTHOR_NAME=a GIT_AUTHOR_EMAIL=a@example.org GIT_COMMITTER_NAME=a
+export GIT_COMMITTER_EMAIL=a@example.org GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_SYSTEM=/dev/null
+[ -e .git ] || git init -q -b main
+git commit -q --allow-empty -m change
+)sh";
+
 TEST_F(Check, TheExamplesForServersWork) {
+  if (std::system("git --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "git is not installed";
   for (const char* file : {"github.yml", "gitlab.yml"}) {
     const std::string commands = commands_of(file);
     ASSERT_NE(commands.find("leviosim check"), std::string::npos) << file;
@@ -289,11 +363,19 @@ TEST_F(Check, TheExamplesForServersWork) {
     fs::create_directories(folder);
     fs::copy(path("baseline.json"), folder / "baseline.json");
     fs::copy(path("budgets.yaml"), folder / "budgets.yaml");
-    EXPECT_EQ(run_script(folder, commands), 0) << base::read_text_file(folder / "log");
+    const auto log = [&] { return base::read_text_file(folder / "log"); };
+    EXPECT_EQ(run_script(folder, kCheckout + commands), 0) << log();
     EXPECT_EQ(junit_fault(base::read_text_file(folder / "junit.xml")), "");
-    // The next job of a server finds what this one left.
+    // The next job of a server finds what this one left: of the same commit, and of another.
+    EXPECT_EQ(run_script(folder, commands), 0) << log();
+    EXPECT_NE(log().find("is in history.jsonl already"), std::string::npos) << log();
+    EXPECT_EQ(run_script(folder, kCheckout + commands), 0) << log();
+    EXPECT_NE(log().find("is run 2 of history.jsonl"), std::string::npos) << log();
+    EXPECT_TRUE(fs::exists(folder / "trend.html"));
+    // A limit that no run met before would be a warning: that is not of this change.
     std::ofstream(folder / "budgets.yaml") << "budgets:\n  - limits: [L1 peak <= 1 kB]\n";
-    EXPECT_EQ(run_script(folder, commands), 1) << base::read_text_file(folder / "log");
+    fs::remove(folder / "history.jsonl");
+    EXPECT_EQ(run_script(folder, commands), 1) << log();
   }
 }
 

@@ -151,6 +151,108 @@ TEST_F(HistoryCommand, ARunTakesAFewHundredBytesAndMergesAreUnions) {
   EXPECT_EQ(shown.at("runs").at(0).at("commit"), "abc1");
   EXPECT_EQ(shown.at("runs").at(2).at("commit"), "abc3");
   EXPECT_EQ(shown.at("runs").at(0).at("figures"), shown.at("runs").at(1).at("figures"));
+  // One after the other is as good, and adding a run again is no second one.
+  write("joined.jsonl", text("part1.jsonl") + text("part2.jsonl") + text("part1.jsonl"));
+  ASSERT_EQ(add("abc3", {"--file", path("joined.jsonl"), "--time", "1003"}).status, 0);
+  EXPECT_EQ(Json::parse(program({"history", "show", "--file", path("joined.jsonl"), "--json"}).out),
+            shown);
+}
+
+/// What a board counted, under the same budgets: 5 % less than the model in one stage, 10 % more in
+/// another.
+TEST_F(HistoryCommand, MeasuredCyclesAreComparedCheckedAndKept) {
+  const Json baseline = Json::parse(text("baseline.json"));
+  const auto cycles = [&](const std::string& key) {
+    return baseline.at("statistics").at("stages." + key + ".cycles.parallel.mean").at(0).get<double>();
+  };
+  const auto board = [&](const char* file, double matching) {
+    write(file, fmt::format("# profile: levio\n# platform: gap9\n# counted by hand\nstage,cycles,calls\n"
+                            "frame matching,{:.0f},10\nfeature_extraction,{:.0f},10\nreadout,7,1\n",
+                            matching, cycles("feature_extraction") / 0.9));
+    return path(file);
+  };
+  const std::string first = board("board.csv", cycles("frame_matching") / 1.05);
+  for (const auto& [a, b] : {std::pair{path("run"), first}, std::pair{first, path("run")}}) {
+    const ProgramResult compared = program({"compare", a, b});
+    ASSERT_EQ(compared.status, 0) << compared.err;
+    expect_holds(compared.out,
+                 {"measured: " + first, "+5.00 %", "-10.00 %", "not measured: ", "no stage 'readout'",
+                  "in short: 7.50 % off on average of 2 stages"});
+  }
+  const Json json = Json::parse(program({"compare", path("run"), first, "--json"}).out);
+  EXPECT_EQ(json.at("model_errors").size(), json.at("stages").size() + 1);
+
+  write("board.yaml",
+        "budgets:\n  - profile: levio\n    limits:\n      - { stage: \"*\", limit: cycles <= +1 % }\n"
+        "      - L1 peak <= 1 kB\n");
+  const auto check = [&](const std::string& run, const std::string& against) {
+    return program({"check", run, "--budget", path("board.yaml"), "--baseline", against});
+  };
+  const ProgramResult model = check(path("run"), first);
+  EXPECT_EQ(model.status, 1) << model.err;
+  expect_holds(model.out, {"NOT MET  frame matching: cycles <= +1 %", "better   feature extraction",
+                           "NOT MET  L1 peak", "cycles were measured, so nothing is known"});
+  const ProgramResult measured = check(first, path("run"));
+  EXPECT_EQ(measured.status, 1) << measured.err;
+  expect_holds(measured.out, {"left out, since it was not measured: L1 peak <= 1 kB",
+                              "NOT MET  feature", "better   frame matching"});
+
+  const std::string file = path("boards.jsonl");
+  const auto keep = [&](const std::string& run, const char* commit, const char* time) {
+    return program({"history", "add", run, "--file", file, "--commit", commit, "--branch", "main",
+                    "--time", time, "--subject", "s"});
+  };
+  ASSERT_EQ(keep(first, "b1", "1").status, 0);
+  ASSERT_EQ(keep(path("run"), "b1", "1").status, 0);
+  ASSERT_EQ(keep(board("later.csv", cycles("frame_matching")), "b2", "2").status, 0);
+  const ProgramResult shown =
+      program({"history", "show", "--file", file, "--budget", path("board.yaml")});
+  expect_holds(shown.out, {"frame matching: cycles <= +1 %: step of +5.00 % at b2",
+                           "2 runs, 1 of which changed something"});
+  expect_done({"history", "page", "--file", file, "--budget", path("board.yaml"), "--out",
+               path("boards.html")});
+
+  expect_refused(check(first, path("run") + "/manifest.json"), {"manifest.json"});
+  expect_refused(program({"compare", first, path("run"), "-p", "cluster.cores=4"}), {"was measured"});
+  expect_refused(program({"compare", first, path("run"), "--report", path("x.html")}), {"no page"});
+  for (const auto& [content, fault] :
+       {std::pair{"stage,cycels\na,1\n", "expected the titles"}, std::pair{"stage,cycles\n", "no measurement"},
+        std::pair{"stage,cycles\na,-1\n", "below zero"}, std::pair{"stage,cycles\na,x\n", "column 2 (cycles)"},
+        std::pair{"stage,cycles,calls\na,1,0\n", "below one"}}) {
+    write("bad.csv", content);
+    expect_refused(program({"compare", path("run"), path("bad.csv")}), {"bad.csv", fault});
+  }
+}
+
+/// Baselines in version control are a history of their own.
+TEST_F(HistoryCommand, BaselinesAreRunsToo) {
+  const std::string file = path("baselines.jsonl");
+  const auto add_of = [&](const std::string& run) {
+    return program({"history", "add", run, "--file", file, "--commit", "abc", "--branch", "main",
+                    "--time", "1", "--subject", "s"});
+  };
+  ASSERT_EQ(add_of(path("baseline.json")).status, 0);
+  const ProgramResult again = add_of(path("run"));
+  ASSERT_EQ(again.status, 0) << again.err;
+  expect_holds(again.out, {"is in ", "already"});
+  expect_refused(program({"history", "show", "--file", file, "--profile", "next"}), {"no runs of next"});
+}
+
+/// A wrapper that sets a number of the chip is another build.
+TEST_F(HistoryCommand, TwoProgramsAreComparedOnTheSameInput) {
+  write("slower", fmt::format("#!/bin/sh\nexec '{}' \"$@\" -p isa.ops.popcount.issue=2\n",
+                              path("bin/leviosim")));
+  fs::permissions(path("slower"), fs::perms::owner_all);
+  const auto compare = [](const std::string& one, const std::string& other) {
+    return program({"compare", "--programs", one, other, "--", "--platform", "gap9", "--data",
+                    path("flight"), "--frames", "0:12"});
+  };
+  const ProgramResult result = compare(path("bin/leviosim"), path("slower"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_holds(result.out, {path("bin/leviosim"), "isa.ops.popcount.issue=2", "the same operations",
+                            "note: of +", "other work 0, price of the same +"});
+  expect_refused(compare("/bin/false", path("slower")), {"/bin/false: run ended with status 1"});
+  expect_refused(program({"compare", "--programs", "a", "b"}), {"behind --"});
 }
 
 TEST_F(HistoryCommand, ExportsForOtherTrackers) {
@@ -170,7 +272,6 @@ TEST_F(HistoryCommand, ExportsForOtherTrackers) {
 TEST_F(HistoryCommand, RefusesBadInput) {
   const std::string file = path("refused.jsonl");
   ASSERT_EQ(add("abc", {"--file", file, "--time", "1"}).status, 0);
-  expect_refused(add("abc", {"--file", file, "--time", "1"}), {"abc", "already"});
   expect_refused(add("a b", {"--file", file, "--time", "1"}), {"--commit 'a b'"});
   expect_refused(add("abcd", {"--file", file, "--time", "noon"}), {"--time 'noon'"});
   expect_refused(program({"history", "shwo"}), {"did you mean 'show'"});

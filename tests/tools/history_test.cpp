@@ -136,6 +136,29 @@ TEST(History, ReadsBackWhatItWrote) {
   EXPECT_TRUE(history.like(other, "", 9).empty());
 }
 
+TEST(History, LinesOfTwoHistoriesMayStandTwice) {
+  std::string text;
+  for (const PastRun& run : runs_of({1000, 1001})) text += History("h", text).lines_for(run);
+  EXPECT_EQ(History("h", text + text).size(), 2u);
+  EXPECT_EQ(History("h", text).lines_for(run_of(1, 1001)), "");
+  EXPECT_THROW((void)History("h", text).lines_for(run_of(1, 1002)), InputError);
+}
+
+/// Adding a run reads the lines of others, but parses none of them: what is damaged there is left
+/// to those who show it. Showing parses the newest only.
+TEST(History, WorkDoesNotGrowWithWhatIsNotShown) {
+  std::string text;
+  const std::vector<PastRun> runs = runs_of({1000, 1001, 1002, 1003});
+  for (const PastRun& run : runs) text += History("h", text).lines_for(run);
+  const std::size_t values = text.find("\"values\":[");
+  ASSERT_NE(values, std::string::npos);
+  text[values + 10] = '?';  // of the oldest run
+  const History history("h", text);
+  EXPECT_NE(history.lines_for(run_of(9, 1009)), "");
+  EXPECT_EQ(history.like(runs[3].record, "", 3).size(), 3u);
+  EXPECT_THROW((void)history.like(runs[3].record, "", 4), InputError);
+}
+
 /// Of ten thousand runs that change nothing the page holds the newest; of changes all.
 TEST(HistoryPage, StaysSmall) {
   std::vector<double> cycles(10'000, 1000);

@@ -10,8 +10,10 @@
 #include "tools/app/budget/check_report.h"
 #include "tools/app/budget/ci_files.h"
 #include "tools/app/budget/gate.h"
+#include "tools/app/cli/child.h"
 #include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/comparison/measured.h"
 #include "tools/app/history/trend.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
@@ -31,6 +33,7 @@ struct CheckOptions : RecordOptions {
   std::string markdown;
   std::string history;
   std::string branch;
+  std::string commit;
   bool json = false;
 };
 
@@ -48,10 +51,23 @@ void check_options(const CLI::App& command, const CheckOptions& options) {
 /// The page says more about what is not met.
 Printout text_report(const CheckOptions& options, const CheckResult& result) {
   if (options.annotations == "gitlab") return Printout(gitlab_report(result), true);
+  if (is_measured(options.run) && !options.gate.baseline.empty())
+    return check_printout(result, {fmt::format("leviosim compare {} {}", printable(options.run),
+                                               printable(options.gate.baseline))});
   std::string page = fmt::format("leviosim check {} --budget {}", options.run, options.gate.budget);
   if (!options.gate.baseline.empty()) page += " --baseline " + options.gate.baseline;
   for (const std::string& set : options.overrides) page += " -p " + set;
   return check_printout(result, {printable(page) + " --report check.html"});
+}
+
+/// Runs like this one before its commit: a check that is run again compares with what it did.
+std::vector<PastRun> runs_before(const History& history, const RunRecord& record,
+                                 const CheckOptions& options) {
+  std::vector<PastRun> before = history.like(record, options.branch, kRunsBefore);
+  const std::string commit =
+      options.commit.empty() ? output_of({"git", "rev-parse", "HEAD"}) : options.commit;
+  std::erase_if(before, [&](const PastRun& run) { return run.origin.commit == commit; });
+  return before;
 }
 
 void run(const CLI::App& command, const CheckOptions& options) {
@@ -75,8 +91,10 @@ void run(const CLI::App& command, const CheckOptions& options) {
   expect_different(junit, "--junit", comment, "--markdown");
   RunFiles files;
   const RunRecord record = read_record(options.run, options, &files);
+  if (page && record.facts.measured)
+    throw InputError(fmt::format("{}: was measured, so it has no page; leave out --report", options.run));
   std::vector<PastRun> before;
-  if (history) before = history->like(record, options.branch, kRunsBefore);
+  if (history) before = runs_before(*history, record, options);
   if (!before.empty()) gate.use_baseline(before.back().record);
   CheckResult result = gate.check(record);
   add_history(result, record, gate.budget(), before);
@@ -99,7 +117,8 @@ Command add_check_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("check", "Hold a run against a budget; status 1 if a limit is not met");
   const auto options = std::make_shared<CheckOptions>();
-  command->add_option("RUN", options->run, "run folder, or a work trace to replay");
+  command->add_option("RUN", options->run,
+                      "run folder, work trace to replay, or CSV file of measured cycles");
   add_gate_options(*command, options->gate);
   command->add_option("--junit", options->junit, "report for CI servers to write")
       ->type_name("FILE");
@@ -113,6 +132,8 @@ Command add_check_command(CLI::App& app) {
                    "another, and slow drift is found")
       ->type_name("FILE");
   command->add_option("--branch", options->branch, "of the history [all]")->type_name("NAME");
+  command->add_option("--commit", options->commit, "of the run, whose own runs are no history [git: HEAD]")
+      ->type_name("ID");
   add_report_option(*command, options->report);
   command->add_flag("--force", options->force, "replace these files");
   command

@@ -10,7 +10,9 @@
 #include "tools/app/cli/printout.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/measured.h"
 #include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/two_programs.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/study/sweep/compared_point.h"
@@ -20,6 +22,7 @@ namespace {
 
 struct CompareOptions : RecordOptions {
   std::vector<std::string> runs;
+  std::vector<std::string> programs;
   std::string allow;
   std::string format = "text";
   bool json = false;
@@ -64,8 +67,29 @@ std::vector<ReportedRun> records(const CompareOptions& options) {
   return list;
 }
 
+/// Two builds on the same input: their runs, by the names of the builds.
+/// @param note  gets what of the difference is work, price and chip
+std::vector<ReportedRun> runs_of_programs(const CompareOptions& options, std::string& note) {
+  if (options.names_chip())
+    throw InputError(
+        "compare: with --programs the chip stands behind --, as the other arguments of leviosim run");
+  const TwoPrograms programs(options.programs, options.runs);
+  std::vector<ReportedRun> list;
+  for (std::size_t i = 0; i < programs.folders().size(); ++i) {
+    ReportedRun& run = list.emplace_back();
+    run.files = read_run_files(programs.folders()[i]);
+    run.record = record_of_files(programs.folders()[i], run.files);
+    run.record.name = options.programs[i];
+  }
+  note = programs.split();
+  return list;
+}
+
 void run(const CLI::App& command, const CompareOptions& options) {
-  require(command, "RUN", "two or more run folders, work traces or points of sweeps (SWEEP:3)");
+  require(command, "RUN",
+          options.programs.empty()
+              ? "two or more run folders, work traces or points of sweeps (SWEEP:3)"
+              : "behind -- the arguments of leviosim run, such as -- --platform gap9 --data flight");
   if (options.json && command.count("--format") > 0)
     throw InputError("compare: --json is --format json; leave out one");
   const ReportFormat format =
@@ -75,12 +99,22 @@ void run(const CLI::App& command, const CompareOptions& options) {
     throw InputError("compare: --format csv is for two runs; expected text, markdown or json");
   std::optional<outputs::OutputFile> page =
       claimed_report(options.report, options.force, {options.runs.begin(), options.runs.end()});
-  const std::vector<ReportedRun> runs = records(options);
+  std::string note;
+  std::vector<ReportedRun> runs =
+      options.programs.empty() ? records(options) : runs_of_programs(options, note);
+  for (const ReportedRun& run : runs)
+    if (page && run.record.facts.measured)
+      throw InputError(fmt::format("{}: was measured, so it has no page; leave out --report",
+                                   run.record.name));
+  for (const ReportedRun& run : runs)
+    if (!run.record.facts.measured)
+      for (ReportedRun& other : runs) name_stages_like(other.record, run.record);
   std::vector<RunComparison> comparisons;
   for (std::size_t i = 1; i < runs.size(); ++i)
     comparisons.push_back(
         compare_runs(runs.front().record, runs[i].record,
                      check_comparable(runs.front().record, runs[i].record, allowed)));
+  if (!note.empty()) comparisons.front().notes.push_back(note);
   std::string html;
   if (page) html = html_page(runs_report(runs, comparisons, nullptr));
   const std::string text = comparison_report(comparisons, format, options.all);
@@ -95,8 +129,16 @@ Command add_compare_command(CLI::App& app) {
       app.add_subcommand("compare", "Show what differs between runs, and why, by mechanism");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("RUN", options->runs,
-                      "run folders, work traces, or points of sweeps (SWEEP:3); each against the "
-                      "first");
+                      "run folders, work traces, points of sweeps (SWEEP:3), or CSV files of measured "
+                      "cycles; each against the first");
+  command
+      ->add_option("--programs", options->programs,
+                   "two builds of leviosim that are compared on what stands behind --: arguments "
+                   "of leviosim run")
+      ->type_name("OLD NEW")
+      ->type_size(2)  // with expected(2), CLI11 would take the -- for its end
+      ->expected(1)
+      ->allow_extra_args(false);
   command->add_option("--allow", options->allow, "differences of the input that are meant")
       ->type_name("data,frames,profile,seed,size");
   command->add_option("--format", options->format, "text, markdown, json or csv [text]")

@@ -33,6 +33,7 @@ struct HistoryOptions : RecordOptions {
   std::string file = kFile;
   std::string commit;
   std::string branch;
+  std::string profile;
   std::string time;
   std::string subject;
   std::string page;
@@ -89,33 +90,44 @@ void append(const std::string& file, const std::string& lines) {
 
 void add(const CLI::App& command, const HistoryOptions& options) {
   require(command, "RUN", "a run folder or a work trace");
-  const std::optional<Gate> gate = optional_gate(options.gate, options);
+  std::optional<Gate> gate = optional_gate(options.gate, options);
   const History history(options.file, base::exists(options.file)
                                           ? base::read_file(options.file, base::InputKind::history)
                                           : std::string());
-  PastRun run{origin_of(options), {}, read_record(options.run, options)};
+  PastRun run{origin_of(options), {}, read_run_or_baseline(options.run, options)};
   if (gate) {
+    // The run before is the baseline, unless there is another; of the first run, itself.
+    const std::vector<PastRun> before = history.like(run.record, run.origin.branch, 1);
+    gate->use_baseline(before.empty() ? run.record : before.back().record);
     const CheckResult check = gate->check(run.record);
     run.limits.held = check.findings.size();
     for (const Finding& finding : check.findings)
       if (finding.fails()) run.limits.missed.push_back(finding.title());
   }
-  append(options.file, history.lines_for(run));
+  const std::string lines = history.lines_for(run);
+  if (!lines.empty()) append(options.file, lines);
+  const std::string place =
+      lines.empty() ? fmt::format("is in {} already", printable(options.file))
+                    : fmt::format("is run {} of {}", history.size() + 1, printable(options.file));
+  const std::string limits =
+      gate ? fmt::format("; {} of {} limits not met", run.limits.missed.size(), run.limits.held) : "";
   print(Printout(std::string())
-            .ending(fmt::format("in short: {} is run {} of {}", short_commit(run.origin.commit),
-                                history.size() + 1, printable(options.file)),
+            .ending(fmt::format("in short: {} {}{}", short_commit(run.origin.commit), place, limits),
                     {fmt::format("leviosim history show --file {}", printable(options.file))}));
 }
 
-/// Runs like the newest of the branch.
+/// Runs like the newest of the branch and the profile.
 std::vector<PastRun> newest(const HistoryOptions& options, std::size_t most) {
   const History history = History::read(options.file);
-  for (std::size_t i = history.size(); i > 0; --i)
-    if (options.branch.empty() || history.origin(i - 1).branch == options.branch)
-      return history.like(history.run(i - 1).record, options.branch, most);
-  throw InputError(fmt::format("{}: has no runs{}; expected some of 'leviosim history add'",
-                               options.file,
-                               options.branch.empty() ? "" : " of " + options.branch));
+  for (std::size_t i = history.size(); i > 0; --i) {
+    const PastRun run = history.run(i - 1);
+    if ((options.branch.empty() || run.origin.branch == options.branch) &&
+        (options.profile.empty() || run.record.facts.profile == options.profile))
+      return history.like(run.record, options.branch, most);
+  }
+  throw InputError(fmt::format("{}: has no runs{}{}; expected some of 'leviosim history add'",
+                               options.file, options.branch.empty() ? "" : " of " + options.branch,
+                               options.profile.empty() ? "" : " of " + options.profile));
 }
 
 std::optional<Budget> budget_of(const HistoryOptions& options) {
@@ -176,10 +188,11 @@ Command add_history_command(CLI::App& app) {
   };
   command->add_option("ACTION", options->action,
                       "add: a run to the file; show: the newest; page: charts over commits");
-  command->add_option("RUN", options->run, "add: run folder, or a work trace to replay");
+  command->add_option("RUN", options->run, "add: run folder, work trace to replay, baseline, or CSV file of measured cycles");
   add("--file", options->file, "FILE", "the history [history.jsonl]");
   add("--commit", options->commit, "ID", "of the run [git: HEAD]");
   add("--branch", options->branch, "NAME", "of the run [git]; show, page: only that [all]");
+  add("--profile", options->profile, "NAME", "show, page: only that [of the newest run]");
   add("--time", options->time, "S", "of the commit, in seconds since 1970 [git]");
   add("--subject", options->subject, "TEXT", "of the commit's message [git]");
   add("-o,--out", options->page, "FILE.html", "page: to write");

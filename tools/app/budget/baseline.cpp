@@ -121,7 +121,7 @@ void add_figures(const Json& figures, RunRecord& run) {
 }
 
 void expect_cycles(const RunRecord& run) {
-  if (run.cycles.empty())
+  if (run.cycles.empty() && !run.facts.measured)
     throw InputError(fmt::format(
         "{}: has no {}, so a baseline of it could not say why a limit is not met; run or replay it "
         "again",
@@ -169,23 +169,29 @@ std::vector<Json> baseline_stages(const RunRecord& run) {
   expect_cycles(run);
   const std::set<std::string> names = names_in_baseline(run, nullptr);
   std::vector<Json> stages;
-  for (const StageParts& parts : run.cycles) {
-    const StageName name = name_of(parts, run);
-    Json stage = Json::parse(stage_lines(name, parts));
+  const auto add = [&](const StageName& name, Json stage) {
     stage["figures"] = Json::object();
     for (const Statistic& s : run.statistics)
       if (names.count(s.name) > 0 && !name.key.empty() && is_of(name, s.name))
         stage["figures"][s.name] = {number_json(s.value), s.unit};
     stages.push_back(std::move(stage));
+  };
+  for (const StageParts& parts : run.cycles) {
+    const StageName name = name_of(parts, run);
+    add(name, Json::parse(stage_lines(name, parts)));
   }
+  for (const StageName& name : run.stages)
+    if (run.stage_parts(name.name) == nullptr)
+      add(name, {{"name", name.name}, {"key", name.key}, {"controller", name.on_controller}});
   return stages;
 }
 
 void add_baseline_stage(const Json& stage, RunRecord& run) {
-  run.cycles.push_back(stage_of(stage));
+  if (stage.contains("cycles")) run.cycles.push_back(stage_of(stage));
   const auto key = stage.at("key").get<std::string>();
   if (!key.empty())
-    run.stages.push_back({run.cycles.back().stage, key, run.cycles.back().on_controller});
+    run.stages.push_back(
+        {stage.at("name").get<std::string>(), key, stage.at("controller").get<bool>()});
   if (stage.contains("figures")) add_figures(stage.at("figures"), run);
 }
 

@@ -19,7 +19,7 @@ struct BaselineFigure {
   Json value;
 };
 /// What a baseline without a budget holds, in two parts: figures of the run, and stages with theirs
-/// and the larger parts of their cycles. @throws InputError if it is not known where cycles went
+/// and the larger parts of their cycles, if they have any. @throws InputError if it is not known where cycles went
 std::vector<BaselineFigure> baseline_figures(const RunRecord& run);
 std::vector<Json> baseline_stages(const RunRecord& run);
 /// The inverse of the second: adds the stage, its figures and its cycles.

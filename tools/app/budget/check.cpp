@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "platform_models/loader/yaml_entries.h"
+#include "sim/base/error.h"
 #include "tools/app/budget/budget_edits.h"
 #include "tools/app/budget/explanation.h"
 #include "tools/app/budget/figures.h"
@@ -24,6 +25,26 @@ std::optional<double> relative_bound(const Limit& limit, const Statistic& statis
   return is_percent_of_baseline(limit.bound) ? baseline * (1 + number / 100) : baseline + number;
 }
 
+/// Whether the baseline ran without that stage.
+bool is_new_stage(const FigureOf& figure, const RunRecord& baseline) {
+  return !figure.stage.empty() &&
+         std::none_of(baseline.stages.begin(), baseline.stages.end(),
+                      [&](const StageName& stage) { return stage.name == figure.stage; });
+}
+
+/// What a limit is about; of a measurement, what of it was measured.
+std::vector<FigureOf> figures_held(const Limit& limit, const RunRecord& run,
+                                   const RunRecord* baseline) {
+  std::vector<FigureOf> figures =
+      run.facts.measured ? find_figures(limit, run) : figures_of(limit, run);
+  if (baseline != nullptr && limit.bound.relative &&
+      (run.facts.measured || baseline->facts.measured))
+    std::erase_if(figures, [&](const FigureOf& figure) {
+      return baseline->find(figure.statistic->name) == nullptr;
+    });
+  return figures;
+}
+
 Finding hold(const Limit& limit, const FigureOf& figure, const RunRecord* baseline) {
   Finding f;
   f.limit = &limit;
@@ -35,7 +56,7 @@ Finding hold(const Limit& limit, const FigureOf& figure, const RunRecord* baseli
     const platform::Place place = platform::place_of(limit.file, limit.line, "");
     if (baseline == nullptr)
       place.fail(fmt::format("'{}' is relative to a baseline; expected --baseline", limit.text));
-    if (baseline->find(f.statistic) == nullptr)
+    if (baseline->find(f.statistic) == nullptr && !is_new_stage(figure, *baseline))
       place.fail(
           fmt::format("{} has no {}; record it with this budget: leviosim budget record RUN "
                       "--budget {}",
@@ -90,6 +111,15 @@ bool Finding::was_over() const {
   return over(*before) && (limit->bound.at_most ? *value <= *before : *value >= *before);
 }
 
+std::optional<double> Finding::better() const {
+  if (!met || !value || !baseline || *baseline == 0 || !is_percent_of_baseline(limit->bound))
+    return std::nullopt;
+  const double side = limit->bound.at_most ? 1 : -1;
+  const double percent = side * 100 * (*baseline - *value) / std::abs(*baseline);
+  const double allowed = std::max(side * limit->bound.number, 0.0);
+  return percent > allowed + kRounding ? std::optional(percent) : std::nullopt;
+}
+
 std::string Finding::excess() const {
   if (!value) return "the run has no such value";
   const std::string found = figure_text(*value, unit, limit->bound);
@@ -118,11 +148,17 @@ std::size_t CheckResult::warned() const {
       findings.begin(), findings.end(), [](const Finding& f) { return !f.met && !f.fails(); }));
 }
 
+std::size_t CheckResult::better() const {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.better(); }));
+}
+
 CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline) {
   CheckResult result{run.name, budget.file, baseline == nullptr ? "" : baseline->name, {}};
   for (const BudgetSection* section : sections_for(budget, run))
     for (const Limit& limit : section->limits) {
-      const std::vector<FigureOf> figures = figures_of(limit, run);
+      const std::vector<FigureOf> figures = figures_held(limit, run, baseline);
+      if (figures.empty()) result.not_measured.push_back(limit.text);
       for (const FigureOf& figure : figures) {
         Finding finding = hold(limit, figure, baseline);
         if (figures.size() > 1 && is_idle(finding)) continue;
@@ -130,6 +166,9 @@ CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRe
         result.findings.push_back(std::move(finding));
       }
     }
+  if (result.findings.empty())
+    throw InputError(fmt::format("{}: {} measures nothing of what it limits", budget.file,
+                                 run.facts.measured ? run.name : baseline->name));
   add_bad_verdicts(result, run, budget);
   for (Finding& finding : result.findings)
     for (const AcceptedMiss& miss : budget.accepted)

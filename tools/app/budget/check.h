@@ -30,6 +30,9 @@ struct Finding {
 
   /// What is held: "8-point RANSAC: cycles <= +3 %", with the statistic in place of a pattern.
   std::string title() const;
+  /// By how much it is better than the baseline, in per cent, where that is more than the limit
+  /// allows the other way: the limit no longer holds what was won.
+  std::optional<double> better() const;
   /// Whether it is not met, but no worse than in the run before.
   bool was_over() const;
   /// Whether it is not met and fails the check; else a warning is all that it is.
@@ -43,12 +46,16 @@ struct CheckResult {
   std::string budget;    ///< file
   std::string baseline;  ///< empty: none
   std::vector<Finding> findings;
+  std::vector<std::string> not_measured = {};  ///< limits on what a measurement has not
+  bool is_kept = false;  ///< the baseline lies in a file, and does not move along with a history
 
   std::size_t missed() const;  ///< that fail the check
   std::size_t warned() const;  ///< that are not met, but do not
+  std::size_t better() const;  ///< than the baseline
 };
 
 /// @param budget    outlives the result
+/// Of what was measured elsewhere, as the run or as the baseline, only limits on it are held.
 /// @param baseline  comparable with the run; may be null if no limit is relative
 /// @throws InputError for limits that cannot be held: unknown figures, units, a missing baseline
 CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline);

@@ -57,9 +57,12 @@ std::string table_of(const CheckResult& result) {
                                  printable(result.budget), count, result.missed());
   text += result.warned() == 0 ? "\n" : fmt::format(", {} warnings\n", result.warned());
   if (!result.baseline.empty()) text += fmt::format("baseline: {}\n", printable(result.baseline));
+  if (!result.not_measured.empty())
+    text += fmt::format("left out, since it was not measured: {}\n",
+                        printable(fmt::format("{}", fmt::join(result.not_measured, ", "))));
   TextTable table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
-    table.add({f.met ? "met" : f.fails() ? "NOT MET" : "warning", shortened(f.title(), kWidest),
+    table.add({f.better() ? "better" : f.met ? "met" : f.fails() ? "NOT MET" : "warning", shortened(f.title(), kWidest),
                f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–", margin(f)});
   return text + table.str();
 }
@@ -74,6 +77,19 @@ std::string misses_of(const CheckResult& result) {
   return text;
 }
 
+/// "2 figures are better than base.json, most of all EPnP RANSAC: cycles <= +3 % (by 5.20 %)";
+/// empty if none is.
+std::string better_text(const CheckResult& result) {
+  const Finding* best = nullptr;
+  for (const Finding& f : result.findings)
+    if (f.better() && (best == nullptr || *f.better() > *best->better())) best = &f;
+  if (best == nullptr) return {};
+  const std::size_t count = result.better();
+  return fmt::format("{} than {} by more than limits allow for the worse: {}{} ({:.2f} %)",
+                     count == 1 ? "a figure is better" : fmt::format("{} figures are better", count),
+                     result.baseline, count == 1 ? "" : "most of all ", best->title(), *best->better());
+}
+
 /// The first that is not met, by how much and why.
 std::string verdict_of(const CheckResult& result) {
   const std::size_t limits = result.findings.size();
@@ -82,10 +98,12 @@ std::string verdict_of(const CheckResult& result) {
   if (missed == result.findings.end() && result.warned() > 0)
     return fmt::format("verdict: met: all {} limits of {}, but {} with a warning", limits,
                        result.budget, result.warned());
-  if (missed == result.findings.end())
-    return fmt::format("verdict: met: {} of {}",
+  if (missed == result.findings.end()) {
+    const std::string better = better_text(result);
+    return fmt::format("verdict: met: {} of {}{}{}",
                        limits == 1 ? "the limit" : fmt::format("all {} limits", limits),
-                       result.budget);
+                       result.budget, better.empty() ? "" : "; ", better);
+  }
   std::string text = fmt::format("verdict: NOT met: {} of {} limits, {}{}: {}", result.missed(),
                                  limits, result.missed() > 1 ? "first " : "", missed->title(),
                                  missed->excess());
@@ -97,13 +115,13 @@ std::string verdict_of(const CheckResult& result) {
 std::string check_text(const CheckResult& result) { return table_of(result) + misses_of(result); }
 
 Printout check_printout(const CheckResult& result, std::vector<std::string> next) {
-  return Printout({table_of(result), misses_of(result)})
-      .ending(verdict_of(result),
-              result.missed() > 0
-                  ? std::move(next)
-                  : std::vector<std::string>{fmt::format("leviosim history add {} --budget {}",
-                                                         printable(result.run),
-                                                         printable(result.budget))});
+  if (result.missed() == 0 && result.better() > 0 && result.is_kept)
+    next = {fmt::format("leviosim budget record {} --budget {} >BASELINE, which is stale",
+                        printable(result.run), printable(result.budget))};
+  else if (result.missed() == 0)
+    next = {fmt::format("leviosim history add {} --budget {}", printable(result.run),
+                        printable(result.budget))};
+  return Printout({table_of(result), misses_of(result)}).ending(verdict_of(result), std::move(next));
 }
 
 Json check_json(const CheckResult& result) {
@@ -116,6 +134,8 @@ Json check_json(const CheckResult& result) {
   json["limits"] = result.findings.size();
   json["not_met"] = result.missed();
   json["warnings"] = result.warned();
+  json["better"] = result.better();
+  if (!result.not_measured.empty()) json["not_measured"] = result.not_measured;
   json["findings"] = Json::array();
   for (const Finding& f : result.findings) {
     Json& entry = json["findings"].emplace_back(Json::object());
@@ -130,6 +150,7 @@ Json check_json(const CheckResult& result) {
     if (f.baseline) entry["baseline"] = *f.baseline;
     if (!f.since.empty()) entry["since"] = f.since;
     if (!f.met) entry["level"] = f.fails() ? "fail" : "warn";
+    if (f.better()) entry["better_percent"] = *f.better();
     if (f.was_over()) entry["was_over_before"] = true;
     const auto shown = [&](const std::optional<double>& v) {
       return v ? Json(figure_text(*v, f.unit, f.limit->bound)) : Json(nullptr);

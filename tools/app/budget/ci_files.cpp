@@ -121,8 +121,9 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
   std::string text = fmt::format("### leviosim: {}\n\n", result.missed() == 0
                                      ? result.warned() == 0 ? "all limits are met"
                                                             : "met, with warnings"
-                                     : fmt::format("{} of {} limits are not met", result.missed(),
-                                                   result.findings.size()));
+                                     : fmt::format("{} of {} limits {} not met", result.missed(),
+                                                   result.findings.size(),
+                                                   result.missed() == 1 ? "is" : "are"));
   for (const RunVerdict& verdict : verdicts(run).list)
     text += fmt::format("- **{}**: {}{}\n", verdict.about, markdown(std::string(verdict.word())),
                         verdict.reason().empty() ? "" : ": " + markdown(verdict.reason()));
@@ -134,6 +135,12 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
     for (const std::string& why : f.why) text += fmt::format("- why: {}\n", markdown(why));
     if (!f.limit->owner.empty()) text += fmt::format("- owner: {}\n", markdown(f.limit->owner));
   }
+  for (const Finding& f : result.findings)
+    if (f.better())
+      text += fmt::format("\n**✓ {}**: {}, {:.2f} % better than the baseline\n", markdown(f.title()),
+                          figure_text(*f.value, f.unit, f.limit->bound), *f.better());
+  if (result.better() > 0 && result.is_kept)
+    text += "\nThe baseline is stale: these limits do not hold what was won.\n";
   if (baseline != nullptr)
     text += fmt::format("\n<details><summary>What moved against {}</summary>\n\n{}\n</details>\n",
                         markdown(baseline->name),

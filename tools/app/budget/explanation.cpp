@@ -43,6 +43,7 @@ class Explainer {
   Explainer(const RunRecord& run, const RunRecord* baseline)
       : run_(run),
         has_baseline_(baseline != nullptr),
+        is_measured_(run.facts.measured || (baseline != nullptr && baseline->facts.measured)),
         nothing_(has_baseline_ ? RunRecord() : nothing_like(run)),
         comparison_(compare_runs(has_baseline_ ? *baseline : nothing_, run)) {}
 
@@ -55,7 +56,9 @@ class Explainer {
       explain_frame(f);
     else
       explain_stage(f, f.stage);
-    if (has_baseline_ && f.why.empty()) f.why.emplace_back("its cycles are those of the baseline");
+    if (!f.why.empty() || !has_baseline_) return;
+    f.why.emplace_back(is_measured_ ? "cycles were measured, so nothing is known of their causes"
+                                    : "its cycles are those of the baseline");
   }
 
  private:
@@ -72,15 +75,26 @@ class Explainer {
     return s.stage.name + ", " + place->name;
   }
 
+  /// What of the work differs by more than its digits show; empty if nothing does.
+  static std::string work_of(const StageComparison& s) {
+    constexpr double kShown = 0.005;
+    std::string text;
+    if (s.calls.a != s.calls.b)
+      text = fmt::format("calls {:g} → {:g}", s.calls.a.value_or(0), s.calls.b.value_or(0));
+    const double operations = s.operations.percent().value_or(0);
+    if (std::abs(operations) >= kShown)
+      text += fmt::format("{}operations {:+.2f} %", text.empty() ? "" : ", ", operations);
+    return text;
+  }
+
   void explain_stage(Finding& f, const std::string& name) const {
     const StageComparison* s = stage(name);
+    if (s != nullptr) f.where = s->stage.name;
     if (s == nullptr || !s->mechanisms) return;
     f.where = place_in(*s);
     if (has_baseline_) {
-      if (!s->same_work)
-        f.why.push_back(fmt::format("the work changed: calls {:g} → {:g}, operations {:+.2f} %",
-                                    s->calls.a.value_or(0), s->calls.b.value_or(0),
-                                    s->operations.percent().value_or(0)));
+      if (const std::string work = work_of(*s); !work.empty())
+        f.why.push_back("the work changed: " + work);
       for (const std::string& reason : reasons(*s, kMostReasons)) f.why.push_back(reason);
       return;
     }
@@ -171,6 +185,7 @@ class Explainer {
 
   const RunRecord& run_;
   bool has_baseline_;
+  bool is_measured_;
   RunRecord nothing_;
   RunComparison comparison_;
 };

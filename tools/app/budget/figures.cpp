@@ -144,21 +144,9 @@ std::vector<std::string> phrase_names(std::span<const FigurePhrase> phrases) {
   return names;
 }
 
-std::vector<FigureOf> figures_of_stages(const Limit& limit, const FigurePhrase& phrase,
-                                        const RunRecord& run) {
-  std::vector<FigureOf> found;
-  std::vector<std::string> names;
-  for (const StageName& stage : run.stages) {
-    names.push_back(stage.name);
-    if (!matches(limit.stage, stage.name) && !matches(limit.stage, stage.key)) continue;
-    const std::string name = fmt::format(fmt::runtime(phrase.statistic), stage.key);
-    if (const Statistic* statistic = run.find(name)) found.push_back({statistic, stage.name});
-  }
-  if (found.empty())
-    fail(limit, fmt::format("no stage '{}' with '{}' in {}; its stages are {}{}", limit.stage,
-                            limit.figure, run.name, fmt::join(names, ", "),
-                            base::did_you_mean(limit.stage, names)));
-  return found;
+/// Of the names of statistics.
+std::string pattern_of(const Limit& limit, const FigurePhrase* phrase) {
+  return phrase != nullptr ? std::string(phrase->statistic) : limit.figure;
 }
 
 /// Of a name "stages.KEY.…".
@@ -186,16 +174,36 @@ void check_figure(const Limit& limit) {
                           limit.stage.empty() ? ", or the name of a statistic" : ""));
 }
 
-std::vector<FigureOf> figures_of(const Limit& limit, const RunRecord& run) {
+std::vector<FigureOf> find_figures(const Limit& limit, const RunRecord& run) {
   const FigurePhrase* phrase = find_phrase(limit);
-  if (phrase != nullptr && !limit.stage.empty()) return figures_of_stages(limit, *phrase, run);
-  const std::string pattern = phrase != nullptr ? std::string(phrase->statistic) : limit.figure;
   std::vector<FigureOf> found;
+  if (phrase != nullptr && !limit.stage.empty()) {
+    for (const StageName& stage : run.stages) {
+      if (!matches(limit.stage, stage.name) && !matches(limit.stage, stage.key)) continue;
+      const std::string name = fmt::format(fmt::runtime(phrase->statistic), stage.key);
+      if (const Statistic* statistic = run.find(name)) found.push_back({statistic, stage.name});
+    }
+    return found;
+  }
+  const std::string pattern = pattern_of(limit, phrase);
   for (const Statistic& s : run.statistics)
     if (matches(pattern, s.name)) found.push_back({&s, stage_in(s.name, run)});
+  return found;
+}
+
+std::vector<FigureOf> figures_of(const Limit& limit, const RunRecord& run) {
+  std::vector<FigureOf> found = find_figures(limit, run);
   if (!found.empty()) return found;
   std::vector<std::string> names;
+  const FigurePhrase* phrase = find_phrase(limit);
+  if (phrase != nullptr && !limit.stage.empty()) {
+    for (const StageName& stage : run.stages) names.push_back(stage.name);
+    fail(limit, fmt::format("no stage '{}' with '{}' in {}; its stages are {}{}", limit.stage,
+                            limit.figure, run.name, fmt::join(names, ", "),
+                            base::did_you_mean(limit.stage, names)));
+  }
   for (const Statistic& s : run.statistics) names.push_back(s.name);
+  const std::string pattern = pattern_of(limit, phrase);
   fail(limit, fmt::format("{} has no statistic '{}'{}", run.name, pattern,
                           base::did_you_mean(pattern, names)));
 }
@@ -215,14 +223,20 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
   for (const Unit& unit : known->units)
     if (unit.name == bound.unit) return bound.number * unit.factor / known->factor;
   if (bound.unit == "%")
-    fail(limit, fmt::format("'{}': per cent of what? With a sign, {} +{:g} %, it is of the baseline",
-                            limit.text, bound.at_most ? "<=" : ">=", bound.number));
+    fail(limit, fmt::format("'{}': per cent of what? A sign is missing: {} {}{:g} % is of the baseline",
+                            limit.text, bound.at_most ? "<=" : ">=", bound.at_most ? '+' : '-',
+                            bound.number));
   std::vector<std::string> names;
   for (const Unit& unit : known->units) names.emplace_back(unit.name.empty() ? "none" : unit.name);
   fail(limit, fmt::format(
                   "'{}': {}; expected {}{}", limit.text,
                   bound.unit.empty() ? "has no unit" : fmt::format("unknown unit '{}'", bound.unit),
                   fmt::join(names, ", "), base::did_you_mean(bound.unit, names)));
+}
+
+ShownUnit shown_unit(std::string_view statistic_unit) {
+  const StatisticUnit* known = find_unit(statistic_unit);
+  return known == nullptr ? ShownUnit{statistic_unit, 1} : ShownUnit{known->shown_unit, known->shown};
 }
 
 std::string figure_text(double value, std::string_view statistic_unit) {

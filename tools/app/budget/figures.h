@@ -31,7 +31,9 @@ struct FigureOf {
   const Statistic* statistic;
   std::string stage;  ///< its name, if it is that of a stage
 };
-/// All that the limit's figure and stage match. @throws InputError at the limit's line if there is
+/// All that the limit's figure and stage match; may be none.
+std::vector<FigureOf> find_figures(const Limit& limit, const RunRecord& run);
+/// The same. @throws InputError at the limit's line if there is
 /// none, with the nearest name
 std::vector<FigureOf> figures_of(const Limit& limit, const RunRecord& run);
 
@@ -41,6 +43,13 @@ double bound_in(const Limit& limit, std::string_view statistic_unit);
 
 /// Whether a bound is a change in per cent of the baseline.
 bool is_percent_of_baseline(const Bound& bound);
+
+/// In what a statistic is shown to people: so many of its units.
+struct ShownUnit {
+  std::string_view name;
+  double size = 1;
+};
+ShownUnit shown_unit(std::string_view statistic_unit);
 
 /// "9 411.0 kcycles", "43.3 ms": a value of a statistic for people.
 std::string figure_text(double value, std::string_view statistic_unit);

@@ -8,6 +8,7 @@
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/check_report.h"
 #include "tools/app/cli/limit_not_met.h"
+#include "tools/app/comparison/measured.h"
 
 namespace leviosim::tools {
 namespace {
@@ -18,14 +19,13 @@ bool is_baseline(const std::string& name) {
   return name.substr(name.size() - 5) == ".json";
 }
 
-RunRecord read_any(const std::string& name, const RecordOptions& chip) {
+}  // namespace
+
+RunRecord read_run_or_baseline(const std::string& name, const RecordOptions& chip) {
   if (is_baseline(name))
     return parse_baseline(name, base::read_file(name, base::InputKind::baseline));
-  if (base::is_folder(name)) return read_run_folder(name);
   return read_record(name, chip);
 }
-
-}  // namespace
 
 void add_gate_options(CLI::App& command, GateOptions& options) {
   command.add_option("--budget", options.budget, "limits that the run has to meet")
@@ -36,21 +36,35 @@ void add_gate_options(CLI::App& command, GateOptions& options) {
       ->type_name("RUN|FILE.json");
   command
       .add_option("--allow", options.allow, "differences of the baseline's input that are meant")
-      ->type_name("data,frames,profile,seed,size");
+      ->type_name("chip,data,frames,profile,seed,size");
 }
 
 Gate::Gate(const GateOptions& options, const RecordOptions& chip)
     : budget_(read_budget(options.budget)), allowed_(parse_allowed(options.allow)) {
-  if (!options.baseline.empty()) baseline_ = read_any(options.baseline, chip);
+  if (options.baseline.empty()) return;
+  is_kept_ = true;
+  if (base::is_folder(options.baseline) || is_measured(options.baseline))
+    baseline_ = read_record(options.baseline, {});
+  else
+    baseline_ = read_run_or_baseline(options.baseline, chip);
 }
 
 void Gate::use_baseline(RunRecord baseline) {
   if (!baseline_) baseline_ = std::move(baseline);
 }
 
-CheckResult Gate::check(const RunRecord& run) const {
-  if (baseline_) check_comparable(*baseline_, run, allowed_);
-  return check_budget(run, budget_, this->baseline());
+CheckResult Gate::check(const RunRecord& of) const {
+  RunRecord run = of;
+  std::optional<RunRecord> baseline = baseline_;
+  if (baseline) {
+    check_comparable(*baseline, run, allowed_);
+    check_same_chip(*baseline, run, allowed_);
+    name_stages_like(run, *baseline);
+    name_stages_like(*baseline, run);
+  }
+  CheckResult result = check_budget(run, budget_, baseline ? &*baseline : nullptr);
+  result.is_kept = is_kept_;
+  return result;
 }
 
 std::optional<Gate> optional_gate(const GateOptions& options, const RecordOptions& chip) {

@@ -20,6 +20,10 @@ struct GateOptions {
   std::string allow;
 };
 
+/// What a command reads as a run: also a baseline, a file of `budget record`.
+/// @throws InputError as read_record() and parse_baseline()
+RunRecord read_run_or_baseline(const std::string& name, const RecordOptions& chip);
+
 /// Declares --budget, --baseline and --allow.
 void add_gate_options(CLI::App& command, GateOptions& options);
 
@@ -30,7 +34,7 @@ class Gate {
   /// @throws InputError for what is no baseline, or names another run
   Gate(const GateOptions& options, const RecordOptions& chip);
 
-  /// A baseline where none was named; one that was named stays.
+  /// A baseline where none was named; one that was named stays. It moves along, and cannot be stale.
   void use_baseline(RunRecord baseline);
   const Budget& budget() const { return budget_; }
   /// Null if there is none.
@@ -43,6 +47,7 @@ class Gate {
   Budget budget_;
   Allowed allowed_;
   std::optional<RunRecord> baseline_;
+  bool is_kept_ = false;
 };
 
 /// The gate of a command that does something else; none without --budget.

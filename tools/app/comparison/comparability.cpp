@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <map>
 
 #include "sim/base/error.h"
@@ -54,10 +56,33 @@ void note_difference(std::vector<std::string>& notes, const char* what, const st
   if (a != b) notes.push_back(fmt::format("{}: {} in A, {} in B", what, shown(a), shown(b)));
 }
 
+[[noreturn]] void refuse(const RunRecord& a, const RunRecord& b,
+                         const std::vector<std::string>& differences,
+                         const std::vector<std::string>& keys) {
+  throw InputError(fmt::format(
+      "{} and {} cannot be compared: {}; to compare them all the same, --allow {}", a.name, b.name,
+      fmt::join(differences, ", "), fmt::join(keys, ",")));
+}
+
+/// What a measurement leaves open, and stages that the other does not have.
+void note_measured(std::vector<std::string>& notes, const RunRecord& measured,
+                   const RunRecord& other) {
+  if (!other.facts.measured)
+    notes.push_back(fmt::format("{} was measured: nobody checks that its data are those of {}",
+                                measured.name, other.name));
+  std::vector<std::string> known;
+  for (const StageName& stage : other.stages) known.push_back(stage.name);
+  for (const StageName& stage : measured.stages)
+    if (std::none_of(other.stages.begin(), other.stages.end(),
+                     [&](const StageName& s) { return s.key == stage.key; }))
+      notes.push_back(fmt::format("{} has no stage '{}'{}", other.name, stage.name,
+                                  base::did_you_mean(stage.name, known)));
+}
+
 }  // namespace
 
 Allowed parse_allowed(const std::string& text) {
-  std::vector<std::string> known{"data"};
+  std::vector<std::string> known{"chip", "data"};
   for (const Condition& condition : kConditions) known.emplace_back(condition.key);
   Allowed allowed;
   for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
@@ -85,6 +110,15 @@ std::vector<std::string> check_comparable(const RunRecord& a, const RunRecord& b
     refused.push_back(difference);
     keys.emplace_back(key);
   };
+  if (a.facts.measured || b.facts.measured) {
+    const std::string &in_a = a.facts.profile, &in_b = b.facts.profile;
+    if (!in_a.empty() && !in_b.empty() && in_a != in_b)
+      judge("profile", fmt::format("other profile ({} and {})", in_a, in_b));
+    if (!refused.empty()) refuse(a, b, refused, keys);
+    if (a.facts.measured) note_measured(notes, a, b);
+    if (b.facts.measured) note_measured(notes, b, a);
+    return notes;
+  }
   const bool other_frames = frames_text(a.facts) != frames_text(b.facts);
   if (const std::string input = differing_input(a.facts, b.facts, other_frames); !input.empty())
     judge("data", fmt::format("other data ({})", input));
@@ -95,15 +129,20 @@ std::vector<std::string> check_comparable(const RunRecord& a, const RunRecord& b
       judge(condition.key, fmt::format("other {} ({} and {})", condition.key, in_a, in_b));
   }
   if (!refused.empty())
-    throw InputError(
-        fmt::format("{} and {} cannot be compared: {}; to compare them all the same, "
-                    "--allow {}",
-                    a.name, b.name, fmt::join(refused, ", "), fmt::join(keys, ",")));
+    refuse(a, b, refused, keys);
   note_difference(notes, "program", a.facts.program, b.facts.program);
   note_difference(notes, "camera", a.facts.camera, b.facts.camera);
   note_difference(notes, "workload parameters", list_of(a.facts.workload),
                   list_of(b.facts.workload));
   return notes;
+}
+
+void check_same_chip(const RunRecord& a, const RunRecord& b, const Allowed& allowed) {
+  const auto chip = [](const RunRecord& run) {
+    return std::filesystem::path(run.facts.platform).stem().string();
+  };
+  if (chip(a).empty() || chip(b).empty() || chip(a) == chip(b) || allowed.count("chip") > 0) return;
+  refuse(a, b, {fmt::format("other chip ({} and {})", chip(a), chip(b))}, {"chip"});
 }
 
 }  // namespace leviosim::tools

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/base/printable_text.h"
+#include "tools/app/comparison/comparison_report.h"
 
 namespace leviosim::tools {
 namespace {
@@ -83,6 +84,12 @@ Json comparison_json(const RunComparison& c) {
   json["notes"] = c.notes;
   json["same_work"] = c.same_work();
   json["figures"] = list_json(c.figures);
+  if (c.a.facts.measured || c.b.facts.measured)
+    for (const ModelError& e : model_errors(c))
+      json["model_errors"].push_back({{"stage", e.stage},
+                                      {"measured", value_of(e.measured)},
+                                      {"model", value_of(e.model)},
+                                      {"percent", value_of(e.percent)}});
   json["stages"] = Json::array();
   for (const StageComparison& s : c.stages) json["stages"].push_back(stage_json(s));
   json["frame"] = quantity_json(c.frame);

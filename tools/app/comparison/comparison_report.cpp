@@ -322,6 +322,7 @@ std::vector<std::string> reasons(const StageComparison& stage, std::size_t most)
   const double whole = *stage.mechanisms->a;
   for (const Leaf& leaf : leaves_by_difference(*stage.mechanisms)) {
     if (list.size() == most || std::abs(leaf.difference) < kLeastShare * whole) break;
+    if (leaf.name == kOtherParts && !list.empty()) continue;  // says nothing beside a reason
     list.push_back(
         fmt::format("{} {:+.2f} %", part_label(leaf.name), 100 * leaf.difference / whole));
   }
@@ -329,6 +330,9 @@ std::vector<std::string> reasons(const StageComparison& stage, std::size_t most)
 }
 
 std::string comparison_report(const RunComparison& comparison, ReportFormat format) {
+  const bool is_measured = comparison.a.facts.measured || comparison.b.facts.measured;
+  if (is_measured && (format == ReportFormat::markdown || format == ReportFormat::text))
+    return measured_report(comparison, format == ReportFormat::markdown);
   switch (format) {
     case ReportFormat::json:
       return json_text(comparison_json(comparison), 2) + '\n';

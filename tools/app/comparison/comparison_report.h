@@ -3,7 +3,9 @@
 // CSV and JSON hold all.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/app/comparison/comparison.h"
 
@@ -23,6 +25,19 @@ std::string comparison_report(const std::vector<RunComparison>& comparisons, Rep
 /// At most 24 lines of 80 columns: figures of the run, the stages that differ most, and the main
 /// causes. More lines only for notes.
 std::string comparison_summary(const RunComparison& comparison);
+
+/// Cycles of a call, or of a frame, of a model beside what was measured.
+struct ModelError {
+  std::string stage;
+  std::optional<double> measured;
+  std::optional<double> model;
+  std::optional<double> percent;  ///< of what was measured
+};
+/// Of each stage, and last of the frame, where one of the runs was measured (A, if both were).
+std::vector<ModelError> model_errors(const RunComparison& comparison);
+
+/// A table of them, and their mean.
+std::string measured_report(const RunComparison& comparison, bool markdown);
 
 /// "8-point hypotheses: issue +1.2 %": the parts of a stage that explain most of its difference,
 /// each with its share of the stage's cycles in A.

@@ -117,6 +117,7 @@ std::vector<std::string> cause_lines(const RunComparison& c) {
 }  // namespace
 
 std::string comparison_summary(const RunComparison& c) {
+  if (c.a.facts.measured || c.b.facts.measured) return measured_report(c, false);
   std::string text = described("A", c.a, c.b) + described("B", c.b, c.a);
   for (const std::string& note : c.notes) text += screen_line("note: " + printable(note));
   text += screen_line(work_line(c)) + verdict_line(c) + figure_lines(c) + stages_of_summary(c);

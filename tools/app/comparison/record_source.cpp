@@ -7,6 +7,7 @@
 #include "sim/base/input_file.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/progress_line.h"
+#include "tools/app/comparison/measured.h"
 #include "tools/app/run/memory_option.h"
 #include "tools/app/run/replay.h"
 #include "tools/app/run/replay_report.h"
@@ -88,6 +89,12 @@ RunRecord read_record(const std::string& name, const RecordOptions& options, Run
   if (!base::exists(path))
     throw InputError(
         fmt::format("{}: does not exist; expected a run folder or a work trace", name));
+  if (is_measured(name)) {
+    if (options.names_chip())
+      throw InputError(fmt::format(
+          "{}: was measured on a chip; leave out --platform, -p and --cores", name));
+    return read_measured(name);
+  }
   if (base::is_folder(path) && !options.names_chip()) {
     RunFiles read = read_run_files(path);
     RunRecord record = record_of_files(name, read);

@@ -29,7 +29,7 @@ void add_record_options(CLI::App& command, RecordOptions& options);
 std::string trace_of(const std::string& name);
 
 /// Of a folder what lies in it, unless the options name a chip; then, and of a trace, what a replay
-/// yields, on the chip of the recording if none is named.
+/// yields, on the chip of the recording if none is named. Of a CSV file what was measured.
 /// @param files  gets what a run folder holds, or would; may be null
 /// @throws InputError for what is neither, and as replay()
 RunRecord read_record(const std::string& name, const RecordOptions& options,

@@ -178,6 +178,7 @@ RunRecord read_run_folder(const std::filesystem::path& folder) {
 
 Json facts_json(const RunFacts& facts) {
   Json json;
+  if (facts.measured) json["measured"] = true;
   json["program"] = facts.program;
   json["profile"] = facts.profile;
   if (!facts.workload.empty()) json["workload"] = facts.workload;
@@ -197,6 +198,7 @@ Json facts_json(const RunFacts& facts) {
 RunFacts facts_of_json(const std::string& where, const Json& json) {
   return reading(where, "the facts of a run", [&] {
     RunFacts facts;
+    facts.measured = json.value("measured", false);
     json.at("program").get_to(facts.program);
     json.at("profile").get_to(facts.profile);
     if (json.contains("workload")) json.at("workload").get_to(facts.workload);

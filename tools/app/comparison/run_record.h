@@ -21,7 +21,8 @@
 namespace leviosim::tools {
 
 struct RunFacts {
-  std::string program;  ///< "0.1.0 ea4229934d2b"
+  bool measured = false;  ///< elsewhere (measured.h): nothing is known but profile and platform
+  std::string program;    ///< "0.1.0 ea4229934d2b"
   std::string profile;
   std::vector<std::string> workload;  ///< parameters that were set
   std::uint32_t seed = 1;

@@ -48,7 +48,7 @@ Json names_of(const std::vector<BaselineFigure>& figures) {
 
 bool are_alike(const RunFacts& a, const RunFacts& b) {
   const auto key = [](const RunFacts& f) {
-    return std::tie(f.profile, f.platform, f.cores, f.camera, f.seed, f.image_width,
+    return std::tie(f.measured, f.profile, f.platform, f.cores, f.camera, f.seed, f.image_width,
                     f.image_height, f.first_frame, f.frames, f.inputs);
   };
   return key(a) == key(b);
@@ -97,15 +97,26 @@ History::History(std::string file, std::string text)
   }
   std::stable_sort(runs_.begin(), runs_.end(),
                    [](const Line& a, const Line& b) { return a.time_s < b.time_s; });
+  // Of two histories that were merged, lines of both stand twice.
+  std::vector<Line> once;
+  for (const Line& line : runs_) {
+    const auto of_then = std::lower_bound(
+        once.begin(), once.end(), line, [](const Line& a, const Line& b) { return a.time_s < b.time_s; });
+    if (std::none_of(of_then, once.end(), [&](const Line& other) { return bytes_of(other) == bytes_of(line); }))
+      once.push_back(line);
+  }
+  runs_ = std::move(once);
 }
 
 History History::read(const std::string& file) {
   return History(file, base::read_file(file, base::InputKind::history));
 }
 
-Json History::parsed(const Line& line) const {
-  return parse_json(file_, text_.substr(line.begin, line.size));
+std::string_view History::bytes_of(const Line& line) const {
+  return std::string_view(text_).substr(line.begin, line.size);
 }
+
+Json History::parsed(const Line& line) const { return parse_json(file_, std::string(bytes_of(line))); }
 
 const Json& History::kept(const std::string& digest) const {
   const auto known = parsed_.find(digest);
@@ -166,12 +177,6 @@ std::string History::lines_for(const PastRun& run) const {
   const std::string begin =
       fmt::format("{}{}{}{},", kRun, run.origin.commit, kTime, run.origin.time_s);
   const Shared facts = shared("facts", facts_of(run.record.facts));
-  for (const Line& line : runs_) {
-    const std::string_view text = std::string_view(text_).substr(line.begin, line.size);
-    if (text.starts_with(begin) && text.find(facts.digest) != std::string_view::npos)
-      throw InputError(fmt::format("{}: has a run of {} with this chip, profile and data already",
-                                   file_, short_commit(run.origin.commit)));
-  }
   const std::vector<BaselineFigure> figures = baseline_figures(run.record);
   const Shared names = shared("figures", names_of(figures));
   std::vector<Shared> all{facts, names};
@@ -180,20 +185,28 @@ std::string History::lines_for(const PastRun& run) const {
     all.push_back(shared("stage", stage));
     stages.push_back(all.back().digest);
   }
-  std::string text;
+  std::string lines;
   for (const Shared& line : all)
-    if (kept_.find(line.digest) == kept_.end()) text += line.line;
+    if (kept_.find(line.digest) == kept_.end()) lines += line.line;
   Json values = Json::array();
   for (const BaselineFigure& figure : figures) values.push_back(figure.value);
   const auto member = [](const char* name, const Json& value) {
     return fmt::format(",\"{}\":{}", name, json_text(value));
   };
-  return fmt::format("{}{}\"branch\":{}{}{}{}{}{}{}{}{}}}\n", text, begin,
+  const std::string found = member("facts", facts.digest) + member("figures", names.digest) +
+                            member("values", values);
+  for (const Line& line : runs_) {
+    if (!bytes_of(line).starts_with(begin) || bytes_of(line).find(facts.digest) == std::string_view::npos)
+      continue;
+    if (bytes_of(line).find(found) != std::string_view::npos) return {};
+    throw InputError(fmt::format(
+        "{}: has a run of {} with this chip, profile and data already, and other figures", file_,
+        short_commit(run.origin.commit)));
+  }
+  return fmt::format("{}{}\"branch\":{}{}{}{}{}{}{}}}\n", lines, begin,
                      json_text(Json(run.origin.branch)), member("subject", run.origin.subject),
                      member("program", run.record.facts.program),
-                     member("limits", run.limits.held), member("missed", run.limits.missed),
-                     member("facts", facts.digest), member("figures", names.digest),
-                     member("values", values), member("stages", stages));
+                     member("limits", run.limits.held), member("missed", run.limits.missed), found, member("stages", stages));
 }
 
 }  // namespace leviosim::tools

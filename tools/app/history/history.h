@@ -53,7 +53,7 @@ class History {
   static History read(const std::string& file);
 
   std::size_t size() const { return runs_.size(); }
-  /// By time, then in the order of the file. @throws InputError if a line is damaged
+  /// By time, then in the order of the file; a line that stands twice is one run. @throws InputError if a line is damaged
   Origin origin(std::size_t i) const;
   PastRun run(std::size_t i) const;
 
@@ -62,8 +62,8 @@ class History {
   std::vector<PastRun> like(const RunRecord& run, const std::string& branch,
                             std::size_t most) const;
 
-  /// What has to be appended to the file for a run. @throws InputError if this commit has such a
-  /// run already
+  /// What has to be appended to the file for a run; nothing if it is there already.
+  /// @throws InputError if this commit has such a run with other figures
   std::string lines_for(const PastRun& run) const;
 
  private:
@@ -72,6 +72,7 @@ class History {
     std::size_t size;
     std::int64_t time_s;
   };
+  std::string_view bytes_of(const Line& line) const;
   Json parsed(const Line& line) const;
   const Json& kept(const std::string& digest) const;
 

@@ -41,16 +41,59 @@ std::string limits_text(const LimitsThen& limits) {
 }
 
 bool is_same(const RunRecord& a, const RunRecord& b) {
-  for (const QuantityOfRuns& q : quantities_of_runs())
-    if (a.value(q.statistic) != b.value(q.statistic)) return false;
-  return true;
+  return std::equal(a.statistics.begin(), a.statistics.end(), b.statistics.begin(),
+                    b.statistics.end(), [](const Statistic& x, const Statistic& y) {
+                      return x.name == y.name && x.value == y.value;
+                    });
+}
+
+/// A figure that a page draws.
+struct PageFigure {
+  std::string statistic;
+  std::string title;
+  std::string unit;
+  double scale = 1;  ///< from the statistic's unit
+};
+
+/// Those in which something was found, and those of the run that changed.
+std::vector<PageFigure> figures_of_page(const std::vector<Trend>& trends,
+                                        const std::vector<const PastRun*>& runs) {
+  constexpr std::size_t kMost = 40;
+  std::vector<PageFigure> figures;
+  for (const Trend& trend : trends) {
+    if ((trend.steps.empty() && trend.drift.empty()) || figures.size() == kMost) continue;
+    const ShownUnit shown = shown_unit(trend.unit);
+    std::string title = trend.stage.empty() ? trend.limit->figure
+                                            : trend.stage + ": " + trend.limit->figure;
+    figures.push_back({trend.statistic, std::move(title), std::string(shown.name), 1 / shown.size});
+  }
+  for (const QuantityOfRuns& q : quantities_of_runs()) {
+    std::erase_if(figures, [&](const PageFigure& f) { return f.statistic == q.statistic; });
+    const auto first = runs.front()->record.value(q.statistic);
+    const bool has_changed = std::any_of(runs.begin(), runs.end(), [&](const PastRun* run) {
+      return run->record.value(q.statistic) != first;
+    });
+    if (has_changed || std::string_view(q.statistic) == kFrameCycles)
+      figures.push_back({q.statistic, q.name, q.unit, q.scale});
+  }
+  return figures;
+}
+
+std::string title_of(const Trend& trend) {
+  return trend.limit->stage.empty() ? trend.limit->text : trend.stage + ": " + trend.limit->text;
+}
+
+/// By how much its largest change was for the worse, in per cent.
+double worst_of(const Trend& trend) {
+  double worst = trend.drift.empty() ? 0 : trend.drift_percent;
+  for (const FigureChange& step : trend.steps) worst = std::max(worst, step.percent);
+  return worst;
 }
 
 std::string trend_lines(const std::vector<PastRun>& runs, const Budget& budget) {
   std::string text;
   for (const Trend& trend : trends(budget, runs)) {
-    const std::string title =
-        trend.limit->stage.empty() ? trend.limit->text : trend.stage + ": " + trend.limit->text;
+    const std::string title = title_of(trend);
     for (const FigureChange& step : trend.steps)
       text += fmt::format("{}: {}\n", printable(title), printable(step_text(trend, step, runs)));
     if (!trend.drift.empty())
@@ -120,13 +163,13 @@ Json runs_json(const std::vector<const PastRun*>& runs) {
 
 /// Limits of the budget on figures of the run, in the units of the page: absolute ones, and those
 /// relative to the first of the runs.
-std::map<std::string, double> limits_of(const Budget& budget, const RunRecord& first,
-                                        const RunRecord& last) {
+std::map<std::string, double> limits_of(const Budget& budget, const std::vector<PageFigure>& figures,
+                                        const RunRecord& first, const RunRecord& last) {
   std::map<std::string, double> limits;
   for (const BudgetSection* section : sections_for(budget, last))
     for (const Limit& limit : section->limits)
-      for (const FigureOf& figure : figures_of(limit, last))
-        for (const QuantityOfRuns& q : quantities_of_runs()) {
+      for (const FigureOf& figure : find_figures(limit, last))
+        for (const PageFigure& q : figures) {
           if (figure.statistic->name != q.statistic) continue;
           const double bound = bound_in(limit, figure.statistic->unit);
           const auto base = first.value(q.statistic);
@@ -146,7 +189,8 @@ std::string quoted(const std::string& text) {
 }
 
 /// A row a run; columns are named as the statistics are.
-std::string points_csv(const std::vector<const PastRun*>& runs) {
+std::string points_csv(const std::vector<const PastRun*>& runs,
+                       const std::vector<PageFigure>& figures) {
   struct Row {
     std::size_t number;
     const PastRun& run;
@@ -158,11 +202,61 @@ std::string points_csv(const std::vector<const PastRun*>& runs) {
       {"subject", [](R r) { return quoted(r.run.origin.subject); }},
       {"date", [](R r) { return date_text(r.run.origin.time_s); }},
       {"limits", [](R r) { return limits_text(r.run.limits); }}};
-  for (const QuantityOfRuns& q : quantities_of_runs())
+  for (const PageFigure& q : figures)
     table.add(q.statistic, [&q](R r) { return base::fixed(r.run.record.value(q.statistic), 6); });
   std::vector<Row> rows;
   for (const PastRun* run : runs) rows.push_back({rows.size(), *run});
   return table.text(rows);
+}
+
+/// Of each figure with steps, those runs of the page that made them.
+std::map<std::string, std::vector<std::size_t>> marks_of(const std::vector<Trend>& trends,
+                                                         const std::vector<PastRun>& runs,
+                                                         const std::vector<const PastRun*>& shown) {
+  std::map<std::string, std::vector<std::size_t>> marks;
+  for (const Trend& trend : trends)
+    for (const FigureChange& step : trend.steps)
+      if (const auto at = std::find(shown.begin(), shown.end(), &runs[step.run]); at != shown.end())
+        marks[trend.statistic].push_back(static_cast<std::size_t>(at - shown.begin()));
+  return marks;
+}
+
+/// The steps of a figure, and its drift. Lines of a long history would fill the page.
+StudyBox box_of(const Trend& trend, const std::vector<PastRun>& runs) {
+  constexpr std::size_t kMost = 4;
+  StudyBox box;
+  box.good = false;
+  box.mark = title_of(trend);
+  const std::size_t count = trend.steps.size();
+  box.sentence = fmt::format("{}{}", count == 0   ? "A drift"
+                                     : count == 1 ? "A step"
+                                                  : fmt::format("{} steps", count),
+                             trend.drift.empty() || count == 0 ? "." : " and a drift.");
+  if (!trend.drift.empty()) box.lines.push_back(drift_text(trend, runs));
+  for (std::size_t i = 0; i < std::min(count, kMost); ++i)
+    box.lines.push_back(step_text(trend, trend.steps[count - 1 - i], runs));
+  if (count > kMost) box.lines.push_back(fmt::format("and {} earlier ones", count - kMost));
+  return box;
+}
+
+/// Of the figures that moved most; the others by name.
+void add_boxes(StudyPage& page, const std::vector<Trend>& trends,
+               const std::vector<PastRun>& runs) {
+  constexpr std::size_t kMost = 4;
+  std::vector<const Trend*> moved;
+  for (const Trend& trend : trends)
+    if (!trend.steps.empty() || !trend.drift.empty()) moved.push_back(&trend);
+  std::stable_sort(moved.begin(), moved.end(), [](const Trend* a, const Trend* b) {
+    return worst_of(*a) > worst_of(*b);
+  });
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    if (i < kMost)
+      page.boxes.push_back(box_of(*moved[i], runs));
+    else
+      others.push_back(title_of(*moved[i]));
+  if (!others.empty())
+    page.summary += fmt::format("\nsteps or drift also in {}", fmt::join(others, "; "));
 }
 
 }  // namespace
@@ -242,33 +336,25 @@ std::string exported(const PastRun& run, const std::string& format) {
 Json history_page(const std::string& title, const std::vector<PastRun>& runs,
                   const Budget* budget) {
   const std::vector<const PastRun*> shown = shown_runs(runs);
+  const std::vector<Trend> found = budget != nullptr ? trends(*budget, runs) : std::vector<Trend>();
+  const std::vector<PageFigure> figures = figures_of_page(found, shown);
   StudyPage page;
   page.title = title;
   page.summary = conclusion_of(runs);
-  if (budget != nullptr) {
-    for (const Trend& trend : trends(*budget, runs)) {
-      if (trend.steps.empty() && trend.drift.empty()) continue;
-      StudyBox& box = page.boxes.emplace_back();
-      box.good = false;
-      box.mark = trend.limit->stage.empty() ? trend.limit->text
-                                            : trend.stage + ": " + trend.limit->text;
-      box.sentence = fmt::format("{} steps{}", trend.steps.size(),
-                                 trend.drift.empty() ? "." : ", and a drift.");
-      for (const FigureChange& step : trend.steps)
-        box.lines.push_back(step_text(trend, step, runs));
-      if (!trend.drift.empty()) box.lines.push_back(drift_text(trend, runs));
-    }
-    page.limits = limits_of(*budget, runs.front().record, runs.back().record);
-  }
-  page.points = points_csv(shown);
-  page.columns = {{"run", "run", "", true},
+  add_boxes(page, found, runs);
+  if (budget != nullptr)
+    page.limits = limits_of(*budget, figures, runs.front().record, runs.back().record);
+  page.points = points_csv(shown, figures);
+  page.columns = {{"run", "commits", "", true},
                   {"commit", "commit", "", true},
                   {"subject", "subject", "", true},
                   {"date", "date", "", true},
                   {"limits", "limits", ""}};
   page.curves = StudyCurves{"run", "", {}, "A point a run, in the order of their commits.", false};
-  for (const QuantityOfRuns& q : quantities_of_runs()) {
-    page.columns.push_back({q.statistic, q.name, q.unit, false, false, q.scale});
+  page.curves->names = "commit";
+  page.curves->marks = marks_of(found, runs, shown);
+  for (const PageFigure& q : figures) {
+    page.columns.push_back({q.statistic, q.title, q.unit, false, false, q.scale});
     page.curves->y.emplace_back(q.statistic);
   }
   page.x = "run";

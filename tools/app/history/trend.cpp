@@ -96,7 +96,7 @@ std::vector<Trend> trends(const Budget& budget, const std::vector<PastRun>& runs
   for (const BudgetSection* section : sections_for(budget, last))
     for (const Limit& limit : section->limits) {
       if (!is_percent_of_baseline(limit.bound)) continue;
-      for (const FigureOf& figure : figures_of(limit, last))
+      for (const FigureOf& figure : find_figures(limit, last))
         found.push_back(trend_of(limit, *section, figure, runs));
     }
   return found;

@@ -57,7 +57,8 @@ Json study_report(const StudyPage& page) {
     study["curves"] = {
         {"x", page.curves->x},       {"series", page.curves->series},
         {"y", page.curves->y},       {"hint", page.curves->hint},
-        {"fromZero", page.curves->from_zero}};
+        {"fromZero", page.curves->from_zero}, {"names", page.curves->names},
+        {"marks", page.curves->marks}};
   if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
   return data;
 }

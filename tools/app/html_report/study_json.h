@@ -27,6 +27,8 @@ struct StudyCurves {
   std::vector<std::string> y;
   std::string hint = {};   ///< in place of one about medians
   bool from_zero = true;  ///< where the axes of the figures begin
+  std::string names = {};  ///< column that names the values 0, 1, … of x; empty: they are numbers
+  std::map<std::string, std::vector<std::size_t>> marks = {};  ///< of a figure, points to look at
 };
 
 /// A bar for each row.

@@ -28,8 +28,14 @@ function checkSection(check) {
           'div', {class: `card verdict ${check.not_met > 0 ? 'fails' : 'fits'}`},
           element(
               'p', {class: 'sentence'},
-              check.not_met > 0 ? `${check.not_met} of ${check.limits} limits are not met.` :
-                                  `All ${check.limits} limits are met.`),
+              check.not_met > 0 ?
+                  `${check.not_met} of ${check.limits} limits ${
+                      check.not_met === 1 ? 'is' : 'are'} not met.` :
+                  `All ${check.limits} limits are met.`),
+          check.better > 0 ?
+              element('p', {}, `${check.better} better than the baseline, by more than the limit ` +
+                  'allows for the worse.') :
+              null,
           element(
               'p', {class: 'hint'},
               `${check.budget}${

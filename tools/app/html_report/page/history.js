@@ -27,6 +27,10 @@ function stageDifferences(history, a, b) {
   return rows.sort((x, y) => Math.abs(y[3]) - Math.abs(x[3]));
 }
 
+function shortText(text, most) {
+  return text.length > most ? `${text.slice(0, most - 1)}…` : text;
+}
+
 function historyCards(history) {
   const {runs} = history;
   if (runs.length < 2) return [];
@@ -36,7 +40,7 @@ function historyCards(history) {
         'select', {onchange: show},
         ...runs.map(
             (run, i) => element(
-                'option', {value: i, selected: i === value}, `${run.commit} ${run.subject}`)));
+                'option', {value: i, selected: i === value}, `${run.commit} ${shortText(run.subject, 48)}`)));
     return {box, label: element('label', {}, label, box)};
   };
   const before = select('from', history.from);

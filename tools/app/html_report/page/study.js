@@ -39,6 +39,10 @@ function curveFigure(study, yName) {
   const column = (name) => study.columns.find((c) => c.name === name);
   const seriesOf = seriesName ? cells(seriesName) : cells(xName).map(() => '');
   const values = [...new Set(seriesOf)];
+  const names = study.curves.names ? cells(study.curves.names) : null;
+  const marks = new Set((study.curves.marks || {})[yName]);
+  const colourOf = (i) => ({raw}) =>
+      raw && marks.has(raw.x) ? style('--bad') : paletteColour(i + 1);
   const lines = values.map((value) => {
     const at = new Map();
     seriesOf.forEach((v, i) => {
@@ -74,15 +78,21 @@ function curveFigure(study, yName) {
               data: points,
               showLine: true,
               borderWidth: 2,
-              pointRadius: 3,
+              pointRadius: ({raw}) => (raw && marks.has(raw.x) ? 6 : 3),
               borderColor: paletteColour(i + 1),
-              backgroundColor: paletteColour(i + 1)
+              backgroundColor: paletteColour(i + 1),
+              pointBackgroundColor: colourOf(i),
+              pointBorderColor: colourOf(i)
             }))
       },
       options: {
         interaction: {mode: 'nearest', intersect: false},
         scales: {
-          x: {title: {display: true, text: axisTitle(column(xName))}, grid: {display: false}},
+          x: {
+            title: {display: true, text: axisTitle(column(xName))},
+            grid: {display: false},
+            ticks: names ? {precision: 0, callback: (value) => names[value] || ''} : {}
+          },
           y: {
             title: {display: true, text: axisTitle(column(yName))},
             beginAtZero: study.curves.fromZero
@@ -96,7 +106,8 @@ function curveFigure(study, yName) {
           },
           tooltip: {
             callbacks: {
-              label: ({dataset, raw}) => ` ${dataset.label}, ${numberText(raw.x)}: ${
+              label: ({dataset, raw}) => names ? ` ${names[raw.x]}: ${numberText(raw.y)}` :
+                                                 ` ${dataset.label}, ${numberText(raw.x)}: ${
                   numberText(raw.y)} (${numberText(raw.low)} to ${numberText(raw.high)})`
             }
           },
