@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Holds the profiles levio and next on the synthetic flight against tools/ci/budgets.yaml and the baselines beside it.
 # Exit status as that of leviosim: 0 all limits are met, 1 one is not, 2 bad input.
-# Each run is added to a history (build/ci/history.jsonl), which servers keep as an artifact, and its page drawn.
+# Each run is added to a history, which servers keep as an artifact, and tools/ci/trend.sh draws its pages.
 #   tools/ci/guard.sh [--renew] [--program FILE] [--data DIR] [--history FILE]
 #     --renew    record the baselines anew instead; the difference shows in git
 #     --program  leviosim [build/release/leviosim]
@@ -43,11 +43,10 @@ for profile in levio next; do
   fi
   code=0
   "$program" check "$work/$profile" --budget "$budget" --baseline "$baseline" --all >"$work/check" || code=$?
+  # A tree with changes that are not committed yet is no run of its commit.
   mkdir -p "$(dirname "$history")"
-  # A second run of a commit is refused: it is there already.
-  if "$program" history add "$work/$profile" --budget "$budget" --baseline "$baseline" --file "$history" >/dev/null 2>&1; then
-    "$program" history page --file "$history" --budget "$budget" --out "${history%.jsonl}-$profile.html" --force >/dev/null
-  fi
+  "$program" history add "$work/$profile" --branch main --budget "$budget" --baseline "$baseline" --file "$history" >/dev/null ||
+    echo "guard: $profile is not added to $history" >&2
   if ((code == 0)); then
     echo "guard: $profile: $(head -n 1 "$work/check" | sed 's/.*: //')"
   else
@@ -55,4 +54,5 @@ for profile in levio next; do
     ((code > status)) && status=$code
   fi
 done
+if [[ $renew == no ]]; then tools/ci/trend.sh --program "$program" --history "$history"; fi
 exit "$status"
