@@ -49,10 +49,13 @@ int status_of(pid_t child) {
 
 }  // namespace
 
-int run_child(const std::vector<std::string>& words) {
+int run_child(const std::vector<std::string>& words, bool quiet) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, STDERR_FILENO, STDOUT_FILENO);
+  if (quiet)
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  else
+    posix_spawn_file_actions_adddup2(&files, STDERR_FILENO, STDOUT_FILENO);
   const int status = status_of(started(words, &files));
   throw_if_interrupted();
   return status;

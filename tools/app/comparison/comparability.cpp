@@ -59,23 +59,23 @@ void note_difference(std::vector<std::string>& notes, const char* what, const st
 [[noreturn]] void refuse(const RunRecord& a, const RunRecord& b,
                          const std::vector<std::string>& differences,
                          const std::vector<std::string>& keys) {
-  throw InputError(fmt::format(
-      "{} and {} cannot be compared: {}; to compare them all the same, --allow {}", a.name, b.name,
-      fmt::join(differences, ", "), fmt::join(keys, ",")));
+  throw InputError(
+      fmt::format("{} and {} cannot be compared: {}; to compare them all the same, --allow {}",
+                  a.name, b.name, fmt::join(differences, ", "), fmt::join(keys, ",")));
 }
 
 /// What a measurement leaves open, and stages that the other does not have.
 void note_measured(std::vector<std::string>& notes, const RunRecord& measured,
                    const RunRecord& other) {
   if (!other.facts.measured)
-    notes.push_back(fmt::format("{} was measured: nobody checks that its data are those of {}",
+    notes.push_back(fmt::format("nobody checks that {} was measured on the data of {}",
                                 measured.name, other.name));
   std::vector<std::string> known;
   for (const StageName& stage : other.stages) known.push_back(stage.name);
   for (const StageName& stage : measured.stages)
     if (std::none_of(other.stages.begin(), other.stages.end(),
                      [&](const StageName& s) { return s.key == stage.key; }))
-      notes.push_back(fmt::format("{} has no stage '{}'{}", other.name, stage.name,
+      notes.push_back(fmt::format("no stage '{}' in {}{}", stage.name, other.name,
                                   base::did_you_mean(stage.name, known)));
 }
 
@@ -128,8 +128,7 @@ std::vector<std::string> check_comparable(const RunRecord& a, const RunRecord& b
     if (in_a != in_b)
       judge(condition.key, fmt::format("other {} ({} and {})", condition.key, in_a, in_b));
   }
-  if (!refused.empty())
-    refuse(a, b, refused, keys);
+  if (!refused.empty()) refuse(a, b, refused, keys);
   note_difference(notes, "program", a.facts.program, b.facts.program);
   note_difference(notes, "camera", a.facts.camera, b.facts.camera);
   note_difference(notes, "workload parameters", list_of(a.facts.workload),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/base/printable_text.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
@@ -32,16 +33,22 @@ std::string measured_report(const RunComparison& c, bool markdown) {
   const RunRecord& other = is_a_reference ? c.b : c.a;
   const char* const what = other.facts.measured ? "other" : "model";
   const std::string bullet = markdown ? "- " : "";
-  std::string text = fmt::format("{}measured: {}\n{}{}: {}\n", bullet, printable(measured.name), bullet,
-                                 what, printable(other.name));
-  for (const std::string& note : c.notes) text += fmt::format("{}note: {}\n", bullet, printable(note));
+  std::string text;
+  const auto line = [&](const std::string& words) {
+    text += bullet + (markdown ? words : shortened(words, kScreenColumns)) + '\n';
+  };
+  line("measured: " + printable(measured.name));
+  line(fmt::format("{}: {}", what, printable(other.name)));
+  for (const std::string& note : c.notes) line("note: " + printable(note));
   TextTable table({{"kcycles of a call", kLeft}, {"measured"}, {what}, {"error"}});
   std::vector<std::string> missing;
   double sum = 0;
   std::size_t stages = 0;
   const ModelError* worst = nullptr;
   const std::vector<ModelError> errors = model_errors(c);
-  const auto kilo = [](std::optional<double> v) { return figure_text(v ? std::optional(*v / 1e3) : v, 1); };
+  const auto kilo = [](std::optional<double> v) {
+    return figure_text(v ? std::optional(*v / 1e3) : v, 1);
+  };
   for (const ModelError& e : errors) {
     const bool is_frame = &e == &errors.back();
     if (!e.measured) {
@@ -59,12 +66,15 @@ std::string measured_report(const RunComparison& c, bool markdown) {
   if (!missing.empty()) {
     missing.front().insert(0, "not measured: ");
     for (std::size_t i = 0; i + 1 < missing.size(); ++i) missing[i] += ',';
-    text += wrap(missing, " ", 2, 80) + '\n';
+    text += wrap(missing, " ", 2, kScreenColumns) + '\n';
   }
   if (worst == nullptr) return text + "in short: no stage is in both\n";
-  return text + wrap({fmt::format("in short: {:.2f} % off on average of {} stages,", sum / static_cast<double>(stages), stages),
-                      fmt::format("most in {} ({:+.2f} %)", printable(worst->stage), *worst->percent)},
-                     " ", 2, 80) + '\n';
+  return text +
+         wrap({fmt::format("in short: {:.2f} % off on average of {} stages,",
+                           sum / static_cast<double>(stages), stages),
+               fmt::format("most in {} ({:+.2f} %)", printable(worst->stage), *worst->percent)},
+              " ", 2, kScreenColumns) +
+         (markdown ? "\n" : "\nmore: --json\n");
 }
 
 }  // namespace leviosim::tools

@@ -17,8 +17,7 @@ constexpr const char* kFrameCycles = "frame.cycles.parallel.mean";
 
 std::filesystem::path new_folder() {
   std::string name = (std::filesystem::temp_directory_path() / "leviosim-programs-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw InputError(fmt::format("{}: cannot be made", name));
+  if (::mkdtemp(name.data()) == nullptr) throw InputError(fmt::format("{}: cannot be made", name));
   return name;
 }
 
@@ -35,8 +34,7 @@ bool is_recorded(const std::vector<std::string>& arguments) {
 TwoPrograms::TwoPrograms(const std::vector<std::string>& programs,
                          const std::vector<std::string>& arguments) {
   if (programs.size() != 2)
-    throw InputError(
-        fmt::format("--programs: expected two programs, found {}", programs.size()));
+    throw InputError(fmt::format("--programs: expected two programs, found {}", programs.size()));
   new_program_ = programs.back();
   place_ = new_folder();
   try {
@@ -46,7 +44,7 @@ TwoPrograms::TwoPrograms(const std::vector<std::string>& programs,
       words.insert(words.end(), arguments.begin(), arguments.end());
       if (is_recorded(arguments)) words.emplace_back("--record");
       words.insert(words.end(), {"--quiet", "--out", folders_.back()});
-      if (const int status = run_child(words); status != 0)
+      if (const int status = run_child(words, true); status != 0)
         throw InputError(fmt::format("{}: run ended with status {}", program, status));
     }
   } catch (...) {
@@ -64,7 +62,8 @@ TwoPrograms::~TwoPrograms() {
 std::optional<double> TwoPrograms::cycles_of_replay(const std::string& platform) const {
   const std::string out = (place_ / "replay").string();
   if (run_child({new_program_, "replay", folders_[0] + '/' + kWorkTraceFile, "--platform", platform,
-                 "--quiet", "--force", "--out", out}) != 0)
+                 "--quiet", "--force", "--out", out},
+                true) != 0)
     return std::nullopt;
   return read_run_folder(out).value(kFrameCycles);
 }
@@ -81,7 +80,8 @@ std::string TwoPrograms::split() const {
     return from == to ? std::string("0") : text;
   };
   return fmt::format("of {}: other work {}, price of the same {}, chip {}", percent(*a, *b),
-                     percent(*on_new_chip, *b), percent(*a, *priced), percent(*priced, *on_new_chip));
+                     percent(*on_new_chip, *b), percent(*a, *priced),
+                     percent(*priced, *on_new_chip));
 }
 
 }  // namespace leviosim::tools
