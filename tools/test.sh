@@ -84,9 +84,6 @@ else
   fi
   check pages tools/check_pages.sh
   check all-tests tests
-  if [[ $kind == --full ]]; then
-    tools/figures.sh --check || echo "test: figures are stale (above); tools/figures.sh makes them anew"
-  fi
 fi
 printf 'test: %s\n' "${summary[@]}"
 exit "$failed"

@@ -47,10 +47,8 @@ std::vector<std::string> commands_in_order(const Scratch& folder) {
 
 /// Not what goes into a file, nor a list or a document for programs.
 bool is_for_people(const std::string& example) {
-  // The demonstration's screen is a table of two verdicts (demo_command_test.cpp), and compare has
-  // one of its own.
-  for (const char* part :
-       {">", "--list", "--json", "echo ", "leviosim demo", "leviosim compare"})
+  // The demonstration's screen is a table of two verdicts (demo_command_test.cpp).
+  for (const char* part : {">", "--list", "--json", "--format", "echo ", "leviosim demo"})
     if (example.find(part) != std::string::npos) return false;
   return true;
 }
@@ -68,11 +66,11 @@ TEST(Examples, OfEveryHelpWorkAsTheyStand) {
     const std::vector<std::string> examples = lines_below("Examples:", help);
     EXPECT_FALSE(examples.empty()) << command << " --help has no examples:\n" << help;
     for (const std::string& example : examples) {
-      const std::string line = "cd '" + (folder / "work").string() + "' && PATH='" +
-                               (folder / "bin").string() + "':$PATH XDG_CACHE_HOME='" +
-                               (folder / "cache").string() + "' && export PATH XDG_CACHE_HOME && " +
-                               "unset LINES COLUMNS && { " + example +
-                               "\n} >../screen.txt 2>../errors.txt || [ $? = 1 ]";  // a limit not met
+      const std::string line =
+          "cd '" + (folder / "work").string() + "' && PATH='" + (folder / "bin").string() +
+          "':$PATH XDG_CACHE_HOME='" + (folder / "cache").string() +
+          "' && export PATH XDG_CACHE_HOME && " + "unset LINES COLUMNS && { " + example +
+          "\n} >../screen.txt 2>../errors.txt || [ $? = 1 ]";  // a limit not met
       EXPECT_EQ(std::system(line.c_str()), 0)  // NOLINT: the command is leviosim's own
           << example << '\n'
           << base::read_text_file(folder / "errors.txt");

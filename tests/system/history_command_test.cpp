@@ -90,9 +90,8 @@ class HistoryCommand : public tests::ProgramSuite {
       EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in:\n" << text;
   }
   static ProgramResult add(const std::string& commit, std::vector<std::string> further) {
-    std::vector<std::string> words{"history", "add",      path("run"), "--commit",
-                                   commit,    "--branch", "main",      "--subject",
-                                   "a, \"b\" <c>"};
+    std::vector<std::string> words{"history",  "add",  path("run"), "--commit",    commit,
+                                   "--branch", "main", "--subject", "a, \"b\" <c>"};
     words.insert(words.end(), further.begin(), further.end());
     return program(words);
   }
@@ -106,9 +105,11 @@ TEST_F(HistoryCommand, ThirtyCommitsTellWhoMadeWhatSlower) {
   const std::string commit = text("c17.txt").substr(0, 40);
 
   // The commit that made it slower fails, with function and mechanism.
-  expect_holds(text("check17.txt"), {"status 1", "NOT MET", "frame matching, ", "issue: popcount +"});
-  expect_holds(text("comment.md"), {"### leviosim: 1 of ", "**time**", "**memory**", "**map**",
-                                    "where: frame matching, ", "why: issue: popcount", "<details>"});
+  expect_holds(text("check17.txt"),
+               {"status 1", "NOT MET", "frame matching, ", "issue: popcount +"});
+  expect_holds(text("comment.md"),
+               {"### leviosim: 1 of ", "**time**", "**memory**", "**map**",
+                "where: frame matching, ", "why: issue: popcount", "<details>"});
 
   // Thirteen commits later both are named: the step with its commit, and the drift.
   const Json json = Json::parse(text("check30.json"));
@@ -163,28 +164,35 @@ TEST_F(HistoryCommand, ARunTakesAFewHundredBytesAndMergesAreUnions) {
 TEST_F(HistoryCommand, MeasuredCyclesAreComparedCheckedAndKept) {
   const Json baseline = Json::parse(text("baseline.json"));
   const auto cycles = [&](const std::string& key) {
-    return baseline.at("statistics").at("stages." + key + ".cycles.parallel.mean").at(0).get<double>();
+    return baseline.at("statistics")
+        .at("stages." + key + ".cycles.parallel.mean")
+        .at(0)
+        .get<double>();
   };
   const auto board = [&](const char* file, double matching) {
-    write(file, fmt::format("# profile: levio\n# platform: gap9\n# counted by hand\nstage,cycles,calls\n"
-                            "frame matching,{:.0f},10\nfeature_extraction,{:.0f},10\nreadout,7,1\n",
-                            matching, cycles("feature_extraction") / 0.9));
+    write(file,
+          fmt::format("# profile: levio\n# platform: gap9\n# counted by hand\nstage,cycles,calls\n"
+                      "frame matching,{:.0f},10\nfeature_extraction,{:.0f},10\nreadout,7,1\n",
+                      matching, cycles("feature_extraction") / 0.9));
     return path(file);
   };
   const std::string first = board("board.csv", cycles("frame_matching") / 1.05);
   for (const auto& [a, b] : {std::pair{path("run"), first}, std::pair{first, path("run")}}) {
     const ProgramResult compared = program({"compare", a, b});
     ASSERT_EQ(compared.status, 0) << compared.err;
-    expect_holds(compared.out,
-                 {"measured: " + first, "+5.00 %", "-10.00 %", "not measured: ", "no stage 'readout'",
-                  "in short: 7.50 % off on average of 2 stages"});
+    expect_holds(compared.out, {"measured: " + first, "+5.00 %", "-10.00 %",
+                                "not measured: ", "no stage 'readout'",
+                                "in short: 7.50 % off on average of 2 stages"});
+    EXPECT_EQ(testing::screen_fault(testing::run_on_screen(folder_->path(), {"compare", a, b}).out),
+              "");
   }
   const Json json = Json::parse(program({"compare", path("run"), first, "--json"}).out);
   EXPECT_EQ(json.at("model_errors").size(), json.at("stages").size() + 1);
 
-  write("board.yaml",
-        "budgets:\n  - profile: levio\n    limits:\n      - { stage: \"*\", limit: cycles <= +1 % }\n"
-        "      - L1 peak <= 1 kB\n");
+  write(
+      "board.yaml",
+      "budgets:\n  - profile: levio\n    limits:\n      - { stage: \"*\", limit: cycles <= +1 % }\n"
+      "      - L1 peak <= 1 kB\n");
   const auto check = [&](const std::string& run, const std::string& against) {
     return program({"check", run, "--budget", path("board.yaml"), "--baseline", against});
   };
@@ -213,12 +221,14 @@ TEST_F(HistoryCommand, MeasuredCyclesAreComparedCheckedAndKept) {
                path("boards.html")});
 
   expect_refused(check(first, path("run") + "/manifest.json"), {"manifest.json"});
-  expect_refused(program({"compare", first, path("run"), "-p", "cluster.cores=4"}), {"was measured"});
+  expect_refused(program({"compare", first, path("run"), "-p", "cluster.cores=4"}),
+                 {"was measured"});
   expect_refused(program({"compare", first, path("run"), "--report", path("x.html")}), {"no page"});
-  for (const auto& [content, fault] :
-       {std::pair{"stage,cycels\na,1\n", "expected the titles"}, std::pair{"stage,cycles\n", "no measurement"},
-        std::pair{"stage,cycles\na,-1\n", "below zero"}, std::pair{"stage,cycles\na,x\n", "column 2 (cycles)"},
-        std::pair{"stage,cycles,calls\na,1,0\n", "below one"}}) {
+  for (const auto& [content, fault] : {std::pair{"stage,cycels\na,1\n", "expected the titles"},
+                                       std::pair{"stage,cycles\n", "no measurement"},
+                                       std::pair{"stage,cycles\na,-1\n", "below zero"},
+                                       std::pair{"stage,cycles\na,x\n", "column 2 (cycles)"},
+                                       std::pair{"stage,cycles,calls\na,1,0\n", "below one"}}) {
     write("bad.csv", content);
     expect_refused(program({"compare", path("run"), path("bad.csv")}), {"bad.csv", fault});
   }
@@ -235,7 +245,8 @@ TEST_F(HistoryCommand, BaselinesAreRunsToo) {
   const ProgramResult again = add_of(path("run"));
   ASSERT_EQ(again.status, 0) << again.err;
   expect_holds(again.out, {"is in ", "already"});
-  expect_refused(program({"history", "show", "--file", file, "--profile", "next"}), {"no runs of next"});
+  expect_refused(program({"history", "show", "--file", file, "--profile", "next"}),
+                 {"no runs of next"});
 }
 
 /// A wrapper that sets a number of the chip is another build.

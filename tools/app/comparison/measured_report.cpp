@@ -74,7 +74,7 @@ std::string measured_report(const RunComparison& c, bool markdown) {
                            sum / static_cast<double>(stages), stages),
                fmt::format("most in {} ({:+.2f} %)", printable(worst->stage), *worst->percent)},
               " ", 2, kScreenColumns) +
-         (markdown ? "\n" : "\nmore: --json\n");
+         (markdown ? "\n" : "\nnext: the same with --json, or both in leviosim check --baseline\n");
 }
 
 }  // namespace leviosim::tools
