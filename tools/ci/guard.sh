@@ -56,6 +56,6 @@ for profile in levio next; do
 done
 # Without git's history, as in an archive, there is no trend.
 if [[ $renew == no ]]; then
-  tools/ci/trend.sh --program "$program" --history "$history" || echo "guard: no trend (above)" >&2
+  tools/ci/trend.sh "$program" "$history" || echo "guard: no trend (above)" >&2
 fi
 exit "$status"

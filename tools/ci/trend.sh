@@ -1,28 +1,15 @@
 #!/usr/bin/env bash
 # How the project's own cycles moved: a history of the baselines in tools/ci, each by the commit that recorded it, and a
 # page of it for each profile. Nothing is built or run: git has every version of the baselines.
-#   tools/ci/trend.sh [--program FILE] [--history FILE] [--commits N]
-#     --program  leviosim [build/release/leviosim]
-#     --history  to add to [build/ci/history.jsonl]; the pages lie beside it
-#     --commits  of each profile, the newest [30]
+#   tools/ci/trend.sh [PROGRAM [HISTORY]]
+#     PROGRAM  leviosim [build/release/leviosim]
+#     HISTORY  to add to [build/ci/history.jsonl]; the pages lie beside it
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-program=build/release/leviosim
-history=build/ci/history.jsonl
-commits=30
-while (($# > 0)); do
-  case $1 in
-    --program) program=${2:?"--program: expected a file"} && shift ;;
-    --history) history=${2:?"--history: expected a file"} && shift ;;
-    --commits) commits=${2:?"--commits: expected a number"} && shift ;;
-    *)
-      echo "trend: unknown option $1; expected --program, --history or --commits" >&2
-      exit 2
-      ;;
-  esac
-  shift
-done
+program=${1:-build/release/leviosim}
+history=${2:-build/ci/history.jsonl}
+commits=30  # of each profile, the newest
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -11,8 +11,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr std::string_view kNotJudged = "not judged";
-
 std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
 
 /// Of two digits: 0.026, 9.6, 54.
@@ -120,20 +118,15 @@ std::string_view name_of(Grade grade) {
 }
 
 const std::vector<VerdictWord>& verdict_words() {
-  static const std::vector<VerdictWord> words{{"time", "fits", Grade::good},
-                                              {"time", "fits on average", Grade::doubtful},
-                                              {"time", "too slow", Grade::bad},
-                                              {"memory", "fits", Grade::good},
-                                              {"memory", "does not fit", Grade::bad},
-                                              {"map", "good", Grade::good},
-                                              {"map", kNotJudged, Grade::good},
-                                              {"map", "unreliable", Grade::doubtful},
-                                              {"map", "lost", Grade::bad}};
+  static const std::vector<VerdictWord> words{
+      {"time", "fits", Grade::good},          {"time", "fits on average", Grade::doubtful},
+      {"time", "too slow", Grade::bad},       {"memory", "fits", Grade::good},
+      {"memory", "does not fit", Grade::bad}, {"map", "good", Grade::good},
+      {"map", "unreliable", Grade::doubtful}, {"map", "lost", Grade::bad}};
   return words;
 }
 
 std::string_view RunVerdict::word() const {
-  if (!judged) return kNotJudged;
   for (const VerdictWord& w : verdict_words())
     if (w.about == about && w.grade == grade) return w.word;
   return {};
@@ -190,8 +183,6 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   else if (signs.lost_frames > 0)
     fault(false, fmt::format("the estimator had lost its map in {} frames", signs.lost_frames));
   if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));
-  if (verdict.reasons.empty() && !signs.health && !signs.error_share && !signs.scale)
-    verdict.judged = false;
   return verdict;
 }
 

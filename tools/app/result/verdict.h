@@ -24,7 +24,6 @@ struct RunVerdict {
   std::string_view about;  ///< "time", "memory", "map"
   Grade grade = Grade::good;
   std::vector<std::string> reasons;
-  bool judged = true;  ///< false where nothing is known that could say otherwise
 
   std::string_view word() const;  ///< "fits on average"
   std::string reason() const;     ///< the reasons in a row; may be empty
@@ -66,8 +65,7 @@ struct MapLimits {
   double restarts_per_s = 0.2;  ///< of the map, where there are more than two
 };
 
-/// By the truth where there is one, and by what the estimator says of its poses. Not judged where
-/// there is neither truth nor an estimator that watches its map, and nothing speaks against it.
+/// By the truth where there is one, and by what the estimator says of its poses.
 RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits = {});
 
 MapSigns map_signs(const RunResult& run);
