@@ -49,7 +49,7 @@ Grade grade_of(const RunResult& run) { return verdicts(figures_of(run)).grade();
 
 TEST(MapVerdict, AGoodMapHasNone) {
   EXPECT_EQ(map_faults(testing::example_run()), Texts());
-  EXPECT_EQ(map_faults(RunResult()), Texts());
+  EXPECT_EQ(map_verdict(map_signs(RunResult())).word(), "not judged");
   EXPECT_EQ(map_warning(testing::example_run()), "");
 }
 
@@ -109,6 +109,20 @@ TEST(MapVerdict, BelievesAnEstimatorThatDoubtsItself) {
   EXPECT_EQ(map_verdict(signs).grade, Grade::doubtful);
   signs.health = 2;
   EXPECT_EQ(map_verdict(signs).grade, Grade::bad);
+}
+
+TEST(MapVerdict, WithoutTruthAndWithoutHealthNothingIsJudged) {
+  MapSigns signs;
+  EXPECT_EQ(map_verdict(signs).word(), "not judged");
+  signs.health = static_cast<int>(vio::Health::not_judged);
+  EXPECT_EQ(map_verdict(signs).word(), "not judged");
+  signs.scale = 1.01;
+  EXPECT_EQ(map_verdict(signs).word(), "good");
+  signs.scale = 3;
+  EXPECT_EQ(map_verdict(signs).word(), "lost");
+  signs.scale.reset();
+  signs.restarts = 9;
+  EXPECT_EQ(map_verdict(signs).word(), "unreliable");
 }
 
 /// One frame in four takes `slow_ms`, the others 20 ms; the period is 50 ms. Each waits for those

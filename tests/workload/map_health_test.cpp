@@ -54,14 +54,48 @@ TEST_F(MapHealthOf, AMapWithoutScaleIsUnreliable) {
   EXPECT_EQ(frame(), Health::good);
 }
 
-/// levio has no alignment to wait for.
-TEST(MapHealth, NeedsNoAlignmentWhereThereIsNone) {
+/// The path until the alignment has its scale, and images do not put it right later.
+TEST_F(MapHealthOf, AScaleThatIsKnownToAFifthMakesThePathSoFarUnreliable) {
+  const auto aligned_with = [&](float uncertainty) {
+    map_.aligned = false;
+    frames(10, PoseSource::Initialising);
+    map_.aligned = true;
+    window({.uncertainty = uncertainty});
+    return frame();
+  };
+  EXPECT_EQ(aligned_with(0.05f), Health::good);
+  EXPECT_EQ(aligned_with(0.3f), Health::unreliable);  // of one of two metres
+  window({.uncertainty = 0.02f});
+  EXPECT_EQ(frames(5), Health::unreliable);
+  EXPECT_EQ(frames(30), Health::good);  // of one of five
+}
+
+TEST_F(MapHealthOf, AWindowOfUnknownLengthAddsItsShare) {
+  EXPECT_EQ(frames(10), Health::good);
+  window({.uncertainty = 0.09f});
+  EXPECT_EQ(frames(100), Health::good);
+  window({.uncertainty = 1});
+  EXPECT_EQ(frames(10), Health::good);
+  EXPECT_EQ(frames(5), Health::unreliable);
+}
+
+/// What the IMU alone found was wrong by as much.
+TEST_F(MapHealthOf, ACorrectionAfterBlindFramesIsDrift) {
+  EXPECT_EQ(frames(60), Health::good);
+  EXPECT_EQ(frames(4, PoseSource::Predicted), Health::good);
+  frames_ += 10;  // a metre of seven
+  EXPECT_EQ(frames(20), Health::unreliable);
+  EXPECT_EQ(frames(60), Health::good);
+}
+
+/// levio has no windows that would tell.
+TEST(MapHealth, DoesNotJudgeWithoutTheJointOptimiser) {
   const Profile profile = profile_named("levio", 1);
   const MapStatus map;
   MapHealth health(profile, map);
   FrameReport report;
   report.source = PoseSource::First;
-  EXPECT_EQ(health.after_frame(report, 0), Health::good);
+  EXPECT_EQ(health.after_frame(report, 0), Health::not_judged);
 }
 
 TEST_F(MapHealthOf, AWindowThatContradictsItselfCountsForASecond) {
@@ -78,8 +112,8 @@ TEST_F(MapHealthOf, APathThatContradictsTheImuStaysInDoubt) {
   window({.visual = 0.5f, .inertial = 20});
   frames(20);
   window({.visual = 0.5f, .inertial = 0.2f});
-  EXPECT_EQ(frames(60), Health::unreliable);   // 2 m of 13 m
-  EXPECT_EQ(frames(100), Health::good);  // 2 m of 23 m
+  EXPECT_EQ(frames(60), Health::unreliable);  // 2 m of 13 m
+  EXPECT_EQ(frames(100), Health::good);       // 2 m of 23 m
 }
 
 TEST_F(MapHealthOf, ABiasThatNoAccelerometerHasIsUnreliableAndThenLost) {

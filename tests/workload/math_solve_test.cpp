@@ -100,6 +100,19 @@ TEST_F(Solve, CholeskySolvesTheSystemsOfTheOptimiser) {
   }
 }
 
+TEST_F(Solve, SquareByTheInverseIsTheVarianceOfALinearFunction) {
+  Random random(6);
+  for (const int n : {1, 13, 78}) {
+    const work::Arena::Frame frame(arena_);
+    const Eigen::MatrixXd m = random.positive_definite(n, 1.0);
+    const Eigen::VectorXd x = random.matrix(n, 1);
+    const auto a = place<P>(arena_, m);
+    ASSERT_TRUE(cholesky_factor<P>(a));
+    const double square = work::value(square_by_inverse<P>(a, place_vector<P>(arena_, x)));
+    EXPECT_NEAR(square, x.dot(tests::solve(m, x)), 1e-4 * (1 + square)) << n;
+  }
+}
+
 TEST_F(Solve, CholeskyFactorReproducesTheMatrix) {
   Random random(5);
   const Eigen::MatrixXd m = random.positive_definite(9, 0.1);

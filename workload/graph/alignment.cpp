@@ -114,22 +114,6 @@ CarriedFrom<P> stepped(const CarriedFrom<P>& from, const ReducedSystem<P>& solve
       {from.bias.gyro + load_vec3<P>(step, kGyro), from.bias.accel + load_vec3<P>(step, kAccel)}};
 }
 
-/// xᵀ C x = |L⁻¹ x|², for the covariance C of the unknowns. Overwrites x.
-/// @param factor  L, of the information of the unknowns
-template <class P>
-typename P::F32 square_by_covariance(MatrixView<P> factor,
-                                     typename P::template Span<typename P::F32> x) {
-  using F = typename P::F32;
-  F square = 0.0f;
-  for (int i : P::range(0, kAlignmentUnknowns)) {
-    F sum = x[i];
-    for (int k : P::range(0, i)) sum -= factor(i, k) * x[k];
-    x[i] = sum * factor(i, i);
-    square += F(x[i]) * F(x[i]);
-  }
-  return square;
-}
-
 /// The variance of a keyframe's position, m².
 /// @param factor  of the information of the unknowns
 template <class P>
@@ -144,7 +128,7 @@ typename P::F32 variance_of_position(const CarriedPose<P>& at, MatrixView<P> fac
     column[kGravityAt + axis] = half_square;
     store_vec3<P>(column, kGyro, at.p_by_gyro.row(axis));
     store_vec3<P>(column, kAccel, at.p_by_accel.row(axis));
-    variance += square_by_covariance<P>(factor, column);
+    variance += square_by_inverse<P>(factor, column);
   }
   return variance;
 }
@@ -276,7 +260,7 @@ AlignmentReport iterate(work::Machine& fc, Window<P>& window, AlignmentState<P>&
   report.cost_before = work::value(cost);
   report.cost_after = work::value(trial_cost);
   if (!cholesky_factor<P>(factor)) return report;
-  report.distance = work::value(work::sqrt(square_by_covariance<P>(factor, slope)));
+  report.distance = work::value(work::sqrt(square_by_inverse<P>(factor, slope)));
   report.arrived = report.distance < kArrived;
   report.uncertainty =
       work::value(uncertainty_of_positions<P>(best, window.keyframes, factor, column));

@@ -59,6 +59,9 @@ struct IterationReport {
   float visual = 0;
   float inertial = 0;
   float prior = 0;  ///< of the past: the prior, or the anchor that stands in for it
+  /// Of the distance between the first and the last keyframe, a standard deviation, as a share of
+  /// it; of the alignment, of all keyframes from the first one (RMS). Not of optimise_once().
+  float uncertainty = 0;
 };
 
 /// One iteration; changes `window.state`. Must run in a stage of `fc`, whose local memory it uses
@@ -68,8 +71,8 @@ template <class P>
 IterationReport optimise_once(work::Machine& fc, Window<P>& window, LmState<P>& lm,
                               const OptimiserOptions& options);
 
-/// Optimises the window with the biases as unknowns, a lever arm, and a prior from marginalisation in place of
-/// the anchor; changes `window.bias` as well.
+/// Optimises the window with the biases as unknowns, a lever arm, and a prior from marginalisation
+/// in place of the anchor; changes `window.bias` as well.
 template <class P>
 IterationReport optimise_jointly_once(work::Machine& fc, Window<P>& window,
                                       const WindowPrior<P>& prior, LmState<P>& lm,

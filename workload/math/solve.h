@@ -166,6 +166,29 @@ bool cholesky_factor(MatrixView<P> a) {
   return true;
 }
 
+/// Solves L x = b for the factor of cholesky_factor; b becomes x.
+template <class P>
+void forward_substitute(ConstMatrixView<P> l, typename P::template Span<typename P::F32> b) {
+  using F = typename P::F32;
+  for (int i : P::range(0, l.rows())) {
+    F sum = b[i];
+    for (int k : P::range(0, i)) sum -= l(i, k) * b[k];
+    b[i] = sum * F(l(i, i));
+  }
+}
+
+/// xᵀ A⁻¹ x = |L⁻¹ x|², for the factor L of A by cholesky_factor: of an information matrix, the
+/// variance of a linear function of the unknowns. Overwrites x.
+template <class P>
+typename P::F32 square_by_inverse(ConstMatrixView<P> l,
+                                  typename P::template Span<typename P::F32> x) {
+  using F = typename P::F32;
+  forward_substitute<P>(l, x);
+  F square = 0.0f;
+  for (int i : P::range(0, l.rows())) square += F(x[i]) * F(x[i]);
+  return square;
+}
+
 /// Solves L Lᵀ x = b for the factor of cholesky_factor; b becomes x.
 template <class P>
 void cholesky_solve(ConstMatrixView<P> l, typename P::template Span<typename P::F32> b) {
@@ -173,11 +196,7 @@ void cholesky_solve(ConstMatrixView<P> l, typename P::template Span<typename P::
   const typename P::Function function("cholesky_solve");
   const int n = l.rows();
   const typename P::OffloadRegion kernel(solve_of_size(n), substitution_items(n, n));
-  for (int i : P::range(0, n)) {
-    F sum = b[i];
-    for (int k : P::range(0, i)) sum -= l(i, k) * b[k];
-    b[i] = sum * F(l(i, i));
-  }
+  forward_substitute<P>(l, b);
   for (int i : P::down_range(n - 1, 0)) {
     F sum = b[i];
     for (int k : P::range(i + 1, n)) sum -= l(k, i) * b[k];

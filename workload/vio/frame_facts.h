@@ -53,10 +53,11 @@ constexpr std::optional<PoseSource> source_named(std::string_view name) {
 }
 
 /// What the odometry knows of its map without the truth (odometry/map_health.h).
-enum class Health : std::uint8_t { good, unreliable, lost };
+enum class Health : std::uint8_t { good, unreliable, lost, not_judged };
 
 /// In files, by number.
-inline constexpr std::array<std::string_view, 3> kHealthNames{"good", "unreliable", "lost"};
+inline constexpr std::array<std::string_view, 4> kHealthNames{"good", "unreliable", "lost",
+                                                              "not_judged"};
 
 struct FrameFacts {
   PoseSource source = PoseSource::First;
@@ -94,7 +95,8 @@ inline constexpr std::array kFrameFacts{
     FrameFact{"places_forgotten", "places given up for this frame, where places lay densest",
               &FrameFacts::places_forgotten},
     FrameFact{"loop_closures", "loops closed with this frame", &FrameFacts::loop_closures},
-    FrameFact{"health", "what the estimator knows of its map: 0 good, 1 unreliable, 2 lost",
+    FrameFact{"health",
+              "what the estimator knows of its map: 0 good, 1 unreliable, 2 lost, 3 nothing",
               &FrameFacts::health, false},
 };
 

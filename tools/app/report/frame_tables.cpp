@@ -138,7 +138,7 @@ std::string host_line(const RunResult& run) {
 
 std::string map_warning(const RunResult& run) {
   const RunVerdict verdict = map_verdict(map_signs(run));
-  return verdict.grade == Grade::good ? "" : fmt::format("warning: {}\n", verdict.text());
+  return verdict.grade <= Grade::unknown ? "" : fmt::format("warning: {}\n", verdict.text());
 }
 
 }  // namespace leviosim::tools

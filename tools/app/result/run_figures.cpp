@@ -202,7 +202,7 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames,
   signs.health = last.health;
   for (const RecordedFrame& frame : processed) {
     signs.restarts += frame.map_restarts;
-    signs.lost_frames += frame.health == 2 ? 1 : 0;
+    signs.lost_frames += frame.health == static_cast<int>(vio::Health::lost) ? 1 : 0;
   }
   return signs;
 }

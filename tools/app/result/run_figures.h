@@ -41,7 +41,7 @@ struct RecordedFrame {
   bool dropped = false;
   std::optional<PoseSource> source;  ///< absent if it was dropped
   int map_restarts = 0;
-  std::optional<int> health;     ///< of the map: 0 good, 1 unreliable, 2 lost; absent if not known
+  std::optional<int> health;     ///< of the map, as vio::Health numbers it; absent if not recorded
   std::optional<Timing> timing;  ///< absent if it was dropped, and in native runs
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tools/app/result/summary.h"
@@ -114,15 +115,20 @@ double off(double scale) { return scale > 0 ? std::max(scale, 1 / scale) : INFIN
 }  // namespace
 
 std::string_view name_of(Grade grade) {
-  return grade == Grade::good ? "good" : grade == Grade::doubtful ? "doubtful" : "bad";
+  static constexpr std::array<std::string_view, 4> kNames{"good", "unknown", "doubtful", "bad"};
+  return kNames[static_cast<std::size_t>(grade)];
 }
 
 const std::vector<VerdictWord>& verdict_words() {
-  static const std::vector<VerdictWord> words{
-      {"time", "fits", Grade::good},          {"time", "fits on average", Grade::doubtful},
-      {"time", "too slow", Grade::bad},       {"memory", "fits", Grade::good},
-      {"memory", "does not fit", Grade::bad}, {"map", "good", Grade::good},
-      {"map", "unreliable", Grade::doubtful}, {"map", "lost", Grade::bad}};
+  static const std::vector<VerdictWord> words{{"time", "fits", Grade::good},
+                                              {"time", "fits on average", Grade::doubtful},
+                                              {"time", "too slow", Grade::bad},
+                                              {"memory", "fits", Grade::good},
+                                              {"memory", "does not fit", Grade::bad},
+                                              {"map", "good", Grade::good},
+                                              {"map", "not judged", Grade::unknown},
+                                              {"map", "unreliable", Grade::doubtful},
+                                              {"map", "lost", Grade::bad}};
   return words;
 }
 
@@ -177,12 +183,21 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   if (signs.restarts > 2 &&
       static_cast<double>(signs.restarts) > limits.restarts_per_s * signs.duration_s)
     fault(false, fmt::format("the map was begun anew {} times", signs.restarts));
-  if (signs.health.value_or(0) > 0)
-    fault(*signs.health == 2, fmt::format("the estimator ends with a map that is {}",
-                                          *signs.health == 2 ? "lost" : "unreliable"));
+  const auto health =
+      static_cast<vio::Health>(signs.health.value_or(static_cast<int>(vio::Health::not_judged)));
+  if (health == vio::Health::unreliable || health == vio::Health::lost)
+    fault(health == vio::Health::lost,
+          fmt::format("the estimator ends with a map that is {}",
+                      vio::kHealthNames[static_cast<std::size_t>(health)]));
   else if (signs.lost_frames > 0)
     fault(false, fmt::format("the estimator had lost its map in {} frames", signs.lost_frames));
   if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));
+  if (verdict.grade == Grade::good && !signs.error_share && !signs.scale &&
+      health == vio::Health::not_judged) {
+    verdict.grade = Grade::unknown;
+    verdict.reasons.push_back(
+        "there is no truth of a metre or more, and the profile does not watch its map");
+  }
   return verdict;
 }
 

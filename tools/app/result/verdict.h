@@ -4,7 +4,8 @@
 //   time    fits; fits on average: some frames come late; too slow: a mean frame takes longer than
 //           the camera's period, so that frames pile up or are lost
 //   memory  fits; does not fit
-//   map     good; unreliable; lost: the poses are worth nothing
+//   map     good; not judged: there is no truth, and the estimator does not watch its map;
+//           unreliable; lost: the poses are worth nothing
 #pragma once
 
 #include <optional>
@@ -16,8 +17,8 @@
 
 namespace leviosim::tools {
 
-enum class Grade { good, doubtful, bad };
-/// "good", "doubtful", "bad": in files.
+enum class Grade { good, unknown, doubtful, bad };
+/// "good", "unknown", "doubtful", "bad": in files.
 std::string_view name_of(Grade grade);
 
 struct RunVerdict {

@@ -33,6 +33,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   take_image(input, state_);
   inertial_.integrate(input);
   extract_frame<P>(state_, frame);
+  if (repeats_last(frame) && !inertial_.rest()) frame.features.list.count = 0;
   report.keyframe = true;
   still_ = rests_ = false;
   if (state_.started && !initialises()) report.earlier = path_.poses();
@@ -64,6 +65,20 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   complete<P>(state_, frame, report);
   if (loop_) loop_->correct(frame, frame.dt, report);
   return report;
+}
+
+/// Whether the features are those of the frame before, to the last bit, which noise does not allow
+/// two images to show: the camera has sent the same one again. At rest that does no harm.
+template <class P>
+bool NextFrontEnd<P>::repeats_last(const Frame<P>& frame) {
+  using U32 = typename P::U32;
+  const auto stage = state_.machine.stage(stages::kExtraction);
+  const FeatureList<P>& list = frame.features.list;
+  U32 sum = 0u;
+  for (int i : P::range(0, list.count * kDescriptorWords)) sum += list.descriptors[i];
+  const bool repeats = list.count > 0 && bool(sum == sum_);
+  sum_ = sum;
+  return repeats;
 }
 
 /// A vehicle that stands still before the first window is full starts anew with every frame, from

@@ -25,6 +25,7 @@ class NextFrontEnd : public FrontEnd<P> {
  private:
   using Floats = typename P::template Span<typename P::F32>;
 
+  bool repeats_last(const Frame<P>& frame);
   void start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest);
   bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);
@@ -44,6 +45,7 @@ class NextFrontEnd : public FrontEnd<P> {
   Prediction<P> prediction_;
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
   InitialPath<P> path_;              ///< while the map waits for its alignment
+  typename P::U32 sum_;              ///< over the features of the frame before
   bool still_ = false;    ///< the images say that the camera has not moved since the keyframe
   bool rests_ = false;    ///< nor turned
   bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still

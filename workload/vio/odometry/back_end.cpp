@@ -99,6 +99,7 @@ OptimiserReport BackEnd<P>::optimise() {
     converged_ = report.converged;
     arrived_ = !compares && report.arrived;
     if (compares) ambiguous_ = report.ambiguous;
+    fit_.uncertainty = report.uncertainty;
     determined_ = report.determined && !ambiguous_;
     return {true, report.accepted, report.cost_before, report.cost_after};
   }
@@ -127,6 +128,7 @@ WindowFit BackEnd<P>::fit_of(const IterationReport& report) const {
   return {mean_square(report.visual, 2 * report.observations - 3 * report.landmarks),
           mean_square(report.inertial, 6 * (window_.keyframes - 1)),
           mean_square(report.prior, options_.joint ? prior_.unknowns() : 9),
+          report.positive_definite ? report.uncertainty : 1,
           work::sqrt(dot(off, off)) / options_.prior.accel_bias};
 }
 
@@ -165,6 +167,8 @@ void BackEnd<P>::publish_alignment() {
   if (!aligned) return;
   retire_unplaced();
   map_.aligned = true;
+  map_.fit = {};
+  map_.fit.uncertainty = fit_.uncertainty;
   newest_ = -1;
 }
 

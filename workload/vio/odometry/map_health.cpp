@@ -20,9 +20,7 @@ bool is_blind(const FrameReport& report) {
 
 }  // namespace
 
-void MapHealth::take_window() {
-  inconsistent_ = !fits(map_.fit, profile_.health.mean_square);
-}
+void MapHealth::take_window() { inconsistent_ = !fits(map_.fit, profile_.health.mean_square); }
 
 /// Whether the map waits for its alignment.
 bool MapHealth::waits() const {
@@ -38,7 +36,7 @@ bool MapHealth::contradicts_imu() const {
 }
 
 Health MapHealth::after_frame(const FrameReport& report, float dt) {
-  if (!profile_.optimiser.joint) return Health::good;  // the limits are of its windows
+  if (!profile_.optimiser.joint) return Health::not_judged;  // the limits are of its windows
   const HealthOptions& limits = profile_.health;
   doubted_s_ = inconsistent_ ? limits.memory_s : doubted_s_ - dt;
   track(report, dt);
@@ -49,8 +47,7 @@ Health MapHealth::after_frame(const FrameReport& report, float dt) {
       !(map_.fit.accel_bias < limits.lost_accel_bias))
     return Health::lost;
   const bool good = !waits() && doubted_s_ <= 0 && tracked_ > limits.tracked &&
-                    map_.fit.accel_bias < limits.accel_bias &&
-                    drift_m_ <= limits.drift * path_m_;
+                    map_.fit.accel_bias < limits.accel_bias && drift_m_ <= limits.drift * path_m_;
   return good ? Health::good : Health::unreliable;
 }
 
@@ -60,10 +57,10 @@ void MapHealth::track(const FrameReport& report, float dt) {
   const bool by_landmarks =
       report.source == PoseSource::Tracked || report.source == PoseSource::Epnp;
   if (!blind && !by_landmarks) return;
-  const float share = blind || report.world_matches == 0
-                          ? 0.0f
-                          : static_cast<float>(report.inliers) /
-                                static_cast<float>(report.world_matches);
+  const float share =
+      blind || report.world_matches == 0
+          ? 0.0f
+          : static_cast<float>(report.inliers) / static_cast<float>(report.world_matches);
   tracked_ += (share - tracked_) * std::min(1.0f, dt / profile_.health.memory_s);
 }
 
@@ -74,14 +71,17 @@ void MapHealth::add_drift(const FrameReport& report, float dt) {
   float square = 0;
   for (std::size_t a = 0; a < now.size(); ++a) square += (now[a] - last[a]) * (now[a] - last[a]);
   const float moved = work::sqrt(square);
-  path_m_ += moved;
-  if (!is_blind(report)) {
-    blind_s_ = 0;
-  } else {
-    blind_s_ += dt;
-    drift_m_ += (limits.blind_velocity + limits.blind_acceleration * blind_s_) * dt;
+  const bool blind = is_blind(report);
+  // What images put right when they come back was wrong before, and no motion.
+  (!blind && blind_s_ > 0 ? drift_m_ : path_m_) += moved;
+  blind_s_ = blind ? blind_s_ + dt : 0;
+  if (blind) drift_m_ += (limits.blind_velocity + limits.blind_acceleration * blind_s_) * dt;
+  unaligned_m_ += moved;
+  if (!waits()) {
+    const float uncertain = contradicts_imu() ? 1 : map_.fit.uncertainty;
+    if (!was_aligned_ || !(uncertain <= limits.drift)) drift_m_ += uncertain * unaligned_m_;
+    unaligned_m_ = 0;
   }
-  if (contradicts_imu()) drift_m_ += moved;
   if (report.map_restarts > 0 && was_aligned_) drift_m_ += profile_.recovery.max_correction;
 }
 

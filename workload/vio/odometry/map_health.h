@@ -1,12 +1,13 @@
 // What the odometry knows of its map without the truth, from numbers that its parts have anyway:
 //
-//   scale        is not known before the map is aligned
+//   scale        is not known before the map is aligned, and then as well as the alignment has it
 //   consistency  residuals of images, IMU and past in the window, against the noise assumed of them
 //   bias         of the accelerometer: one that no sensor has explains a path that was not flown
 //   tracking     share of the matches with landmarks that agree with the pose, over a second
-//   drift        of poses that the IMU alone moved on, that come from a contradictory window, or
-//                from before the map was lost, as a share of the path. It stays, for nothing undoes
-//                it, and matters less the longer the path gets
+//   drift        of poses that the IMU alone moved on, that come from a contradictory or uncertain
+//                window, or from before the map was lost, and what images put right when they came
+//                back, as a share of the path. It stays, for nothing undoes it, and matters less
+//                the longer the path gets
 //
 // A few operations a frame, which are not counted.
 #pragma once
@@ -47,6 +48,7 @@ class MapHealth {
   float blind_s_ = 0;          ///< that the IMU alone has carried the pose for
   float tracked_ = 1;          ///< share of the matches that agree, over a second
   float path_m_ = 0;
+  float unaligned_m_ = 0;  ///< of the path, while the map waited
   float drift_m_ = 0;
 };
 

@@ -1,8 +1,8 @@
 // The first screen: the verdict, and the figures that are asked for first.
 
 /** A class of the page for each grade of a verdict. */
-const gradeClass = {good: 'fits', doubtful: 'doubtful', bad: 'fails'};
-const gradeMark = {good: '✓', doubtful: '!', bad: '✗'};
+const gradeClass = {good: 'fits', unknown: '', doubtful: 'doubtful', bad: 'fails'};
+const gradeMark = {good: '✓', unknown: '?', doubtful: '!', bad: '✗'};
 
 function verdictCard(run) {
   const {grade, list, why} = run.verdict;
