@@ -35,6 +35,7 @@
 #include "tools/commands/explore_command.h"
 #include "tools/commands/flow_command.h"
 #include "tools/commands/history_command.h"
+#include "tools/commands/image_statistics_command.h"
 #include "tools/commands/microbench_command.h"
 #include "tools/commands/platforms_command.h"
 #include "tools/commands/replay_command.h"
@@ -171,6 +172,7 @@ int run_program(const Words& typed) {
                                          add_platforms_command(app),
                                          add_workload_command(app),
                                          add_eval_command(app),
+                                         add_image_statistics_command(app),
                                          add_ablate_command(app, words),
                                          add_explore_command(app, words),
                                          add_benchmark_flights_command(app, words),

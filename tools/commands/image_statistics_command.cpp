@@ -1,0 +1,85 @@
+#include "tools/commands/image_statistics_command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+
+#include "sim/base/error.h"
+#include "sim/base/printable_text.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/cli/progress_line.h"
+#include "tools/app/evaluation/images/image_statistics.h"
+#include "tools/app/report/table_document.h"
+#include "tools/app/run/run_options.h"
+#include "traces/datasets/asl_reader.h"
+
+namespace leviosim::tools {
+namespace {
+
+struct ImageStatisticsOptions {
+  std::vector<std::string> folders;
+  std::string size = "160x120";
+  std::string frames;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// As it stands in the table: the last part of its path.
+std::string title(const std::string& folder) {
+  const std::string last = std::filesystem::path(folder).filename().string();
+  return printable(last.empty() ? folder : last);
+}
+
+ImageStatistics measure(const std::string& folder, const ImageStatisticsOptions& options) {
+  traces::OpenOptions open;
+  if (!options.frames.empty()) open.frames = traces::parse_frame_range(options.frames);
+  const traces::Dataset data = traces::open_asl(folder, open);
+  const auto total = static_cast<std::int64_t>(data.frames.size());
+  ProgressLine line(ProgressLine::style_of_stderr(options.quiet));
+  return image_statistics(title(folder), data, parse_size(options.size), [&](std::size_t done) {
+    line.show(static_cast<std::int64_t>(done), total,
+              [&] { return fmt::format("{}: {} of {} frames", printable(folder), done, total); });
+  });
+}
+
+std::string conclusion(const std::vector<ImageStatistics>& all) {
+  if (all.size() == 1) return fmt::format("in short: {} frames", all.front().frames);
+  const std::vector<std::string> names = different_quantities(all.front(), all.back());
+  if (names.empty()) return "in short: all medians agree within a quarter";
+  return fmt::format("in short: {} of {} medians differ by more than a quarter: {}", names.size(),
+                     all.front().rows.size(), fmt::join(names, ", "));
+}
+
+void run(const CLI::App& command, const ImageStatisticsOptions& options) {
+  require(command, "DIR", "an ASL folder, or several");
+  std::vector<ImageStatistics> all;
+  for (const std::string& folder : options.folders) all.push_back(measure(folder, options));
+  print(printout(
+      options.json,
+      [&] {
+        return Printout(image_statistics_table(all))
+            .ending(conclusion(all), {fmt::format("leviosim image-statistics {} --json",
+                                                  printable(options.folders.front()))});
+      },
+      [&] { return table_document("image statistics", image_statistics_csv(all)); }));
+}
+
+}  // namespace
+
+Command add_image_statistics_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "image-statistics", "See what the pictures of recordings are like, side by side");
+  const auto options = std::make_shared<ImageStatisticsOptions>();
+  command->add_option("DIR", options->folders, "ASL folders; the first one is compared with");
+  command->add_option("--size", options->size, "of the images [160x120]")->type_name("WxH");
+  command->add_option("--frames", options->frames, "frames, B exclusive [all]")->type_name("A:B");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  add_examples(*command, {"leviosim image-statistics flight rendered --frames 0:20"});
+  add_json_option(*command, options->json);
+  return {command, [=] { run(*command, *options); }};
+}
+
+}  // namespace leviosim::tools
