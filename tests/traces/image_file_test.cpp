@@ -36,14 +36,38 @@ void expect_refused(const std::string& bytes, const std::string& part) {
   expect_input_error([&] { decode_gray(bytes, {33, 24}); }, {part});
 }
 
-TEST(ImageFile, WhatIsNotGreyIsRefused) {
-  cv::Mat colour;
-  cv::merge(std::vector<cv::Mat>{picture(), picture(), picture()}, colour);
-  cv::Mat deep;
-  picture().convertTo(deep, CV_16UC1, 257);
-  expect_refused(png_of(colour), "has 3 channels of 8 bits; expected 8-bit grey");
-  expect_refused(jpeg_of(colour), "has 3 channels of 8 bits; expected 8-bit grey");
-  expect_refused(png_of(deep), "has 1 channel of 16 bits; expected 8-bit grey");
+/// The luma of Rec. 601, to a grey level.
+TEST(ImageFile, ColoursBecomeGrey) {
+  cv::Mat colour(24, 33, CV_8UC3);  // red, green, blue
+  cv::randu(colour, 0, 256);
+  const cv::Mat grey = decode_gray(png_of(colour), {33, 24});
+  ASSERT_EQ(grey.type(), CV_8UC1);
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x) {
+      const cv::Vec3b rgb = colour.at<cv::Vec3b>(y, x);
+      EXPECT_NEAR(grey.at<uchar>(y, x), 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2], 1);
+    }
+  cv::Mat flat(24, 33, CV_8UC3, cv::Scalar(200, 100, 50));
+  EXPECT_NEAR(decode_gray(jpeg_of(flat), {33, 24}).at<uchar>(12, 12), 124, 2);
+}
+
+/// As TUM-VI has them.
+TEST(ImageFile, OfSixteenBitsTheUpperEightAreKept) {
+  cv::Mat deep(24, 33, CV_16UC1);
+  cv::randu(deep, 0, 65536);
+  const cv::Mat grey = decode_gray(png_of(deep), {33, 24});
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      EXPECT_EQ(grey.at<uchar>(y, x), deep.at<std::uint16_t>(y, x) >> 8);
+}
+
+TEST(ImageFile, TheSizeIsThatOfTheHead) {
+  for (const std::string& bytes : {encode_png(picture()), jpeg_of(picture())})
+    EXPECT_EQ(image_size(bytes), cv::Size(33, 24));
+  expect_input_error([] { image_size("no picture"); }, {"neither PNG nor JPEG"});
+}
+
+TEST(ImageFile, WhatIsNoPictureIsRefused) {
   expect_refused("P5 33 24 255\n" + std::string(33 * 24, 'x'), "neither PNG nor JPEG");
   expect_refused("BM" + std::string(33 * 24, 'x'), "neither PNG nor JPEG");
   expect_refused("", "neither PNG nor JPEG");
@@ -55,17 +79,17 @@ TEST(ImageFile, TheSizeIsCheckedBeforeThePixels) {
       [] {
         decode_gray(encode_png(picture()), {32, 24});
       },
-      {"is 33x24; sensor.yaml says 32x24"});
+      {"is 33x24; the camera's pictures are 32x24"});
   expect_input_error(
       [] {
         decode_gray(jpeg_of(picture()), {33, 25});
       },
-      {"is 33x24; sensor.yaml says 33x25"});
+      {"is 33x24; the camera's pictures are 33x25"});
   const std::string head("\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x08\0\0\0\0", 21);
   const std::string crc("\x93\x6e\x86\x8c", 4);
   const std::string pixels("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
   expect_refused("\x89PNG\r\n\x1a\n" + head + crc + pixels,
-                 "is 65535x65535; sensor.yaml says 33x24");
+                 "is 65535x65535; the camera's pictures are 33x24");
 }
 
 TEST(ImageFile, EveryCutAndFlippedByteIsRefusedOrRead) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
@@ -20,22 +21,18 @@ constexpr std::size_t kMostChunkBytes = std::size_t{1} << 24;  ///< of what is n
 /// What the head of a file says.
 struct Header {
   unsigned width = 0, height = 0;
-  int channels = 0;
-  int bits = 0;  ///< of a channel, as decoded
+  bool colour = false;  ///< decoded to red, green, blue
 };
 
 [[noreturn]] void refuse_damaged(const char* format, const char* reason) {
   throw InputError(fmt::format("cannot be read as an image: damaged {}: {}", format, reason));
 }
 
-void require_gray(const Header& header, cv::Size expected) {
-  if (header.channels != 1 || header.bits != 8)
-    throw InputError(fmt::format("has {} channel{} of {} bits; expected 8-bit grey (1 channel)",
-                                 header.channels, header.channels == 1 ? "" : "s", header.bits));
+void require_size(const Header& header, cv::Size expected) {
   if (header.width != static_cast<unsigned>(expected.width) ||
       header.height != static_cast<unsigned>(expected.height))
-    throw InputError(fmt::format("is {}x{}; sensor.yaml says {}x{}", header.width, header.height,
-                                 expected.width, expected.height));
+    throw InputError(fmt::format("is {}x{}; the camera's pictures are {}x{}", header.width,
+                                 header.height, expected.width, expected.height));
 }
 
 class Png {
@@ -50,12 +47,9 @@ class Png {
   }
 
   Header header() {
-    const int bits = png_get_bit_depth(calls_.png(), calls_.info());
-    const int color = png_get_color_type(calls_.png(), calls_.info());
     return {png_get_image_width(calls_.png(), calls_.info()),
             png_get_image_height(calls_.png(), calls_.info()),
-            color == PNG_COLOR_TYPE_PALETTE ? 3 : png_get_channels(calls_.png(), calls_.info()),
-            bits == 16 ? 16 : 8};
+            (png_get_color_type(calls_.png(), calls_.info()) & PNG_COLOR_MASK_COLOR) != 0};
   }
 
   /// To the end of the file.
@@ -63,7 +57,10 @@ class Png {
     const auto rows = std::make_unique<png_bytep[]>(static_cast<std::size_t>(image.rows));
     for (int y = 0; y < image.rows; ++y) rows[static_cast<std::size_t>(y)] = image.ptr(y);
     demand([&] {
+      png_set_palette_to_rgb(calls_.png());
       png_set_expand_gray_1_2_4_to_8(calls_.png());
+      png_set_strip_16(calls_.png());
+      png_set_strip_alpha(calls_.png());
       png_set_interlace_handling(calls_.png());
       png_read_image(calls_.png(), rows.get());
       png_read_end(calls_.png(), nullptr);
@@ -103,10 +100,9 @@ class Jpeg {
     demand(
         tjDecompressHeader3(decoder_.get(), bytes_, size_, &width, &height, &sampling, &colours));
     if (width < 1 || height < 1) refuse_damaged("JPEG", "the file says no size");
-    const int channels = colours == TJCS_GRAY                           ? 1
-                         : colours == TJCS_CMYK || colours == TJCS_YCCK ? 4
-                                                                        : 3;
-    return {static_cast<unsigned>(width), static_cast<unsigned>(height), channels, 8};
+    if (colours == TJCS_CMYK || colours == TJCS_YCCK)
+      throw InputError("has the colours of print (CMYK); expected grey, or red, green and blue");
+    return {static_cast<unsigned>(width), static_cast<unsigned>(height)};  // decoded to grey
   }
 
   void decode(cv::Mat& image) {
@@ -128,22 +124,38 @@ class Jpeg {
 template <class Format>
 cv::Mat decode_as(std::string_view bytes, cv::Size expected) {
   Format file(bytes);
-  require_gray(file.header(), expected);
-  cv::Mat image(expected, CV_8UC1);
+  const Header header = file.header();
+  require_size(header, expected);
+  cv::Mat image(expected, header.colour ? CV_8UC3 : CV_8UC1);
   file.decode(image);
-  return image;
+  if (!header.colour) return image;
+  cv::Mat grey;
+  cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
+  return grey;
 }
 
 bool begins_with(std::string_view text, std::string_view start) {
   return text.substr(0, start.size()) == start;
 }
 
+/// What `use` makes of the file as its format.
+template <class Use>
+auto with_format(std::string_view bytes, const Use& use) {
+  if (begins_with(bytes, kPngSignature)) return use.template operator()<Png>();
+  if (begins_with(bytes, kJpegSignature)) return use.template operator()<Jpeg>();
+  throw InputError("cannot be read as an image: it is neither PNG nor JPEG");
+}
+
 }  // namespace
 
 cv::Mat decode_gray(std::string_view bytes, cv::Size expected) {
-  if (begins_with(bytes, kPngSignature)) return decode_as<Png>(bytes, expected);
-  if (begins_with(bytes, kJpegSignature)) return decode_as<Jpeg>(bytes, expected);
-  throw InputError("cannot be read as an image: it is neither PNG nor JPEG");
+  return with_format(bytes, [&]<class Format>() { return decode_as<Format>(bytes, expected); });
+}
+
+cv::Size image_size(std::string_view bytes) {
+  const Header header =
+      with_format(bytes, [&]<class Format>() { return Format(bytes).header(); });
+  return {static_cast<int>(header.width), static_cast<int>(header.height)};
 }
 
 std::string encode_png(const cv::Mat& image) {
