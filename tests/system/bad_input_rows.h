@@ -157,7 +157,7 @@ inline std::vector<Row> data_sets() {
       {"DataIsFile", run({}, "@F/f"), {"f"}, file("f", "x")},
       {"DataIsEmpty",
        run({}, "@F/empty"),
-       {"cam0/sensor.yaml"},
+       {"looked for", "mav0/"},
        [](const fs::path& folder, const AslFolder&) { fs::create_directory(folder / "empty"); }},
       {"DataLinkLoop",
        run({}, "@F/loop"),

@@ -144,7 +144,7 @@ TEST_F(CommandLine, RefusesDataThatIsNotThere) {
   expect_refusal(run_words("/nonexistent/flight", out()), {"/nonexistent/flight"});
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   fs::create_directory(folder_ / "empty");
-  expect_refusal(run_words((folder_ / "empty").string(), out()), {"cam0/sensor.yaml"});
+  expect_refusal(run_words((folder_ / "empty").string(), out()), {"looked for", "mav0/"});
   expect_nothing_staged();
 }
 

@@ -264,7 +264,7 @@ TEST_F(PrintoutTest, SeveralSeedsAndBagsAreRefusedWithWhatToDo) {
       {"--seed '1,2,3'", "one seed", "sweep", "seed: [1,2,3]"});
   outputs::write_file_atomically(folder_ / "flight.bag", "#ROSBAG V2.0\n");
   testing::expect_refused(run({"run", "--data", path("flight.bag"), "--out", path("bag")}),
-                          {"flight.bag", "ROS bag", "ASL"});
+                          {"flight.bag", "ROS bag", "rosbag_to_asl.py"});
 }
 
 /// Not the folder of the cache that holds it.

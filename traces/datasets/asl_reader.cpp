@@ -9,6 +9,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "traces/datasets/row_values.h"
 #include "traces/datasets/sensor_yaml.h"
 
 namespace leviosim::traces {
@@ -16,58 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kQuaternionTolerance = 1e-3;
 constexpr const char* kTruth = "state_groundtruth_estimate0";
 constexpr const char* kMocap = "mocap0";
-constexpr double kGapSlack = 1.01;  // recorded stamps jitter by a few hundred nanoseconds
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-
-void require_rows(std::size_t rows, const fs::path& file) {
-  if (rows == 0) throw InputError(fmt::format("{}: the sequence is empty (no row)", file.string()));
-}
-
-/// The largest magnitude of a kind of quantity.
-struct Bound {
-  double most;
-  const char* what;
-};
-// The fastest gyroscopes end at 70 rad/s and shock sensors at 2000 m/s². Positions of 1e7 m span
-// the Earth. Squares and integrals of such values stay numbers in single precision, too.
-constexpr Bound kGyro{1e3, "any gyroscope [rad/s]"};
-constexpr Bound kAccel{1e4, "any accelerometer [m/s^2]"};
-constexpr Bound kPosition{1e7, "any flight [m]"};
-constexpr Bound kVelocity{1e5, "any flight [m/s]"};
-
-Eigen::Vector3d vector_at(const base::CsvRow& row, std::size_t column, const Bound& bound) {
-  Eigen::Vector3d vector;
-  for (int k = 0; k < 3; ++k) {
-    const std::size_t at = column + static_cast<std::size_t>(k);
-    vector[k] = row.number(at);
-    if (std::abs(vector[k]) > bound.most)
-      row.fail(at, fmt::format("beyond {}; expected from {} to {}", bound.what, -bound.most,
-                               bound.most));
-  }
-  return vector;
-}
-
-Eigen::Quaterniond quaternion_at(const base::CsvRow& row, std::size_t w_column) {
-  const Eigen::Quaterniond q(row.number(w_column), row.number(w_column + 1),
-                             row.number(w_column + 2), row.number(w_column + 3));
-  if (std::abs(q.norm() - 1) > kQuaternionTolerance)
-    row.fail(fmt::format("the quaternion has norm {:.6f} instead of 1", q.norm()));
-  return q.normalized();
-}
 
 /// The mav0 folder in or at `folder`.
 fs::path find_mav0(const fs::path& folder) {
   if (!base::exists(folder)) throw InputError(fmt::format("{}: no such folder", folder.string()));
-  const fs::path kind = folder.extension();
-  if (base::is_file(folder) && (kind == ".bag" || kind == ".db3" || kind == ".mcap"))
-    throw InputError(
-        fmt::format("{}: a ROS bag; convert it to an ASL folder, with mav0/{{cam0,imu0}}, each "
-                    "with sensor.yaml and data.csv",
-                    folder.string()));
   if (base::is_folder(folder / "mav0")) return folder / "mav0";
   return folder;
 }
@@ -79,53 +36,6 @@ fs::path require_file(const fs::path& mav0, const char* name) {
         "data.csv",
         name, mav0.string()));
   return mav0 / name;
-}
-
-void select_frames(std::vector<FrameRef>& frames, const FrameRange& range, const fs::path& csv) {
-  check_frame_range(range, frames.size(), csv.string());
-  frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(range.end), frames.end());
-  frames.erase(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(range.begin));
-}
-
-void require_images(const std::vector<FrameRef>& frames, const fs::path& csv) {
-  for (const FrameRef& frame : frames) {
-    const base::PathKind kind = base::kind_of(frame.path);
-    if (kind == base::PathKind::file) continue;
-    throw InputError(
-        fmt::format("{}: the image {} {}", base::at_line(csv, frame.line), frame.path.string(),
-                    kind == base::PathKind::missing ? "does not exist" : "is no regular file"));
-  }
-}
-
-/// Frames outside the samples by more than `tolerance_s`.
-void require_cover(const Dataset& data, double tolerance_s, const fs::path& imu_csv) {
-  const auto fail = [&](const FrameRef& frame, std::int64_t edge, const char* where) {
-    throw InputError(fmt::format(
-        "{}: the frame at {} ns lies {:.4f} s {} IMU sample of {} ({} ns); choose frames that the "
-        "IMU covers",
-        base::at_line(data.frames_csv, frame.line), frame.t_ns,
-        std::abs(seconds(frame.t_ns - edge)), where, imu_csv.string(), edge));
-  };
-  const FrameRef& first = data.frames.front();
-  const FrameRef& last = data.frames.back();
-  if (seconds(data.imu.front().t_ns - first.t_ns) > tolerance_s)
-    fail(first, data.imu.front().t_ns, "before the first");
-  if (seconds(last.t_ns - data.imu.back().t_ns) > tolerance_s)
-    fail(last, data.imu.back().t_ns, "after the last");
-}
-
-void require_no_gaps(const Dataset& data, double longest_s, const fs::path& imu_csv) {
-  for (std::size_t i = 1; i < data.imu.size(); ++i) {
-    const std::int64_t from = data.imu[i - 1].t_ns;
-    const std::int64_t to = data.imu[i].t_ns;
-    if (to <= data.frames.front().t_ns || from >= data.frames.back().t_ns) continue;
-    if (seconds(to - from) > longest_s * kGapSlack)
-      throw InputError(fmt::format(
-          "{}: IMU gap of {:.3f} ms between {} ns and {} ns; at most {:.3f} ms is allowed "
-          "({:g} Hz sensor)",
-          imu_csv.string(), seconds(to - from) * 1e3, from, to, longest_s * 1e3,
-          data.imu_model.rate_hz));
-  }
 }
 
 /// Poses between which a path can be interpolated.
@@ -166,7 +76,7 @@ std::vector<ImuSample> read_imu_csv(const fs::path& data_csv) {
   while (const base::CsvRow* row = csv.next()) {
     const std::int64_t t_ns = row->nanoseconds(0);
     stamps.add(*row, t_ns);
-    samples.push_back({t_ns, vector_at(*row, 1, kGyro), vector_at(*row, 4, kAccel)});
+    samples.push_back({t_ns, vector_at(*row, 1, kGyroBound), vector_at(*row, 4, kAccelBound)});
   }
   require_rows(samples.size(), data_csv);
   return samples;
@@ -188,11 +98,11 @@ std::vector<GroundTruthPose> read_ground_truth_csv(const fs::path& data_csv) {
     pose.t_ns = row->nanoseconds(0);
     stamps.add(*row, pose.t_ns);
     pose.T_world_body =
-        Eigen::Translation3d(vector_at(*row, 1, kPosition)) * quaternion_at(*row, 4);
+        Eigen::Translation3d(vector_at(*row, 1, kPositionBound)) * quaternion_at(*row, 4);
     if (!only_poses) {
-      pose.velocity = vector_at(*row, 8, kVelocity);
-      pose.bias_gyro = vector_at(*row, 11, kGyro);
-      pose.bias_accel = vector_at(*row, 14, kAccel);
+      pose.velocity = vector_at(*row, 8, kVelocityBound);
+      pose.bias_gyro = vector_at(*row, 11, kGyroBound);
+      pose.bias_accel = vector_at(*row, 14, kAccelBound);
     }
     poses.push_back(pose);
   }
@@ -200,31 +110,45 @@ std::vector<GroundTruthPose> read_ground_truth_csv(const fs::path& data_csv) {
   return poses;
 }
 
-Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
+std::vector<InputFiles> asl_files(const fs::path& mav0) {
+  std::vector<InputFiles> files;
+  for (const char* name : {"cam0/sensor.yaml", "cam0/data.csv", "imu0/sensor.yaml", "imu0/data.csv",
+                           kTruthCsv, kMocapCsv})
+    if (base::exists(mav0 / name)) files.push_back({name, {mav0 / name}});
+  return files;
+}
+
+void read_asl_streams(const fs::path& mav0, Dataset& data) {
+  data.frames_csv = require_file(mav0, "cam0/data.csv");
+  data.imu_csv = require_file(mav0, "imu0/data.csv");
+  data.frames = read_frames_csv(data.frames_csv);
+  data.imu = read_imu_csv(data.imu_csv);
+  for (const auto& [folder, csv] : {std::pair{kTruth, kTruthCsv}, std::pair{kMocap, kMocapCsv}}) {
+    if (!base::exists(mav0 / folder)) continue;
+    data.truth_csv = require_file(mav0, csv);
+    data.ground_truth = read_ground_truth_csv(data.truth_csv);
+    break;
+  }
+  data.files = asl_files(mav0);
+}
+
+bool is_asl(const fs::path& folder) {
+  for (const char* part : {"mav0", "cam0", "imu0"})
+    if (base::is_folder(folder / part)) return true;
+  return false;
+}
+
+Dataset read_asl(const fs::path& folder) {
   const fs::path mav0 = find_mav0(folder);
-  const fs::path camera_yaml = require_file(mav0, "cam0/sensor.yaml");
-  const fs::path frames_csv = require_file(mav0, "cam0/data.csv");
-  const fs::path imu_yaml = require_file(mav0, "imu0/sensor.yaml");
-  const fs::path imu_csv = require_file(mav0, "imu0/data.csv");
-
   Dataset data;
-  data.frames_csv = frames_csv;
-  data.camera = read_camera_model(camera_yaml);
-  data.imu_model = read_imu_model(imu_yaml);
-  data.frames = read_frames_csv(frames_csv);
-  data.imu = read_imu_csv(imu_csv);
-  if (base::exists(mav0 / kTruth))
-    data.ground_truth = read_ground_truth_csv(require_file(mav0, kTruthCsv));
-  else if (base::exists(mav0 / kMocap))
-    data.ground_truth = read_ground_truth_csv(require_file(mav0, kMocapCsv));
-
-  if (options.frames) select_frames(data.frames, *options.frames, frames_csv);
-  require_images(data.frames, frames_csv);
-  const double period_s = 1 / data.imu_model.rate_hz;
-  require_cover(data, options.imu_edge_periods * period_s, imu_csv);
-  require_no_gaps(data, options.max_imu_gap_periods * period_s, imu_csv);
-  disturb(data, options.disturbance);
+  data.camera = read_camera_model(require_file(mav0, "cam0/sensor.yaml"));
+  data.imu_model = read_imu_model(require_file(mav0, "imu0/sensor.yaml"));
+  read_asl_streams(mav0, data);
   return data;
+}
+
+Dataset open_asl(const fs::path& folder, const OpenOptions& options) {
+  return opened(read_asl(folder), options);
 }
 
 MotionRecord open_motion(const fs::path& folder) {

@@ -8,23 +8,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "traces/datasets/dataset.h"
-#include "traces/datasets/frame_range.h"
 
 namespace leviosim::traces {
-
-struct OpenOptions {
-  std::optional<FrameRange> frames;  ///< all frames if absent
-  /// The longest gap between IMU samples around the frames, in nominal IMU periods (plus 1 % for
-  /// the jitter of recorded stamps).
-  double max_imu_gap_periods = 3;
-  /// How far a frame may lie outside the IMU samples, in nominal IMU periods.
-  double imu_edge_periods = 1;
-  Disturbance disturbance{};  ///< made after everything has been checked
-};
 
 /// Where ground truth lies in a mav0 folder, if there is any.
 constexpr const char* kTruthCsv = "state_groundtruth_estimate0/data.csv";
@@ -35,6 +23,16 @@ constexpr const char* kMocapCsv = "mocap0/data.csv";
 /// column or key) for anything missing, broken, out of order, or not covered by the IMU; that the
 /// images exist is checked here, what is in them when they are read.
 Dataset open_asl(const std::filesystem::path& folder, const OpenOptions& options = {});
+
+/// Whether a folder is a mav0 folder or contains one, complete or not.
+bool is_asl(const std::filesystem::path& folder);
+/// What open_asl() begins with: all that the folder holds.
+Dataset read_asl(const std::filesystem::path& folder);
+/// Frames, samples and ground truth of a mav0 folder, whose sensor.yaml files need not be there.
+void read_asl_streams(const std::filesystem::path& mav0, Dataset& data);
+
+/// The text files of a mav0 folder that readers look at.
+std::vector<InputFiles> asl_files(const std::filesystem::path& mav0);
 
 /// A flight without its pictures: how the body moved and where the camera sat on it.
 struct MotionRecord {

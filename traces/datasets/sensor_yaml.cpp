@@ -33,20 +33,25 @@ void require_within(const YamlMap& map, const std::string& key, const std::vecto
                                 -most, most));
 }
 
-/// T_BS: a 4×4 rigid transform, row by row.
-Eigen::Isometry3d read_extrinsics(const YamlMap& sensor) {
-  const YamlMap block = sensor.map("T_BS");
-  const std::vector<double> data = block.numbers("data", 16, "a 4x4 matrix, row by row");
+/// A 4×4 rigid transform. @param data  row by row
+Eigen::Isometry3d read_transform(const YamlMap& map, const std::string& key,
+                                 const std::vector<double>& data) {
   using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
   const Eigen::Matrix4d matrix = Eigen::Map<const Matrix>(data.data());
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const Eigen::RowVector4d last_row(0, 0, 0, 1);
   const double skew = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm();
   if (skew > kRotationTolerance || rotation.determinant() < 0)
-    block.fail("data", "its upper left 3x3 block is not a rotation");
-  if (matrix.row(3) != last_row) block.fail("data", "its last row is not 0, 0, 0, 1");
-  require_within(block, "data", {matrix(0, 3), matrix(1, 3), matrix(2, 3)}, kMostArmM);
+    map.fail(key, "its upper left 3x3 block is not a rotation");
+  if (matrix.row(3) != last_row) map.fail(key, "its last row is not 0, 0, 0, 1");
+  require_within(map, key, {matrix(0, 3), matrix(1, 3), matrix(2, 3)}, kMostArmM);
   return Eigen::Isometry3d(matrix);
+}
+
+/// T_BS, row by row.
+Eigen::Isometry3d read_extrinsics(const YamlMap& sensor) {
+  const YamlMap block = sensor.map("T_BS");
+  return read_transform(block, "data", block.numbers("data", 16, "a 4x4 matrix, row by row"));
 }
 
 int read_pixels(const YamlMap& sensor, double value) {
@@ -68,37 +73,55 @@ std::size_t read_model(const YamlMap& sensor, const std::string& key,
   return static_cast<std::size_t>(it - supported.begin());
 }
 
-}  // namespace
-
-CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
-  const YamlMap sensor = YamlMap::load(sensor_yaml);
+/// Lens, focal lengths and size, which both kinds of files have. @param models  what they call the
+/// lenses: radial-tangential, equidistant. @param distortion  the key of its coefficients
+CameraModel read_lens(const YamlMap& sensor, const std::vector<std::string>& models,
+                      const std::string& distortion) {
   read_model(sensor, "camera_model", {"pinhole"});
-  const std::size_t model =
-      read_model(sensor, "distortion_model", {"radial-tangential", "equidistant"});
+  const std::size_t model = read_model(sensor, "distortion_model", models);
   const auto resolution = sensor.numbers("resolution", 2, "width, height");
   const auto intrinsics = sensor.numbers("intrinsics", 4, "fu, fv, cu, cv");
-  const auto distortion = sensor.numbers("distortion_coefficients", 4,
-                                         model == 0 ? "k1, k2, p1, p2" : "k1, k2, k3, k4");
+  const auto coefficients =
+      sensor.numbers(distortion, 4, model == 0 ? "k1, k2, p1, p2" : "k1, k2, k3, k4");
   if (intrinsics[0] <= 0 || intrinsics[1] <= 0)
     sensor.fail("intrinsics", "the focal lengths fu, fv must be above 0");
   require_within(sensor, "intrinsics", intrinsics, kMostFocalPixels);
-  require_within(sensor, "distortion_coefficients", distortion, kMostDistortion);
+  require_within(sensor, distortion, coefficients, kMostDistortion);
 
   CameraModel camera;
   camera.fx = intrinsics[0];
   camera.fy = intrinsics[1];
   camera.cx = intrinsics[2];
   camera.cy = intrinsics[3];
-  camera.k1 = distortion[0];
-  camera.k2 = distortion[1];
+  camera.k1 = coefficients[0];
+  camera.k2 = coefficients[1];
   camera.lens = model == 0 ? Lens::radial_tangential : Lens::equidistant;
-  (model == 0 ? camera.p1 : camera.k3) = distortion[2];
-  (model == 0 ? camera.p2 : camera.k4) = distortion[3];
+  (model == 0 ? camera.p1 : camera.k3) = coefficients[2];
+  (model == 0 ? camera.p2 : camera.k4) = coefficients[3];
   camera.width = read_pixels(sensor, resolution[0]);
   camera.height = read_pixels(sensor, resolution[1]);
   if (static_cast<std::int64_t>(camera.width) * camera.height > kMostPixels)
     sensor.fail("resolution", fmt::format("{}x{} is more than {} pixels, the most that is read",
                                           camera.width, camera.height, kMostPixels));
+  return camera;
+}
+
+ImuModel read_noise(const YamlMap& sensor, const std::string& rate) {
+  ImuModel imu;
+  imu.rate_hz = sensor.positive(rate, kLeastHz, kMostHz);
+  imu.gyro_noise_density = sensor.not_negative("gyroscope_noise_density", kMostNoise);
+  imu.gyro_random_walk = sensor.not_negative("gyroscope_random_walk", kMostNoise);
+  imu.accel_noise_density = sensor.not_negative("accelerometer_noise_density", kMostNoise);
+  imu.accel_random_walk = sensor.not_negative("accelerometer_random_walk", kMostNoise);
+  return imu;
+}
+
+}  // namespace
+
+CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
+  const YamlMap sensor = YamlMap::load(sensor_yaml);
+  CameraModel camera =
+      read_lens(sensor, {"radial-tangential", "equidistant"}, "distortion_coefficients");
   camera.T_body_camera = read_extrinsics(sensor);
   camera.rate_hz = sensor.positive("rate_hz", kLeastHz, kMostHz);
   camera.prepared = sensor.flag("prepared", false);
@@ -107,15 +130,26 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
 
 ImuModel read_imu_model(const std::filesystem::path& sensor_yaml) {
   const YamlMap sensor = YamlMap::load(sensor_yaml);
-  ImuModel imu;
-  imu.rate_hz = sensor.positive("rate_hz", kLeastHz, kMostHz);
-  imu.gyro_noise_density = sensor.not_negative("gyroscope_noise_density", kMostNoise);
-  imu.gyro_random_walk = sensor.not_negative("gyroscope_random_walk", kMostNoise);
-  imu.accel_noise_density = sensor.not_negative("accelerometer_noise_density", kMostNoise);
-  imu.accel_random_walk = sensor.not_negative("accelerometer_random_walk", kMostNoise);
+  const ImuModel imu = read_noise(sensor, "rate_hz");
   if (!read_extrinsics(sensor).isApprox(Eigen::Isometry3d::Identity(), kRotationTolerance))
     sensor.fail("T_BS", "must be the identity: the body frame is taken to be the IMU frame");
   return imu;
+}
+
+CameraModel read_kalibr_camera(const std::filesystem::path& camchain_yaml, double& time_shift_s) {
+  constexpr double kLongestShiftS = 10;
+  const YamlMap sensor = YamlMap::load(camchain_yaml).map("cam0");
+  CameraModel camera = read_lens(sensor, {"radtan", "equidistant"}, "distortion_coeffs");
+  camera.T_body_camera =
+      read_transform(sensor, "T_cam_imu", sensor.matrix("T_cam_imu", 4, 4)).inverse();
+  const std::string shift = "timeshift_cam_imu";
+  time_shift_s = sensor.has(shift) ? sensor.number(shift) : 0;
+  if (sensor.has(shift)) require_within(sensor, shift, {time_shift_s}, kLongestShiftS);
+  return camera;
+}
+
+ImuModel read_kalibr_imu(const std::filesystem::path& imu_yaml) {
+  return read_noise(YamlMap::load(imu_yaml), "update_rate");
 }
 
 }  // namespace leviosim::traces

@@ -1,4 +1,5 @@
-// Reading of the two sensor.yaml files of an ASL folder. Strict where it matters: a missing key, a
+// Reading of the two sensor.yaml files of an ASL folder, and of the same facts in the files of the
+// calibration program Kalibr. Strict where it matters: a missing key, a
 // list of the wrong length or an unsupported model is an InputError that names file, line and key;
 // keys that are not needed (comments, extra entries) are passed over.
 #pragma once
@@ -20,5 +21,11 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
 
 /// Reads imu0/sensor.yaml. Its T_BS must be the identity: the body frame is the IMU frame.
 ImuModel read_imu_model(const std::filesystem::path& sensor_yaml);
+
+/// The camera cam0 of a chain as Kalibr writes it, without its rate, which the file does not hold;
+/// `time_shift_s` is what has to be added to its time stamps to get the IMU's.
+CameraModel read_kalibr_camera(const std::filesystem::path& camchain_yaml, double& time_shift_s);
+/// Kalibr's description of an IMU.
+ImuModel read_kalibr_imu(const std::filesystem::path& imu_yaml);
 
 }  // namespace leviosim::traces

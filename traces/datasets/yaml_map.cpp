@@ -136,14 +136,14 @@ bool YamlMap::flag(const std::string& key, bool by_default) const {
   return spelled == "true";
 }
 
-std::vector<double> YamlMap::numbers(const std::string& key, std::size_t size,
-                                     std::string_view meaning) const {
-  const base::YamlNode node = require(key);
+std::vector<double> YamlMap::numbers_of(const base::YamlNode& node, const std::string& key,
+                                        std::size_t size, std::string_view meaning) const {
   if (!node.is_sequence())
-    fail(key,
-         fmt::format("is {}; expected a list of {} numbers ({})", kind_of(node), size, meaning));
+    fail_at(node.line(), key,
+            fmt::format("is {}; expected a list of {} numbers ({})", kind_of(node), size, meaning));
   if (node.size() != size)
-    fail(key, fmt::format("has {} entries; expected {} ({})", node.size(), size, meaning));
+    fail_at(node.line(), key,
+            fmt::format("has {} entries; expected {} ({})", node.size(), size, meaning));
   std::vector<double> values(size);
   for (std::size_t i = 0; i < size; ++i) {
     const base::YamlNode entry = node[i];
@@ -152,6 +152,22 @@ std::vector<double> YamlMap::numbers(const std::string& key, std::size_t size,
               fmt::format("entry {} ('{}') is not a finite number", i + 1,
                           entry.is_scalar() ? entry.scalar() : std::string(kind_of(entry))));
   }
+  return values;
+}
+
+std::vector<double> YamlMap::numbers(const std::string& key, std::size_t size,
+                                     std::string_view meaning) const {
+  return numbers_of(require(key), key, size, meaning);
+}
+
+std::vector<double> YamlMap::matrix(const std::string& key, std::size_t rows,
+                                    std::size_t columns) const {
+  const base::YamlNode node = require(key);
+  if (!node.is_sequence() || node.size() != rows)
+    fail(key, fmt::format("expected a list of {} rows of {} numbers", rows, columns));
+  std::vector<double> values;
+  for (const base::YamlNode& row : node.items())
+    for (const double value : numbers_of(row, key, columns, "a row")) values.push_back(value);
   return values;
 }
 

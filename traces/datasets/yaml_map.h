@@ -25,9 +25,12 @@ class YamlMap {
   double not_negative(const std::string& key, double most) const;
   /// true or false; `by_default` if the key is not there.
   bool flag(const std::string& key, bool by_default) const;
+  bool has(const std::string& key) const { return find(key) != nullptr; }
   /// A list of exactly `size` finite numbers; `meaning` says what they are.
   std::vector<double> numbers(const std::string& key, std::size_t size,
                               std::string_view meaning) const;
+  /// A list of `rows` lists of `columns` finite numbers each, row by row.
+  std::vector<double> matrix(const std::string& key, std::size_t rows, std::size_t columns) const;
   YamlMap map(const std::string& key) const;
 
   /// Throws an InputError about the value of a key: "FILE line N, key 'key': MESSAGE".
@@ -36,6 +39,8 @@ class YamlMap {
  private:
   YamlMap(std::filesystem::path file, std::string prefix, const base::YamlNode& node);
   const base::YamlEntry* find(const std::string& key) const;
+  std::vector<double> numbers_of(const base::YamlNode& node, const std::string& key,
+                                 std::size_t size, std::string_view meaning) const;
   base::YamlNode require(const std::string& key) const;
   std::string nearest_key(const std::string& key) const;
   [[noreturn]] void fail_at(int line, const std::string& key, std::string_view message) const;

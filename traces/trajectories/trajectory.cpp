@@ -4,18 +4,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/outputs/atomic_file.h"
 #include "traces/datasets/asl_reader.h"
+#include "traces/datasets/row_values.h"
 
 namespace leviosim::traces {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr double kQuaternionTolerance = 1e-3;
 
 /// Flips the sign so that the first component of (w, x, y, z) that is not zero is positive.
 Eigen::Quaterniond canonical(const Eigen::Quaterniond& q) {
@@ -26,10 +27,19 @@ Eigen::Quaterniond canonical(const Eigen::Quaterniond& q) {
   return q;
 }
 
-void append_number(std::string& out, double value) {
+/// With nine decimals, and no negative zero.
+void append_numbers(std::string& out, char separator, std::initializer_list<double> values,
+                    bool at_start = false) {
   constexpr double kPrintsAsZero = 0.5e-9;
-  if (std::abs(value) < kPrintsAsZero) value = 0;
-  fmt::format_to(std::back_inserter(out), " {:.9f}", value);
+  for (const double value : values) {
+    if (!at_start) out += separator;
+    fmt::format_to(std::back_inserter(out), "{:.9f}", std::abs(value) < kPrintsAsZero ? 0 : value);
+    at_start = false;
+  }
+}
+
+Eigen::Quaterniond attitude_of(const StampedPose& pose) {
+  return canonical(Eigen::Quaterniond(pose.T_world_body.linear()).normalized());
 }
 
 }  // namespace
@@ -38,13 +48,50 @@ std::string format_tum(const Trajectory& trajectory) {
   std::string out = "# timestamp tx ty tz qx qy qz qw\n";
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d p = pose.T_world_body.translation();
-    const Eigen::Quaterniond q =
-        canonical(Eigen::Quaterniond(pose.T_world_body.linear()).normalized());
+    const Eigen::Quaterniond q = attitude_of(pose);
     fmt::format_to(std::back_inserter(out), "{}.{:09d}", pose.t_ns / kNsPerSecond,
                    pose.t_ns % kNsPerSecond);
-    for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()})
-      append_number(out, value);
+    append_numbers(out, ' ', {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
     out += '\n';
+  }
+  return out;
+}
+
+std::string format_euroc(const Trajectory& trajectory) {
+  std::string out =
+      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
+      "q_RS_z []\n";
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d p = pose.T_world_body.translation();
+    const Eigen::Quaterniond q = attitude_of(pose);
+    fmt::format_to(std::back_inserter(out), "{}", pose.t_ns);
+    append_numbers(out, ',', {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()});
+    out += '\n';
+  }
+  return out;
+}
+
+std::string format_kitti(const Trajectory& trajectory) {
+  std::string out;
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Matrix4d m = pose.T_world_body.matrix();
+    for (int row = 0; row < 3; ++row)
+      append_numbers(out, ' ', {m(row, 0), m(row, 1), m(row, 2), m(row, 3)}, row == 0);
+    out += '\n';
+  }
+  return out;
+}
+
+std::string format_json_lines(const Trajectory& trajectory) {
+  std::string out;
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d p = pose.T_world_body.translation();
+    const Eigen::Quaterniond q = attitude_of(pose);
+    fmt::format_to(std::back_inserter(out), "{{\"t_ns\":{},\"p\":[", pose.t_ns);
+    append_numbers(out, ',', {p.x(), p.y(), p.z()}, true);
+    out += "],\"q\":[";
+    append_numbers(out, ',', {q.w(), q.x(), q.y(), q.z()}, true);
+    out += "]}\n";
   }
   return out;
 }
@@ -61,11 +108,8 @@ Trajectory read_tum(const std::filesystem::path& file) {
   while (const base::CsvRow* row = csv.next()) {
     const std::int64_t t_ns = row->nanoseconds_from_seconds(0);
     stamps.add(*row, t_ns);
-    const Eigen::Quaterniond q(row->number(7), row->number(4), row->number(5), row->number(6));
-    if (std::abs(q.norm() - 1) > kQuaternionTolerance)
-      row->fail(fmt::format("the quaternion has norm {:.6f} instead of 1", q.norm()));
     const Eigen::Translation3d p(row->number(1), row->number(2), row->number(3));
-    trajectory.push_back({t_ns, p * q.normalized()});
+    trajectory.push_back({t_ns, p * quaternion_at(*row, 4, QuaternionOrder::xyzw)});
   }
   if (trajectory.empty()) throw InputError(fmt::format("{}: holds no pose", file.string()));
   return trajectory;

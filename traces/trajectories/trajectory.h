@@ -25,6 +25,13 @@ using Trajectory = std::vector<StampedPose>;
 /// the same bytes.
 std::string format_tum(const Trajectory& trajectory);
 
+/// The first 8 columns of a EuRoC ground-truth csv: nanoseconds, position, w x y z.
+std::string format_euroc(const Trajectory& trajectory);
+/// KITTI's 12 numbers a line, without times.
+std::string format_kitti(const Trajectory& trajectory);
+/// A JSON object a line: {"t_ns":0,"p":[x,y,z],"q":[w,x,y,z]}.
+std::string format_json_lines(const Trajectory& trajectory);
+
 /// Writes format_tum() beside `file` and renames. Throws InputError if it cannot be written.
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory);
 

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include "sim/base/error.h"
-#include "traces/datasets/asl_reader.h"
 #include "traces/trajectories/evaluation.h"
 
 namespace leviosim::traces {
@@ -20,7 +19,7 @@ void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stam
   throw InputError(fmt::format(
       "{}: {} of the {} frames ({} to {} ns) {} a true pose within {:g} ms; expected at least {}, "
       "or no ground truth (it spans {} to {} ns)",
-      (data.frames_csv.parent_path().parent_path() / kTruthCsv).string(),
+      data.truth_csv.string(),
       matched == 0 ? "none" : fmt::format("{}", matched), stamps_ns.size(), stamps_ns.front(),
       stamps_ns.back(), matched > 1 ? "have" : "has", static_cast<double>(how.max_gap_ns) * 1e-6,
       kFewest, data.ground_truth.front().t_ns, data.ground_truth.back().t_ns));

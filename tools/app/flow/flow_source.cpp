@@ -4,8 +4,8 @@
 
 #include "platform_models/loader/compiled_code.h"
 #include "sim/base/check.h"
-#include "traces/datasets/asl_reader.h"
 #include "traces/datasets/imu_batches.h"
+#include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
 namespace {
@@ -27,7 +27,7 @@ work::MachineConfig cluster_machine(const RunRequest& request) {
 }  // namespace
 
 FlowSource::FlowSource(const RunRequest& request, flow::Options options)
-    : data_(traces::open_asl(request.data, {.frames = request.frames})),
+    : data_(traces::open_recording(request.data, {.frames = request.frames})),
       camera_(data_, options.side),
       options_(with_focal_length(options, camera_.focal_length())),
       cluster_(cluster_machine(request)),

@@ -33,15 +33,12 @@ InputDigest digest_of_file(const fs::path& file) {
 }
 
 std::vector<InputDigest> digest_inputs(const traces::Dataset& data) {
-  const fs::path mav0 = data.frames_csv.parent_path().parent_path();
   std::vector<InputDigest> digests;
-  for (const char* name : {"cam0/sensor.yaml", "cam0/data.csv", "imu0/sensor.yaml", "imu0/data.csv",
-                           "state_groundtruth_estimate0/data.csv"})
-    if (base::exists(mav0 / name))
-      digests.push_back(digest_of(name, {mav0 / name}, base::InputKind::table));
+  for (const traces::InputFiles& input : data.files)
+    digests.push_back(digest_of(input.name, input.files, base::InputKind::table));
   std::vector<fs::path> images;
   for (const traces::FrameRef& frame : data.frames) images.push_back(frame.path);
-  digests.push_back(digest_of(fmt::format("cam0/data, {} images concatenated", images.size()),
+  digests.push_back(digest_of(fmt::format("{}, {} images concatenated", data.pictures, images.size()),
                               images, base::InputKind::image));
   return digests;
 }

@@ -1,7 +1,7 @@
 #include "tools/app/run/feed.h"
 
-#include "traces/datasets/asl_reader.h"
 #include "traces/datasets/imu_batches.h"
+#include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
 namespace {
@@ -45,7 +45,7 @@ std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
 }  // namespace
 
 Feed::Feed(const RunRequest& request)
-    : data_(traces::open_asl(request.data,
+    : data_(traces::open_recording(request.data,
                              {.frames = request.frames, .disturbance = request.disturbance})),
       frames_(camera_frames(request, data_)),
       rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),

@@ -1,5 +1,7 @@
 #include "tools/app/run/live_source.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <utility>
 
@@ -96,6 +98,11 @@ LiveSource::LiveSource(const RunRequest& request)
       odometry_(vio::make_odometry(!request.native,
                                    with_delay(profile_, request.initial_delay_s * feed_.rate_hz()),
                                    feed_.rig(), cluster_, controller_)) {
+  if (profile_.use_imu && feed_.data().imu.empty())
+    throw InputError(fmt::format(
+        "--data {}: the recording has no gyroscope, and profile '{}' needs one; expected --profile "
+        "levio-no-imu",
+        request.data, profile_.name));
   if (evaluate_) traces::require_truth_at(feed_.data(), stamps_of(feed_));
 }
 

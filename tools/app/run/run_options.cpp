@@ -33,7 +33,7 @@ void add_text(CLI::App& command, const char* name, std::string& value, const cha
 
 void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
   add_text(command, "--data", options.data, "DIR|synthetic",
-           "ASL/EuRoC folder, or the synthetic flight" + by_default);
+           "recording (EuRoC, TUM, KITTI), or the synthetic flight" + by_default);
   add_text(command, "--frames", options.frames, "A:B", "frames, B exclusive [all]");
   add_text(command, "--profile", options.profile, "NAME", fmt::format("of the workload [{}]", options.profile));
   add_text(command, "--seed", options.seed, "N", "of the workload's random draws [1]");

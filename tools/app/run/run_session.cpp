@@ -14,7 +14,7 @@
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/workload_overrides.h"
-#include "traces/datasets/asl_reader.h"
+#include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
 
@@ -80,7 +80,7 @@ Manifest manifest_of_data(const RunRequest& request) {
   for (const vio::Assignment& a : request.workload) manifest.workload.push_back(a.text());
   manifest.data = request.data;
   if (request.frames) manifest.first_frame = request.frames->begin;
-  manifest.inputs = digest_inputs(traces::open_asl(request.data, {.frames = request.frames}));
+  manifest.inputs = digest_inputs(traces::open_recording(request.data, {.frames = request.frames}));
   return manifest;
 }
 

@@ -8,7 +8,7 @@
 #include "sim/base/input_file.h"
 #include "sim/base/sha256.h"
 #include "tools/app/run/digest.h"
-#include "traces/datasets/asl_reader.h"
+#include "traces/recordings/recording.h"
 #include "traces/trajectories/truth_coverage.h"
 
 namespace leviosim::tools {
@@ -64,10 +64,10 @@ std::string work_of(const traces::Dataset& data, const std::string& digest) {
 
 Sequence open_sequence(const NamedFolder& named, const std::optional<traces::FrameRange>& frames,
                        const std::vector<traces::ImageSize>& sizes) {
-  const traces::Dataset data = traces::open_asl(named.folder, {.frames = frames});
+  const traces::Dataset data = traces::open_recording(named.folder, {.frames = frames});
   if (data.ground_truth.empty())
     throw InputError(fmt::format(
-        "--data {}: has no ground truth; expected mav0/state_groundtruth_estimate0", named.folder));
+        "--data {}: has no ground truth", named.folder));
   std::vector<std::int64_t> stamps_ns;
   for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
   traces::require_truth_at(data, stamps_ns);

@@ -31,7 +31,7 @@ traces::RenderedFlightOptions rendered_options(const FlightPlan& plan) {
 /// Of the text files from which a flight is drawn, as one.
 std::string digest_of_motion(const traces::MotionRecord& record) {
   traces::Dataset files;
-  files.frames_csv = record.mav0 / "cam0/data.csv";
+  files.files = traces::asl_files(record.mav0);
   return digest_of(files);
 }
 

@@ -8,7 +8,7 @@
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/study/sequence.h"
-#include "traces/datasets/asl_reader.h"
+#include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
 namespace {
@@ -68,7 +68,7 @@ const SweepInputs::Data& SweepInputs::data(const std::string& name, const std::s
         name == "synthetic" ? cached_flight(progress_) : beside(name);
     std::optional<traces::FrameRange> range;
     if (!frames.empty()) range = traces::parse_frame_range(frames);
-    const traces::Dataset data = traces::open_asl(folder, {.frames = range});
+    const traces::Dataset data = traces::open_recording(folder, {.frames = range});
     return data_.emplace(key, Data{folder.string(), work_of(data, digest_of(data)), data.camera})
         .first->second;
   });

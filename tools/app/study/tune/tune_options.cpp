@@ -15,7 +15,7 @@
 #include "tools/app/report/number_text.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
-#include "traces/datasets/asl_reader.h"
+#include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
 namespace {
@@ -80,7 +80,7 @@ void refuse_operating_points(const RunOptions& options) {
 }
 
 double checked_recorded_rate(const RunRequest& request, const std::vector<double>& fps) {
-  const traces::Dataset data = traces::open_asl(request.data, {.frames = request.frames});
+  const traces::Dataset data = traces::open_recording(request.data, {.frames = request.frames});
   std::vector<std::int64_t> stamps_ns;
   for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
   for (const double rate : fps) soc::frames_at(rate, stamps_ns, data.camera.rate_hz);

@@ -1,0 +1,81 @@
+#include "traces/datasets/dataset.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "sim/base/csv.h"
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
+
+namespace leviosim::traces {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kGapSlack = 1.01;  // recorded stamps jitter by a few hundred nanoseconds
+
+double to_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+void select_frames(std::vector<FrameRef>& frames, const FrameRange& range, const fs::path& csv) {
+  check_frame_range(range, frames.size(), csv.string());
+  frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(range.end), frames.end());
+  frames.erase(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(range.begin));
+}
+
+void require_images(const std::vector<FrameRef>& frames, const fs::path& csv) {
+  for (const FrameRef& frame : frames) {
+    const base::PathKind kind = base::kind_of(frame.path);
+    if (kind == base::PathKind::file) continue;
+    throw InputError(
+        fmt::format("{}: the image {} {}", base::at_line(csv, frame.line), frame.path.string(),
+                    kind == base::PathKind::missing ? "does not exist" : "is no regular file"));
+  }
+}
+
+/// Frames outside the samples by more than `tolerance_s`.
+void require_cover(const Dataset& data, double tolerance_s) {
+  const auto fail = [&](const FrameRef& frame, std::int64_t edge, const char* where) {
+    throw InputError(fmt::format(
+        "{}: the frame at {} ns lies {:.4f} s {} IMU sample of {} ({} ns); choose frames that the "
+        "IMU covers",
+        base::at_line(data.frames_csv, frame.line), frame.t_ns,
+        std::abs(to_seconds(frame.t_ns - edge)), where, data.imu_csv.string(), edge));
+  };
+  const FrameRef& first = data.frames.front();
+  const FrameRef& last = data.frames.back();
+  if (to_seconds(data.imu.front().t_ns - first.t_ns) > tolerance_s)
+    fail(first, data.imu.front().t_ns, "before the first");
+  if (to_seconds(last.t_ns - data.imu.back().t_ns) > tolerance_s)
+    fail(last, data.imu.back().t_ns, "after the last");
+}
+
+void require_no_gaps(const Dataset& data, double longest_s) {
+  for (std::size_t i = 1; i < data.imu.size(); ++i) {
+    const std::int64_t from = data.imu[i - 1].t_ns;
+    const std::int64_t to = data.imu[i].t_ns;
+    if (to <= data.frames.front().t_ns || from >= data.frames.back().t_ns) continue;
+    if (to_seconds(to - from) > longest_s * kGapSlack)
+      throw InputError(fmt::format(
+          "{}: IMU gap of {:.3f} ms between {} ns and {} ns; at most {:.3f} ms is allowed "
+          "({:g} Hz sensor)",
+          data.imu_csv.string(), to_seconds(to - from) * 1e3, from, to, longest_s * 1e3,
+          data.imu_model.rate_hz));
+  }
+}
+
+}  // namespace
+
+Dataset opened(Dataset data, const OpenOptions& options) {
+  if (options.frames) select_frames(data.frames, *options.frames, data.frames_csv);
+  require_images(data.frames, data.frames_csv);
+  if (!data.imu.empty()) {
+    const double period_s = 1 / data.imu_model.rate_hz;
+    require_cover(data, options.imu_edge_periods * period_s);
+    require_no_gaps(data, options.max_imu_gap_periods * period_s);
+  }
+  disturb(data, options.disturbance);
+  return data;
+}
+
+}  // namespace leviosim::traces
