@@ -64,6 +64,26 @@ TEST_F(TrajectoryFiles, TheSamePosesInTumAndKitti) {
   }
 }
 
+TEST_F(TrajectoryFiles, WrittenInAnyFormatAreReadAgain) {
+  const TrajectoryFile tum = read_trajectory(write("a.tum", kTum));
+  ReadOptions options;
+  options.times = write("times.txt", "1.5\n2.5\n");
+  for (const char* format : {"tum", "euroc", "kitti"}) {
+    const TrajectoryFile again =
+        read_trajectory(write("b", trajectory_text(format, tum.poses)), options);
+    EXPECT_EQ(again.format, parse_trajectory_format(format));
+    ASSERT_EQ(again.poses.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(again.poses[i].t_ns, tum.poses[i].t_ns);
+      EXPECT_TRUE(again.poses[i].T_world_body.isApprox(tum.poses[i].T_world_body, 1e-8)) << format;
+    }
+  }
+  EXPECT_EQ(trajectory_text("jsonl", {tum.poses[1]}),
+            "{\"t_ns\":2500000000,\"p\":[2.000000000,2.000000000,3.000000000],"
+            "\"q\":[0.800000000,0.000000000,0.000000000,0.600000000]}\n");
+  expect_input_error([] { trajectory_text("json", {}); }, {"'json'", "tum, euroc, kitti, jsonl"});
+}
+
 TEST_F(TrajectoryFiles, AForcedFormatIsThatOfTheFile) {
   ReadOptions options;
   options.format = TrajectoryFormat::kitti;

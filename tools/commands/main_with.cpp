@@ -45,6 +45,7 @@
 #include "tools/commands/sweep_command.h"
 #include "tools/commands/synth_command.h"
 #include "tools/commands/trace_command.h"
+#include "tools/commands/trajectory_command.h"
 #include "tools/commands/tune_command.h"
 #include "tools/commands/validate_command.h"
 #include "tools/commands/whatif_command.h"
@@ -173,6 +174,7 @@ int run_program(const Words& typed) {
                                          add_workload_command(app),
                                          add_eval_command(app),
                                          add_image_statistics_command(app),
+                                         add_trajectory_command(app),
                                          add_ablate_command(app, words),
                                          add_explore_command(app, words),
                                          add_benchmark_flights_command(app, words),

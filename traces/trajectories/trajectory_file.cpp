@@ -23,12 +23,13 @@ struct FormatRow {
   std::string_view name;
   base::Separator separator;
   std::size_t columns;
+  std::string (*text)(const Trajectory& trajectory);
 };
 
 constexpr std::array<FormatRow, 3> kFormats{{
-    {TrajectoryFormat::tum, "tum", "TUM", base::Separator::blanks, 8},
-    {TrajectoryFormat::euroc, "euroc", "EuRoC", base::Separator::comma, 17},
-    {TrajectoryFormat::kitti, "kitti", "KITTI", base::Separator::blanks, 12},
+    {TrajectoryFormat::tum, "tum", "TUM", base::Separator::blanks, 8, format_tum},
+    {TrajectoryFormat::euroc, "euroc", "EuRoC", base::Separator::comma, 17, format_euroc},
+    {TrajectoryFormat::kitti, "kitti", "KITTI", base::Separator::blanks, 12, format_kitti},
 }};
 
 constexpr const char* kRunTrajectory = "trajectory.tum";
@@ -74,6 +75,14 @@ TrajectoryFormat parse_trajectory_format(std::string_view name) {
   for (const FormatRow& row : kFormats)
     if (row.option == name) return row.format;
   throw InputError(fmt::format("format '{}': expected one of tum, euroc, kitti", name));
+}
+
+std::string trajectory_text(std::string_view format, const Trajectory& trajectory) {
+  if (format == "jsonl") return format_json_lines(trajectory);
+  for (const FormatRow& row : kFormats)
+    if (row.option == format) return row.text(trajectory);
+  throw InputError(
+      fmt::format("format '{}': expected one of tum, euroc, kitti, jsonl", format));
 }
 
 TrajectoryFormat detect_format(const fs::path& file) {

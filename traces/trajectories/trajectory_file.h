@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "traces/trajectories/evaluation.h"
@@ -22,6 +23,10 @@ std::string_view name_of(TrajectoryFormat format);
 
 /// The format called "tum", "euroc" or "kitti". Throws InputError for others.
 TrajectoryFormat parse_trajectory_format(std::string_view name);
+
+/// The text of a trajectory in the format called "tum", "euroc", "kitti" or "jsonl". Throws
+/// InputError for others.
+std::string trajectory_text(std::string_view format, const Trajectory& trajectory);
 
 /// The format of a file, by the columns of its first row. Throws InputError (file, line) if it has
 /// none or those of no format.
