@@ -46,6 +46,8 @@ function(leviosim_install_library)
           COMPONENT library FILES_MATCHING PATTERN "*.h")
   install(DIRECTORY tools/app tools/commands DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/leviosim/tools
           COMPONENT library FILES_MATCHING PATTERN "*.h")
+  install(PROGRAMS tools/check_counting.py RENAME leviosim-check-counting COMPONENT library
+          DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(FILES tools/leviosim.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/leviosim COMPONENT library)
   install(DIRECTORY tests/examples/outside COMPONENT library
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libleviosim-dev/examples)

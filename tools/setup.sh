@@ -24,7 +24,7 @@ tests=(
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
   python3-dev pybind11-dev python3-numpy                      # the Python module (preset python)
 )
-compilers=(clang libclang-rt-14-dev)  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh)
+compilers=(clang libclang-rt-14-dev clang-tools)  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh); check_counting.py
 case ${1:-program} in
   program) ;;
   tests) packages+=("${tests[@]}") ;;

@@ -22,6 +22,7 @@ void AnchoredLandmarks<P>::anchor(const Window<P>& window) const {
   const typename P::Function function("anchor_landmarks");
   for (int i : P::range(0, window.landmarks)) {
     const int first = work::value(I32(window.first_observations[i]));
+    // uncounted: where a landmark's observations begin
     const Pose<P> T = pose_of<P>(window.state, window.observation_keyframes[first]);
     const Vec3<P> seen = transpose(T.R) * (load_vec3<P>(window.state.points, 3 * i) - T.t);
     const F inverse_depth = F(1.0f) / work::max(seen.z, F(1e-3f));
@@ -75,6 +76,7 @@ void AnchoredLandmarks<P>::release(const Window<P>& window) const {
   const typename P::Function function("release_landmarks");
   for (int i : P::range(0, window.landmarks)) {
     const int first = work::value(I32(window.first_observations[i]));
+    // uncounted: where a landmark's observations begin
     const Pose<P> T = pose_of<P>(window.state, window.observation_keyframes[first]);
     const Vec3<P> landmark = load_vec3<P>(all_, 3 * i);
     const F depth = F(1.0f) / landmark.z;
@@ -126,6 +128,7 @@ typename AnchoredLandmarks<P>::Normal AnchoredLandmarks<P>::normal_of(
     const Window<P>& window, const CarriedPoses<P>& poses, int i, const Vec3<P>& landmark) const {
   const int first = work::value(I32(window.first_observations[i]));
   const int number = work::value(I32(window.observation_numbers[i]));
+  // uncounted: where a landmark's observations begin
   const CarriedPose<P> anchor = poses[window.observation_keyframes[first]];
   Normal normal;
   Term term;
@@ -234,6 +237,7 @@ typename P::F32 AnchoredLandmarks<P>::add(const Window<P>& window, const Carried
     const int first = work::value(I32(window.first_observations[i]));
     const int number = work::value(I32(window.observation_numbers[i]));
     const Vec3<P> landmark = load_vec3<P>(all_, 3 * i);
+    // uncounted: where a landmark's observations begin
     const CarriedPose<P> anchor = poses[window.observation_keyframes[first]];
     for (int e : P::range(0, 3 * kAlignmentUnknowns)) by_landmark_[e] = 0.0f;
     Normal normal;

@@ -45,6 +45,7 @@ typename P::I32 linearise_landmark(const Window<P>& window, const PixelModel<P>&
   for (int j : P::range(0, number)) {
     const typename P::Code code("linearise_observation");
     const auto slot = records.slot(i, j);
+    // uncounted: where a landmark's observations begin
     const Pose<P> T = pose_of<P>(window.state, window.observation_keyframes[first + j]);
     const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
     Projection<P> at;

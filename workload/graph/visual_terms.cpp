@@ -156,12 +156,14 @@ void eliminate_landmark(const Window<P>& window, const LandmarkRecords<P>& recor
   const Vec3<P> rhs = load_vec3<P>(records.own(i), LandmarkRecords<P>::kRightHandSide);
   const int stride = system.unknowns();
   for (int a : P::range(0, number)) {
+    // uncounted: where a landmark's observations begin
     const I32 keyframe = window.observation_keyframes[first + a];
     const auto slot = records.slot(i, a);
     form_coupling<P>(slot, inverse, rhs, system.vector(keyframe), scratch.W.subspan(18 * a, 18),
                      scratch.Y);
     add_pose_block<P>(slot, system.block(keyframe, keyframe), stride);
     for (int b : P::range(0, a + 1)) {
+      // uncounted: where a landmark's observations begin
       const I32 other = window.observation_keyframes[first + b];
       subtract_elimination<P>(scratch.Y, scratch.W.subspan(18 * b, 18), a == b,
                               system.block(keyframe, other), stride);
@@ -180,6 +182,7 @@ Vec3<P> landmark_step(const Window<P>& window, const LandmarkRecords<P>& records
   Vec3<P> b = load_vec3<P>(records.own(i), LandmarkRecords<P>::kRightHandSide);
   for (int j : P::range(0, number)) {
     const auto slot = records.slot(i, j);
+    // uncounted: where a landmark's observations begin
     const auto step = solved.vector(I32(window.observation_keyframes[first + j]));
     const Vec3<P> turn = load_vec3<P>(step, 0), move = load_vec3<P>(step, 3);
     for (int row = 0; row < 2; ++row) {
@@ -208,6 +211,7 @@ LandmarkCost<P> landmark_cost(const Window<P>& window, const WindowState<P>& sta
   const int number = work::value(I32(window.observation_numbers[i]));
   LandmarkCost<P> sum{0.0f, false};
   for (int j : P::range(0, number)) {
+    // uncounted: where a landmark's observations begin
     const Pose<P> T = pose_of<P>(state, window.observation_keyframes[first + j]);
     const Vec3<P> in_camera = transpose(T.R) * (point - T.t);
     Projection<P> at;

@@ -9,6 +9,7 @@ namespace leviosim::vio {
 
 template <class P>
 void take_image(const FrameInput& input, FrontEndState<P>& state) {
+  // uncounted: the camera's own transfer
   std::memcpy(static_cast<void*>(state.keyframe.image.pixels.data()), input.pixels,
               static_cast<std::size_t>(input.width * input.height));
   ++state.frame_number;

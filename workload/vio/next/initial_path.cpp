@@ -27,6 +27,7 @@ void InitialPath<P>::remember() {
   const int at = count_++ % frames_;
   machine.copy_out(intervals_.subspan(at * kFloats, kFloats), record);
   const auto& graph = state_.graph_in_l2;
+  // uncounted: a place a frame
   keyframe_ids_[at] = I32(graph.keyframe_ids[graph.newest_keyframe()]);
 }
 
@@ -41,7 +42,7 @@ std::vector<EarlierPose> InitialPath<P>::poses() {
   const auto& graph = state_.graph_in_l2;
   for (int n = std::max(0, count_ - frames_); n < count_; ++n) {
     const int at = n % frames_;
-    const I32 id = keyframe_ids_[at];
+    const I32 id = keyframe_ids_[at];  // uncounted: a place a frame
     for (int k : P::range(0, work::value(graph.keyframe_count()))) {
       const I32 slot = graph.keyframe_slot(k);
       if (I32(graph.keyframe_ids[slot]) != id) continue;

@@ -53,6 +53,7 @@ void clear_record(typename P::template Span<typename P::Byte> counted, const Flo
   const auto size = static_cast<std::size_t>(counted.size());
   if constexpr (P::kCounting) {
     for (int i : P::range(0, counted.size())) counted[i] = work::narrow<Byte>(typename P::I32(0));
+    // uncounted: the loop above counts
     std::memcpy(static_cast<void*>(record.data()), counted.data(), size);
   } else {
     LEVIOSIM_TARGET_CLEAR(record.data(), 0, size);
@@ -184,11 +185,13 @@ void eliminate_landmark(const Window<P>& window, const LandmarkRecords<P>& recor
   const Vec3<P> rhs = load_vec3<P>(records.own(i), LandmarkRecords<P>::kRightHandSide);
   const int stride = system.unknowns();
   for (int a : P::range(0, number)) {
+    // uncounted: where a landmark's observations begin
     const I32 keyframe = window.observation_keyframes[first + a];
     const auto slot = records.slot(i, a);
     add_observation<P>(slot, inverse, rhs, system.block(keyframe, keyframe), stride,
                        system.vector(keyframe));
     for (int b : P::range(0, number)) {
+      // uncounted: where a landmark's observations begin
       const I32 other = window.observation_keyframes[first + b];
       subtract_elimination<P>(slot, records.slot(i, b), inverse, system.block(keyframe, other),
                               stride);
