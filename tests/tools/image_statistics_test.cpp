@@ -123,13 +123,13 @@ const ImageStatistic& row(const ImageStatistics& of, const std::string& name) {
 ImageStatistics of_flight(double duration_s, double noise) {
   const traces::testing::TempFolder folder;
   traces::write_synthetic_flight(folder / "flight",
-                                 {.duration_s = duration_s, .image_noise = noise, .texel_m = 0.04});
+                                 {.duration_s = duration_s, .image_noise = noise, .texel_m = 0.02});
   return image_statistics("flight", traces::open_asl(folder / "flight"), {160, 120});
 }
 
 TEST(ImageStatistics, OfADrawnFlightAreThoseOfItsRoom) {
-  const ImageStatistics clear = of_flight(1.7, 1);
-  EXPECT_EQ(clear.frames, 34u);
+  const ImageStatistics clear = of_flight(2.5, 1);
+  EXPECT_EQ(clear.frames, 50u);
   // The path keeps to the middle of a room of 8 x 6 x 4 m, beginning after a second.
   EXPECT_GT(row(clear, "depth").count, 100u);
   EXPECT_GT(row(clear, "depth").tenth, 0.8);
