@@ -69,8 +69,8 @@ TEST_F(CommandLine, ListsPlatforms) {
 }
 
 TEST_F(CommandLine, ShowsAndComparesPlatforms) {
-  const ProgramResult shown =
-      run_program(folder_.path(), {"platforms", "show", "gap9", "-p", "cluster.workers=4", "--yaml"});
+  const ProgramResult shown = run_program(
+      folder_.path(), {"platforms", "show", "gap9", "-p", "cluster.workers=4", "--yaml"});
   EXPECT_EQ(shown.status, 0);
   EXPECT_NE(shown.out.find("workers: { value: 4"), std::string::npos) << shown.out.substr(0, 2000);
   const ProgramResult compared =
@@ -221,6 +221,10 @@ TEST_F(CommandLine, RefusesOptionsOfRenderedFlightsThatDoNotFit) {
   expect_refusal(synth({"--imu", "real"}), {"--imu goes with --motion"});
   expect_refusal(synth({"--motion", motion, "--imu", "reel"}), {"'reel'", "real or simulated"});
   expect_refusal(synth({"--motion", motion, "--duration", "3"}), {"--frames A:B"});
+  expect_refusal(synth({"--world", "workshop:1"}), {"--world goes with --motion"});
+  expect_refusal(synth({"--motion", motion, "--world", "workshp:1"}), {"mean 'workshop'"});
+  expect_refusal(synth({"--motion", motion, "--world", "workshop:1", "--seed", "2"}),
+                 {"leave out --seed"});
   expect_refusal(synth({"--motion", motion, "--full-size", "--size", "16x12"}),
                  {"leave out --size"});
   expect_refusal(synth({"--motion", motion, "--motion-blur", "-1"}), {"--motion-blur '-1'"});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace leviosim::traces {
@@ -73,6 +74,46 @@ TEST(HallLayout, FollowsFromTheSeed) {
   for (std::size_t i = 0; i < a.objects.size(); ++i)
     EXPECT_EQ(a.objects[i].box.min(), again.objects[i].box.min());
   EXPECT_NE(a.hall.min(), b.hall.min());
+}
+
+TEST(WorkshopLayout, HasThingsNearThePathAndNoneTooNear) {
+  constexpr double kNear = 0.3;
+  const std::vector<Vector3d> path = loop();
+  for (std::uint64_t seed = 1; seed < 4; ++seed) {
+    const HallLayout layout = lay_out_workshop(path, kNear, seed);
+    std::size_t near = 0;
+    for (const Vector3d& position : path) {
+      EXPECT_GE(clearance(layout, position), kNear - 1e-9) << seed;
+      near += clearance(layout, position) < 0.8 ? 1 : 0;
+    }
+    EXPECT_GT(near, path.size() / 2) << "tables below the path, seed " << seed;
+    for (const SurfaceStyle style :
+         {SurfaceStyle::timber, SurfaceStyle::net, SurfaceStyle::cloth, SurfaceStyle::metal})
+      EXPECT_TRUE(std::any_of(layout.objects.begin(), layout.objects.end(),
+                              [&](const HallObject& o) { return o.style == style; }));
+  }
+}
+
+TEST(WorkshopLayout, FollowsFromTheSeed) {
+  const auto corners = [](std::uint64_t seed) {
+    std::vector<double> all;
+    for (const HallObject& object : lay_out_workshop(loop(), 0.3, seed).objects)
+      for (const double x : object.box.min()) all.push_back(x);
+    return all;
+  };
+  EXPECT_EQ(corners(1), corners(1));
+  EXPECT_NE(corners(1), corners(2));
+}
+
+TEST(SurroundLayout, IsAtItsDistanceAlongTheWholePath) {
+  const std::vector<Vector3d> path = loop();
+  for (const double distance : {1.0, 3.0, 10.0, 30.0}) {
+    const HallLayout layout = lay_out_surround(path, distance, 1);
+    for (const Vector3d& position : path) {
+      EXPECT_GE(clearance(layout, position), 0.999 * distance);
+      EXPECT_LT(clearance(layout, position), 2 * distance);
+    }
+  }
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "traces/datasets/image_file.h"
 #include "traces/datasets/image_source.h"
 #include "traces/datasets/imu_batches.h"
-#include "traces/synthesis/hall.h"
 #include "traces/datasets/rng.h"
+#include "traces/synthesis/hall.h"
 
 namespace leviosim::traces {
 namespace {
@@ -66,7 +66,7 @@ TEST(RenderedFlight, SameBytesOnAnyNumberOfThreadsAndOthersFromOtherSeeds) {
   write_rendered_flight(motion.root(), out / "a", options);
   options.threads = 3;
   write_rendered_flight(motion.root(), out / "b", options);
-  options.seed = 2;
+  options.place.seed = 2;
   write_rendered_flight(motion.root(), out / "c", options);
   const auto a = contents(out / "a");
   EXPECT_EQ(a.size(), 5u + 6u);
@@ -304,6 +304,26 @@ TEST(RenderedFlight, TheWholePathOfARecordingKeepsItsClearance) {
           std::min<double>(nearest, Eigen::AlignedBox3f(box.min, box.max).exteriorDistance(p));
   }
   EXPECT_GE(nearest, 0.8);
+}
+
+TEST(RenderedFlight, OtherPlacesAreDrawnTheSameOnAnyNumberOfThreads) {
+  const AslFolder motion;
+  const TempFolder out;
+  RenderedFlightOptions options = coarse();
+  options.overwrite = true;
+  const auto image_of = [&](const char* place, unsigned threads) {
+    options.place = parse_place("a world", place);
+    options.threads = threads;
+    write_rendered_flight(motion.root(), out / "flight", options);
+    return contents(out / "flight").at("mav0/cam0/data/5000000000.png");
+  };
+  const std::string hall = image_of("1", 1);
+  for (const char* place : {"workshop:1", "1m:1"}) {
+    const std::string image = image_of(place, 1);
+    EXPECT_EQ(image, image_of(place, 3));
+    EXPECT_NE(image, hall);
+  }
+  EXPECT_NE(image_of("workshop:1", 1), image_of("workshop:2", 1));
 }
 
 }  // namespace

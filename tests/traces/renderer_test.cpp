@@ -195,5 +195,38 @@ TEST(Renderer, GainScalesTheLightBeforeTheNoise) {
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(dark.size())), 2, 0.1);
 }
 
+TEST(Renderer, ShotNoiseRisesWithTheRootOfTheLight) {
+  const auto deviation = [](std::uint8_t grey) {
+    const World room(plain_box({-4, -4, -4}, {4, 4, 4}, grey), {});
+    const Renderer renderer(room, euroc_cam0(),
+                            {.noise = 1, .vignetting = 0, .seed = 1, .shot_noise = 4});
+    double sum = 0, squares = 0;
+    const std::vector<std::uint8_t> picture = renderer.render(camera_pose(), 0);
+    for (const std::uint8_t pixel : picture) {
+      sum += pixel;
+      squares += pixel * pixel;
+    }
+    const auto count = static_cast<double>(picture.size());
+    return std::sqrt(squares / count - sum / count * sum / count);
+  };
+  for (const int grey : {32, 128})
+    EXPECT_NEAR(deviation(static_cast<std::uint8_t>(grey)), std::sqrt(1 + 16 * grey / 128.0), 0.1);
+}
+
+TEST(Renderer, GlossIsALampThatOnlySomeViewsSee) {
+  Box plate = plain_box({-1, -1, 0}, {1, 1, 0.1f}, 100);
+  for (Surface& face : plate.faces) face.gloss = 100;
+  const World world(plain_box({-9, -9, -9}, {9, 9, 9}, 0), {plate});
+  const auto seen = [&](const Eigen::Vector3f& from) {
+    const Hit hit = world.cast(from, -from);
+    return World::grey(hit, from, -from, 1e-3f);
+  };
+  const Eigen::Vector3f lamp(0.5f, 0.35f, 0.79f);
+  const Eigen::Vector3f mirrored(-0.5f, -0.35f, 0.79f);
+  EXPECT_NEAR(seen(3 * mirrored), 200, 2);
+  EXPECT_NEAR(seen(3 * lamp), 100, 10);
+  EXPECT_LT(seen(3 * lamp), seen(3 * mirrored));
+}
+
 }  // namespace
 }  // namespace leviosim::traces

@@ -63,7 +63,7 @@ std::string list_text(const Benchmark& benchmark) {
     text +=
         fmt::format("{}\t{}\t{}\t{}:{}\t{:.2f} s\t{:.2f} m{}\n",
                     printable(benchmark.plan.sets[piece.set].name), printable(motion.sequence.name),
-                    motion.recorded ? "recorded" : fmt::format("world {}", piece.world),
+                    motion.recorded ? "recorded" : fmt::format("world {}", piece.world.text()),
                     piece.frames.begin, piece.frames.end, piece.start_s, piece.path_m,
                     disturbance.kind == nullptr ? "" : "\t" + disturbance.text());
   }

@@ -11,6 +11,7 @@
 #include "tools/app/cli/printout.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_options.h"
+#include "traces/synthesis/place.h"
 #include "traces/synthesis/rendered_flight.h"
 
 namespace leviosim::tools {
@@ -21,6 +22,7 @@ struct SynthOptions {
   std::string motion;
   std::string seed = fmt::format("{}", kFlightSeed);
   std::string duration = fmt::format("{:g}", kFlightSeconds);
+  std::string world;
   std::string size = "160x120";
   std::string imu;
   std::string frames;
@@ -31,7 +33,7 @@ struct SynthOptions {
   bool quiet = false;
 };
 
-constexpr auto kMotionOptions = {"--size",   "--full-size",   "--imu",
+constexpr auto kMotionOptions = {"--world",  "--size",        "--full-size",   "--imu",
                                  "--frames", "--motion-blur", "--illumination"};
 
 std::uint64_t seed(const SynthOptions& options) {
@@ -51,10 +53,13 @@ traces::RenderedFlightOptions rendered_options(const CLI::App& command,
   if (command.count("--duration") > 0)
     throw InputError(
         "synth: with --motion the recording says how long; use --frames A:B for a part");
+  if (!options.world.empty() && command.count("--seed") > 0)
+    throw InputError("synth: --world has a seed, such as workshop:4; leave out --seed");
   if (options.full_size && command.count("--size") > 0)
     throw InputError("synth: --full-size writes the camera's images; leave out --size");
   traces::RenderedFlightOptions rendered;
-  rendered.seed = seed(options);
+  rendered.place.seed = seed(options);
+  if (!options.world.empty()) rendered.place = traces::parse_place("--world", options.world);
   if (!options.full_size) rendered.prepared = parse_size(options.size);
   rendered.imu = parse_imu(options.imu);
   if (!options.frames.empty()) rendered.frames = {traces::parse_frame_range(options.frames)};
@@ -100,7 +105,9 @@ void add_motion_options(CLI::App& command, SynthOptions& options) {
     command.add_option(name, value, help)->type_name(type)->group("With --motion");
   };
   add("--motion", options.motion, "DIR",
-      "fly along the ground truth of this ASL folder (images not needed) through a hall");
+      "fly along the ground truth of this ASL folder (images not needed) through a world");
+  add("--world", options.world, "KIND:N",
+      "place and its seed: hall:1, workshop:1, or surfaces at a distance, 0.3m:1 [hall:1]");
   add("--size", options.size, "WxH",
       "of the images, undistorted and decimated as by run [160x120]");
   command.add_flag("--full-size", options.full_size, "the camera's images instead")

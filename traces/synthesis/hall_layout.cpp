@@ -4,79 +4,42 @@
 #include <cmath>
 #include <utility>
 
-#include "traces/datasets/rng.h"
+#include "traces/synthesis/layout_builder.h"
+#include "traces/synthesis/painted_box.h"
 
 namespace leviosim::traces {
 namespace {
 
-using Extent = Eigen::AlignedBox3d;
 using Eigen::Vector3d;
-using Group = std::vector<HallObject>;  // things that are placed together or not at all
+using Group = LayoutBuilder::Group;
 
-Extent box_at(const Vector3d& min, const Vector3d& size) { return {min, Vector3d(min + size)}; }
+constexpr std::array<HallFace, 6> kHallFaces{{{SurfaceStyle::plaster, 95},
+                                              {SurfaceStyle::panels, 145},
+                                              {SurfaceStyle::bricks, 170},
+                                              {SurfaceStyle::plaster, 115},
+                                              {SurfaceStyle::planks, 90},
+                                              {SurfaceStyle::panels, 60}}};
 
-/// The hall so far. Things are tried one after the other; what does not fit is left out.
-class Builder {
+class HallBuilder : public LayoutBuilder {
  public:
-  Builder(std::span<const Vector3d> path, double clearance_m, std::uint64_t seed)
-      : path_(path), clearance_m_(clearance_m), rng_(seed) {
-    Extent around;
-    for (const Vector3d& position : path) around.extend(position);
-    const auto margin = [this](double low, double high) {
-      return std::max(clearance_m_, rng_.uniform(low, high));
-    };
-    // In braces the draws are made from left to right, whatever the compiler.
-    const Vector3d below{margin(3, 4.5), margin(3, 4.5), margin(1, 1.3)};
-    const Vector3d above{margin(3, 4.5), margin(3, 4.5), margin(2.5, 3.5)};
-    layout_.hall = Extent(around.min() - below, around.max() + above);
-  }
+  using LayoutBuilder::LayoutBuilder;
 
   HallLayout build() {
+    layout_.faces = kHallFaces;
+    layout_.light = kObjectLight;
     add_mezzanine();
     add_beams();
     add_wall_pillars();
-    scatter(&Builder::free_pillar, 30);
-    scatter(&Builder::machine, 60);
-    scatter(&Builder::stack_of_crates, 90);
-    scatter(&Builder::table, 40);
-    scatter(&Builder::duct, 8);
+    scatter(&HallBuilder::free_pillar, 30);
+    scatter(&HallBuilder::machine, 60);
+    scatter(&HallBuilder::stack_of_crates, 90);
+    scatter(&HallBuilder::table, 40);
+    scatter(&HallBuilder::duct, 8);
     for (int wall = 0; wall < 4; ++wall) furnish_wall(wall);
     return std::move(layout_);
   }
 
  private:
-  const Vector3d& low() const { return layout_.hall.min(); }
-  const Vector3d& high() const { return layout_.hall.max(); }
-
-  bool clear_of_path(const Extent& box) const {
-    return std::all_of(path_.begin(), path_.end(), [&](const Vector3d& position) {
-      return box.exteriorDistance(position) >= clearance_m_;
-    });
-  }
-  bool fits(const Extent& box) const {
-    constexpr double kTouching = 1e-6;  // neighbours may touch
-    const Extent core(box.min().array() + kTouching, box.max().array() - kTouching);
-    return layout_.hall.contains(core) && clear_of_path(box) &&
-           std::none_of(layout_.objects.begin(), layout_.objects.end(),
-                        [&](const HallObject& other) { return other.box.intersects(core); });
-  }
-  bool add(const Group& group) {
-    const bool fit =
-        std::all_of(group.begin(), group.end(), [this](const auto& o) { return fits(o.box); });
-    if (fit) layout_.objects.insert(layout_.objects.end(), group.begin(), group.end());
-    return fit;
-  }
-  void scatter(Group (Builder::*make)(), int tries) {
-    for (int i = 0; i < tries; ++i) add((this->*make)());
-  }
-  /// A place on the floor for something with this footprint.
-  Vector3d floor_spot(double size_x, double size_y) {
-    const double x = rng_.uniform(low().x(), high().x() - size_x);
-    const double y = rng_.uniform(low().y(), high().y() - size_y);
-    return {x, y, low().z()};
-  }
-  double tone(double from, double to) { return rng_.uniform(from, to); }
-
   Group free_pillar();
   Group machine();
   Group stack_of_crates();
@@ -86,23 +49,16 @@ class Builder {
   void add_beams();
   void add_wall_pillars();
   void furnish_wall(int wall);
-  Extent against_wall(int wall, double along, double width, double depth, double z, double height,
-                      double gap) const;
-
-  std::span<const Vector3d> path_;
-  double clearance_m_;
-  Rng rng_;
-  HallLayout layout_;
 };
 
-Group Builder::free_pillar() {
+Group HallBuilder::free_pillar() {
   const double edge = rng_.uniform(0.25, 0.5);
   const Vector3d size(edge, edge, high().z() - low().z());
   return {{box_at(floor_spot(edge, edge), size), SurfaceStyle::plaster, tone(60, 170)}};
 }
 
 /// A large block with a smaller one on top.
-Group Builder::machine() {
+Group HallBuilder::machine() {
   const Vector3d size{rng_.uniform(1.0, 2.6), rng_.uniform(0.9, 2.0), rng_.uniform(1.1, 2.6)};
   const Vector3d corner = floor_spot(size.x(), size.y());
   const Vector3d head{size.x() * rng_.uniform(0.3, 0.6), size.y() * rng_.uniform(0.3, 0.6),
@@ -113,7 +69,7 @@ Group Builder::machine() {
           {box_at(corner + shift, head), SurfaceStyle::panels, tone(40, 200)}};
 }
 
-Group Builder::stack_of_crates() {
+Group HallBuilder::stack_of_crates() {
   Group group;
   double edge = rng_.uniform(0.5, 1.2);
   Vector3d corner = floor_spot(edge, edge);
@@ -129,7 +85,7 @@ Group Builder::stack_of_crates() {
 }
 
 /// A table top on two trestles with something on it.
-Group Builder::table() {
+Group HallBuilder::table() {
   const double length = rng_.uniform(1.2, 2.0);
   const double depth = rng_.uniform(0.6, 0.9);
   const bool turned = rng_.chance(0.5);
@@ -153,7 +109,7 @@ Group Builder::table() {
 }
 
 /// A channel hung below the beams.
-Group Builder::duct() {
+Group HallBuilder::duct() {
   const bool along_x = rng_.chance(0.5);
   const Vector3d size = high() - low();
   const double across = rng_.uniform(0.1, 0.9);
@@ -166,21 +122,8 @@ Group Builder::duct() {
        SurfaceStyle::panels, tone(110, 170)}};
 }
 
-/// A box at wall 0 (-x), 1 (+x), 2 (-y) or 3 (+y), `along` from the wall's beginning.
-Extent Builder::against_wall(int wall, double along, double width, double depth, double z,
-                             double height, double gap) const {
-  const bool at_x = wall < 2;
-  const bool at_max = wall % 2 == 1;
-  const int normal = at_x ? 0 : 1;
-  const double near = at_max ? high()[normal] - gap - depth : low()[normal] + gap;
-  const double begin = low()[1 - normal] + along;
-  const Vector3d corner =
-      at_x ? Vector3d(near, begin, low().z() + z) : Vector3d(begin, near, low().z() + z);
-  return box_at(corner, at_x ? Vector3d(depth, width, height) : Vector3d(width, depth, height));
-}
-
 /// A gallery along one wall: slab, supports, rails, and crates on it.
-void Builder::add_mezzanine() {
+void HallBuilder::add_mezzanine() {
   const int wall = rng_.below(4);
   const double length = high()[wall < 2 ? 1 : 0] - low()[wall < 2 ? 1 : 0];
   const double depth = rng_.uniform(1.6, 2.1);
@@ -203,7 +146,7 @@ void Builder::add_mezzanine() {
   }
 }
 
-void Builder::add_beams() {
+void HallBuilder::add_beams() {
   const Vector3d size = high() - low();
   const double spacing = rng_.uniform(2.2, 3.2);
   for (double x = 0.4 * spacing; x < size.x() - 0.4; x += spacing)
@@ -211,7 +154,7 @@ void Builder::add_beams() {
           SurfaceStyle::planks, tone(80, 130)}});
 }
 
-void Builder::add_wall_pillars() {
+void HallBuilder::add_wall_pillars() {
   for (int wall = 0; wall < 4; ++wall) {
     const int axis = wall < 2 ? 1 : 0;
     const double length = high()[axis] - low()[axis];
@@ -223,7 +166,7 @@ void Builder::add_wall_pillars() {
 }
 
 /// Racks, cabinets and, above them, boards.
-void Builder::furnish_wall(int wall) {
+void HallBuilder::furnish_wall(int wall) {
   const int axis = wall < 2 ? 1 : 0;
   const double length = high()[axis] - low()[axis];
   for (double along = rng_.uniform(0, 1); along < length; along += rng_.uniform(0.3, 1.2)) {
@@ -246,7 +189,7 @@ void Builder::furnish_wall(int wall) {
 }  // namespace
 
 HallLayout lay_out_hall(std::span<const Vector3d> path, double clearance_m, std::uint64_t seed) {
-  return Builder(path, clearance_m, seed).build();
+  return HallBuilder(path, clearance_m, seed).build();
 }
 
 }  // namespace leviosim::traces

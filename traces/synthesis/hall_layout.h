@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,10 +19,19 @@ struct HallObject {
   Eigen::AlignedBox3d box;  ///< [m], in the world
   SurfaceStyle style = SurfaceStyle::plaster;
   double tone = 120;  ///< mean grey level
+  float gloss = 0;    ///< Surface::gloss
+};
+
+/// What a wall, the floor or the ceiling is made of.
+struct HallFace {
+  SurfaceStyle style = SurfaceStyle::plaster;
+  double tone = 120;  ///< mean grey level
 };
 
 struct HallLayout {
-  Eigen::AlignedBox3d hall;  ///< floor, ceiling and walls
+  Eigen::AlignedBox3d hall;       ///< floor, ceiling and walls
+  std::array<HallFace, 6> faces;  ///< of the hall, as those of a Box
+  std::array<float, 6> light;     ///< on the faces of objects
   std::vector<HallObject> objects;
 };
 
@@ -29,5 +39,15 @@ struct HallLayout {
 /// one.
 HallLayout lay_out_hall(std::span<const Eigen::Vector3d> path, double clearance_m,
                         std::uint64_t seed);
+
+/// A workshop: pallets and nets just below the path, behind them rails, cables, shelves and dark
+/// machines, in a dark hall with light from one side.
+HallLayout lay_out_workshop(std::span<const Eigen::Vector3d> path, double clearance_m,
+                            std::uint64_t seed);
+
+/// Blocks around the path, the nearest of which are `distance_m` away wherever one looks, and
+/// farther ones by at most that much again.
+HallLayout lay_out_surround(std::span<const Eigen::Vector3d> path, double distance_m,
+                            std::uint64_t seed);
 
 }  // namespace leviosim::traces

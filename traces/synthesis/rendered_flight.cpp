@@ -24,7 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Parts of the flight that have a seed of their own.
-enum SeedPart : std::uint64_t { kWorldSeed, kLightSeed, kImuSeed, kImageSeed };
+enum RenderedPart : std::uint64_t { kPlaceSeed, kLightSeed, kSimulatedImuSeed, kPictureSeed };
+
+// A small sensor and a wide lens, open in little light.
+constexpr double kWorkshopShotNoise = 4;  // at 128 [grey levels]
+constexpr double kWorkshopVignetting = 0.45;
+constexpr double kWorkshopSpotPx =
+    0.9;  // standard deviation of the lens's blur, also at silhouettes
 
 /// Everything about the flight but its pictures.
 struct Plan {
@@ -132,7 +138,9 @@ void write_streams(outputs::OutputFolder& out, const Plan& plan,
     write(name, base::read_text_file(plan.record.mav0 / name));
   };
   const fs::path truth = "state_groundtruth_estimate0";
-  const std::string comment = fmt::format("leviosim rendered flight, seed {}", options.seed);
+  const std::string comment =
+      fmt::format("leviosim rendered flight, {} {}",
+                  options.place.kind == PlaceKind::hall ? "seed" : "world", options.place.text());
   if (options.prepared)
     write("cam0/sensor.yaml",
           format_camera_yaml(
@@ -147,16 +155,28 @@ void write_streams(outputs::OutputFolder& out, const Plan& plan,
     copy(truth / "data.csv");
     return;
   }
-  ImuSynthesizer imu(plan.record.imu_model, derive_seed(options.seed, kImuSeed));
+  ImuSynthesizer imu(plan.record.imu_model, derive_seed(options.place.seed, kSimulatedImuSeed));
   const ImuTrack track = record_imu(plan.motion, &imu, plan.origin_ns, plan.imu_stamps);
   write("imu0/data.csv", format_imu_csv(track.samples));
   write(truth / "data.csv", format_ground_truth_csv(track.truth));
 }
 
+/// Each pose turned up, down, left and right by an angle: a lens that blurs silhouettes, too.
+std::vector<Eigen::Isometry3d> blurred(const std::vector<Eigen::Isometry3d>& poses, double angle) {
+  std::vector<Eigen::Isometry3d> all;
+  for (const Eigen::Isometry3d& pose : poses)
+    for (const double x : {-angle, angle})
+      for (const double y : {-angle, angle})
+        all.push_back(pose * Eigen::AngleAxisd(x, Eigen::Vector3d::UnitX()) *
+                      Eigen::AngleAxisd(y, Eigen::Vector3d::UnitY()));
+  return all;
+}
+
 /// Camera poses over which the picture at a time is averaged: so many that the scene moves by about
 /// a pixel between two of them.
 std::vector<Eigen::Isometry3d> exposure_poses(const Plan& plan, std::int64_t t_ns,
-                                              double exposure_s) {
+                                              const RenderedFlightOptions& options) {
+  const double exposure_s = options.exposure_s;
   constexpr double kTypicalDepthM = 3;
   constexpr double kMostPoses = 16;
   const CameraModel& camera = plan.record.camera;
@@ -170,6 +190,8 @@ std::vector<Eigen::Isometry3d> exposure_poses(const Plan& plan, std::int64_t t_n
   const double count = std::clamp(std::ceil(shift_px), 1.0, kMostPoses);
   std::vector<Eigen::Isometry3d> poses;
   for (double k = 0; k < count; ++k) poses.push_back(pose(exposure_s * ((k + 0.5) / count - 0.5)));
+  if (options.place.kind == PlaceKind::workshop)
+    poses = blurred(poses, kWorkshopSpotPx / camera.fx);
   return poses;
 }
 
@@ -178,9 +200,11 @@ World make_world(const Plan& plan, const RenderedFlightOptions& options) {
   for (const GroundTruthPose& pose : plan.record.ground_truth)
     path.push_back((pose.T_world_body * plan.record.camera.T_body_camera).translation());
   HallOptions hall;
-  hall.seed = derive_seed(options.seed, kWorldSeed);
+  hall.seed = derive_seed(options.place.seed, kPlaceSeed);
   hall.texels = options.texels;
   hall.threads = options.threads;
+  hall.kind = options.place.kind;
+  if (hall.kind == PlaceKind::surround) hall.clearance_m = options.place.distance_m;
   return make_hall(path, plan.record.camera, hall);
 }
 
@@ -192,13 +216,17 @@ void write_pictures(outputs::OutputFolder& out, const Plan& plan,
   RenderOptions render_options;
   render_options.noise = options.image_noise;
   render_options.spot_px = options.spot_px;
-  render_options.seed = derive_seed(options.seed, kImageSeed);
+  if (options.place.kind == PlaceKind::workshop) {
+    render_options.shot_noise = kWorkshopShotNoise;
+    render_options.vignetting = kWorkshopVignetting;
+  }
+  render_options.seed = derive_seed(options.place.seed, kPictureSeed);
   if (options.prepared) render_options.wanted = preparation.pixels_read();
   const World world = make_world(plan, options);
   const Renderer renderer(world, camera, render_options);
-  const Illumination light(derive_seed(options.seed, kLightSeed));
+  const Illumination light(derive_seed(options.place.seed, kLightSeed));
   const auto draw = [&](std::size_t i) {
-    const auto poses = exposure_poses(plan, plan.frames[i], options.exposure_s);
+    const auto poses = exposure_poses(plan, plan.frames[i], options);
     const double gain =
         options.illumination ? light.gain(seconds_of_motion(plan, plan.frames[i])) : 1;
     std::vector<std::uint8_t> pixels =

@@ -1,5 +1,5 @@
 // Flights whose motion was recorded and whose pictures are drawn: the camera of an ASL folder moves
-// along that folder's ground truth through a hall that is built around the path (hall.h). The IMU
+// along that folder's ground truth through a place that is built around the path (hall.h). The IMU
 // stream is the recorded one, or simulated along the smoothed path (recorded_motion.h); so the
 // inertial half of the flight can be real, at full length, without the pictures.
 //
@@ -23,13 +23,14 @@
 #include "traces/datasets/frame_range.h"
 #include "traces/datasets/image_preparation.h"
 #include "traces/synthesis/flight_images.h"
+#include "traces/synthesis/place.h"
 
 namespace leviosim::traces {
 
 enum class ImuSource { automatic, recorded, simulated };
 
 struct RenderedFlightOptions {
-  std::uint64_t seed = 1;                ///< of hall, light, and noise
+  Place place;                           ///< its seed is also that of light and noise
   std::optional<ImageSize> prepared;     ///< size of the prepared images; absent: full images
   ImuSource imu = ImuSource::automatic;  ///< automatic: recorded if there is a recording
   /// Of the whole flight, one behind the other; all frames if there is none. A frame has the same
@@ -37,7 +38,7 @@ struct RenderedFlightOptions {
   std::vector<FrameRange> frames;
   double exposure_s = 0;      ///< of the motion blur, centred on the stamp; 0: none
   bool illumination = false;  ///< changes with time (illumination.h)
-  double image_noise = 1.2;   ///< standard deviation [grey levels]
+  double image_noise = 1.2;   ///< standard deviation [grey levels]; of a workshop more, in light
   double spot_px = 2;         ///< softness of the lens, RenderOptions::spot_px
   double texels = 1;          ///< HallOptions::texels
   unsigned threads = 0;       ///< 0: as many as the host has; the result does not depend on it

@@ -26,6 +26,7 @@ Renderer::Renderer(const World& world, const CameraModel& camera, const RenderOp
       pixel_angle_(static_cast<float>(options.spot_px / std::sqrt(camera.fx * camera.fy))),
       seed_(options.seed) {
   const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
+  check(options.shot_noise == 0 || options.noise > 0, "Renderer: shot noise beside read noise");
   check(options.wanted.empty() || options.wanted.size() == pixels, "Renderer: wanted pixels");
   make_tiles(camera, options);
   make_noise(options);
@@ -68,6 +69,9 @@ void Renderer::make_noise(const RenderOptions& options) {
   Rng rng(derive_seed(options.seed, 0));
   noise_.resize(std::size_t{1} << kNoiseBits);
   for (float& value : noise_) value = static_cast<float>(options.noise * rng.normal());
+  constexpr double kGreyOfShot = 128;
+  const double ratio = options.shot_noise / options.noise;
+  if (options.shot_noise > 0) shot_ = static_cast<float>(ratio * ratio / kGreyOfShot);
 }
 
 void Renderer::add_light(const Eigen::Isometry3d& T_world_camera, std::vector<float>& light) const {
@@ -104,7 +108,9 @@ std::vector<std::uint8_t> Renderer::expose(const std::vector<float>& light, floa
       draws = rng.next();
       left = kDrawsPerNumber;
     }
-    const float value = grey[i] + noise_[draws & (noise_.size() - 1)];
+    float noise = noise_[draws & (noise_.size() - 1)];
+    if (shot_ > 0 && grey[i] > 0) noise *= std::sqrt(1 + shot_ * grey[i]);
+    const float value = grey[i] + noise;
     draws >>= kNoiseBits;
     --left;
     if (grey[i] >= 0) bytes[i] = static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);

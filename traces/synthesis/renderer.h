@@ -27,6 +27,9 @@ struct RenderOptions {
   /// For each pixel, row by row, whether it is drawn (not 0) or left black; all if empty. The drawn
   /// pixels are those of the whole picture.
   std::vector<std::uint8_t> wanted = {};
+  /// Of the noise that rises with the root of the light, where it is 128; only beside the other
+  /// one. [grey levels]
+  double shot_noise = 0;
 };
 
 /// One picture to be taken.
@@ -69,6 +72,7 @@ class Renderer {
   int height_;
   float pixel_angle_;
   std::uint64_t seed_;
+  float shot_ = 0;  // squares of shot over other noise, for each grey level
   std::vector<Tile> tiles_;
   std::vector<std::size_t> pixels_;    // index in the picture, tile by tile
   std::vector<Eigen::Vector3f> rays_;  // camera frame, z = 1

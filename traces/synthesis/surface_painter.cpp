@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "traces/synthesis/canvas.h"
 #include "traces/datasets/rng.h"
+#include "traces/synthesis/canvas.h"
+#include "traces/synthesis/material_painter.h"
 
 namespace leviosim::traces {
 namespace {
@@ -171,6 +172,7 @@ void add_octaves(Canvas& canvas, float amplitude, double scale, std::uint64_t se
 }  // namespace
 
 Texture paint_surface(const SurfaceSpec& spec) {
+  if (spec.style >= SurfaceStyle::timber) return paint_material(spec);
   const StyleRow& style = style_row(spec.style);
   Canvas canvas(spec.width_m, spec.height_m, spec.texel_m);
   const double s = spec.scale;

@@ -10,7 +10,7 @@
 
 namespace leviosim::traces {
 
-enum class SurfaceStyle { plaster, planks, bricks, crate, panels };
+enum class SurfaceStyle { plaster, planks, bricks, crate, panels, timber, net, cloth, metal };
 
 struct SurfaceSpec {
   SurfaceStyle style = SurfaceStyle::plaster;

@@ -38,6 +38,17 @@ Crossing cross(const Box& box, const Eigen::Vector3f& origin, const Eigen::Vecto
   return crossing;
 }
 
+/// How much of the lamp, 0 to 1, is seen by a ray that a face mirrors: a wide highlight (Phong
+/// 1975) around one direction, as from windows far away.
+float lamp_in(int axis, const Eigen::Vector3f& direction) {
+  static const Eigen::Vector3f lamp = Eigen::Vector3f(0.5f, 0.35f, 0.79f).normalized();
+  Eigen::Vector3f mirrored = direction;
+  mirrored[axis] = -mirrored[axis];
+  const float cosine = std::max(0.0f, mirrored.dot(lamp));
+  const float squared = cosine * cosine;
+  return squared * squared * squared;
+}
+
 }  // namespace
 
 World::World(Box room, std::vector<Box> objects)
@@ -74,9 +85,12 @@ float World::grey(const Hit& hit, const Eigen::Vector3f& origin, const Eigen::Ve
   const float length = direction.norm();
   const float cosine = std::max(0.02f, std::abs(direction[axis]) / length);
   const float footprint_m = hit.reach * length * pixel_angle / std::sqrt(cosine);
-  return surface.light * surface.texture.sample(offset[axes.u] * surface.texels_per_m,
-                                                offset[axes.v] * surface.texels_per_m,
-                                                footprint_m * surface.texels_per_m);
+  const float painted =
+      surface.light * surface.texture.sample(offset[axes.u] * surface.texels_per_m,
+                                             offset[axes.v] * surface.texels_per_m,
+                                             footprint_m * surface.texels_per_m);
+  if (surface.gloss == 0) return painted;
+  return painted + surface.gloss * lamp_in(axis, direction / length);
 }
 
 Box plain_box(const Eigen::Vector3f& min, const Eigen::Vector3f& max, std::uint8_t grey) {

@@ -1,6 +1,6 @@
 // The world that synthetic cameras look at: a rectangular room seen from inside and solid boxes in
-// it, all with edges along the axes, each face with its own texture. Left out: slanted or curved
-// surfaces, reflections, shadows, anything that moves.
+// it, all with edges along the axes, each face with its own texture and, perhaps, a soft reflection
+// of a lamp. Left out: slanted or curved surfaces, mirrors, shadows, anything that moves.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +18,8 @@ struct Surface {
   Texture texture;
   float texels_per_m = 1;
   float light = 1;  ///< factor on the grey levels
+  /// Of a lamp above that it reflects softly: grey levels where the mirrored ray meets the lamp.
+  float gloss = 0;
 };
 
 /// Face 2 a + s is perpendicular to axis a, at min (s = 0) or max (s = 1). Its texture's u and v

@@ -125,8 +125,8 @@ void add_pieces(Benchmark& benchmark, std::size_t length, std::size_t set, std::
   const auto same = [&](const FlightPiece& p) { return p.motion == motion && p.length == length; };
   if (flight.recorded || std::none_of(benchmark.pieces.begin(), benchmark.pieces.end(), same))
     benchmark.too_late += ranges.too_late;
-  const std::vector<std::uint64_t> as_recorded{0};
-  for (const std::uint64_t world : flight.recorded ? as_recorded : plan.sets[set].worlds)
+  const std::vector<traces::Place> as_recorded{{.seed = 0}};
+  for (const traces::Place& world : flight.recorded ? as_recorded : plan.sets[set].worlds)
     for (const FrameRange& frames : ranges.frames)
       for (std::size_t d = 0; d < plan.disturbances.size(); ++d) {
         FlightPiece& piece = benchmark.pieces.emplace_back(make_piece(flight, frames));
@@ -149,7 +149,7 @@ std::string pictures_of(const Benchmark& benchmark, const FlightPiece& piece) {
     return fmt::format("{} frames {}:{}{}", motion.sequence.work, piece.frames.begin,
                        piece.frames.end, disturbed);
   return fmt::format("rendered {} world {} size {}x{} frames {}:{} by {}{}", motion.sequence.inputs,
-                     piece.world, width, height, piece.frames.begin, piece.frames.end,
+                     piece.world.text(), width, height, piece.frames.begin, piece.frames.end,
                      flight_version(), disturbed);
 }
 
@@ -160,7 +160,9 @@ std::string name_in_cache(const Benchmark& benchmark, const DrawnFlight& flight)
   std::string made_from = fmt::format("{} by {}", sequence.inputs, flight_version());
   for (const FrameRange& range : flight.frames)
     made_from += fmt::format(" {}:{}", range.begin, range.end);
-  return fmt::format("rendered/{}-world-{}-{}x{}-{}", sequence.name, flight.world, width, height,
+  std::string world = flight.world.text();
+  std::replace(world.begin(), world.end(), ':', '-');
+  return fmt::format("rendered/{}-world-{}-{}x{}-{}", sequence.name, world, width, height,
                      base::sha256_of(made_from).substr(0, 12));
 }
 
@@ -168,14 +170,15 @@ std::string draw(const Benchmark& benchmark, const DrawnFlight& flight,
                  const RunnerOptions& runner) {
   const Sequence& sequence = benchmark.motions[flight.motion].sequence;
   traces::RenderedFlightOptions options = rendered_options(benchmark.plan);
-  options.seed = flight.world;
+  options.place = flight.world;
   options.frames = flight.frames;
   options.threads = runner.threads;
   return cached_flight(name_in_cache(benchmark, flight),
                        [&](const fs::path& folder) {
-                         render_flight(sequence.folder, folder, options,
-                                       fmt::format("{}, world {}", sequence.name, flight.world),
-                                       runner.progress);
+                         render_flight(
+                             sequence.folder, folder, options,
+                             fmt::format("{}, world {}", sequence.name, flight.world.text()),
+                             runner.progress);
                        })
       .string();
 }
@@ -234,7 +237,7 @@ std::vector<Point> benchmark_runs(const Benchmark& benchmark) {
 }
 
 std::vector<DrawnFlight> drawn_flights(const Benchmark& benchmark) {
-  std::map<std::pair<std::size_t, std::uint64_t>, std::vector<FrameRange>> all;
+  std::map<std::pair<std::size_t, traces::Place>, std::vector<FrameRange>> all;
   for (const FlightPiece& piece : benchmark.pieces)
     if (!benchmark.motions[piece.motion].recorded)
       all[{piece.motion, piece.world}].push_back(piece.frames);

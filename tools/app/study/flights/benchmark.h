@@ -27,7 +27,7 @@ struct FlightMotion {
 struct FlightPiece {
   std::size_t motion = 0;  ///< of the benchmark
   std::size_t set = 0;     ///< of the plan
-  std::uint64_t world = 0;
+  traces::Place world{};      ///< of a motion
   std::size_t disturbance = 0;        ///< of the plan
   std::size_t length = kWholeFlight;  ///< as in the plan
   traces::FrameRange frames;          ///< of the whole flight
@@ -56,7 +56,7 @@ std::size_t row_of(const Benchmark& benchmark, std::size_t variant, std::size_t 
 /// What is drawn of a motion in a world: the frames of all its pieces. Recordings are not drawn.
 struct DrawnFlight {
   std::size_t motion = 0;
-  std::uint64_t world = 0;
+  traces::Place world{};
   std::vector<traces::FrameRange> frames;  ///< merged()
 };
 /// By motion, then world.

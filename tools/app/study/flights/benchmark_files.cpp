@@ -29,7 +29,7 @@ std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Poi
   columns.add("variant",
               [&](Run r) { return plan.variants[r.point.row / benchmark.pieces.size()].name(); });
   columns.add("set", [=, &plan](Run r) { return plan.sets[piece_of(r).set].name; });
-  columns.add("world", [=](Run r) { return piece_of(r).world; });
+  columns.add("world", [=](Run r) { return piece_of(r).world.text(); });
   columns.add("disturbance",
               [=, &plan](Run r) { return plan.disturbances[piece_of(r).disturbance].text(); });
   columns.add("piece", [=](Run r) { return length_text(piece_of(r).length); });
@@ -55,7 +55,7 @@ std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result
   table.add("set", [=, &plan](R r) { return plan.sets[piece_of(r).set].name; });
   table.add("motion",
             [=, &benchmark](R r) { return benchmark.motions[piece_of(r).motion].sequence.name; });
-  table.add("world", [=](R r) { return piece_of(r).world; });
+  table.add("world", [=](R r) { return piece_of(r).world.text(); });
   table.add("disturbance",
             [=, &plan](R r) { return plan.disturbances[piece_of(r).disturbance].text(); });
   table.add("start_s", [=](R r) { return fixed(piece_of(r).start_s, 3); });

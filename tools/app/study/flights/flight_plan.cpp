@@ -180,8 +180,7 @@ class PlanReader {
 
   void read_worlds(const std::vector<Item>& worlds, FlightSet& set) {
     for (const Item& item : worlds) {
-      set.worlds.push_back(
-          whole<std::uint64_t>("a world", item, 0, std::numeric_limits<std::int64_t>::max()));
+      checked(item.place, [&] { set.worlds.push_back(traces::parse_place("a world", item.text)); });
       if (!worlds_.insert(set.worlds.back()).second)
         item.place.fail(
             fmt::format("world {} is in another set, too; sets share no world", item.text));
@@ -221,7 +220,7 @@ class PlanReader {
 
   std::string file_;
   FlightPlan plan_;
-  std::set<std::uint64_t> worlds_;  ///< of all sets
+  std::set<traces::Place> worlds_;  ///< of all sets
 };
 
 }  // namespace
@@ -232,8 +231,10 @@ std::string length_text(std::size_t frames) {
 }
 
 std::string FlightSet::text() const {
+  std::vector<std::string> names;
+  for (const traces::Place& world : worlds) names.push_back(world.text());
   return recorded() ? fmt::format("frames {}, {}, ... of recordings", first, first + step)
-                    : fmt::format("worlds {}", fmt::join(worlds, ", "));
+                    : fmt::format("worlds {}", fmt::join(names, ", "));
 }
 
 std::string FlightVariant::name() const {

@@ -2,7 +2,8 @@
 // workload, seeds. A plan is part of the program and has a name, or a file:
 //
 //   motions: [MH_01_easy, V1_02_medium]      # folders, where the user says
-//   worlds:                                   # seeds of what is drawn, in sets
+//   worlds:                                   # seeds of what is drawn, or workshop:1, 0.3m:1
+//                                             # (place.h), in sets
 //     development: [1, 2, 3]
 //     fresh: [4, 5, 6]
 //   pieces: [90, 400, rest, whole]            # frames from every start in mid-air; from there to
@@ -30,6 +31,7 @@
 #include "sim/base/builtin_file.h"
 #include "traces/datasets/disturbance.h"
 #include "traces/datasets/image_preparation.h"
+#include "traces/synthesis/place.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
@@ -48,7 +50,7 @@ std::string length_text(std::size_t frames);
 
 struct FlightSet {
   std::string name;                   ///< "fresh"
-  std::vector<std::uint64_t> worlds;  ///< in which motions are drawn; none: recordings as they are
+  std::vector<traces::Place> worlds;  ///< in which motions are drawn; none: recordings as they are
   std::size_t first = 0;              ///< frame of a recording at which its first piece begins
   std::size_t step = 1;               ///< frames from there to the next one
 

@@ -1,0 +1,13 @@
+// Surfaces as they are in workshops, which give a detector edges rather than corners: timber with
+// long grain, knots and rows of nails that repeat; nets, whose meshes all look alike; dark cloth
+// without contrast; metal.
+#pragma once
+
+#include "traces/synthesis/surface_painter.h"
+
+namespace leviosim::traces {
+
+/// The texture of a surface of style timber, net, cloth or metal. A pure function of the spec.
+Texture paint_material(const SurfaceSpec& spec);
+
+}  // namespace leviosim::traces
