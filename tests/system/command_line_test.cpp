@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "sim/base/error.h"
@@ -92,7 +95,7 @@ TEST_F(CommandLine, RefusesPlatformsThatAreNotThere) {
 }
 
 TEST_F(CommandLine, SuggestsCommandsAndOptions) {
-  expect_refusal({}, {"expected a command: demo, run, synth, platforms"});
+  expect_refusal({}, {"expected a command: demo, run, synth, doctor, platforms"});
   expect_refusal({"rum"}, {"unknown command 'rum'; did you mean 'run'?"});
   expect_refusal({"run", "--plattform", "gap9"},
                  {"unknown option '--plattform'; did you mean '--platform'?"});
@@ -285,6 +288,37 @@ TEST(FlightCache, AnExistingFlightIsUsedIfItIsWhole) {
     ::unsetenv("XDG_CACHE_HOME");
   else
     ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
+}
+
+TEST_F(CommandLine, DoctorSaysWhatIsThereAndWhatIsMissing) {
+  const fs::path bin = folder_ / "bin", kitti = folder_ / "data/00";
+  fs::create_directories(bin);
+  fs::create_directories(kitti);
+  for (const char* name : {"calib.txt", "times.txt"}) std::ofstream(kitti / name) << "x\n";
+  std::ofstream(bin / "qemu-arm") << "#!/bin/sh\n";
+  fs::permissions(bin / "qemu-arm", fs::perms::owner_all);
+  const std::string path_before = std::getenv("PATH");
+  ::setenv("PATH", bin.c_str(), 1);
+  const std::vector<std::string> words{"doctor", folder_.path().string(), data_.root().string()};
+  std::vector<std::string> as_json = words;
+  as_json.push_back("--json");
+  const ProgramResult document = run_program(folder_.path(), as_json);
+  const ProgramResult screen = testing::run_on_screen(folder_.path(), words);
+  ::setenv("PATH", path_before.c_str(), 1);
+  ASSERT_EQ(document.status, 0) << document.err;
+  std::map<std::string, nlohmann::json> findings;
+  const nlohmann::json parsed = nlohmann::json::parse(document.out);
+  for (const nlohmann::json& finding : parsed["findings"])
+    findings[finding["what"]] = finding;
+  EXPECT_EQ(findings["qemu-arm"]["found"], true);
+  EXPECT_EQ(findings["qemu-arm"]["where"], (bin / "qemu-arm").string());
+  EXPECT_EQ(findings["arm-none-eabi-g++"]["found"], false);
+  EXPECT_EQ(findings["arm-none-eabi-g++"]["where"], "apt-get install gcc-arm-none-eabi");
+  EXPECT_EQ(findings["KITTI odometry"]["where"], kitti.string());
+  EXPECT_EQ(findings["EuRoC (ASL)"]["where"], data_.root().string());
+  EXPECT_NE(std::string(findings["libraries"]["where"]).find("SQLite 3."), std::string::npos);
+  EXPECT_EQ(testing::screen_fault(screen.out), "") << screen.out;
+  EXPECT_NE(screen.out.find("apt-get install gcc-riscv64-unknown-elf"), std::string::npos);
 }
 
 TEST(ProgressLine, SaysWhenItIsDone) {

@@ -25,7 +25,7 @@ namespace leviosim::tools {
 namespace {
 
 constexpr const char* kFile = "history.jsonl";
-constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kAllRuns = std::numeric_limits<std::size_t>::max();
 
 struct HistoryOptions : RecordOptions {
   std::string action;
@@ -156,7 +156,7 @@ void page(const CLI::App& command, const HistoryOptions& options) {
   const std::optional<Budget> budget = budget_of(options);
   std::optional<outputs::OutputFile> file =
       claimed_report(options.page, options.force, {options.file}, "--out");
-  const std::vector<PastRun> runs = newest(options, kAnyNumber);
+  const std::vector<PastRun> runs = newest(options, kAllRuns);
   const RunFacts& facts = runs.back().record.facts;
   publish_report(file, history_page(fmt::format("{} on {} over commits", facts.profile,
                                                 facts.platform),

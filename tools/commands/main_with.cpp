@@ -31,6 +31,7 @@
 #include "tools/commands/check_command.h"
 #include "tools/commands/compare_command.h"
 #include "tools/commands/demo_command.h"
+#include "tools/commands/doctor_command.h"
 #include "tools/commands/eval_command.h"
 #include "tools/commands/explore_command.h"
 #include "tools/commands/flow_command.h"
@@ -170,6 +171,7 @@ int run_program(const Words& typed) {
                                         {add_demo_command(app, words),
                                          add_run_command(app, words),
                                          add_synth_command(app),
+                                         add_doctor_command(app),
                                          add_platforms_command(app),
                                          add_workload_command(app),
                                          add_eval_command(app),
