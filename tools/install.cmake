@@ -48,6 +48,19 @@ function(leviosim_install_library)
           COMPONENT library FILES_MATCHING PATTERN "*.h")
   install(PROGRAMS tools/check_counting.py RENAME leviosim-check-counting COMPONENT library
           DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # leviosim-measure finds what it compiles beside itself.
+  set(share ${CMAKE_INSTALL_DATADIR}/leviosim)
+  install(DIRECTORY tools/rv32 DESTINATION ${share}/tools COMPONENT library USE_SOURCE_PERMISSIONS
+          FILES_MATCHING PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.py" PATTERN "*.mk" PATTERN "Makefile"
+          PATTERN "rv32imfc_costs.csv")
+  install(DIRECTORY sim/work DESTINATION ${share}/sim COMPONENT library FILES_MATCHING PATTERN "*.cpp")
+  install(DIRECTORY platform_models/isa DESTINATION ${share}/platform_models COMPONENT library
+          FILES_MATCHING PATTERN "*.yaml")
+  install(CODE "
+    set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
+    file(MAKE_DIRECTORY \"\${folder}\")
+    file(CREATE_LINK ../${share}/tools/rv32/measure_kernels.py \"\${folder}/leviosim-measure\" SYMBOLIC)"
+    COMPONENT library)
   install(FILES tools/leviosim.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/leviosim COMPONENT library)
   install(DIRECTORY tests/examples/outside COMPONENT library
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libleviosim-dev/examples)
@@ -85,6 +98,9 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
     "leviosim (= ${PROJECT_VERSION}), g++, cmake, libeigen3-dev, libopencv-dev, libfmt-dev, libpng-dev, \
 libturbojpeg0-dev, libyaml-dev, nlohmann-json3-dev, libcli11-dev, libssl-dev, libzstd-dev, zlib1g-dev, \
 libsqlite3-dev")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS # leviosim-check-counting, leviosim-measure
+    "clang-tools, gcc-riscv64-unknown-elf, picolibc-riscv64-unknown-elf, gcc-arm-none-eabi, \
+libnewlib-arm-none-eabi, libcapstone-dev, qemu-user, make, python3")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-leviosim)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "leviosim as a Python module")

@@ -54,7 +54,19 @@ work::CompiledSets compiled_in(const std::vector<std::string>& cells, const std:
 
 class CodeSizeReader {
  public:
-  explicit CodeSizeReader(std::string file) : file_(std::move(file)) {}
+  /// What read() takes from now on is of this file.
+  void begin(std::string file) {
+    file_ = std::move(file);
+    header_ = false;
+    line_ = 0;
+  }
+  void read_all(std::string_view text) {
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      read(text.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
 
   void read(std::string_view line) {
     ++line_;
@@ -89,24 +101,59 @@ class CodeSizeReader {
 }  // namespace
 
 work::CodeMap code_map_from(const std::string& file, std::string_view text) {
-  CodeSizeReader reader(file);
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    reader.read(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  CodeSizeReader reader;
+  reader.begin(file);
+  reader.read_all(text);
   return reader.take();
 }
 
-work::CodeMap code_map_named(std::string_view name) {
+namespace {
+
+/// Of the table with this name. @throws InputError
+std::string_view builtin_table(std::string_view name) {
   std::vector<std::string> names;
   for (const base::BuiltinFile& file : builtin_code()) {
-    if (file.name == name) return code_map_from(fmt::format("{}.csv", name), file.text);
+    if (file.name == name) return file.text;
     names.emplace_back(file.name);
   }
   throw InputError(
       fmt::format("no table of compiled code '{}' (platform_models/code/{}.csv); there is {}", name,
                   name, fmt::join(names, ", ")));
+}
+
+/// Written by add_compiled_code() only.
+std::vector<CodeTable>& added_tables() {
+  static std::vector<CodeTable> all;
+  return all;
+}
+
+/// With what was added.
+work::CodeMap whole_table(std::string_view name) {
+  CodeSizeReader reader;
+  reader.begin(fmt::format("{}.csv", name));
+  reader.read_all(builtin_table(name));
+  for (const CodeTable& table : added_tables()) {
+    if (table.set != name) continue;
+    reader.begin(fmt::format("{}.csv of a workload", name));
+    reader.read_all(table.text);
+  }
+  return reader.take();
+}
+
+}  // namespace
+
+work::CodeMap code_map_named(std::string_view name) {
+  return code_map_from(fmt::format("{}.csv", name), builtin_table(name));
+}
+
+void add_compiled_code(const CodeTable& table) {
+  added_tables().push_back(table);
+  try {
+    whole_table(table.set);
+  } catch (...) {
+    added_tables().pop_back();
+    throw;
+  }
 }
 
 namespace {
@@ -115,7 +162,7 @@ namespace {
 const std::vector<work::CodeMap>& tables() {
   static const std::vector<work::CodeMap> all = [] {
     std::vector<work::CodeMap> read;
-    for (const std::string_view name : work::kCompiledFor) read.push_back(code_map_named(name));
+    for (const std::string_view name : work::kCompiledFor) read.push_back(whole_table(name));
     return read;
   }();
   return all;
@@ -140,7 +187,7 @@ work::CompiledWork executed_by(const work::CodeMap::Piece& piece, work::Compiled
 
 const work::CodeMap& compiled_code() {
   static const work::CodeMap all = [] {
-    work::CodeMap map = code_map_named(kCompiledCode);
+    work::CodeMap map = whole_table(kCompiledCode);
     for (std::size_t i = 0; i < map.pieces().size(); ++i)
       for (std::size_t k = 1; k < work::kCompiledFor.size(); ++k) {
         const auto set = static_cast<work::CompiledFor>(k);
@@ -151,17 +198,31 @@ const work::CodeMap& compiled_code() {
   return all;
 }
 
-double size_of_code(work::CompiledFor set) {
-  if (set == work::CompiledFor::Rv32imfc) return 1;
-  const work::CodeMap& table = table_of(set);
+namespace {
+
+/// Of leviosim's own tables: what compilers make of code is no matter of what was added.
+double own_size_of_code(std::string_view set) {
+  const work::CodeMap table = code_map_named(set);
+  const work::CodeMap rv32 = code_map_named(kCompiledCode);
   double bytes = 0, bytes_rv32 = 0;
-  for (const work::CodeMap::Piece& piece : table_of(work::CompiledFor::Rv32imfc).pieces()) {
+  for (const work::CodeMap::Piece& piece : rv32.pieces()) {
     const int there = table.find(piece.key);
     if (there == work::CodeMap::kUnknown) continue;
     bytes += table.pieces()[static_cast<std::size_t>(there)].bytes;
     bytes_rv32 += piece.bytes;
   }
   return bytes / bytes_rv32;
+}
+
+}  // namespace
+
+double size_of_code(work::CompiledFor set) {
+  static const std::vector<double> sizes = [] {
+    std::vector<double> all;
+    for (const std::string_view name : work::kCompiledFor) all.push_back(own_size_of_code(name));
+    return all;
+  }();
+  return sizes[static_cast<std::size_t>(set)];
 }
 
 }  // namespace leviosim::platform

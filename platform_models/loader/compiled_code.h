@@ -12,6 +12,17 @@ namespace leviosim::platform {
 /// The table that sizes of the workload's code are taken from: as compiled for RV32IMFC.
 inline constexpr std::string_view kCompiledCode = "rv32imfc";
 
+/// Rows for kernels of another project, in the format of code_map_from().
+struct CodeTable {
+  std::string set;  ///< the instruction set that they were compiled for: "rv32imfc"
+  std::string text;
+};
+
+/// From now on compiled_code() has these rows, too. Functions of kCompiledCode's rows only are found
+/// there, so these come with the others. Before anything asks for compiled_code().
+/// @throws InputError for another instruction set, broken rows, and functions that are known
+void add_compiled_code(const CodeTable& table);
+
 /// The pieces of all named functions of the workload, of the table kCompiledCode, with what they
 /// execute as compiled for each of work::kCompiledFor. What was not measured there is that of
 /// kCompiledCode.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <string>
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
@@ -37,6 +38,24 @@ TEST(CompiledCode, HasWhatEachInstructionSetExecutes) {
                 executed(table, function, work::CompiledFor::Rv32imfc))
           << function;
   }
+}
+
+TEST(CompiledCode, RowsOfOthersAreCheckedWhenTheyAreAdded) {
+  const std::string header =
+      "function,after,lines,visits,refetches,executed,priced,loads,used_at_once,executed_loops,"
+      "priced_loops\n";
+  const auto refused = [](const std::string& set, const std::string& text, const char* part) {
+    try {
+      add_compiled_code({set, text});
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refused("rv64", header, "no table of compiled code 'rv64'");
+  refused("rv32imfc", "x\n", "rv32imfc.csv of a workload:1: expected the header");
+  refused("rv32imfc", header + "mine,,1\n", "of a workload:2: expected a row of");
+  refused("rv32imfc", header + "harris_response,,1,1,0,1,1,1,1,1,1\n", "is there twice");
 }
 
 TEST(CompiledCode, HasSizesByInstructionSet) {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/rv32/scenes.h"
+#include RV32_SCENES
 
 namespace leviosim::rv32 {
 namespace {

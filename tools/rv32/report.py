@@ -362,13 +362,13 @@ def renew_routines(library, code):
 
 
 def write_footprints(trace, library, compiled, isa, code):
-    """@param library   trace of the routines alone
+    """@param library   trace of the routines alone; None leaves them out
     @param compiled  compiled_work()"""
     columns = ["function", "after", "lines", "visits", "refetches"]
     nothing = ("",) * 6
     rows = [row + (nothing if row[1] else compiled.get(row[0], nothing))
             for row in piece_rows(trace, False) if row[0] not in ROUTINES]
-    for routine in ROUTINES:
+    for routine in ROUTINES if library else ():
         row = routine_row(routine, library) or routine_row(routine, trace)
         if row:
             rows.append(row + nothing)
@@ -652,29 +652,45 @@ def write_library(soft, hard, path):
             out.write("\n")
 
 
+def of_scenes(arguments):
+    """What was traced and counted, and what functions execute."""
+    work = arguments.work
+    contracted = Trace.of_layouts([work / f"scenes_at_{layout}.tsv" for layout in arguments.layouts])
+    uncontracted = Trace(work / "scenes_uncontracted.tsv")
+    counts = read_counts(arguments.counts)
+    check_same_control_flow(uncontracted, counts)
+    isa = INSTRUCTION_SETS[arguments.isa](arguments.root)
+    executed = in_counted_flow(contracted, uncontracted)
+    compiled = compiled_work(executed, copied_and_cleared(uncontracted, isa), counts, isa)
+    return contracted, uncontracted, counts, executed, compiled, isa
+
+
+def write_kernels(arguments):
+    contracted, _, _, _, compiled, isa = of_scenes(arguments)
+    write_footprints(contracted, None, compiled, isa, arguments.kernels)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--isa", choices=INSTRUCTION_SETS, required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the raw results")
     parser.add_argument("--counts", type=pathlib.Path, help="counted operations; without, routines of libraries only")
     parser.add_argument("--root", type=pathlib.Path, required=True, help="of the repository, to write to")
+    parser.add_argument("--kernels", type=pathlib.Path, help="the only table to write: that of another project's kernels")
     parser.add_argument("--layouts", nargs="+", required=True, help="names of the linked programs")
     arguments = parser.parse_args()
     work, root = arguments.work, arguments.root
     code, here = root / f"platform_models/code/{arguments.isa}.csv", root / "tools/rv32"
+    if arguments.kernels:
+        write_kernels(arguments)
+        return
     hard = Trace.of_layouts([work / f"library_hard_at_{layout}.tsv" for layout in arguments.layouts])
     if arguments.isa == "rv32imfc":
         write_library(Trace(work / "library_soft.tsv"), hard, here / "library.md")
     if arguments.counts is None:
         renew_routines(hard, code)
         return
-    contracted = Trace.of_layouts([work / f"scenes_at_{layout}.tsv" for layout in arguments.layouts])
-    uncontracted = Trace(work / "scenes_uncontracted.tsv")
-    counts = read_counts(arguments.counts)
-    check_same_control_flow(uncontracted, counts)
-    isa = INSTRUCTION_SETS[arguments.isa](root)
-    executed = in_counted_flow(contracted, uncontracted)
-    compiled = compiled_work(executed, copied_and_cleared(uncontracted, isa), counts, isa)
+    contracted, uncontracted, counts, executed, compiled, isa = of_scenes(arguments)
     write_footprints(contracted, hard, compiled, isa, code)
     if arguments.isa != "rv32imfc":
         visits = {function: n["visits"] for function, n in by_function(counts).items()}

@@ -1,6 +1,6 @@
 // The scenes on RV32.
 #include "tools/rv32/runtime.h"
-#include "tools/rv32/scenes.h"
+#include RV32_SCENES
 
 asm(".section .rodata\n"
     ".balign 4\n"
@@ -32,14 +32,14 @@ void print(const leviosim::vio::FrameReport& report) {
   leviosim::rv32::write_text(text);
 }
 
-leviosim::rv32::Scenes<leviosim::work::Native>* scenes;
+leviosim::rv32::Scenes<leviosim::work::Native>* all_scenes;
 
 }  // namespace
 
 int main() {
   using namespace leviosim;
-  scenes = new rv32::Scenes<work::Native>(scene_inputs);
-  scenes->run();
-  for (const vio::FrameReport& report : scenes->reports()) print(report);
+  all_scenes = new rv32::Scenes<work::Native>(scene_inputs);
+  all_scenes->run();
+  for (const vio::FrameReport& report : all_scenes->reports()) print(report);
   return 0;
 }

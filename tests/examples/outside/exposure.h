@@ -1,26 +1,17 @@
-// The example of workload/EXTENDING.md: a kernel, a stage, and a workload of that one stage, the
-// mean grey level of each frame. The page shows what stands between the marks.
+// The example of workload/EXTENDING.md: a stage, and a workload of that one stage, the mean grey
+// level of each frame. The page shows what stands between the marks.
 #pragma once
 
 #include <cstdint>
 
+#include "exposure_code.h"
+#include "exposure_kernel.h"
 #include "sim/work/machine.h"
 #include "tools/app/run/workload.h"
 
 namespace exposure {
 
 using namespace leviosim;
-
-// [kernel]
-/// Sum of the grey levels of a row.
-template <class P>
-typename P::I32 row_sum(typename P::template Span<const typename P::Byte> row) {
-  using I = typename P::I32;
-  I sum = 0;
-  for (int x : P::range(0, row.size())) sum += I(row[x]);
-  return sum;
-}
-// [/kernel]
 
 // [stage]
 /// Mean grey level of an image of width × height pixels in L2, of every `step`th row.
@@ -58,6 +49,7 @@ inline Workload workload() {
   exposure.stages = {"exposure"};
   exposure.parameters = {vio::other_parameter("workload.row_step", vio::Parameter::Kind::whole,
                                               "rows", 1, 8, 1, "from one row to the next")};
+  exposure.code = exposure_code();
   exposure.begin = [](const tools::RunRequest& request) {
     const int step = static_cast<int>(tools::value_of(request, "workload.row_step"));
     return [step](work::Machine& machine, const vio::FrameInput& frame, tools::FrameResult&) {

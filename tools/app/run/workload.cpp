@@ -95,6 +95,7 @@ namespace leviosim::tools {
 void add_workload(Workload workload) {
   check(workload.begin || workload.source, "a workload says how a run of it begins");
   vio::add_profile(workload);
+  for (const platform::CodeTable& table : workload.code) platform::add_compiled_code(table);
   include_own_code(digest_of_file("/proc/self/exe").sha256);
   std::string name = workload.name;
   workloads().emplace(std::move(name), std::move(workload));

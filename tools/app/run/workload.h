@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "platform_models/loader/compiled_code.h"
 #include "sim/work/machine.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_source.h"
@@ -27,6 +28,8 @@ struct Workload : vio::OtherProfile {
   std::function<FrameFunction(const tools::RunRequest&)> begin;
   /// Instead of `begin`, for other data or work on the controller: everything that a run asks for.
   std::function<std::unique_ptr<tools::RunSource>(const tools::RunRequest&)> source = {};
+  /// Its kernels as compiled code: what leviosim-measure wrote.
+  std::vector<platform::CodeTable> code = {};
 };
 
 /// Cycles of the chip's cluster for one job, from the controller's call to its return: what `body`
