@@ -70,7 +70,7 @@ TEST_F(MapHealthOf, AScaleThatIsKnownToAFifthMakesThePathSoFarUnreliable) {
   EXPECT_EQ(frames(30), Health::good);  // of one of five
 }
 
-TEST_F(MapHealthOf, AWindowOfUnknownLengthAddsItsShare) {
+TEST_F(MapHealthOf, AWindowThatCannotBeSolvedAddsItsPath) {
   EXPECT_EQ(frames(10), Health::good);
   window({.uncertainty = 0.09f});
   EXPECT_EQ(frames(100), Health::good);

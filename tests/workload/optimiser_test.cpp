@@ -188,29 +188,6 @@ TEST(Optimiser, ImuRestoresTheScale) {
   EXPECT_NEAR(scale_after(false), 1.2, 0.01);
 }
 
-TEST(JointOptimiser, KnowsItsLengthTheBetterTheLongerItFlies) {
-  const auto uncertainty = [](double interval_s, float noise) {
-    OptimiserSceneOptions options;
-    options.interval_s = interval_s;
-    GraphScene scene(options);
-    scene.options.joint = true;
-    scene.options.visual.sigma_px *= noise;
-    WindowPrior<Native> prior(scene.fc.local(), scene.window.capacity.keyframes);
-    start_prior<Native>(scene.window, scene.options.prior, prior);
-    LmState<Native> lm(scene.options);
-    const auto stage = scene.fc.stage("optimiser");
-    IterationReport report;
-    for (int i = 0; i < 6; ++i)
-      report = optimise_jointly_once<Native>(scene.fc, scene.window, prior, lm, scene.options);
-    return report.uncertainty;
-  };
-  const float usual = uncertainty(0.2, 1);
-  EXPECT_GT(usual, 0.01f);
-  EXPECT_LT(uncertainty(0.4, 1), 0.5f * usual);
-  EXPECT_GT(uncertainty(0.2, 4), 1.2f * usual);
-  EXPECT_LT(uncertainty(0.2, 4), 4 * usual);
-}
-
 TEST(Optimiser, AnchorHoldsTheOldestKeyframe) {
   GraphScene scene;
   scene.optimise(8);

@@ -42,7 +42,7 @@ Command add_trajectory_command(CLI::App& app) {
       ->type_name("FORMAT");
   command->add_option("--times", options->times, "time stamps of a KITTI file, in seconds")
       ->type_name("FILE");
-  add_examples(*command, {"leviosim trajectory recorded --as euroc"});
+  add_examples(*command, {"leviosim trajectory recorded --as euroc >estimate.csv"});
   return {command, [=] { run(*command, *options); }};
 }
 

@@ -55,10 +55,11 @@ struct AlignmentOptions {
 };
 
 struct AlignmentReport : IterationReport {
-  float distance = 0;       ///< from the minimum before the iteration, in standard deviations
-  int explained = 0;        ///< landmarks that agree with the alignment
-  bool arrived = false;     ///< at its minimum: more iterations gain nothing
-  bool converged = false;   ///< it is near its minimum, and can be true
+  float distance = 0;      ///< from the minimum before the iteration, in standard deviations
+  float uncertainty = 0;   ///< of positions, as a share of their distances from the first one (RMS)
+  int explained = 0;       ///< landmarks that agree with the alignment
+  bool arrived = false;    ///< at its minimum: more iterations gain nothing
+  bool converged = false;  ///< it is near its minimum, and can be true
   bool determined = false;  ///< it has converged, and tells enough
   bool ambiguous = false;   ///< another scale explains the window about as well
   float length = 0;         ///< RMS distance of the keyframes from the first one, m

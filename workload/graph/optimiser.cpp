@@ -31,7 +31,6 @@ struct AnchoredTerms {
     return cost;
   }
   void step(const ReducedSystem<P>&) {}
-  float uncertainty_of_length(const ReducedSystem<P>&) const { return 0; }
   F add_cost(const WindowState<P>& state, F cost) const {
     if (options.use_imu) cost += inertial_cost<P>(window, state, interval);
     cost += anchor_cost<P>(window, state, options.anchor, options.use_imu);
@@ -71,20 +70,6 @@ struct JointTerms {
     const auto step = solved.vector();
     trial_bias = {window.bias.gyro + load_vec3<P>(step, solved.shared()),
                   window.bias.accel + load_vec3<P>(step, solved.shared() + 3)};
-  }
-  /// Of the vector from the first keyframe to the last one, along itself, as a share of it. Takes
-  /// the right-hand side.
-  float uncertainty_of_length(const ReducedSystem<P>& solved) const {
-    const int last = window.keyframes - 1;
-    const Vec3<P> across = window.state.pose(last).t - window.state.pose(0).t;
-    const F length = norm(across);
-    if (!(length > 0.0f)) return 0;
-    const Vec3<P> along = across * F(F(1.0f) / length);
-    const auto x = solved.vector();
-    for (int i : P::range(0, solved.unknowns())) x[i] = 0.0f;
-    store_vec3<P>(x, 3, along * F(-1.0f));
-    store_vec3<P>(x, last * solved.per_keyframe() + 3, along);
-    return work::value(F(work::sqrt(square_by_inverse<P>(solved.matrix(), x)) / length));
   }
   F add_cost(const WindowState<P>& state, F cost) const {
     cost += joint_inertial_cost<P>(window, state, trial_bias, interval);
@@ -201,7 +186,6 @@ IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
     memory.terms.step(memory.system);
     step_points<P>(window, memory.records, memory.system, memory.trial.points);
     trial_cost = cost_of_trial<P>(window, memory.trial, options, memory.terms);
-    report.uncertainty = memory.terms.uncertainty_of_length(memory.system);
   }
   // Not true either if a cost is not a number.
   if (trial_cost < cost) {

@@ -59,9 +59,6 @@ struct IterationReport {
   float visual = 0;
   float inertial = 0;
   float prior = 0;  ///< of the past: the prior, or the anchor that stands in for it
-  /// Of the distance between the first and the last keyframe, a standard deviation, as a share of
-  /// it; of the alignment, of all keyframes from the first one (RMS). Not of optimise_once().
-  float uncertainty = 0;
 };
 
 /// One iteration; changes `window.state`. Must run in a stage of `fc`, whose local memory it uses

@@ -9,8 +9,10 @@ struct WindowFit {
   float visual = 0;
   float inertial = 0;
   float prior = 0;  ///< of the past; less than nothing where the prior's minimum lies elsewhere
-  float uncertainty = 0;  ///< of its length, a standard deviation, as a share of it
-  float accel_bias = 0;   ///< in standard deviations of what is known of it beforehand
+  /// Of the positions, a standard deviation, as a share of their distances: as the alignment leaves
+  /// it; 1 of a window that could not be solved, else 0.
+  float uncertainty = 0;
+  float accel_bias = 0;  ///< in standard deviations of what is known of it beforehand
 };
 
 struct MapStatus {

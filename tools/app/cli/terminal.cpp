@@ -34,6 +34,7 @@ constexpr std::array kColours{Colour{"verdict: fits: ", "\x1b[32m"},
                               Colour{"verdict: met: ", "\x1b[32m"},
                               Colour{"verdict: fits on average", "\x1b[33m"},
                               Colour{"verdict: map unreliable", "\x1b[33m"},
+                              Colour{"verdict: map not judged", "\x1b[33m"},
                               Colour{"verdict: ", "\x1b[31m"},
                               Colour{"warning: ", "\x1b[33m"}};
 

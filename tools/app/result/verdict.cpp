@@ -155,8 +155,9 @@ Grade Verdicts::grade() const {
 std::string Verdicts::text() const {
   if (list.empty()) return "no frames";
   std::vector<RunVerdict> sorted = list;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const RunVerdict& a, const RunVerdict& b) { return a.grade > b.grade; });
+  std::stable_sort(sorted.begin(), sorted.end(), [](const RunVerdict& a, const RunVerdict& b) {
+    return a.grade > std::max(b.grade, Grade::unknown);  // what is not judged is no fault
+  });
   std::vector<std::string> texts;
   for (const RunVerdict& verdict : sorted) texts.push_back(verdict.text());
   if (sorted.front().about == "time") texts.front().erase(0, std::string_view("time ").size());
@@ -196,7 +197,7 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
       health == vio::Health::not_judged) {
     verdict.grade = Grade::unknown;
     verdict.reasons.push_back(
-        "there is no truth of a metre or more, and the profile does not watch its map");
+        "there is no truth of 1 m or more, and the profile does not watch its map");
   }
   return verdict;
 }

@@ -72,7 +72,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
 template <class P>
 bool NextFrontEnd<P>::repeats_last(const Frame<P>& frame) {
   using U32 = typename P::U32;
-  const auto stage = state_.machine.stage(stages::kExtraction);
+  const auto stage = state_.machine.stage(stages::kGuided);
   const FeatureList<P>& list = frame.features.list;
   U32 sum = 0u;
   for (int i : P::range(0, list.count * kDescriptorWords)) sum += list.descriptors[i];

@@ -128,7 +128,7 @@ WindowFit BackEnd<P>::fit_of(const IterationReport& report) const {
   return {mean_square(report.visual, 2 * report.observations - 3 * report.landmarks),
           mean_square(report.inertial, 6 * (window_.keyframes - 1)),
           mean_square(report.prior, options_.joint ? prior_.unknowns() : 9),
-          report.positive_definite ? report.uncertainty : 1,
+          report.positive_definite ? 0.0f : 1.0f,
           work::sqrt(dot(off, off)) / options_.prior.accel_bias};
 }
 

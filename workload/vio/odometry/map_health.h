@@ -4,10 +4,10 @@
 //   consistency  residuals of images, IMU and past in the window, against the noise assumed of them
 //   bias         of the accelerometer: one that no sensor has explains a path that was not flown
 //   tracking     share of the matches with landmarks that agree with the pose, over a second
-//   drift        of poses that the IMU alone moved on, that come from a contradictory or uncertain
-//                window, or from before the map was lost, and what images put right when they came
-//                back, as a share of the path. It stays, for nothing undoes it, and matters less
-//                the longer the path gets
+//   drift        of poses that the IMU alone moved on, that come from a contradictory window or one
+//                that could not be solved, or from before the map was lost, and what images put
+//                right when they came back, as a share of the path. It stays, for nothing undoes
+//                it, and matters less the longer the path gets
 //
 // A few operations a frame, which are not counted.
 #pragma once
