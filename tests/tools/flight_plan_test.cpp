@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/flights/benchmark.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/trajectories/trajectory.h"
 
 namespace leviosim::tools {
 namespace {
@@ -226,6 +229,28 @@ TEST_F(FlightPieces, OfRecordingsBeginAtFramesAndNeedNoDrawing) {
   EXPECT_EQ(keys.size(), 14u);
   EXPECT_EQ(runs[1].request.disturbance.text(), "noise=9");
   EXPECT_EQ(text_of({*runs[3].request.frames}), "2:5 ");
+}
+
+/// Also of those that are no ASL folders.
+TEST_F(FlightPieces, OfRecordingsOfOtherFormatsBeginAtTheirFrames) {
+  const traces::Dataset asl = traces::read_asl(data_.root());
+  const std::filesystem::path other = folder_ / "other";
+  std::filesystem::create_directories(other / "cam0");
+  std::filesystem::copy(data_.mav0("cam0/sensor.yaml"), other / "cam0/sensor.yaml");
+  std::string frames;
+  for (const traces::FrameRef& frame : asl.frames)
+    frames += fmt::format("{}.{:09} {}\n", frame.t_ns / 1'000'000'000, frame.t_ns % 1'000'000'000,
+                          frame.path.string());
+  std::ofstream(other / "rgb.txt") << frames;
+  std::ofstream(other / "groundtruth.txt")
+      << traces::format_tum(traces::to_trajectory(asl.ground_truth));
+  const Benchmark some = make_benchmark(
+      parse_flight_plan("p.yaml",
+                        "recordings: [other]\nstarts: { odd: [1, 2] }\nsize: 32x24\npieces: [3]\n"
+                        "variants: [{ profile: levio-no-imu }]\n"),
+      folder_.path().string());
+  ASSERT_EQ(some.pieces.size(), 2u);
+  EXPECT_EQ(text_of({some.pieces[0].frames, some.pieces[1].frames}), "1:4 3:6 ");
 }
 
 TEST(FlightPlans, OfRecordingsNeedStarts) {

@@ -125,6 +125,15 @@ TEST(MapVerdict, WithoutTruthAndWithoutHealthNothingIsJudged) {
   EXPECT_EQ(map_verdict(signs).word(), "unreliable");
 }
 
+/// Numbers of baselines stay what they mean, whatever grades there are.
+TEST(Grades, AreOrderedAndKeepTheirFigures) {
+  EXPECT_EQ(severity(Grade::good), 0);
+  EXPECT_EQ(severity(Grade::doubtful), 1);
+  EXPECT_EQ(severity(Grade::bad), 2);
+  EXPECT_GT(severity(Grade::unknown), severity(Grade::good));
+  EXPECT_LT(severity(Grade::unknown), severity(Grade::doubtful));
+}
+
 /// One frame in four takes `slow_ms`, the others 20 ms; the period is 50 ms. Each waits for those
 /// before it.
 RunResult with_slow_frames(std::int64_t slow_ms) {

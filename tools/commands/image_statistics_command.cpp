@@ -14,7 +14,7 @@
 #include "tools/app/evaluation/images/image_statistics.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/run/run_options.h"
-#include "traces/datasets/asl_reader.h"
+#include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
 namespace {
@@ -36,7 +36,7 @@ std::string title(const std::string& folder) {
 ImageStatistics measure(const std::string& folder, const ImageStatisticsOptions& options) {
   traces::OpenOptions open;
   if (!options.frames.empty()) open.frames = traces::parse_frame_range(options.frames);
-  const traces::Dataset data = traces::open_asl(folder, open);
+  const traces::Dataset data = traces::open_recording(folder, open);
   const auto total = static_cast<std::int64_t>(data.frames.size());
   ProgressLine line(ProgressLine::style_of_stderr(options.quiet));
   return image_statistics(title(folder), data, parse_size(options.size), [&](std::size_t done) {
@@ -54,7 +54,7 @@ std::string conclusion(const std::vector<ImageStatistics>& all) {
 }
 
 void run(const CLI::App& command, const ImageStatisticsOptions& options) {
-  require(command, "DIR", "an ASL folder, or several");
+  require(command, "DIR", "a recording, or several");
   std::vector<ImageStatistics> all;
   for (const std::string& folder : options.folders) all.push_back(measure(folder, options));
   print(printout(
@@ -73,7 +73,7 @@ Command add_image_statistics_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "image-statistics", "See what the pictures of recordings are like, side by side");
   const auto options = std::make_shared<ImageStatisticsOptions>();
-  command->add_option("DIR", options->folders, "ASL folders; the first one is compared with");
+  command->add_option("DIR", options->folders, "folders of recordings; the first one is compared with");
   command->add_option("--size", options->size, "of the images [160x120]")->type_name("WxH");
   command->add_option("--frames", options->frames, "frames, B exclusive [all]")->type_name("A:B");
   command->add_flag("--quiet", options->quiet, "no progress");

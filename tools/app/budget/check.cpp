@@ -86,7 +86,7 @@ void add_bad_verdicts(CheckResult& result, const RunRecord& run, const Budget& b
                         "verdict.{}", limit.figure.substr(0, limit.figure.find(' ')))) == nullptr)
       continue;
     const FigureOf figure = figures_of(limit, run).front();
-    if (figure.statistic->value != static_cast<double>(Grade::bad)) continue;
+    if (figure.statistic->value != severity(Grade::bad)) continue;
     Finding finding = hold(limit, figure, nullptr);
     finding.section = &budget.verdicts;
     for (const RunVerdict& verdict : verdicts(run).list)

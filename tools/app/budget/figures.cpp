@@ -115,7 +115,7 @@ std::vector<VerdictWord> words_of(std::string_view unit) {
 double grade_of(const Limit& limit, std::string_view unit) {
   std::vector<std::string> names;
   for (const VerdictWord& word : words_of(unit)) {
-    if (word.word == limit.bound.word) return static_cast<double>(word.grade);
+    if (word.word == limit.bound.word) return severity(word.grade);
     names.emplace_back(word.word);
   }
   fail(limit, fmt::format("'{}': expected {} <= one of {}{}", limit.text, limit.figure,
@@ -241,7 +241,7 @@ ShownUnit shown_unit(std::string_view statistic_unit) {
 
 std::string figure_text(double value, std::string_view statistic_unit) {
   for (const VerdictWord& word : words_of(statistic_unit))
-    if (static_cast<double>(word.grade) == value) return std::string(word.word);
+    if (severity(word.grade) == value) return std::string(word.word);
   const StatisticUnit* known = find_unit(statistic_unit);
   if (known == nullptr) return fmt::format("{} {}", value, statistic_unit);
   const std::string number = fmt::format("{:.{}f}", value / known->shown, known->decimals);

@@ -225,7 +225,7 @@ void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
   for (const RunVerdict& verdict : verdicts(run).list)
     run.statistics.push_back({fmt::format("verdict.{}", verdict.about),
                               fmt::format("{} verdict", verdict.about),
-                              "0 is the best, 2 the worst", static_cast<double>(verdict.grade)});
+                              "0 is the best, 2 the worst", severity(verdict.grade)});
 }
 
 }  // namespace leviosim::tools

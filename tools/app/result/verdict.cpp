@@ -119,6 +119,11 @@ std::string_view name_of(Grade grade) {
   return kNames[static_cast<std::size_t>(grade)];
 }
 
+double severity(Grade grade) {
+  static constexpr std::array kSeverities{0.0, 0.5, 1.0, 2.0};
+  return kSeverities[static_cast<std::size_t>(grade)];
+}
+
 const std::vector<VerdictWord>& verdict_words() {
   static const std::vector<VerdictWord> words{{"time", "fits", Grade::good},
                                               {"time", "fits on average", Grade::doubtful},

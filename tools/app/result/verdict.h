@@ -20,6 +20,8 @@ namespace leviosim::tools {
 enum class Grade { good, unknown, doubtful, bad };
 /// "good", "unknown", "doubtful", "bad": in files.
 std::string_view name_of(Grade grade);
+/// As a figure, in baselines and budgets: 0 good, ½ unknown, 1 doubtful, 2 bad.
+double severity(Grade grade);
 
 struct RunVerdict {
   std::string_view about;  ///< "time", "memory", "map"

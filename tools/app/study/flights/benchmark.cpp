@@ -11,6 +11,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"
 #include "traces/datasets/asl_reader.h"
+#include "traces/recordings/recording.h"
 #include "traces/synthesis/rendered_flight.h"
 
 namespace leviosim::tools {
@@ -61,7 +62,7 @@ FlightMotion open_one_recording(const FlightPlan& plan, const std::string& name,
   FlightMotion motion;
   motion.recorded = true;
   motion.sequence = open_sequence({name, folder.string()}, std::nullopt, {plan.size});
-  for (const traces::FrameRef& frame : traces::open_asl(folder).frames)
+  for (const traces::FrameRef& frame : traces::open_recording(folder).frames)
     motion.stamps_ns.push_back(frame.t_ns);
   return motion;
 }
