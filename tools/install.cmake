@@ -74,6 +74,7 @@ function(leviosim_install_library)
     COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_BINARY_DIR}/library/leviosim-config.cmake
                 ${CMAKE_BINARY_DIR}/library/leviosim-config-version.cmake
+                tools/opencv_modules.cmake
           DESTINATION ${package} COMPONENT library)
 endfunction()
 
@@ -95,8 +96,8 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libleviosim-dev)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "leviosim as a library, for workloads and kernels of your own")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
-    "leviosim (= ${PROJECT_VERSION}), g++, cmake, libeigen3-dev, libopencv-dev, libfmt-dev, libpng-dev, \
-libturbojpeg0-dev, libyaml-dev, nlohmann-json3-dev, libcli11-dev, libssl-dev, libzstd-dev, zlib1g-dev, \
+    "leviosim (= ${PROJECT_VERSION}), g++, cmake, libeigen3-dev, libopencv-imgproc-dev, libfmt-dev, \
+libpng-dev, libturbojpeg0-dev, libyaml-dev, nlohmann-json3-dev, libcli11-dev, libssl-dev, libzstd-dev, zlib1g-dev, \
 libsqlite3-dev")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS # leviosim-check-counting, leviosim-measure
     "clang-tools, gcc-riscv64-unknown-elf, picolibc-riscv64-unknown-elf, gcc-arm-none-eabi, \

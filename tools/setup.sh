@@ -10,7 +10,7 @@ source tools/progress.sh
 
 packages=(
   g++ cmake ninja-build git                # compiler, build, revision
-  libeigen3-dev libopencv-dev libfmt-dev   # linear algebra, images, text
+  libeigen3-dev libopencv-imgproc-dev libfmt-dev   # linear algebra, images, text
   libpng-dev libturbojpeg0-dev             # PNG and JPEG files
   libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
@@ -19,6 +19,7 @@ packages=(
 )
 tests=(
   libgtest-dev libexpat1-dev libxml2-utils libspng-dev        # files that are well formed, references
+  libopencv-imgcodecs-dev libopencv-calib3d-dev libopencv-features2d-dev
   parallel                                                    # an example of sweeps
   chromium                                                    # pages (120 MB, half a minute)
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
