@@ -125,24 +125,26 @@ TEST_F(Report, ErrorsOfTheTableAreThoseOfTheAte) {
   EXPECT_NEAR(*ate, std::sqrt(squares / count), 1e-8);
 }
 
-/// A page in a frame of the browser's window, which may be narrower than a window can be. The frame
-/// tells what it looks like when it has been drawn.
+/// A page in frames of the browser's window, which may be narrower than a window can be. Each frame
+/// reports what it looks like when it has been drawn.
 class InBrowser : public Report {
  protected:
   void SetUp() override {
     if (!fs::exists(kBrowser)) GTEST_SKIP() << kBrowser << " is not installed (package chromium)";
   }
 
+  static constexpr int kWidths[]{1280, 390};
+
   struct Seen {
-    Json page;        ///< what the page told
+    Json pages;       ///< what the page reported at each width, by width
     std::string log;  ///< of the browser, with the console's errors
   };
 
-  static Seen open(const std::string& page, int width, bool dark) {
-    constexpr const char* kTold = R"(<script>
+  static Seen open(const std::string& page, bool dark) {
+    constexpr const char* kReport = R"(<script>
       const chartsOf = (axis) => [...document.querySelectorAll("canvas")].map((c) => Chart.getChart(c))
         .filter((c) => c && (!axis || c.data.datasets.some((d) => d.yAxisID === axis)));
-      addEventListener("load", () => parent.postMessage({
+      addEventListener("load", () => parent.postMessage({width: innerWidth,
       overflow: document.documentElement.scrollWidth > innerWidth,
       requests: performance.getEntriesByType("resource").length,
       canvases: document.querySelectorAll("canvas").length,
@@ -168,13 +170,17 @@ class InBrowser : public Report {
       ink: getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()}, "*"));
       </script></body>)";
     std::string html = base::read_text_file(path(page));
-    html.replace(html.rfind("</body>"), 7, kTold);
-    std::ofstream(path("told.html")) << html;
-    std::ofstream(path("frame.html")) << fmt::format(
-        R"(<body><script>addEventListener("message", (told) =>
-          document.body.setAttribute("title", JSON.stringify(told.data)));</script>
-          <iframe src="told.html" style="border:0;width:{}px;height:900px"></iframe>)",
-        width);
+    html.replace(html.rfind("</body>"), 7, kReport);
+    std::ofstream(path("reporting.html")) << html;
+    std::string frames = R"(<body><script>const pages = {};
+      addEventListener("message", ({data}) => {
+        pages[data.width] = data;
+        document.body.setAttribute("title", JSON.stringify(pages)); });</script>)";
+    for (const int width : kWidths)
+      frames += fmt::format(
+          R"(<iframe src="reporting.html" style="border:0;width:{}px;height:900px"></iframe>)",
+          width);
+    std::ofstream(path("frame.html")) << frames;
     // Browsers reserve more addresses than tools/mutate.sh grants the tests.
     const std::string command = fmt::format(
         "ulimit -v unlimited; timeout 240 {} --headless=new --no-sandbox --disable-gpu "
@@ -187,35 +193,41 @@ class InBrowser : public Report {
     EXPECT_EQ(std::system(command.c_str()), 0);
     const std::string dom = base::read_text_file(path("dom.html"));
     const std::size_t begin = dom.find("title=\"") + 7;
-    std::string told = dom.substr(begin, dom.find('"', begin) - begin);
-    for (std::size_t at = told.find("&quot;"); at != std::string::npos; at = told.find("&quot;"))
-      told.replace(at, 6, "\"");
-    return {parse_json("what the page told", told), base::read_text_file(path("log.txt"))};
+    std::string reported = dom.substr(begin, dom.find('"', begin) - begin);
+    for (std::size_t at = 0; (at = reported.find("&quot;", at)) != std::string::npos;)
+      reported.replace(at, 6, "\"");
+    return {parse_json("what the page reported", reported), base::read_text_file(path("log.txt"))};
   }
 
   /// @param verdicts  on the page, or tables of them
   static void expect_fine(const std::string& page, int verdicts = 1) {
-    for (const int width : {1280, 390})
-      for (const bool dark : {false, true}) {
-        const Seen seen = open(page, width, dark);
+    for (const bool dark : {false, true}) {
+      const Seen seen = open(page, dark);
+      EXPECT_EQ(seen.log.find("CONSOLE"), std::string::npos) << page << '\n' << seen.log;
+      for (const int width : kWidths) {
+        ASSERT_TRUE(seen.pages.contains(std::to_string(width))) << page << ", " << width << " px";
+        const Json& drawn = seen.pages[std::to_string(width)];
         SCOPED_TRACE(fmt::format("{}, {} px, {}: {}", page, width, dark ? "dark" : "light",
-                                 seen.page.dump()));
-        EXPECT_EQ(seen.log.find("CONSOLE"), std::string::npos) << seen.log;
-        EXPECT_EQ(seen.page["overflow"], false);
-        EXPECT_EQ(seen.page["requests"], 0);
-        EXPECT_GT(seen.page["canvases"], 0);
-        EXPECT_EQ(seen.page["drawn"], seen.page["canvases"]);
-        EXPECT_EQ(seen.page["tables"], seen.page["canvases"]);
-        EXPECT_EQ(seen.page["verdict"], verdicts);
-        EXPECT_EQ(seen.page["evil"], false);
-        EXPECT_EQ(seen.page["colours"], true);
-        EXPECT_EQ(seen.page["unnamed"], 0) << "frames without a colour that says where from";
-        EXPECT_EQ(seen.page["alike"], false) << "two names in one colour";
+                                 drawn.dump()));
+        expect_drawn(drawn, verdicts, dark);
         if (width > 1000) {
-          EXPECT_EQ(seen.page["cut"], false) << "a table that has to be scrolled";
+          EXPECT_EQ(drawn["cut"], false) << "a table that has to be scrolled";
         }
-        EXPECT_EQ(seen.page["ink"], dark ? "#e4e9ef" : "#1b2430");
       }
+    }
+  }
+  static void expect_drawn(const Json& page, int verdicts, bool dark) {
+    EXPECT_EQ(page["overflow"], false);
+    EXPECT_EQ(page["requests"], 0);
+    EXPECT_GT(page["canvases"], 0);
+    EXPECT_EQ(page["drawn"], page["canvases"]);
+    EXPECT_EQ(page["tables"], page["canvases"]);
+    EXPECT_EQ(page["verdict"], verdicts);
+    EXPECT_EQ(page["evil"], false);
+    EXPECT_EQ(page["colours"], true);
+    EXPECT_EQ(page["unnamed"], 0) << "frames without a colour that says where from";
+    EXPECT_EQ(page["alike"], false) << "two names in one colour";
+    EXPECT_EQ(page["ink"], dark ? "#e4e9ef" : "#1b2430");
   }
 };
 
