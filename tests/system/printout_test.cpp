@@ -233,6 +233,11 @@ TEST(Colours, AreForVerdictsAndWarnings) {
   EXPECT_EQ(coloured_lines("a\nverdict: fits: x\nverdict: too slow\nwarning: y\n"),
             "a\n\x1b[32mverdict: fits: x\x1b[0m\n\x1b[31mverdict: too slow\x1b[0m\n"
             "\x1b[33mwarning: y\x1b[0m\n");
+  // What nobody judged is not green, also where the line is broken before it.
+  EXPECT_EQ(coloured_lines("verdict: fits: x,\n  map not judged: y\n"),
+            "\x1b[33mverdict: fits: x,\x1b[0m\n  map not judged: y\n");
+  EXPECT_EQ(coloured_lines("verdict: fits: x\nmap not judged\n"),
+            "\x1b[32mverdict: fits: x\x1b[0m\nmap not judged\n");
   EXPECT_EQ(coloured_lines("no warning: y"), "no warning: y");
   EXPECT_EQ(coloured_lines(""), "");
 }
@@ -242,7 +247,7 @@ TEST_F(PrintoutTest, ColoursAndWidthAreThoseOfTheTerminal) {
       fmt::format("$L replay {} --quiet --force --out {}", path("run"), path("coloured"));
   EXPECT_EQ(recorded_.out.find('\x1b'), std::string::npos);
   const std::string coloured = on_terminal("TERM=xterm " + words);
-  EXPECT_NE(coloured.find("\x1b[32mverdict: fits"), std::string::npos) << coloured;
+  EXPECT_NE(coloured.find("\x1b[33mverdict: fits"), std::string::npos) << coloured;
   for (const std::string& line : lines_of(coloured))  // with the terminal's carriage return
     EXPECT_TRUE(!line.starts_with("─") || display_width(line) <= 71) << line;
   EXPECT_EQ(on_terminal("NO_COLOR=1 TERM=xterm " + words).find("\x1b[32m"), std::string::npos);

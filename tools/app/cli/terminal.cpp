@@ -25,11 +25,13 @@ namespace {
 struct Colour {
   std::string_view beginning;  ///< of the lines that have it
   std::string_view code;
+  std::string_view also = {};  ///< what else they hold, or lines below that go on with them
 };
 
 constexpr std::string_view kPlain = "\x1b[0m";
 /// The first that fits is taken.
-constexpr std::array kColours{Colour{"verdict: fits: ", "\x1b[32m"},
+constexpr std::array kColours{Colour{"verdict: fits: ", "\x1b[33m", "map not judged"},
+                              Colour{"verdict: fits: ", "\x1b[32m"},
                               Colour{"verdict: map good", "\x1b[32m"},
                               Colour{"verdict: met: ", "\x1b[32m"},
                               Colour{"verdict: fits on average", "\x1b[33m"},
@@ -79,6 +81,14 @@ std::optional<int> terminal_width() {
   return std::nullopt;
 }
 
+/// The first line and those below that are indented: what goes on with it.
+std::string_view paragraph(std::string_view text) {
+  std::size_t end = text.find('\n');
+  while (end != std::string_view::npos && text.substr(end + 1).starts_with("  "))
+    end = text.find('\n', end + 1);
+  return text.substr(0, end);
+}
+
 struct Results {
   std::vector<ScreenPiece> pieces;
   bool all = false;
@@ -110,7 +120,8 @@ std::string coloured_lines(std::string_view text) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     const auto colour = std::find_if(kColours.begin(), kColours.end(), [&](const Colour& c) {
-      return line.starts_with(c.beginning);
+      return line.starts_with(c.beginning) &&
+             paragraph(text).find(c.also) != std::string_view::npos;
     });
     if (colour == kColours.end())
       coloured += line;
