@@ -1,6 +1,5 @@
 #include "tools/app/evaluation/images/feature_tracks.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -50,10 +49,13 @@ FeatureSeen describe(const traces::GrayImage& image, const Eigen::Vector2d& pixe
   const work::NativeSpan<const std::uint8_t> pixels(image.pixels.data(),
                                                     static_cast<int>(image.pixels.size()));
   seen.corner = vio::harris_response<Native>(pixels, image.width, x, y);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> tensor(structure_tensor(image, x, y));
-  const Eigen::Vector2d& values = tensor.eigenvalues();  // rising
-  seen.roundness = values[1] > 0 ? std::max(0.0, values[0]) / values[1] : 1;
-  seen.edge = tensor.eigenvectors().col(0);
+  // Its eigenvalues are mean ± half, the greater one across the edge.
+  const Eigen::Matrix2d tensor = structure_tensor(image, x, y);
+  const double mean = 0.5 * tensor.trace();
+  const double half = std::hypot(0.5 * (tensor(0, 0) - tensor(1, 1)), tensor(0, 1));
+  const double across = 0.5 * std::atan2(2 * tensor(0, 1), tensor(0, 0) - tensor(1, 1));
+  seen.roundness = mean + half > 0 ? std::max(0.0, mean - half) / (mean + half) : 1;
+  seen.edge = {-std::sin(across), std::cos(across)};
   return seen;
 }
 

@@ -66,7 +66,7 @@ class Triangulation {
       a += weight * jacobian.transpose() * jacobian;
       b += weight * jacobian.transpose() * e;
     }
-    return a.ldlt().solve(b);
+    return a.inverse() * b;
   }
 
   std::vector<Ray> rays_;
