@@ -1,7 +1,7 @@
 // Each call of a kind fails once, in order: the first allocation of a command, the second, … until
 // the command has fewer. After each, nothing of others is touched, nothing half-written stays, and
-// one line says what happened. Of each kind some are tried; with LEVIOSIM_ALL_FAULTS=1 all, with
-// 100 every hundredth allocation and all others.
+// one line says what happened. Of each kind some are tried, and all with LEVIOSIM_ALL_FAULTS=1.
+// Allocations that the same functions make, with nothing changed between, count as one.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
@@ -30,14 +30,10 @@ using Picture = std::map<std::string, std::string>;
 /// Sampled: every one is tried where there are few, else the first, the last and some between.
 constexpr std::uint64_t kSamples = 8;
 
-std::vector<std::uint64_t> chosen(const std::string& kind, std::uint64_t calls) {
+std::vector<std::uint64_t> chosen(std::uint64_t calls) {
   std::vector<std::uint64_t> numbers;
-  if (const char* const step = std::getenv("LEVIOSIM_ALL_FAULTS")) {
-    const std::uint64_t by = kind == "allocation" ? std::strtoull(step, nullptr, 10) : 1;
-    for (std::uint64_t n = 1; n <= calls; n += std::max<std::uint64_t>(by, 1)) numbers.push_back(n);
-    return numbers;
-  }
-  const std::uint64_t tries = std::min(calls, kSamples);
+  const bool all = std::getenv("LEVIOSIM_ALL_FAULTS") != nullptr;
+  const std::uint64_t tries = all ? calls : std::min(calls, kSamples);
   for (std::uint64_t i = 0; i < tries; ++i)
     numbers.push_back(tries == 1 ? 1 : 1 + i * (calls - 1) / (tries - 1));
   return numbers;
@@ -62,10 +58,11 @@ class FaultyProgram {
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     ::setenv("LD_PRELOAD", LEVIOSIM_FAULT_INJECTOR, 1);
+    ::setenv("LD_BIND_NOW", "1", 1);  // once, not in each copy
     testing::AllLines environment;
     const int error =
         posix_spawn(&pid_, program.c_str(), &files, nullptr, arguments.data(), environment.data());
-    ::unsetenv("LD_PRELOAD");
+    for (const char* name : {"LD_PRELOAD", "LD_BIND_NOW"}) ::unsetenv(name);
     posix_spawn_file_actions_destroy(&files);
     if (error != 0) std::abort();
   }
@@ -163,7 +160,7 @@ class FaultInjection : public tests::ProgramSuite {
     fill(place.path(), before);
     const FaultyProgram faulty(words, place.path());
     const Picture was = picture_of(before);
-    const std::vector<std::uint64_t> numbers = chosen(kind, whole.calls);
+    const std::vector<std::uint64_t> numbers = chosen(whole.calls);
     for (const std::uint64_t number : numbers) {
       SCOPED_TRACE(fmt::format("{} {}: {} {} of {}", words[0], where, kind, number, whole.calls));
       const After ended = after(faulty, place.path(), kind, number);

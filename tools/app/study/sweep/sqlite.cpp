@@ -138,21 +138,24 @@ Statement::Statement(Database& database, const std::string& sql) : database_(dat
 
 Statement::~Statement() { sqlite3_finalize(handle_); }
 
+void Statement::expect_bound(int result) const {
+  if (result != SQLITE_OK) database_.fail_with_reason();
+}
+
 Statement& Statement::bind(int place, std::int64_t value) {
-  sqlite3_bind_int64(handle_, place, value);
+  expect_bound(sqlite3_bind_int64(handle_, place, value));
   return *this;
 }
 
 Statement& Statement::bind(int place, std::optional<double> value) {
-  if (value)
-    sqlite3_bind_double(handle_, place, *value);
-  else
-    sqlite3_bind_null(handle_, place);
+  expect_bound(value ? sqlite3_bind_double(handle_, place, *value)
+                     : sqlite3_bind_null(handle_, place));
   return *this;
 }
 
 Statement& Statement::bind(int place, std::string_view value) {
-  sqlite3_bind_text64(handle_, place, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+  expect_bound(sqlite3_bind_text64(handle_, place, value.data(), value.size(), SQLITE_TRANSIENT,
+                                   SQLITE_UTF8));
   return *this;
 }
 
@@ -181,14 +184,16 @@ std::optional<double> Statement::number(int column) const {
 }
 
 std::string Statement::text(int column) const {
+  if (sqlite3_column_type(handle_, column) == SQLITE_NULL) return {};
   const unsigned char* const text = sqlite3_column_text(handle_, column);
-  if (text == nullptr) return {};
+  if (text == nullptr) database_.fail_with_reason();
   return {reinterpret_cast<const char*>(text),
           static_cast<std::size_t>(sqlite3_column_bytes(handle_, column))};
 }
 
 void Statement::bind_column(int column, Statement& other) const {
-  sqlite3_bind_value(other.handle_, column + 1, sqlite3_column_value(handle_, column));
+  other.expect_bound(
+      sqlite3_bind_value(other.handle_, column + 1, sqlite3_column_value(handle_, column)));
 }
 
 Transaction::Transaction(Database& database) : database_(database) {

@@ -73,6 +73,9 @@ class Statement {
   void bind_column(int column, Statement& other) const;
 
  private:
+  /// @param result  of SQLite; a value that memory lacks for would become NULL
+  void expect_bound(int result) const;
+
   Database& database_;
   sqlite3_stmt* handle_ = nullptr;
 };
