@@ -2,17 +2,24 @@
 # Feeds broken input to every reader of user's files (tests/fuzz): builds the fuzz targets, makes
 # their seeds, runs each for a while and shows a table. Exit status 0 if nothing was found, else 1
 # with the path of the input that found something.
-#   tools/fuzz.sh [--seconds N] [TARGET...]   N seconds for each target, 60 by default
+#   tools/fuzz.sh [--seconds N] [--light] [TARGET...]   N seconds for each target, 60 by default
+# --light leaves out those that need most of the program, and take as long to build as all others.
 # What a target learns stays in build/fuzz/corpus and serves the next time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 all=(asl_tables baseline budget cache_entry evaluation flight_plan image output_record overrides
   platform_yaml run_folder sensor_yaml sweep_database sweep_plan work_trace work_trace_content)
+light=(asl_tables evaluation image output_record overrides platform_yaml sensor_yaml work_trace
+  work_trace_content)
 seconds=60
 targets=()
 while (($# > 0)); do
   case $1 in
+    --light)
+      all=("${light[@]}")
+      shift
+      ;;
     --seconds)
       seconds=${2:-}
       if ! [[ $seconds =~ ^[1-9][0-9]*$ ]]; then
