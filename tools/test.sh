@@ -88,7 +88,7 @@ else
   tools/build.sh "$preset"
   if [[ $kind == --full ]]; then
     check reproducible tools/check_reproducible.sh --quick
-    check fuzz tools/fuzz.sh --seconds 12
+    check fuzz tools/fuzz.sh --seconds 15 --light
     check guard tools/ci/guard.sh
   fi
   check pages tools/check_pages.sh
