@@ -10,9 +10,11 @@
 #include <cerrno>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/opened_file.h"
 
 namespace leviosim::base {
 namespace {
@@ -45,73 +47,10 @@ std::string_view name_of(mode_t mode) {
   return "something else";
 }
 
-class OpenFile {
- public:
-  OpenFile(const std::filesystem::path& path, const InputKindInfo& kind)
-      : path_(path), kind_(kind), descriptor_(open_waiting_for_nobody(path)) {
-    // Some kinds cannot be opened at all (a socket, a FIFO that nobody may read): say what they
-    // are.
-    if (descriptor_ < 0) {
-      const int error = errno;
-      struct stat status {};
-      if (::stat(path.c_str(), &status) == 0) require_regular(status);
-      refuse(reason_of(error));
-    }
-  }
-  ~OpenFile() { ::close(descriptor_); }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-
-  std::string read_all() {
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) refuse(reason_of(errno));
-    require_regular(status);
-    require_size(status.st_size);
-    // The size is a hint only: files of /proc say 0, others grow while they are read.
-    std::string bytes(static_cast<std::size_t>(status.st_size) + 1, '\0');
-    std::size_t used = 0;
-    while (const std::size_t read = read_some(bytes.data() + used, bytes.size() - used)) {
-      used += read;
-      require_size(static_cast<std::int64_t>(used));
-      if (used == bytes.size()) bytes.resize(2 * used);
-    }
-    bytes.resize(used);
-    return bytes;
-  }
-
- private:
-  /// A FIFO without a writer does not hold up an opening that is not to block.
-  static int open_waiting_for_nobody(const std::filesystem::path& path) {
-    return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  }
-
-  std::size_t read_some(char* to, std::size_t most) {
-    constexpr std::size_t kMostAtOnce = std::size_t{1} << 26;
-    for (;;) {
-      const ssize_t read = ::read(descriptor_, to, std::min(most, kMostAtOnce));
-      if (read >= 0) return static_cast<std::size_t>(read);
-      if (errno != EINTR)
-        throw InputError(fmt::format("{}: cannot be read: {}", path_.string(), reason_of(errno)));
-    }
-  }
-  void require_regular(const struct stat& status) const {
-    if (!S_ISREG(status.st_mode))
-      refuse(fmt::format("is {}; expected a regular file", name_of(status.st_mode)));
-  }
-  void require_size(std::int64_t bytes) const {
-    if (bytes > kind_.most_bytes)
-      throw InputError(fmt::format("{}: is larger than {} may be, which is {} MiB", path_.string(),
-                                   kind_.name, kind_.most_bytes / kMiB));
-  }
-  [[noreturn]] void refuse(std::string_view reason) const {
-    throw InputError(
-        fmt::format("{}: cannot be opened as {}: {}", path_.string(), kind_.name, reason));
-  }
-
-  const std::filesystem::path& path_;
-  const InputKindInfo& kind_;
-  int descriptor_;
-};
+/// A FIFO without a writer does not hold up an opening that is not to block.
+int open_waiting_for_nobody(const std::filesystem::path& path) {
+  return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+}
 
 }  // namespace
 
@@ -121,8 +60,90 @@ const InputKindInfo& info_of(InputKind kind) {
   return info;
 }
 
+OpenedFile::OpenedFile(std::filesystem::path path, InputKind kind)
+    : path_(std::move(path)), kind_(kind), descriptor_(open_waiting_for_nobody(path_)) {
+  // Some kinds cannot be opened at all (a socket, a FIFO that nobody may read): say what they are.
+  const int error = errno;
+  struct stat status {};
+  const bool is_known =
+      (descriptor_ < 0 ? ::stat(path_.c_str(), &status) : ::fstat(descriptor_, &status)) == 0;
+  try {
+    if (is_known && !S_ISREG(status.st_mode))
+      refuse(fmt::format("is {}; expected a regular file", name_of(status.st_mode)));
+    if (descriptor_ < 0 || !is_known) refuse(reason_of(error));
+    size_ = static_cast<std::uint64_t>(status.st_size);
+    require_size(size_);
+  } catch (...) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw;
+  }
+}
+
+OpenedFile::~OpenedFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+OpenedFile::OpenedFile(OpenedFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      kind_(other.kind_),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_) {}
+
+OpenedFile& OpenedFile::operator=(OpenedFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(kind_, other.kind_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+std::size_t OpenedFile::read_at(std::uint64_t begin, char* to, std::size_t most) const {
+  constexpr std::size_t kMostAtOnce = std::size_t{1} << 26;
+  std::size_t all = 0;
+  while (all < most) {
+    const ssize_t read = ::pread(descriptor_, to + all, std::min(most - all, kMostAtOnce),
+                                 static_cast<off_t>(begin + all));
+    if (read < 0 && errno == EINTR) continue;
+    if (read < 0)
+      throw InputError(fmt::format("{}: cannot be read: {}", path_.string(), reason_of(errno)));
+    if (read == 0) break;
+    all += static_cast<std::size_t>(read);
+  }
+  return all;
+}
+
+void OpenedFile::read_piece(std::uint64_t begin, std::string& piece) const {
+  if (read_at(begin, piece.data(), piece.size()) < piece.size())
+    throw InputError(fmt::format("{}: has become shorter while it was read", path_.string()));
+}
+
+std::string OpenedFile::read_all() const {
+  // The size is a hint only: files of /proc say 0, others grow while they are read.
+  std::string bytes(size_ + 1, '\0');
+  std::size_t used = 0;
+  while (const std::size_t read = read_at(used, bytes.data() + used, bytes.size() - used)) {
+    used += read;
+    require_size(used);
+    if (used == bytes.size()) bytes.resize(2 * used);
+  }
+  bytes.resize(used);
+  return bytes;
+}
+
+void OpenedFile::require_size(std::uint64_t bytes) const {
+  const InputKindInfo& kind = info_of(kind_);
+  if (bytes > static_cast<std::uint64_t>(kind.most_bytes))
+    throw InputError(fmt::format("{}: is larger than {} may be, which is {} MiB", path_.string(),
+                                 kind.name, kind.most_bytes / kMiB));
+}
+
+void OpenedFile::refuse(std::string_view reason) const {
+  throw InputError(fmt::format("{}: cannot be opened as {}: {}", path_.string(),
+                               info_of(kind_).name, reason));
+}
+
 std::string read_file(const std::filesystem::path& path, InputKind kind) {
-  return OpenFile(path, info_of(kind)).read_all();
+  return OpenedFile(path, kind).read_all();
 }
 
 PathKind kind_of(const std::filesystem::path& path) {

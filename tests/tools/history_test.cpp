@@ -1,9 +1,12 @@
 // Steps and drift of figures over runs.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
-#include "tests/traces/test_folder.h"
+#include "sim/base/error.h"
+#include "tests/support/scratch.h"
 #include "tools/app/history/history_report.h"
 #include "tools/app/history/trend.h"
 #include "tools/app/html_report/page.h"
@@ -36,6 +39,8 @@ std::vector<PastRun> runs_of(const std::vector<double>& cycles) {
   for (const double c : cycles) runs.push_back(run_of(static_cast<int>(runs.size()), c));
   return runs;
 }
+
+History history_of(const std::string& text) { return {"h", Pieces(text)}; }
 
 Budget budget_of(const std::string& limit) {
   return parse_budget("b.yaml", "budgets:\n  - limits:\n      - " + limit + "\n");
@@ -117,8 +122,8 @@ TEST(CheckWithHistory, AStepIsExplainedByItsCommit) {
 TEST(History, ReadsBackWhatItWrote) {
   std::string text;
   const std::vector<PastRun> runs = runs_of({1000, 1000, 1030});
-  for (const PastRun& run : runs) text += History("h", text).lines_for(run);
-  const History history("h", text);
+  for (const PastRun& run : runs) text += history_of(text).lines_for(run);
+  const History history = history_of(text);
   ASSERT_EQ(history.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const PastRun back = history.run(i);
@@ -138,25 +143,124 @@ TEST(History, ReadsBackWhatItWrote) {
 
 TEST(History, LinesOfTwoHistoriesMayStandTwice) {
   std::string text;
-  for (const PastRun& run : runs_of({1000, 1001})) text += History("h", text).lines_for(run);
-  EXPECT_EQ(History("h", text + text).size(), 2u);
-  EXPECT_EQ(History("h", text).lines_for(run_of(1, 1001)), "");
-  EXPECT_THROW((void)History("h", text).lines_for(run_of(1, 1002)), InputError);
+  for (const PastRun& run : runs_of({1000, 1001})) text += history_of(text).lines_for(run);
+  EXPECT_EQ(history_of(text + text).size(), 2u);
+  EXPECT_EQ(history_of(text).lines_for(run_of(1, 1001)), "");
+  EXPECT_THROW((void)history_of(text).lines_for(run_of(1, 1002)), InputError);
+}
+
+/// The lines of all but the newest runs, each with a value that cannot be parsed.
+std::string damaged(std::string text, std::size_t whole) {
+  std::vector<std::size_t> values;
+  for (std::size_t at = text.find("\"values\":["); at != std::string::npos;
+       at = text.find("\"values\":[", at + 1))
+    values.push_back(at);
+  for (std::size_t i = 0; i + whole < values.size(); ++i) text[values[i] + 10] = '?';
+  return text;
 }
 
 /// Adding a run reads the lines of others, but parses none of them: what is damaged there is left
-/// to those who show it. Showing parses the newest only.
+/// to those who show it. Showing parses the newest only, and of other profiles one.
 TEST(History, WorkDoesNotGrowWithWhatIsNotShown) {
   std::string text;
-  const std::vector<PastRun> runs = runs_of({1000, 1001, 1002, 1003});
-  for (const PastRun& run : runs) text += History("h", text).lines_for(run);
-  const std::size_t values = text.find("\"values\":[");
-  ASSERT_NE(values, std::string::npos);
-  text[values + 10] = '?';  // of the oldest run
-  const History history("h", text);
-  EXPECT_NE(history.lines_for(run_of(9, 1009)), "");
-  EXPECT_EQ(history.like(runs[3].record, "", 3).size(), 3u);
-  EXPECT_THROW((void)history.like(runs[3].record, "", 4), InputError);
+  for (const PastRun& run : runs_of({1000, 1001})) text += history_of(text).lines_for(run);
+  PastRun other = run_of(0, 1000);
+  other.record.facts.profile = "next";
+  std::string others = history_of(text).lines_for(other);
+  const std::size_t begin = text.rfind("{\"run\"");
+  const std::string line = text.substr(begin);
+  for (int n = 2; n < 10'000; ++n) {
+    std::string next = line;
+    next.replace(next.find("c000"), 40, fmt::format("c{:039}", n));
+    next.replace(next.find(":1001,"), 6, fmt::format(":{},", 1000 + n));
+    text += next;
+  }
+  const History history = history_of(damaged(text, 3));
+  ASSERT_EQ(history.size(), 10'000u);
+  EXPECT_NE(history.lines_for(run_of(20'000, 1009)), "");
+  EXPECT_EQ(history.lines_for(run_of(9998, 1001)), "") << "is there";
+  const RunRecord run = run_of(1, 1001).record;
+  EXPECT_EQ(history.lines_parsed(), 0u);
+  EXPECT_EQ(history.like(run, "", 3).size(), 3u);
+  EXPECT_EQ(history.lines_parsed(), 3u + 3u) << "the runs; their facts, figures and stage";
+  EXPECT_THROW((void)history.like(run, "", 4), InputError);
+
+  // One of another profile before them all: only the newest of those is parsed on the way to it.
+  const std::size_t of_other = others.rfind("{\"run\"");
+  const History mixed = history_of(damaged(others.substr(of_other) + text, 1) + others.substr(0, of_other));
+  EXPECT_THROW((void)mixed.like(other.record, "", 1), InputError) << "itself is damaged";
+  const History behind = history_of(others + damaged(text, 1));
+  EXPECT_EQ(behind.like(other.record, "", 1).size(), 1u);
+}
+
+/// Of a file a piece is held at a time. It is read once by who adds to it; by who shows the newest
+/// runs, their lines again.
+TEST(History, IsReadInPiecesAndOnce) {
+  const tests::Scratch folder;
+  const std::string file = (folder / "h.jsonl").string();
+  std::vector<double> cycles(3000);
+  for (std::size_t i = 0; i < cycles.size(); ++i) cycles[i] = 1000.0 + static_cast<double>(i);
+  const std::vector<PastRun> runs = runs_of(cycles);
+  std::string text;
+  for (const PastRun& run : runs) text += history_of("").lines_for(run);
+  tests::write_text(file, text);
+  const History history = History::read(file);
+  ASSERT_EQ(history.size(), 3000u);
+  EXPECT_NE(history.lines_for(run_of(3000, 1)), "");
+  EXPECT_LT(history.bytes_read(), text.size() + text.size() / 50) << "lines that two pieces share";
+  EXPECT_EQ(history.like(runs[0].record, "", 200).size(), 200u);
+  EXPECT_LT(history.bytes_read(), 2 * text.size());
+  const History whole = history_of(text);
+  for (const std::size_t i : {0, 1, 1499, 2998, 2999})
+    EXPECT_EQ(history.lines_for(history.run(i)), whole.lines_for(whole.run(i))) << i;
+  for (const PastRun& run : history.like(runs[0].record, "", 3000))
+    EXPECT_EQ(history.lines_for(run), "") << run.origin.commit;
+}
+
+/// What is added stands behind what was there, of which no byte changes; and so it is where a
+/// program was stopped in the middle of a line.
+TEST(History, IsAddedToAllOrNothing) {
+  const tests::Scratch folder;
+  const std::string file = (folder / "h.jsonl").string();
+  std::vector<std::string> texts{""};
+  for (const PastRun& run : runs_of({1000, 1001, 1002})) {
+    GrowingHistory growing(file);
+    growing.append(growing.history().lines_for(run));
+    texts.push_back(tests::read_text(file));
+    EXPECT_TRUE(texts.back().starts_with(texts[texts.size() - 2]));
+  }
+  for (std::size_t size = texts[2].size() + 1; size < texts[3].size(); ++size) {
+    tests::write_text(file, texts[3].substr(0, size));
+    GrowingHistory growing(file);
+    const bool lacks_a_break_only = size + 1 == texts[3].size();
+    EXPECT_EQ(growing.history().size(), lacks_a_break_only ? 3u : 2u) << size;
+    growing.append(growing.history().lines_for(run_of(2, 1002)));
+    EXPECT_EQ(tests::read_text(file), texts[3]) << size;
+  }
+  // A whole line without a break, as editors leave it, is not glued to the next.
+  tests::write_text(file, texts[2].substr(0, texts[2].size() - 1));
+  GrowingHistory growing(file);
+  growing.append(growing.history().lines_for(run_of(2, 1002)));
+  EXPECT_EQ(tests::read_text(file), texts[3]);
+  // What is no history at all stays as it is.
+  tests::write_text(file, "a letter");
+  EXPECT_THROW((void)GrowingHistory(file), InputError);
+  EXPECT_EQ(tests::read_text(file), "a letter");
+  EXPECT_THROW((void)GrowingHistory(folder.path().string()), InputError);
+}
+
+/// Runs of one second, such as a script adds without git, are told apart as quickly.
+TEST(History, RunsOfOneTimeKeepTheirOrder) {
+  std::string text;
+  for (int n = 0; n < 3; ++n) {
+    PastRun run = run_of(n, 1000 + n);
+    run.origin.time_s = 5;
+    text += history_of(text).lines_for(run);
+  }
+  const History history = history_of(text + text);
+  ASSERT_EQ(history.size(), 3u);
+  for (int n = 0; n < 3; ++n)
+    EXPECT_EQ(history.origin(static_cast<std::size_t>(n)).commit, fmt::format("c{:039}", n));
 }
 
 /// Of ten thousand runs that change nothing the page holds the newest; of changes all.

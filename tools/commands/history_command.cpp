@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/input_file.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/gate.h"
@@ -79,22 +77,12 @@ Origin origin_of(const HistoryOptions& options) {
   return origin;
 }
 
-/// At the end of the file; nothing else of it is touched.
-void append(const std::string& file, const std::string& lines) {
-  std::FILE* const out = std::fopen(file.c_str(), "ae");
-  const bool is_written = out != nullptr &&
-                          std::fwrite(lines.data(), 1, lines.size(), out) == lines.size();
-  if (out == nullptr || std::fclose(out) != 0 || !is_written)
-    throw InputError(fmt::format("{}: cannot be written", file));
-}
-
 void add(const CLI::App& command, const HistoryOptions& options) {
   require(command, "RUN", "a run folder or a work trace");
   std::optional<Gate> gate = optional_gate(options.gate, options);
-  const History history(options.file, base::exists(options.file)
-                                          ? base::read_file(options.file, base::InputKind::history)
-                                          : std::string());
   PastRun run{origin_of(options), {}, read_run_or_baseline(options.run, options)};
+  GrowingHistory file(options.file);
+  const History& history = file.history();
   if (gate) {
     // The run before is the baseline, unless there is another; of the first run, itself.
     const std::vector<PastRun> before = history.like(run.record, run.origin.branch, 1);
@@ -105,7 +93,7 @@ void add(const CLI::App& command, const HistoryOptions& options) {
       if (finding.fails()) run.limits.missed.push_back(finding.title());
   }
   const std::string lines = history.lines_for(run);
-  if (!lines.empty()) append(options.file, lines);
+  if (!lines.empty()) file.append(lines);
   const std::string place =
       lines.empty() ? fmt::format("is in {} already", printable(options.file))
                     : fmt::format("is run {} of {}", history.size() + 1, printable(options.file));

@@ -1,11 +1,18 @@
 #include "tools/app/history/history.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
-#include <optional>
+#include <chrono>
+#include <functional>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
@@ -19,6 +26,7 @@ constexpr std::string_view kKept = "{\"kept\":\"";
 constexpr std::string_view kRun = "{\"run\":\"";
 constexpr std::string_view kTime = "\",\"time\":";
 constexpr std::size_t kDigits = 12;  ///< of a digest
+constexpr std::size_t kPiece = std::size_t{1} << 18;
 
 /// A shared line: what it holds, under its digest.
 struct Shared {
@@ -54,15 +62,30 @@ bool are_alike(const RunFacts& a, const RunFacts& b) {
   return key(a) == key(b);
 }
 
-std::string text_of(const Json& json) { return json.get<std::string>(); }
+std::string string_of(const Json& json) { return json.get<std::string>(); }
 
 Origin origin_of(const Json& run) {
   Origin origin;
-  origin.commit = text_of(run.at("run"));
-  origin.branch = text_of(run.at("branch"));
+  origin.commit = string_of(run.at("run"));
+  origin.branch = string_of(run.at("branch"));
   run.at("time").get_to(origin.time_s);
-  origin.subject = text_of(run.at("subject"));
+  origin.subject = string_of(run.at("subject"));
   return origin;
+}
+
+/// Whether it is what an interrupted program leaves at the end of a file.
+bool is_unfinished(std::string_view last) {
+  const auto begins = [&](std::string_view mark) { return last.starts_with(mark.substr(0, last.size())); };
+  return (begins(kKept) || begins(kRun)) && !Json::accept(last);
+}
+
+/// The digest that a line of a run has of what it shares; empty if it has none. No string holds what
+/// is looked for: quotes in it have a backslash before them.
+std::string_view digest_in(std::string_view line, std::string_view what) {
+  const std::string begin = fmt::format(",\"{}\":\"", what);
+  const std::size_t at = line.find(begin);
+  return at == std::string_view::npos ? std::string_view()
+                                      : line.substr(at + begin.size(), kDigits);
 }
 
 }  // namespace
@@ -72,51 +95,87 @@ std::string short_commit(const std::string& commit) {
   return commit.substr(0, kShort);
 }
 
-History::History(std::string file, std::string text)
-    : file_(std::move(file)), text_(std::move(text)) {
+std::string_view Pieces::held_from(std::uint64_t begin) const {
+  if (begin < begin_ || begin > begin_ + held_.size()) return {};
+  return std::string_view(held_).substr(begin - begin_);
+}
+
+void Pieces::hold(std::uint64_t begin, std::size_t size) {
+  held_.resize(size);
+  begin_ = begin;
+  bytes_read_ += size;
+  file_->read_piece(begin, held_);
+}
+
+std::string_view Pieces::at(std::uint64_t begin, std::size_t size) {
+  if (held_from(begin).size() < size) {
+    // Lines are read one after the other, forwards or backwards: what comes next is held, too.
+    const std::uint64_t end = begin + size;
+    const std::uint64_t from = begin < begin_ && end > kPiece ? std::min(begin, end - kPiece) : begin;
+    hold(from, std::min<std::uint64_t>(std::max<std::uint64_t>(kPiece, end - from), size_ - from));
+  }
+  return held_from(begin).substr(0, size);
+}
+
+std::string_view Pieces::line_at(std::uint64_t begin) {
+  for (std::size_t most = kPiece;; most *= 2) {
+    const std::string_view rest = held_from(begin);
+    const std::size_t end = rest.find('\n');
+    if (end != std::string_view::npos) return rest.substr(0, end);
+    if (begin + rest.size() == size_) return rest;
+    hold(begin, std::min<std::uint64_t>(most, size_ - begin));
+  }
+}
+
+History::History(std::string file, Pieces text) : file_(std::move(file)), pieces_(std::move(text)) {
   std::size_t number = 0;
-  for (std::size_t begin = 0; begin < text_.size();) {
-    ++number;
-    const std::size_t end = std::min(text_.find('\n', begin), text_.size());
-    const std::string_view line = std::string_view(text_).substr(begin, end - begin);
-    Line at{begin, line.size(), 0};
-    begin = end + 1;
-    if (line.empty()) continue;
-    if (line.starts_with(kKept)) {
-      kept_.emplace(line.substr(kKept.size(), kDigits), at);
-      continue;
-    }
-    const std::size_t time = line.find(kTime);
-    const char* const from = line.data() + time + kTime.size();
-    if (!line.starts_with(kRun) || time == std::string_view::npos || line.back() != '}' ||
-        std::from_chars(from, line.data() + line.size(), at.time_s).ec != std::errc())
-      throw InputError(fmt::format(
-          "{}:{}: no line of a history; expected those that 'leviosim history add' writes", file_,
-          number));
-    runs_.push_back(at);
+  while (whole_size_ < pieces_.size()) {
+    const std::string_view line = pieces_.line_at(whole_size_);
+    const std::uint64_t end = whole_size_ + line.size();
+    if (end == pieces_.size() && is_unfinished(line)) break;
+    if (!line.empty()) add_line(line, {whole_size_, line.size()}, ++number);
+    whole_size_ = std::min(end + 1, pieces_.size());
   }
   std::stable_sort(runs_.begin(), runs_.end(),
                    [](const Line& a, const Line& b) { return a.time_s < b.time_s; });
   // Of two histories that were merged, lines of both stand twice.
-  std::vector<Line> once;
-  for (const Line& line : runs_) {
-    const auto of_then = std::lower_bound(
-        once.begin(), once.end(), line, [](const Line& a, const Line& b) { return a.time_s < b.time_s; });
-    if (std::none_of(of_then, once.end(), [&](const Line& other) { return bytes_of(other) == bytes_of(line); }))
-      once.push_back(line);
+  std::set<std::pair<std::size_t, std::size_t>> of_then;  // sizes and hashes
+  std::int64_t then = 0;
+  std::erase_if(runs_, [&](const Line& line) {
+    if (line.time_s != then) of_then.clear();
+    then = line.time_s;
+    return !of_then.emplace(line.size, line.hash).second;
+  });
+}
+
+void History::add_line(std::string_view text, Line line, std::size_t number) {
+  if (text.starts_with(kKept)) {
+    kept_.emplace(text.substr(kKept.size(), kDigits), line);
+    return;
   }
-  runs_ = std::move(once);
+  const std::size_t time = text.find(kTime);
+  const char* const from = text.data() + time + kTime.size();
+  if (!text.starts_with(kRun) || time == std::string_view::npos || text.back() != '}' ||
+      std::from_chars(from, text.data() + text.size(), line.time_s).ec != std::errc())
+    throw InputError(
+        fmt::format("{}:{}: no line of a history; expected those that 'leviosim history add' writes",
+                    file_, number));
+  line.hash = std::hash<std::string_view>()(text);
+  runs_.push_back(line);
 }
 
 History History::read(const std::string& file) {
-  return History(file, base::read_file(file, base::InputKind::history));
+  return {file, Pieces(base::OpenedFile(file, base::InputKind::history))};
 }
 
-std::string_view History::bytes_of(const Line& line) const {
-  return std::string_view(text_).substr(line.begin, line.size);
+bool History::ends_a_line() const {
+  return whole_size_ == 0 || pieces_.at(whole_size_ - 1, 1) == "\n";
 }
 
-Json History::parsed(const Line& line) const { return parse_json(file_, std::string(bytes_of(line))); }
+Json History::parsed(const Line& line) const {
+  ++lines_parsed_;
+  return parse_json(file_, std::string(text_of(line)));
+}
 
 const Json& History::kept(const std::string& digest) const {
   const auto known = parsed_.find(digest);
@@ -141,18 +200,18 @@ PastRun History::run(std::size_t i) const {
     run.at("limits").get_to(past.limits.held);
     run.at("missed").get_to(past.limits.missed);
     past.record.name = short_commit(past.origin.commit);
-    past.record.facts = facts_of_json(file_, kept(text_of(run.at("facts"))));
-    past.record.facts.program = text_of(run.at("program"));
-    const Json& names = kept(text_of(run.at("figures")));
+    past.record.facts = facts_of_json(file_, kept(string_of(run.at("facts"))));
+    past.record.facts.program = string_of(run.at("program"));
+    const Json& names = kept(string_of(run.at("figures")));
     const Json& values = run.at("values");
     for (std::size_t k = 0; k < names.size(); ++k) {
       Statistic& statistic = past.record.statistics.emplace_back();
-      statistic.name = text_of(names.at(k).at(0));
-      statistic.unit = text_of(names.at(k).at(1));
+      statistic.name = string_of(names.at(k).at(0));
+      statistic.unit = string_of(names.at(k).at(1));
       if (!values.at(k).is_null()) statistic.value = values.at(k).get<double>();
     }
     for (const Json& stage : run.at("stages"))
-      add_baseline_stage(kept(text_of(stage)), past.record);
+      add_baseline_stage(kept(string_of(stage)), past.record);
     return past;
   } catch (const nlohmann::json::exception&) {
     throw InputError(fmt::format("{}: a run of it is damaged; expected what 'leviosim history add' "
@@ -164,10 +223,16 @@ PastRun History::run(std::size_t i) const {
 std::vector<PastRun> History::like(const RunRecord& run, const std::string& branch,
                                    std::size_t most) const {
   std::vector<PastRun> found;
+  std::unordered_map<std::string, bool> alike;  // by the digest of the facts
   for (std::size_t i = size(); i > 0 && found.size() < most; --i) {
+    std::string digest(digest_in(text_of(runs_[i - 1]), "facts"));
+    const auto known = alike.find(digest);
+    if (known != alike.end() && !known->second) continue;  // without parsing the line
     PastRun past = this->run(i - 1);
-    if (!branch.empty() && past.origin.branch != branch) continue;
-    if (are_alike(past.record.facts, run.facts)) found.push_back(std::move(past));
+    const bool is_alike = are_alike(past.record.facts, run.facts);
+    alike.emplace(std::move(digest), is_alike);
+    if (is_alike && (branch.empty() || past.origin.branch == branch))
+      found.push_back(std::move(past));
   }
   std::reverse(found.begin(), found.end());
   return found;
@@ -196,9 +261,10 @@ std::string History::lines_for(const PastRun& run) const {
   const std::string found = member("facts", facts.digest) + member("figures", names.digest) +
                             member("values", values);
   for (const Line& line : runs_) {
-    if (!bytes_of(line).starts_with(begin) || bytes_of(line).find(facts.digest) == std::string_view::npos)
-      continue;
-    if (bytes_of(line).find(found) != std::string_view::npos) return {};
+    if (line.time_s != run.origin.time_s) continue;
+    const std::string_view text = text_of(line);
+    if (!text.starts_with(begin) || digest_in(text, "facts") != facts.digest) continue;
+    if (text.find(found) != std::string_view::npos) return {};
     throw InputError(fmt::format(
         "{}: has a run of {} with this chip, profile and data already, and other figures", file_,
         short_commit(run.origin.commit)));
@@ -207,6 +273,41 @@ std::string History::lines_for(const PastRun& run) const {
                      json_text(Json(run.origin.branch)), member("subject", run.origin.subject),
                      member("program", run.record.facts.program),
                      member("limits", run.limits.held), member("missed", run.limits.missed), found, member("stages", stages));
+}
+
+GrowingHistory::GrowingHistory(const std::string& file) : name_(file) {
+  if (base::exists(file)) {
+    open(0);
+    history_ = History::read(file);
+  } else {
+    history_.emplace(file, Pieces(std::string()));
+  }
+}
+
+void GrowingHistory::open(int more_flags) {
+  constexpr std::chrono::seconds kPatience{30};
+  constexpr int kFlags = O_WRONLY | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+  file_ = outputs::Descriptor(::open(name_.c_str(), kFlags | more_flags, 0666));
+  if (!file_)
+    throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(errno)));
+  if (!outputs::lock(file_.get(), kPatience))
+    throw InputError(fmt::format("{}: another program adds to it; try again later", name_));
+}
+
+void GrowingHistory::append(std::string lines) {
+  const bool is_new = !file_;
+  if (is_new) open(O_CREAT | O_EXCL);
+  if (!history_->ends_a_line()) lines.insert(0, 1, '\n');
+  const auto whole = static_cast<off_t>(history_->whole_size());
+  int error = ::ftruncate(file_.get(), whole) == 0 ? 0 : errno;
+  if (error == 0) {
+    error = outputs::write_all(file_.get(), lines);
+    if (error != 0 && ::ftruncate(file_.get(), whole) != 0) error = errno;
+  }
+  if (const int closed = file_.close(); error == 0) error = closed;
+  if (error == 0) return;
+  if (is_new) ::unlink(name_.c_str());
+  throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(error)));
 }
 
 }  // namespace leviosim::tools
