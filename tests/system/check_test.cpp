@@ -244,7 +244,7 @@ TEST_F(Check, AWarningDoesNotFail) {
       program({"check", path("run"), "--budget", warn, "--annotations", "github", "--junit",
                path("warned.xml"), "--markdown", path("warned.md")});
   EXPECT_EQ(result.status, 0) << result.out;
-  expect_holds(result.out, {"warning", "::warning file=", "0 not met, 1 warnings"});
+  expect_holds(result.out, {"warning", "::warning file=", "0 not met, 1 warning\n"});
   EXPECT_EQ(junit_fault(base::read_text_file(path("warned.xml"))), "");
   EXPECT_EQ(schema_fault(path("warned.xml")), "");
   expect_holds(base::read_text_file(path("warned.md")), {"met, with warnings", "**⚠ L1 peak"});

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <regex>
+#include <set>
 
+#include "tests/support/paths.h"
 #include "tests/support/program_suite.h"
+#include "tests/support/scratch.h"
 #include "tests/support/text_lines.h"
 #include "tools/app/history/history.h"
 #include "traces/synthesis/synthetic.h"
@@ -89,6 +93,13 @@ class HistoryCommand : public tests::ProgramSuite {
     for (const std::string& part : parts)
       EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in:\n" << text;
   }
+  /// The lines of a text without what numbers and commits are in them.
+  static std::set<std::string> shapes_of(const std::string& text) {
+    std::set<std::string> shapes;
+    for (const std::string& line : lines_of(text))
+      shapes.insert(std::regex_replace(line, std::regex("\\b[0-9a-f]{40}\\b|[0-9]+([.][0-9]+)?"), "#"));
+    return shapes;
+  }
   static ProgramResult add(const std::string& commit, std::vector<std::string> further) {
     std::vector<std::string> words{"history",  "add",  path("run"), "--commit",    commit,
                                    "--branch", "main", "--subject", "a, \"b\" <c>"};
@@ -130,6 +141,21 @@ TEST_F(HistoryCommand, ThirtyCommitsTellWhoMadeWhatSlower) {
   EXPECT_EQ(testing::screen_fault(text("show.txt")), "") << text("show.txt");
   expect_holds(text("trend.html"), {"drift of +", "step of +", "count bits one by one"});
   expect_holds(text("bisect.txt"), {commit + " is the first bad commit", "verdict: skipped"});
+
+  // A run of a history does not say what energy its stages took and which blocks they had.
+  for (const char* part : {"energy of a frame by", "blocks at a peak"})
+    EXPECT_EQ(text("comment.md").find(part), std::string::npos) << text("comment.md");
+}
+
+TEST_F(HistoryCommand, TheTranscriptOfThePageIsThatOfTheStory) {
+  if (!fs::exists(path("bisect.txt"))) GTEST_SKIP() << "ThirtyCommitsTellWhoMadeWhatSlower did not run";
+  const std::string page = tests::read_text(tests::source_folder() / "tools/app/history/BISECT.md");
+  const std::string begin = "```text\n";
+  const std::size_t at = page.find(begin) + begin.size();
+  const std::set<std::string> printed = shapes_of(
+      std::regex_replace(text("bisect.txt"), std::regex("[.][.]/matching"), "/tmp/slower"));
+  for (const std::string& line : shapes_of(page.substr(at, page.find("```", at) - at)))
+    EXPECT_EQ(printed.count(line), 1u) << line << "\nis not in:\n" << text("bisect.txt");
 }
 
 TEST_F(HistoryCommand, ARunTakesAFewHundredBytesAndMergesAreUnions) {

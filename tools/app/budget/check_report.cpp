@@ -55,7 +55,7 @@ std::string table_of(const CheckResult& result) {
   const std::string count = fmt::format("{} limit{}", limits, limits == 1 ? "" : "s");
   std::string text = fmt::format("{} against {}: {}, {} not met", printable(result.run),
                                  printable(result.budget), count, result.missed());
-  text += result.warned() == 0 ? "\n" : fmt::format(", {} warnings\n", result.warned());
+  text += result.warned() == 0 ? "\n" : fmt::format(", {} warning{}\n", result.warned(), result.warned() == 1 ? "" : "s");
   if (!result.baseline.empty()) text += fmt::format("baseline: {}\n", printable(result.baseline));
   if (!result.not_measured.empty())
     text += fmt::format("left out, since it was not measured: {}\n",

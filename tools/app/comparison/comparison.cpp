@@ -114,19 +114,23 @@ class Comparer {
     const auto is_block = [](const Statistic& s) {
       return s.name.find(".block.") != std::string::npos && s.unit == "byte";
     };
+    // What a baseline does not hold may have been there all the same.
+    const bool all_in_a = holds_all(a_);
+    const bool all_in_b = holds_all(b_);
     for (const Statistic& s : a_.statistics)
-      if (is_block(s) && b_.value(s.name) != s.value)
+      if (is_block(s) && b_.value(s.name) != s.value && (all_in_b || b_.value(s.name)))
         list.push_back({block_name(s.name), "byte", s.value, b_.value(s.name)});
     for (const Statistic& s : b_.statistics)
-      if (is_block(s) && a_.find(s.name) == nullptr)
+      if (all_in_a && is_block(s) && a_.find(s.name) == nullptr)
         list.push_back({block_name(s.name), "byte", std::nullopt, s.value});
     return list;
   }
 
   /// mJ of a frame. @param by_domain  else by stage
+  /// @returns without parts if one of the runs is a baseline, which holds none
   ComparedQuantity energy(bool by_domain) const {
     ComparedQuantity whole = of("energy of a frame", "mJ", "energy.frame");
-    if (!whole.a && !whole.b) return whole;
+    if ((!whole.a && !whole.b) || !holds_all(a_) || !holds_all(b_)) return whole;
     for (const RunRecord* run : {&a_, &b_}) {
       const auto total = run->value("energy.total");
       const auto frame = run->value("energy.frame");
@@ -146,6 +150,13 @@ class Comparer {
   }
 
  private:
+  /// Whether it is a run itself, not a baseline of one or a run of a history: those do not say how
+  /// many operations of each kind there were.
+  static bool holds_all(const RunRecord& run) {
+    return std::any_of(run.statistics.begin(), run.statistics.end(), [](const Statistic& s) {
+      return s.name.find(".ops.") != std::string::npos;
+    });
+  }
   static bool is_folded(const StageParts& stage) {
     return std::any_of(stage.parts.begin(), stage.parts.end(),
                        [](const CyclePart& part) { return part.mechanism == kOtherParts; });
