@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -342,6 +343,57 @@ TEST_F(SweepCommand, SlurmArraysMakeOneRun) {
                               leviosim::tests::program_path())),
             0);
   EXPECT_EQ(csv("slurm/all"), csv("whole"));
+}
+
+/// Of a plan's two shares, one after the other, the first is killed once 20 points are done, and its
+/// task queued again.
+constexpr const char* kSlurmJob = R"sh(
+set -eu
+job=$(sbatch --parsable --array=1-2%1 --open-mode=append --output="$PWD/task-%a.txt" "$1" long.yaml queued)
+until [ "$(find queued/cache -type f 2>/dev/null | wc -l)" -ge 20 ]; do sleep 0.02; done
+scancel --signal=KILL --full "${job}_1"
+until scontrol requeue "${job}_1" 2>/dev/null; do sleep 0.1; done
+while [ -n "$(squeue --noheader --jobs="$job" 2>/dev/null)" ]; do
+  scontrol update jobid="${job}_1" starttime=now 2>/dev/null || true # else two minutes later
+  sleep 0.3
+done
+scontrol show job "$job" >jobs.txt
+)sh";
+
+TEST_F(SweepCommand, ATaskThatSlurmKillsAndQueuesAgainMakesTheSameRun) {
+  outputs::write_file_atomically(folder_ / "long.yaml",
+                                 "base: { trace: recorded }\n"
+                                 "points:\n"
+                                 "  - grid:\n"
+                                 "      platform.cluster.clock: { from: 100, to: 364, step: 30 }\n"
+                                 "      platform.cluster.fpu.units: [1, 2, 4, 8]\n"
+                                 "      platform.cluster.dma.bytes_per_cycle: [1, 2, 4, 8]\n");
+  outputs::write_file_atomically(folder_ / "job.sh", kSlurmJob);
+  fs::create_directory(folder_ / "slurm-node");
+  const int status = shell(fmt::format(
+      "timeout 600 '{}/tests/support/slurm.sh' slurm-node sh job.sh {}",
+      leviosim::tests::source_folder().string(), example("slurm_array.sh")));
+  const std::string said = base::read_text_file(folder_ / "shell.txt");
+  if (status == 77) GTEST_SKIP() << said;
+  ASSERT_EQ(status, 0) << said;
+  const std::string jobs = base::read_text_file(folder_ / "jobs.txt");
+  EXPECT_NE(jobs.find("Restarts=1"), std::string::npos) << jobs;
+  EXPECT_EQ(jobs.find("FAILED"), std::string::npos) << jobs;
+  // Killed in the middle: of its 72 points, some were done before, the others are done now.
+  const std::string task = base::read_text_file(folder_ / "task-1.txt");
+  std::smatch counts;
+  ASSERT_TRUE(std::regex_search(task, counts, std::regex("(\\d+) computed .* (\\d+) done before"))) << task;
+  EXPECT_GT(std::stoi(counts[1]), 0) << task;
+  EXPECT_GT(std::stoi(counts[2]), 0) << task;
+
+  const auto long_sweep = [](std::vector<std::string> words) {
+    words.insert(words.begin(), "sweep");
+    const ProgramResult result = run_program(folder_, std::move(words));
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  long_sweep({"--merge", path("queued/all"), path("queued/shard-1"), path("queued/shard-2")});
+  long_sweep({path("long.yaml"), "--out", path("undisturbed"), "--cache", path("cache-long"), "--quiet"});
+  EXPECT_EQ(csv("queued/all"), csv("undisturbed"));
 }
 
 TEST_F(SweepCommand, GnuParallelMakesOneRun) {
