@@ -1,4 +1,11 @@
-#include "tools/commands/ablate_command.h"
+// `leviosim ablate`: the paper's table of pipeline configurations, for any sequences and image
+// sizes. Its folder:
+//
+//   manifest.json   what the batch was made from
+//   runs.csv        a row per run
+//   table.md        the table that is printed
+//   table.json      its rows, with more digits
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,12 @@
-#include "tools/commands/benchmark_flights_command.h"
+// `leviosim benchmark-flights`: how accurate the workload is on flights that chose nothing. Its
+// folder:
+//
+//   manifest.json   what the benchmark was made from
+//   runs.csv        a row per run
+//   pieces.csv      a row per profile and piece, over the seeds
+//   table.md        the table that is printed
+//   table.json      its rows and the pieces, with more digits
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

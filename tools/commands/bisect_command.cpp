@@ -1,4 +1,5 @@
-#include "tools/commands/bisect_command.h"
+// leviosim bisect: whether the commit that is checked out meets a budget, as `git bisect run` asks.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-#include "tools/commands/budget_command.h"
+// leviosim budget: makes baselines and first budgets.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,5 @@
-#include "tools/commands/calibrate_command.h"
+// `leviosim calibrate`: fits the code-generation constants of a platform.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

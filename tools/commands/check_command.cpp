@@ -1,4 +1,5 @@
-#include "tools/commands/check_command.h"
+// leviosim check: holds a run against a budget.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

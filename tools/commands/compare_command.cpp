@@ -1,4 +1,5 @@
-#include "tools/commands/compare_command.h"
+// leviosim compare: what differs between runs, and why.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

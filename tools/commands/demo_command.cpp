@@ -1,4 +1,5 @@
-#include "tools/commands/demo_command.h"
+// leviosim demo: both profiles on the synthetic flight, and a what-if, on one screen.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-#include "tools/commands/doctor_command.h"
+// `leviosim doctor`: what this program is and what it finds on this machine.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <png.h>

@@ -1,4 +1,5 @@
-#include "tools/commands/eval_command.h"
+// `leviosim eval`: how far an estimated trajectory lies from the ground truth.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,11 @@
-#include "tools/commands/explore_command.h"
+// `leviosim explore`: the paper's parameter sweep. Its folder:
+//
+//   manifest.json   what the batch was made from
+//   runs.csv        a row per run
+//   points.csv      a row per point, profile and sequence: medians and spread
+//   best.md         the points of least error
+//   scatter.svg     absolute over relative error
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-#include "tools/commands/flow_command.h"
+// `leviosim flow`: the optical flow of PX4FLOW on a chip.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-#include "tools/commands/image_statistics_command.h"
+// `leviosim image-statistics`: what the pictures of recordings are like, side by side.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,5 @@
-#include "tools/commands/microbench_command.h"
+// leviosim microbench: small programs on a chip beside what is known of the real one.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-#include "tools/commands/platforms_command.h"
+// `leviosim platforms`: which chips there are, and what is known about one.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,5 @@
-#include "tools/commands/replay_command.h"
+// `leviosim replay`: a recorded run on another chip.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

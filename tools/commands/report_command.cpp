@@ -1,4 +1,5 @@
-#include "tools/commands/report_command.h"
+// leviosim report: runs as one HTML page, from their folders alone.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

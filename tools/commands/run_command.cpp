@@ -1,4 +1,5 @@
-#include "tools/commands/run_command.h"
+// `leviosim run`: the workload on a chip, or natively, over recorded or synthetic data.
+#include "tools/commands/commands.h"
 
 #include <CLI/CLI.hpp>
 

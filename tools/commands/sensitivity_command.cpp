@@ -1,4 +1,5 @@
-#include "tools/commands/sensitivity_command.h"
+// `leviosim sensitivity`: which uncertain numbers of a platform matter.
+#include "tools/commands/commands.h"
 
 #include <CLI/CLI.hpp>
 #include <memory>

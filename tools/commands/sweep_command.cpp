@@ -1,4 +1,5 @@
-#include "tools/commands/sweep_command.h"
+// `leviosim sweep`: many points of one plan, by replay where there is a trace, else by live runs.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-#include "tools/commands/synth_command.h"
+// `leviosim synth`: the synthetic flight as an ASL folder.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,6 @@
-#include "tools/commands/trace_command.h"
+// `leviosim trace info FILE` and `leviosim trace check FILE`: what a work trace holds, and whether
+// all of it can be read.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

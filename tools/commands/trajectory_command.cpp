@@ -1,4 +1,5 @@
-#include "tools/commands/trajectory_command.h"
+// `leviosim trajectory`: a trajectory in the format of other programs, on stdout.
+#include "tools/commands/commands.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,11 @@
-#include "tools/commands/tune_command.h"
+// `leviosim tune`: closed loops over clock and frame rate. Its folder:
+//
+//   manifest.json   what the batch was made from, and what was chosen
+//   runs.csv        a row per point and seed
+//   tune.svg        error, missed frames and power over the clock
+//   chosen/         the run folder of the lowest clock that is enough, with the first seed, run
+//   again
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

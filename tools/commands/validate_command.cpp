@@ -1,4 +1,5 @@
-#include "tools/commands/validate_command.h"
+// `leviosim validate`: the paper's tables beside those of a run.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-#include "tools/commands/whatif_command.h"
+// leviosim whatif: a recorded run on other chips, a row a variant; without a change, advice.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

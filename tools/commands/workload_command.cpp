@@ -1,4 +1,5 @@
-#include "tools/commands/workload_command.h"
+// `leviosim workload`: profiles of the workload, and its parameters with unit, range and value.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
