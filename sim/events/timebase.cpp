@@ -86,10 +86,6 @@ Cycles ClockDomain::cycles_covering(Duration duration) const {
   return this->duration(whole) == duration ? whole : whole + Cycles(1);
 }
 
-Time ClockDomain::edge_at_or_after(Time t) const {
-  return Time{} + duration(cycles_covering(t - Time{}));
-}
-
 Timebase::Timebase(const std::vector<ClockSpec>& clocks) : ticks_per_second_(0) {
   refuse_bad_clocks(clocks);
   ticks_per_second_ = common_ticks_per_second(clocks);

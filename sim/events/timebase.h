@@ -49,8 +49,6 @@ class ClockDomain {
   Cycles whole_cycles(Duration duration) const;
   /// Fewest cycles that last at least a duration >= 0: rounded up.
   Cycles cycles_covering(Duration duration) const;
-  /// Earliest edge of this clock that is not before `t` (>= 0).
-  Time edge_at_or_after(Time t) const;
 
  private:
   std::string name_;
