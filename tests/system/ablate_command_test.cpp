@@ -7,8 +7,8 @@
 
 #include "tests/support/run_program.h"
 #include "tests/tools/well_formed.h"
-#include "tools/app/study/ablate/ablation_report.h"
-#include "tools/app/study/explore/dimensions.h"
+#include "tools/app/study/ablate/ablation.h"
+#include "tools/app/study/explore/exploration.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

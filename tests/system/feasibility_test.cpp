@@ -1,13 +1,12 @@
 // `leviosim platforms feasibility`: the verdicts follow from the recorded work and the chips'
 // numbers.
-#include "tools/app/study/feasibility/feasibility.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/study/feasibility/feasibility.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/run_program.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/feasibility/feasibility_report.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -6,7 +6,7 @@
 #include "platform_models/loader/loader.h"
 #include "tests/tools/well_formed.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/ablate/other_accuracy.h"
+#include "tools/app/study/ablate/ablation.h"
 #include "tools/app/study/systems/systems_report.h"
 
 namespace leviosim::tools {

@@ -14,9 +14,9 @@
 
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/study/ablate/ablation_report.h"
-#include "tools/app/study/ablate/other_accuracy.h"
-#include "tools/app/study/runs_csv.h"
+#include "tools/app/study/ablate/ablation.h"
+#include "tools/app/study/ablate/published_accuracy.h"
+#include "tools/app/study/run_outcome.h"
 
 namespace leviosim::tools {
 namespace {

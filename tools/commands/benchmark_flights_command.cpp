@@ -19,7 +19,6 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/study/flights/benchmark_files.h"
 #include "tools/app/study/flights/benchmark_report.h"
 
 namespace leviosim::tools {

@@ -10,7 +10,7 @@
 #include "tools/app/budget/check_report.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/child.h"
-#include "tools/app/cli/limit_not_met.h"
+#include "tools/app/cli/outputs.h"
 
 namespace leviosim::tools {
 namespace {

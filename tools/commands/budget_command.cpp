@@ -8,11 +8,10 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
 #include "sim/base/input_file.h"
+#include "sim/base/nearest.h"
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/budget_edits.h"
-#include "tools/app/budget/first_budget.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/comparison/record_source.h"

@@ -9,8 +9,8 @@
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/validation/calibration/calibration_report.h"
-#include "tools/app/validation/released_work.h"
+#include "tools/app/validation/calibration/calibration.h"
+#include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {
 namespace {

@@ -13,10 +13,9 @@
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/comparison/measured.h"
 #include "tools/app/comparison/record_source.h"
-#include "tools/app/comparison/two_programs.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/study/sweep/compared_point.h"
+#include "tools/app/study/sweep/point_run.h"
 
 namespace leviosim::tools {
 namespace {

@@ -14,7 +14,6 @@
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_folder.h"

@@ -26,7 +26,6 @@
 #include "sim/base/text.h"
 #include "tools/app/cli/cache_folder.h"
 #include "tools/app/cli/printout.h"
-#include "tools/app/cli/screen.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistic_list.h"

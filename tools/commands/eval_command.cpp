@@ -10,11 +10,10 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/evaluation/eval_options.h"
-#include "tools/app/evaluation/trajectory_plot.h"
+#include "tools/app/evaluation/evaluation.h"
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/text_table.h"
-#include "traces/trajectories/attitude_error.h"
+#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::tools {
 namespace {

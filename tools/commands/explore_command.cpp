@@ -17,7 +17,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/study/explore/exploration_report.h"
+#include "tools/app/study/explore/exploration.h"
 #include "tools/app/study/explore/scatter_plot.h"
 
 namespace leviosim::tools {

@@ -11,7 +11,7 @@
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/printout.h"
-#include "tools/app/cli/progress_line.h"
+#include "tools/app/cli/terminal.h"
 #include "tools/app/evaluation/images/image_statistics.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/run/run_options.h"

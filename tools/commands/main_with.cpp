@@ -20,7 +20,7 @@
 #include "sim/base/error.h"
 
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/limit_not_met.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/commands/commands.h"

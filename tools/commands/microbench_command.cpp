@@ -10,11 +10,9 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/validation/microbench/board_kernels.h"
-#include "tools/app/validation/microbench/library_kernels.h"
+#include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/report.h"
 #include "tools/app/validation/microbench/unit_benches.h"
 

@@ -12,20 +12,19 @@
 #include <memory>
 #include <optional>
 
-#include "platform_models/loader/new_platform.h"
+#include "platform_models/loader/loader.h"
 #include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/area_table.h"
+#include "tools/app/report/energy_tables.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_overrides.h"
-#include "tools/app/study/feasibility/feasibility_report.h"
+#include "tools/app/study/feasibility/feasibility.h"
 #include "tools/app/study/systems/systems_report.h"
 
 namespace leviosim::tools {

@@ -11,7 +11,6 @@
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_folder.h"
-#include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/timeline/requested_timeline.h"
 

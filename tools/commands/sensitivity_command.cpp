@@ -8,7 +8,7 @@
 #include "tools/app/report/table_document.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/study/sensitivity/sensitivity_report.h"
+#include "tools/app/study/sensitivity/sensitivity.h"
 
 namespace leviosim::tools {
 namespace {

@@ -12,9 +12,9 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/run/memory_option.h"
-#include "tools/app/run/replay.h"
-#include "tools/app/run/trace_summary.h"
+#include "tools/app/run/replay_report.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/run/trace_source.h"
 
 namespace leviosim::tools {
 namespace {

@@ -16,7 +16,6 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
@@ -26,7 +25,6 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/study/tune/tune_page.h"
 #include "tools/app/study/tune/tune_plot.h"
 #include "tools/app/study/tune/tune_report.h"
 

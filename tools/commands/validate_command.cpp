@@ -7,11 +7,10 @@
 #include <memory>
 
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/validation/released_work.h"
+#include "tools/app/validation/validation.h"
 #include "tools/app/validation/validation_report.h"
 
 namespace leviosim::tools {

@@ -11,12 +11,11 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/record_source.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/memory_option.h"
+#include "tools/app/run/run_options.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/whatif/whatif_report.h"
 

@@ -52,7 +52,7 @@ constexpr std::optional<PoseSource> source_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// What the odometry knows of its map without the truth (odometry/map_health.h).
+/// What the odometry knows of its map without the truth (odometry/back_end.h).
 enum class Health : std::uint8_t { good, unreliable, lost, not_judged };
 
 /// In files, by number.

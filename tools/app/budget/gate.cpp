@@ -7,7 +7,7 @@
 #include "sim/base/input_file.h"
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/check_report.h"
-#include "tools/app/cli/limit_not_met.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/measured.h"
 
 namespace leviosim::tools {

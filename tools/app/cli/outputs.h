@@ -2,6 +2,7 @@
 // place costs nobody the report.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <initializer_list>
 #include <optional>
@@ -34,5 +35,23 @@ struct FileOutput {
 
 /// The same for single files: those that were claimed.
 void publish(std::initializer_list<FileOutput> files, const Printout& report);
+
+// Thrown by a command that is done and has printed its results: the program ends with that status,
+// which is 1 where a limit that the user set was not met.
+
+class EndsWith : public std::exception {
+ public:
+  explicit EndsWith(int status) : status_(status) {}
+  int status() const { return status_; }
+  const char* what() const noexcept override { return "a limit was not met"; }
+
+ private:
+  int status_;
+};
+
+class LimitNotMet : public EndsWith {
+ public:
+  LimitNotMet() : EndsWith(1) {}
+};
 
 }  // namespace leviosim::tools

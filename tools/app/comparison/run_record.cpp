@@ -7,7 +7,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/outputs/output_record.h"
-#include "tools/app/comparison/recorded_frames.h"
+#include "tools/app/comparison/record_source.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/summary.h"
 

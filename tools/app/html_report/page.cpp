@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sim/base/check.h"
-#include "tools/app/html_report/page_parts.h"
 
 namespace leviosim::tools {
 namespace {

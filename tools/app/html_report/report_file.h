@@ -9,7 +9,7 @@
 #include "sim/outputs/output_file.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/html_report/run_json.h"
+#include "tools/app/html_report/page_json.h"
 
 namespace CLI {
 class App;

@@ -120,4 +120,8 @@ std::string TextTable::str(int width) const {
   return text;
 }
 
+std::string figure_text(std::optional<double> value, int decimals, std::string_view otherwise) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string(otherwise);
+}
+
 }  // namespace leviosim::tools

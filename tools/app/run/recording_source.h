@@ -3,7 +3,7 @@
 
 #include <deque>
 
-#include "tools/app/run/run_source.h"
+#include "tools/app/run/simulate.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "sim/base/csv_table.h"
-#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "traces/trajectories/trajectory.h"

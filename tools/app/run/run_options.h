@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/units.h"
 #include "tools/app/run/run_request.h"
 
 namespace CLI {
@@ -65,5 +66,14 @@ std::optional<CameraRequest> parse_camera(const std::string& fps, const std::str
 
 /// "160x120". @throws InputError
 traces::ImageSize parse_size(const std::string& text);
+
+// --max-memory SIZE: what a work trace may take of the host's memory.
+
+/// Declares the option. @param text  its value; empty if it is not given
+void add_memory_option(CLI::App& command, std::string& text);
+
+/// What the option allows: "512 MiB", "2GiB"; by default traces::kTraceMemory.
+/// @throws InputError for what is no size or out of range
+Bytes trace_memory(const std::string& text);
 
 }  // namespace leviosim::tools

@@ -10,12 +10,13 @@
 #include "sim/soc/camera.h"
 #include "sim/soc/simulation.h"
 #include "tools/app/result/run_result.h"
-#include "tools/app/run/run_observer.h"
-#include "traces/datasets/frame_range.h"
-#include "traces/datasets/image_source.h"
+#include "traces/datasets/dataset.h"
+#include "traces/datasets/image_preparation.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
+
+class RunObserver;  // simulate.h
 
 using soc::CameraRequest;
 using soc::Progress;
@@ -23,7 +24,7 @@ using soc::ProgressCallback;
 
 struct WorkRecording;
 
-/// Which times get bands (time_bands.h).
+/// Which times get bands (range_bands.h).
 enum class TimeBandsOf : std::uint8_t {
   nothing,
   slowest_frame,  ///< which stands for all; on the thread of the run

@@ -8,9 +8,8 @@
 #include "sim/base/check.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/run/digest.h"
-#include "tools/app/run/feed.h"
 #include "tools/app/run/live_source.h"
+#include "tools/app/run/manifest.h"
 
 namespace leviosim::tools {
 namespace {

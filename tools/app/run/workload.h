@@ -11,7 +11,7 @@
 #include "platform_models/loader/compiled_code.h"
 #include "sim/work/machine.h"
 #include "tools/app/run/run_request.h"
-#include "tools/app/run/run_source.h"
+#include "tools/app/run/simulate.h"
 #include "workload/vio/odometry/odometry.h"
 #include "workload/vio/records.h"
 

@@ -9,8 +9,8 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/study/point.h"
 #include "tools/app/study/run_outcome.h"
-#include "tools/app/study/sequence.h"
 
 namespace CLI {
 class App;

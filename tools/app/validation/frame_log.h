@@ -6,11 +6,26 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/chip/work_sum.h"
-#include "tools/app/run/run_observer.h"
-#include "tools/app/validation/ransac_samples.h"
+#include "sim/chip/cost.h"
+#include "sim/work/program.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {
+
+// How many iterations each hypothesis of both RANSACs of `levio` took, from what was counted in it:
+// a fork hands one hypothesis to each core. Facts: workload/PARAMETERS.md#epnp,
+// #eight-point-algorithm.
+
+struct RansacSamples {
+  /// The only double arithmetic of a hypothesis is in Jacobi rotations, two products in each.
+  std::vector<double> epnp_rotations;         ///< of 12×12 and 3×3, per hypothesis
+  std::vector<double> eight_point_rotations;  ///< of 3×3, per hypothesis
+  /// A step has 54 divisions; besides it there are 21 in a hypothesis, and one in a rotation.
+  std::vector<double> eight_point_steps;  ///< of 9×9, per hypothesis
+  std::vector<double> slowest_of_eight;   ///< the same, the most in a fork
+
+  void add(const work::Job& job);
+};
 
 /// The executions of one stage in one frame.
 struct LoggedStage {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/validation/paper_stages.h"
 

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/app/report/plot/axes.h"
-#include "tools/app/report/plot/svg.h"
+#include "tools/app/report/plot/plot.h"
 
 namespace leviosim::tools {
 namespace {

@@ -11,8 +11,7 @@
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/study/sweep/pareto.h"
-#include "tools/app/study/sweep/sweep_schema.h"
+#include "tools/app/study/sweep/sweep_report.h"
 
 namespace leviosim::tools {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/app/report/plot/axes.h"
+#include "tools/app/report/plot/plot.h"
 #include "tools/app/study/systems/systems_report.h"
 
 namespace leviosim::tools {
