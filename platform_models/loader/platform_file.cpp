@@ -108,7 +108,8 @@ Settings PlatformFile::settings_with(const std::vector<std::string>& overrides) 
 const Parameter* PlatformFile::find(const std::string& path) {
   const std::size_t index = schema_.find(path);
   if (index == Schema::kNone) return nullptr;
-  const std::optional<Setting>& setting = document(split_overrides(overrides_).base).settings[index];
+  const std::optional<Setting>& setting =
+      document(split_overrides(overrides_).base).settings[index];
   return setting ? &setting->parameter : nullptr;
 }
 

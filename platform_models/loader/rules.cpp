@@ -86,10 +86,10 @@ void check_values(const Schema& schema, const Settings& settings, const sim::Chi
   const Rules rules(schema, settings);
   const sim::ClusterConfig& cluster = chip.cluster;
   if (cluster.workers > cluster.max_workers)
-    throw InputError(fmt::format("{}, but {}: expected no more workers than the event unit serves; a larger "
-                                 "cluster.max_workers serves more",
-                                 rules.state("cluster.workers"),
-                                 rules.state("cluster.max_workers")));
+    throw InputError(
+        fmt::format("{}, but {}: expected no more workers than the event unit serves; a larger "
+                    "cluster.max_workers serves more",
+                    rules.state("cluster.workers"), rules.state("cluster.max_workers")));
   if (chip.controller.shares_core && cluster.max_workers > 1)
     throw InputError(fmt::format("{}, but {}: expected a chip with one core",
                                  rules.state("controller.runs_on"),

@@ -106,9 +106,10 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
   const BenchmarkResult result = condense(benchmark, runs, outcomes);
   const std::string csv = benchmark_runs_csv(benchmark, runs, outcomes, how);
   const std::string json = json_text(benchmark_json(benchmark, result), 1) + '\n';
-  const std::vector<std::string> next{fmt::format(
-      "leviosim run --profile {} --data {} --record --out mine",
-      benchmark.plan.variants.front().profile, printable(benchmark.motions.front().sequence.folder))};
+  const std::vector<std::string> next{
+      fmt::format("leviosim run --profile {} --data {} --record --out mine",
+                  benchmark.plan.variants.front().profile,
+                  printable(benchmark.motions.front().sequence.folder))};
   const Printout text = printout(
       words.json,
       [&] {

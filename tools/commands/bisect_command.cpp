@@ -66,8 +66,9 @@ Command add_bisect_command(CLI::App& app) {
   const auto options = std::make_shared<BisectOptions>();
   command->add_option("RUN", options->run,
                       "run folder that COMMAND leaves, or a work trace to replay");
-  command->add_option("COMMAND", options->command,
-                      "after --: what builds and runs the commit; if it fails, the commit is skipped");
+  command->add_option(
+      "COMMAND", options->command,
+      "after --: what builds and runs the commit; if it fails, the commit is skipped");
   add_gate_options(*command, options->gate);
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim bisect recorded --budget budgets.yaml -- true"});

@@ -69,8 +69,10 @@ Command add_budget_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("budget", "Print a baseline of a run, or a budget that fits it");
   const auto options = std::make_shared<BudgetOptions>();
-  command->add_option("ACTION", options->action, "record: a baseline; init: a first budget; tighten: a budget without the room that "
-                      "is not used; accept: one in which what is missed may be, for a while");
+  command->add_option(
+      "ACTION", options->action,
+      "record: a baseline; init: a first budget; tighten: a budget without the room that "
+      "is not used; accept: one in which what is missed may be, for a while");
   command->add_option("RUN", options->run, "run folder, or a work trace to replay");
   add_gate_options(*command, options->gate);
   command->add_option("--margin", options->margin, "init: what limits leave [5 %]")

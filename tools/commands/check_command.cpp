@@ -91,7 +91,8 @@ void run(const CLI::App& command, const CheckOptions& options) {
   RunFiles files;
   const RunRecord record = read_record(options.run, options, &files);
   if (page && record.facts.measured)
-    throw InputError(fmt::format("{}: was measured, so it has no page; leave out --report", options.run));
+    throw InputError(
+        fmt::format("{}: was measured, so it has no page; leave out --report", options.run));
   std::vector<PastRun> before;
   if (history) before = runs_before(*history, record, options);
   if (!before.empty()) gate.use_baseline(before.back().record);
@@ -131,7 +132,9 @@ Command add_check_command(CLI::App& app) {
                    "another, and slow drift is found")
       ->type_name("FILE");
   command->add_option("--branch", options->branch, "of the history [all]")->type_name("NAME");
-  command->add_option("--commit", options->commit, "of the run, whose own runs are no history [git: HEAD]")
+  command
+      ->add_option("--commit", options->commit,
+                   "of the run, whose own runs are no history [git: HEAD]")
       ->type_name("ID");
   add_report_option(*command, options->report);
   command->add_flag("--force", options->force, "replace these files");

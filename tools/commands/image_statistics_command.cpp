@@ -74,7 +74,8 @@ Command add_image_statistics_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "image-statistics", "See what the pictures of recordings are like, side by side");
   const auto options = std::make_shared<ImageStatisticsOptions>();
-  command->add_option("DIR", options->folders, "folders of recordings; the first one is compared with");
+  command->add_option("DIR", options->folders,
+                      "folders of recordings; the first one is compared with");
   command->add_option("--size", options->size, "of the images [160x120]")->type_name("WxH");
   command->add_option("--frames", options->frames, "frames, B exclusive [all]")->type_name("A:B");
   command->add_flag("--quiet", options->quiet, "no progress");

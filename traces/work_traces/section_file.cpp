@@ -35,8 +35,8 @@ void check_head(const FileKind& kind, const std::string& file, std::string_view 
   if (head.u32("checksum") != crc_of(bytes.substr(0, kCoveredHead)))
     fail(file, kMagicSize, "the head does not match its checksum: the file is damaged");
   if (version != kind.version)
-    throw InputError(fmt::format("{}: is {} of version {}; this leviosim reads version {}: {}", file,
-                                 kind.name, version, kind.version,
+    throw InputError(fmt::format("{}: is {} of version {}; this leviosim reads version {}: {}",
+                                 file, kind.name, version, kind.version,
                                  version > kind.version ? "use a newer one" : "record it again"));
 }
 

@@ -133,8 +133,9 @@ std::string Finding::excess() const {
                                    : fmt::format("{}, {:.2f} % {} {}", found,
                                                  100 * std::abs(over / *bound), side, limit_text);
   if (baseline && *baseline != 0)
-    text += fmt::format("; {:+.2f} % of {} {}", 100 * (*value - *baseline) / *baseline,
-                        since.empty() ? "the baseline's" : since + "'s", figure_text(*baseline, unit));
+    text +=
+        fmt::format("; {:+.2f} % of {} {}", 100 * (*value - *baseline) / *baseline,
+                    since.empty() ? "the baseline's" : since + "'s", figure_text(*baseline, unit));
   if (!accepted.empty()) text += "; " + accepted;
   return was_over() ? text + "; was over before this change" : text;
 }

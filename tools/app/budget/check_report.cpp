@@ -48,8 +48,7 @@ std::string details(const Finding& f) {
 }
 
 std::string place(const Finding& f) {
-  return f.limit->line == 0 ? f.limit->file
-                            : fmt::format("{}:{}", f.limit->file, f.limit->line);
+  return f.limit->line == 0 ? f.limit->file : fmt::format("{}:{}", f.limit->file, f.limit->line);
 }
 
 std::string table_of(const CheckResult& result) {
@@ -64,7 +63,11 @@ std::string table_of(const CheckResult& result) {
                         printable(fmt::format("{}", fmt::join(result.not_measured, ", "))));
   TextTable table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
-    table.add({f.better() ? "better" : f.met ? "met" : f.fails() ? "NOT MET" : "warning", shortened(f.title(), kWidest),
+    table.add({f.better()  ? "better"
+               : f.met     ? "met"
+               : f.fails() ? "NOT MET"
+                           : "warning",
+               shortened(f.title(), kWidest),
                f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–", margin(f)});
   return text + table.str();
 }
@@ -87,9 +90,10 @@ std::string better_text(const CheckResult& result) {
     if (f.better() && (best == nullptr || *f.better() > *best->better())) best = &f;
   if (best == nullptr) return {};
   const std::size_t count = result.better();
-  return fmt::format("{} than {} by more than limits allow for the worse: {}{} ({:.2f} %)",
-                     count == 1 ? "a figure is better" : fmt::format("{} figures are better", count),
-                     result.baseline, count == 1 ? "" : "most of all ", best->title(), *best->better());
+  return fmt::format(
+      "{} than {} by more than limits allow for the worse: {}{} ({:.2f} %)",
+      count == 1 ? "a figure is better" : fmt::format("{} figures are better", count),
+      result.baseline, count == 1 ? "" : "most of all ", best->title(), *best->better());
 }
 
 /// The first that is not met, by how much and why.
@@ -106,9 +110,9 @@ std::string verdict_of(const CheckResult& result) {
                        limits == 1 ? "the limit" : fmt::format("all {} limits", limits),
                        result.budget, better.empty() ? "" : "; ", better);
   }
-  std::string text = fmt::format("verdict: NOT met: {} of {} limits, {}{}: {}", result.missed(),
-                                 limits, result.missed() > 1 ? "first " : "", missed->title(),
-                                 missed->excess());
+  std::string text =
+      fmt::format("verdict: NOT met: {} of {} limits, {}{}: {}", result.missed(), limits,
+                  result.missed() > 1 ? "first " : "", missed->title(), missed->excess());
   return missed->why.empty() ? text : text + "; " + missed->why.front();
 }
 
@@ -121,7 +125,8 @@ Printout check_printout(const CheckResult& result, std::vector<std::string> next
   else if (result.missed() == 0)
     next = {fmt::format("leviosim history add {} --budget {}", printable(result.run),
                         printable(result.budget))};
-  return Printout({table_of(result), misses_of(result)}).ending(verdict_of(result), std::move(next));
+  return Printout({table_of(result), misses_of(result)})
+      .ending(verdict_of(result), std::move(next));
 }
 
 Json check_json(const CheckResult& result) {
@@ -273,12 +278,12 @@ std::string junit_xml(const CheckResult& result) {
 
 std::string markdown_comment(const CheckResult& result, const RunRecord& run,
                              const RunRecord* baseline) {
-  std::string text = fmt::format("### leviosim: {}\n\n", result.missed() == 0
-                                     ? result.warned() == 0 ? "all limits are met"
-                                                            : "met, with warnings"
-                                     : fmt::format("{} of {} limits {} not met", result.missed(),
-                                                   result.findings.size(),
-                                                   result.missed() == 1 ? "is" : "are"));
+  std::string text =
+      fmt::format("### leviosim: {}\n\n",
+                  result.missed() == 0
+                      ? result.warned() == 0 ? "all limits are met" : "met, with warnings"
+                      : fmt::format("{} of {} limits {} not met", result.missed(),
+                                    result.findings.size(), result.missed() == 1 ? "is" : "are"));
   for (const RunVerdict& verdict : verdicts(run).list)
     text += fmt::format("- **{}**: {}{}\n", verdict.about, markdown(std::string(verdict.word())),
                         verdict.reason().empty() ? "" : ": " + markdown(verdict.reason()));
@@ -292,8 +297,9 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
   }
   for (const Finding& f : result.findings)
     if (f.better())
-      text += fmt::format("\n**✓ {}**: {}, {:.2f} % better than the baseline\n", markdown(f.title()),
-                          figure_text(*f.value, f.unit, f.limit->bound), *f.better());
+      text +=
+          fmt::format("\n**✓ {}**: {}, {:.2f} % better than the baseline\n", markdown(f.title()),
+                      figure_text(*f.value, f.unit, f.limit->bound), *f.better());
   if (result.better() > 0 && result.is_kept)
     text += "\nThe baseline is stale: these limits do not hold what was won.\n";
   if (baseline != nullptr)
@@ -302,8 +308,10 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
                         comparison_report(compare_runs(*baseline, run), ReportFormat::markdown));
   TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"bound"}});
   for (const Finding& f : result.findings)
-    table.add({f.met ? "met" : f.fails() ? "**not met**" : "warning", f.title(),
-               f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–",
+    table.add({f.met       ? "met"
+               : f.fails() ? "**not met**"
+                           : "warning",
+               f.title(), f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–",
                f.bound ? figure_text(*f.bound, f.unit, f.limit->bound) : "–"});
   return text + fmt::format("\n<details><summary>All {} limits</summary>\n\n{}\n</details>\n",
                             result.findings.size(), table.markdown());

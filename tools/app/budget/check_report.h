@@ -22,8 +22,8 @@ Json check_json(const CheckResult& result);
 /// A suite per section, a case per limit and statistic.
 std::string junit_xml(const CheckResult& result);
 
-/// A comment on a pull request: the verdicts of the run, what of the limits is not met and why, what
-/// moved against the baseline, and all limits folded away.
+/// A comment on a pull request: the verdicts of the run, what of the limits is not met and why,
+/// what moved against the baseline, and all limits folded away.
 /// @param baseline  may be null
 std::string markdown_comment(const CheckResult& result, const RunRecord& run,
                              const RunRecord* baseline);

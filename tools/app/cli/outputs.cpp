@@ -29,7 +29,8 @@ void publish(outputs::OutputFolder& out, const Printout& report, const std::func
     is_written = true;
     return elsewhere;
   });
-  print(report, is_written ? std::vector<ShownPath>{{label, out.shown_path()}} : std::vector<ShownPath>());
+  print(report,
+        is_written ? std::vector<ShownPath>{{label, out.shown_path()}} : std::vector<ShownPath>());
   if (fault) throw InputError(*fault);
 }
 

@@ -44,7 +44,8 @@ std::string comment(std::string_view text, std::string_view key) {
     text.remove_prefix(std::min(text.size(), line.size() + 1));
     const auto colon = line.find(':');
     if (!line.starts_with('#') || colon == std::string_view::npos) continue;
-    if (trimmed(line.substr(1, colon - 1)) == key) return std::string(trimmed(line.substr(colon + 1)));
+    if (trimmed(line.substr(1, colon - 1)) == key)
+      return std::string(trimmed(line.substr(colon + 1)));
   }
   return {};
 }
@@ -75,10 +76,12 @@ std::vector<MeasuredStage> read_stages(const std::string& file, std::string text
   base::CsvReader rows(file, base::Separator::comma, names, std::move(text));
   const base::CsvRow* const titles = rows.next();
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (titles->text(i) != names[i]) titles->fail("expected the titles stage,cycles or stage,cycles,calls");
+    if (titles->text(i) != names[i])
+      titles->fail("expected the titles stage,cycles or stage,cycles,calls");
   std::vector<MeasuredStage> stages;
   while (const base::CsvRow* row = rows.next()) add_row(*row, has_calls, stages);
-  if (stages.empty()) throw InputError(fmt::format("{}: has no measurement below its titles", file));
+  if (stages.empty())
+    throw InputError(fmt::format("{}: has no measurement below its titles", file));
   for (MeasuredStage& stage : stages)
     if (!has_calls && stage.rows == 1) stage.calls = 0;  // a mean, of nobody knows how many
   return stages;

@@ -50,7 +50,8 @@ std::string TextTable::markdown() const {
     std::string text = "|";
     for (const std::string& cell : cells) {
       text += ' ';
-      for (const char c : cell) text += c == '|' || c == '\\' ? std::string{'\\', c} : std::string{c};
+      for (const char c : cell)
+        text += c == '|' || c == '\\' ? std::string{'\\', c} : std::string{c};
       text += " |";
     }
     return text + '\n';

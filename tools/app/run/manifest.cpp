@@ -87,8 +87,9 @@ std::vector<InputDigest> digest_inputs(const traces::Dataset& data) {
     digests.push_back(digest_of(input.name, input.files, base::InputKind::table));
   std::vector<fs::path> images;
   for (const traces::FrameRef& frame : data.frames) images.push_back(frame.path);
-  digests.push_back(digest_of(fmt::format("{}, {} images concatenated", data.pictures, images.size()),
-                              images, base::InputKind::image));
+  digests.push_back(
+      digest_of(fmt::format("{}, {} images concatenated", data.pictures, images.size()), images,
+                base::InputKind::image));
   return digests;
 }
 

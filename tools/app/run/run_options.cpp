@@ -1,8 +1,8 @@
 #include "tools/app/run/run_options.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -40,7 +40,8 @@ void add_workload_options(CLI::App& command, RunOptions& options, const std::str
   add_text(command, "--data", options.data, "DIR|synthetic",
            "recording (EuRoC, TUM, KITTI), or the synthetic flight" + by_default);
   add_text(command, "--frames", options.frames, "A:B", "frames, B exclusive [all]");
-  add_text(command, "--profile", options.profile, "NAME", fmt::format("of the workload [{}]", options.profile));
+  add_text(command, "--profile", options.profile, "NAME",
+           fmt::format("of the workload [{}]", options.profile));
   add_text(command, "--seed", options.seed, "N", "of the workload's random draws [1]");
   command.add_flag("--quiet", options.quiet, "no progress");
   command.get_option("--set")->description(

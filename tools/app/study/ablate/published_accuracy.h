@@ -32,8 +32,8 @@ std::vector<PaperAccuracy> parse_paper_accuracy(const std::string& file, std::st
 
 std::vector<PaperAccuracy> paper_accuracy();
 
-/// A row of other_accuracy.csv: sequence (EuRoC's name), estimator, loop_closure (yes or no), width,
-/// height, value, unit (m), source.
+/// A row of other_accuracy.csv: sequence (EuRoC's name), estimator, loop_closure (yes or no),
+/// width, height, value, unit (m), source.
 struct OtherAccuracy {
   std::string sequence;
   std::string estimator;

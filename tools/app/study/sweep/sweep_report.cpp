@@ -221,8 +221,8 @@ Json sweep_page(SweepStore& store) {
   if (!parameters.empty() && parameters.size() <= 2)
     page.curves = {parameters.front(),
                    parameters.size() == 2 ? parameters.back() : std::string(),
-                   {"objective.frame_time", "objective.energy", "objective.l1_peak", "objective.ate",
-                    "objective.area"}};
+                   {"objective.frame_time", "objective.energy", "objective.l1_peak",
+                    "objective.ate", "objective.area"}};
   page.x = "objective.frame_time";
   page.y = "objective.energy";
   page.colour = parameters.size() > 1 ? parameters.back() : std::string();

@@ -251,7 +251,8 @@ bool may_be(const platform::Schema& schema, const platform::Parameter& parameter
   const platform::Field& field = schema.fields()[schema.find(parameter.path)];
   const double value = *platform::parse_number(parameter.value) * factor;
   const double unit = field.dimension->find(parameter.unit)->factor;
-  const bool whole = field.dimension == &platform::kRate || value * unit == std::floor(value * unit);
+  const bool whole =
+      field.dimension == &platform::kRate || value * unit == std::floor(value * unit);
   return value > 0 && whole;
 }
 
@@ -269,7 +270,8 @@ std::optional<Variant> with_accelerators_of(const std::string& name,
   for (const platform::Parameter& parameter : other.parameters) {
     if (find(chip, parameter.path) != nullptr) continue;
     if (parameter.path.find(".accelerators.") == std::string::npos) return std::nullopt;
-    variant.settings[std::string(kChipSettings) + parameter.path] = parameter.value + parameter.unit;
+    variant.settings[std::string(kChipSettings) + parameter.path] =
+        parameter.value + parameter.unit;
   }
   if (variant.settings.empty() || other.parameters.size() < chip.parameters.size())
     return std::nullopt;
