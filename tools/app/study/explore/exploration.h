@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/study/batch_plan.h"
 #include "tools/app/study/run_outcome.h"
 #include "tools/app/study/spread.h"
@@ -86,6 +87,11 @@ std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint
 /// effect on the profile.
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored);
+
+/// The data of a page, as the paper's figure has it: the absolute over the relative error of every
+/// point.
+Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
+                      const std::vector<ExploredPoint>& explored);
 
 /// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
 RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions);

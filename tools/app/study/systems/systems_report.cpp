@@ -11,6 +11,7 @@
 #include "sim/base/csv_table.h"
 #include "tools/app/flow/flow_report.h"
 #include "tools/app/flow/flow_source.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/run/simulate.h"
@@ -134,6 +135,50 @@ std::string systems_csv(const std::vector<SystemRow>& rows) {
   add_banded("here_frame_mj", &Prediction::frame);
   table.add("here_memory", [](S s) { return s.here ? s.here->memory : std::string(); });
   return table.text(rows);
+}
+
+Json systems_page(const std::vector<SystemRow>& rows) {
+  struct Spot {
+    std::string system;
+    const char* by;
+    std::optional<double> rate, power_mw, low_mw, high_mw;
+  };
+  std::vector<Spot> spots;
+  for (const SystemRow& row : rows) {
+    const PublishedSystem& p = row.published;
+    if (p.frames_per_s && p.power_mw)
+      spots.push_back({p.name, p.is_bound ? "published, at most" : "published", p.frames_per_s,
+                       p.power_mw, {}, {}});
+    if (!row.here || !row.here->power) continue;
+    const auto mw = [](Watts power) { return power.count() * kMilli; };
+    const auto& power = *row.here->power;
+    spots.push_back({p.name, "predicted here", row.here->frames_per_s, mw(power.value),
+                     mw(power.low()), mw(power.high())});
+  }
+  using S = const Spot&;
+  const base::CsvTable<Spot> table{
+      {"system", [](S s) { return s.system; }},
+      {"by", [](S s) { return s.by; }},
+      {"rate", [](S s) { return base::fixed(s.rate, 6); }},
+      {"power", [](S s) { return base::fixed(s.power_mw, 6); }},
+      {"low", [](S s) { return base::fixed(s.low_mw, 6); }},
+      {"high", [](S s) { return base::fixed(s.high_mw, 6); }},
+      {"energy", [](S s) { return base::fixed(*s.power_mw / *s.rate, 6); }}};
+  StudyPage page;
+  page.title = "Power over frame rate of systems that estimate motion";
+  page.summary = systems_conclusion(rows);
+  page.points = table.text(spots);
+  page.columns = {{"system", "system", "", true},
+                  {"by", "known from", "", true},
+                  {"rate", "frame rate", "frames/s", false, true},
+                  {"power", "power", "mW"},
+                  {"low", "power, low end", "mW"},
+                  {"high", "power, high end", "mW"},
+                  {"energy", "energy per frame", "mJ"}};
+  page.x = "rate";
+  page.y = "power";
+  page.colour = "by";
+  return study_report(page);
 }
 
 namespace {

@@ -1,4 +1,4 @@
-// Published systems beside what leviosim predicts, as a table, as CSV and as a picture of power
+// Published systems beside what leviosim predicts, as a table, as CSV and as a page with power
 // over frame rate.
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/energy/estimate.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/runner.h"
 
@@ -80,9 +81,8 @@ std::string systems_conclusion(const std::vector<SystemRow>& rows);
 /// The rows of systems_table() with all digits, as CSV.
 std::string systems_csv(const std::vector<SystemRow>& rows);
 
-/// A file of SVG with logarithmic axes: dots are published, rings predicted with the band of their
-/// power, an arrow points below a bound. Lines join points of equal energy per frame. Systems
-/// without a rate or a power are left out.
-std::string systems_plot(const std::vector<SystemRow>& rows);
+/// The data of a page: power over frame rate, what was published and what is predicted, each as a
+/// point. Systems without a rate or a power have none.
+Json systems_page(const std::vector<SystemRow>& rows);
 
 }  // namespace leviosim::tools
