@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "sim/events/sync.h"
-#include "sim/events/time_limit.h"
+#include "sim/events/timebase.h"
 
 namespace leviosim::sim {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "sim/events/time_limit.h"
 
 namespace leviosim::sim {
 namespace {

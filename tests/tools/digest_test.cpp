@@ -1,4 +1,4 @@
-#include "tools/app/run/manifest.h"
+#include "tools/app/run/run_folder.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/budget_edits.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/record_source.h"
 
 namespace leviosim::tools {

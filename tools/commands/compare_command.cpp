@@ -8,7 +8,6 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/printout.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/comparison/measured.h"

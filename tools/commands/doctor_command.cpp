@@ -25,7 +25,7 @@
 #include "sim/base/printable_text.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/cache_folder.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistic_list.h"

@@ -10,11 +10,11 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/evaluation/images/image_statistics.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {

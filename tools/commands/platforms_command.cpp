@@ -25,7 +25,7 @@
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 #include "tools/app/study/feasibility/feasibility.h"
 #include "tools/app/study/systems/systems_report.h"
 

@@ -15,7 +15,7 @@
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/timeline/requested_timeline.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/result/verdict.h"

@@ -6,8 +6,8 @@
 
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/run/trace_source.h"
 #include "tools/app/study/sensitivity/sensitivity.h"
 
 namespace leviosim::tools {

@@ -9,9 +9,9 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "traces/synthesis/place.h"
 #include "traces/synthesis/rendered_flight.h"
 

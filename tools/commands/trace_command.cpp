@@ -10,10 +10,10 @@
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/replay_report.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/trace_source.h"
 
 namespace leviosim::tools {

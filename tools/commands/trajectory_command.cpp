@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sim/base/error.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "traces/trajectories/trajectory_file.h"
 
 namespace leviosim::tools {

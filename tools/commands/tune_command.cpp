@@ -17,7 +17,6 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/html_report/report_file.h"

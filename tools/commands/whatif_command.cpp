@@ -15,7 +15,7 @@
 #include "tools/app/comparison/record_source.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/whatif/whatif_report.h"
 

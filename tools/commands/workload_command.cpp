@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "sim/base/csv_table.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 
 namespace leviosim::tools {
 namespace {

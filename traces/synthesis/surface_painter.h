@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "traces/synthesis/texture.h"
 #include "traces/synthesis/world.h"
 
 namespace leviosim::traces {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "sim/base/error.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/report/statistic_list.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tools/app/budget/check.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
 
 namespace leviosim::tools {

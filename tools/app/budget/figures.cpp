@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"

@@ -14,9 +14,9 @@
 #include "tools/app/comparison/measured.h"
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/trace_source.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 
 namespace leviosim::tools {
 namespace {

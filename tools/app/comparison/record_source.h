@@ -8,7 +8,7 @@
 
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/result/run_figures.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace CLI {

@@ -8,7 +8,6 @@
 
 #include "tools/app/budget/check_report.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/printout.h"
 #include "tools/app/comparison/comparison_files.h"
 #include "tools/app/html_report/page.h"
 

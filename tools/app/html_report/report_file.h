@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/outputs/output_file.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page_json.h"

@@ -21,7 +21,7 @@
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {

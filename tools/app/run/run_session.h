@@ -8,13 +8,13 @@
 
 #include "sim/outputs/output_place.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/result/run_result.h"
-#include "tools/app/run/manifest.h"
-#include "tools/app/run/recording_source.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/run/trace_source.h"
 
 namespace leviosim::tools {
 

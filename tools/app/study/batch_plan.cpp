@@ -11,9 +11,9 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 
 namespace leviosim::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include "sim/base/input_file.h"
 #include "sim/base/sha256.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/run/manifest.h"
+#include "tools/app/run/run_folder.h"
 #include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
 #include "traces/trajectories/evaluation.h"

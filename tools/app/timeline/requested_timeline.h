@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/outputs/output_file.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/timeline/frame_events.h"

@@ -7,7 +7,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
-#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "tools/app/report/statistics.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/validation/frame_log.h"
 #include "tools/app/validation/input_distributions.h"
 #include "tools/app/validation/normalised.h"
-#include "tools/app/validation/paper_stages.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
 

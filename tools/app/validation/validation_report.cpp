@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tools/app/report/text_table.h"
-#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
 namespace {

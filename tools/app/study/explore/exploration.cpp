@@ -11,7 +11,7 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::tools {

@@ -12,7 +12,6 @@
 #include "sim/chip/accelerator.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"
-#include "tools/app/run/recording_source.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/trace_source.h"
 #include "tools/app/validation/references.h"

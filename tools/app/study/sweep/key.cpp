@@ -13,8 +13,8 @@
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/run/run_options.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/run/workload.h"
 
 namespace leviosim::tools {
 namespace {

@@ -14,7 +14,7 @@
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/trace_source.h"

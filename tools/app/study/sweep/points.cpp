@@ -12,10 +12,9 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/trace_source.h"
 #include "tools/app/run/workload.h"
-#include "tools/app/run/workload_overrides.h"
 #include "traces/datasets/image_preparation.h"
 #include "traces/datasets/rng.h"
 

@@ -12,7 +12,7 @@
 
 #include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/value.h"
-#include "sim/outputs/output_file.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/cli/terminal.h"
 #include "traces/datasets/dataset.h"
 #include "traces/work_traces/work_trace.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"

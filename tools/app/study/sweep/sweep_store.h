@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/outputs/output_file.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/study/sweep/point_run.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sqlite.h"

@@ -13,7 +13,7 @@
 #include "sim/energy/model.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {

@@ -17,7 +17,7 @@
 #include "sim/chip/config.h"
 #include "sim/chip/cost.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
 
