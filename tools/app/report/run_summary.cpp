@@ -200,17 +200,6 @@ double mean_of(const RunResult& run, int FrameResult::*field) {
   return run.frames.empty() ? 0 : sum / static_cast<double>(run.frames.size());
 }
 
-/// In words, as they stand in the line of the frames: all there are, so that they add up.
-constexpr std::array<std::pair<PoseSource, std::string_view>, vio::kPoseSources.size()> kSources{{
-    {PoseSource::Tracked, "tracked"},
-    {PoseSource::Epnp, "EPnP"},
-    {PoseSource::EightPoint, "8-point"},
-    {PoseSource::Predicted, "predicted"},
-    {PoseSource::Initialising, "initialising"},
-    {PoseSource::Kept, "pose kept"},
-    {PoseSource::First, "first of a map"},
-}};
-
 std::int64_t count_of(const RunResult& run, PoseSource source) {
   return std::count_if(run.frames.begin(), run.frames.end(),
                        [&](const FrameResult& frame) { return frame.source == source; });
@@ -269,9 +258,11 @@ std::string camera_summary(const RunResult& run) {
 
 std::string frame_summary(const RunResult& run) {
   std::vector<std::string> sources;
-  for (const auto& [source, name] : kSources)
-    if (const std::int64_t frames = count_of(run, source); frames > 0)
-      sources.push_back(fmt::format("{} {}", name, frames));
+  auto all = vio::kPoseSources;
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.rank < b.rank; });
+  for (const vio::PoseSourceInfo& info : all)
+    if (const std::int64_t frames = count_of(run, info.source); frames > 0)
+      sources.push_back(fmt::format("{} {}", info.words, frames));
   const std::int64_t keyframes = std::count_if(run.frames.begin(), run.frames.end(),
                                                [](const FrameResult& f) { return f.keyframe; });
   std::string text = fmt::format("frames: {}", run.frames.size());
