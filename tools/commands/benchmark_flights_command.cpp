@@ -143,19 +143,17 @@ Command add_benchmark_flights_command(CLI::App& app, const Words& words) {
                                          "Accuracy on rendered flights in worlds that chose no "
                                          "parameter, also from starts in mid-air");
   const auto typed = std::make_shared<FlightWords>();
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{*command};
   command->add_option("PLAN", typed->plan, fmt::format("a YAML file, or one of {}", plan_names()));
   add("--motions", typed->motions, "DIR",
       "folder with an ASL folder for each motion and recording of the plan (motions need no "
       "images)");
-  add_list_option(*command, "--profile", typed->profiles, "NAME,...",
-                  "of the workload, in place of the plan's variants", true);
-  add_list_option(*command, "-p,--set", typed->overrides, "PATH=VALUE",
-                  "parameter of the workload in every variant; repeatable", false);
-  add_list_option(*command, "--seed", typed->seeds, "N,...",
-                  "of the workload's random draws, in place of the plan's", true);
+  add("--profile", typed->profiles, "NAME,...", "of the workload, in place of the plan's variants",
+      true);
+  add("-p,--set", typed->overrides, "PATH=VALUE",
+      "parameter of the workload in every variant; repeatable", false);
+  add("--seed", typed->seeds, "N,...", "of the workload's random draws, in place of the plan's",
+      true);
   add_runner_options(*command, typed->runner, "run");
   command->add_flag("--list", typed->list, "print the pieces, run nothing");
   add("--out", typed->out, "DIR", "folder for the results; must be new or empty");

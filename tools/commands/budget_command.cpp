@@ -75,12 +75,11 @@ Command add_budget_command(CLI::App& app) {
       "is not used; accept: one in which what is missed may be, for a while");
   command->add_option("RUN", options->run, "run folder, or a work trace to replay");
   add_gate_options(*command, options->gate);
-  command->add_option("--margin", options->margin, "init: what limits leave [5 %]")
-      ->type_name("PERCENT");
-  command->add_option("--slack", options->slack, "tighten: what limits leave at most [2 %]")
-      ->type_name("PERCENT");
-  command->add_option("--reason", options->reason, "accept: why")->type_name("TEXT");
-  command->add_option("--until", options->until, "accept: the last day")->type_name("DATE");
+  const TextOptions add{*command};
+  add("--margin", options->margin, "PERCENT", "init: what limits leave [5 %]");
+  add("--slack", options->slack, "PERCENT", "tighten: what limits leave at most [2 %]");
+  add("--reason", options->reason, "TEXT", "accept: why");
+  add("--until", options->until, "DATE", "accept: the last day");
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim budget record recorded >baseline.json",
                           "leviosim budget init recorded --margin '3 %' >first.yaml",

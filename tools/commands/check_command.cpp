@@ -120,28 +120,19 @@ Command add_check_command(CLI::App& app) {
   command->add_option("RUN", options->run,
                       "run folder, work trace to replay, or CSV file of measured cycles");
   add_gate_options(*command, options->gate);
-  command->add_option("--junit", options->junit, "report for CI servers to write")
-      ->type_name("FILE");
-  command
-      ->add_option("--markdown", options->markdown,
-                   "comment for a pull request, or the summary of a job, to write")
-      ->type_name("FILE.md");
-  command
-      ->add_option("--history", options->history,
-                   "runs before (leviosim history add): the last is the baseline, unless there is "
-                   "another, and slow drift is found")
-      ->type_name("FILE");
-  command->add_option("--branch", options->branch, "of the history [all]")->type_name("NAME");
-  command
-      ->add_option("--commit", options->commit,
-                   "of the run, whose own runs are no history [git: HEAD]")
-      ->type_name("ID");
+  const TextOptions add{*command};
+  add("--junit", options->junit, "FILE", "report for CI servers to write");
+  add("--markdown", options->markdown, "FILE.md",
+      "comment for a pull request, or the summary of a job, to write");
+  add("--history", options->history, "FILE",
+      "runs before (leviosim history add): the last is the baseline, unless there is "
+      "another, and slow drift is found");
+  add("--branch", options->branch, "NAME", "of the history [all]");
+  add("--commit", options->commit, "ID", "of the run, whose own runs are no history [git: HEAD]");
   add_report_option(*command, options->report);
   command->add_flag("--force", options->force, "replace these files");
-  command
-      ->add_option("--annotations", options->annotations,
-                   "github: lines that mark the limits; gitlab: a code quality report on stdout")
-      ->type_name("github|gitlab");
+  add("--annotations", options->annotations, "github|gitlab",
+      "github: lines that mark the limits; gitlab: a code quality report on stdout");
   add_json_option(*command, options->json);
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim budget init recorded >budgets.yaml",

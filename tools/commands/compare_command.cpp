@@ -140,10 +140,10 @@ Command add_compare_command(CLI::App& app) {
       ->type_size(2)  // with expected(2), CLI11 would take the -- for its end
       ->expected(1)
       ->allow_extra_args(false);
-  command->add_option("--allow", options->allow, "differences of the input that are meant")
-      ->type_name("data,frames,profile,seed,size");
-  command->add_option("--format", options->format, "text, markdown, json or csv [text]")
-      ->type_name("FORMAT");
+  const TextOptions add{*command};
+  add("--allow", options->allow, "data,frames,profile,seed,size",
+      "differences of the input that are meant");
+  add("--format", options->format, "FORMAT", "text, markdown, json or csv [text]");
   command->add_flag("--all", options->all, "all tables in place of the summary");
   add_json_option(*command, options->json);
   add_report_option(*command, options->report);

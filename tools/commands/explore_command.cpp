@@ -100,8 +100,7 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
     out.write("manifest.json",
               json_text(manifest_of(plan, words, dimensions, command_line), 2) + '\n');
   });
-  if (page)
-    publish_report(page, exploration_page(plan, dimensions, explored), !words.batch.json);
+  if (page) publish_report(page, exploration_page(plan, dimensions, explored), !words.batch.json);
 }
 
 }  // namespace
@@ -113,16 +112,11 @@ Command add_explore_command(CLI::App& app, const Words& words) {
   add_batch_options(*command, typed->batch);
   add_report_option(*command, typed->report);
   add_json_option(*command, typed->batch.json);
-  command
-      ->add_option("--vary", typed->vary,
-                   "parameter to vary, off and on if it is a switch; repeatable [the paper's five]")
-      ->type_name("NAME[=LOW:HIGH]")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--points", typed->points, "of the parameters, the profile's first [40]")
-      ->type_name("N");
-  command->add_option("--sample-seed", typed->sample_seed, "of the points' random draws [1]")
-      ->type_name("N");
+  const TextOptions add{*command};
+  add("--vary", typed->vary, "NAME[=LOW:HIGH]",
+      "parameter to vary, off and on if it is a switch; repeatable [the paper's five]");
+  add("--points", typed->points, "N", "of the parameters, the profile's first [40]");
+  add("--sample-seed", typed->sample_seed, "N", "of the points' random draws [1]");
   add_examples(*command,
                {"leviosim explore --data flight --profile levio --vary workload.window=6:12 "
                 "--points 3 --seed 1 --relative 0.5 --out explored"});

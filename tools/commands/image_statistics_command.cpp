@@ -76,8 +76,9 @@ Command add_image_statistics_command(CLI::App& app) {
   const auto options = std::make_shared<ImageStatisticsOptions>();
   command->add_option("DIR", options->folders,
                       "folders of recordings; the first one is compared with");
-  command->add_option("--size", options->size, "of the images [160x120]")->type_name("WxH");
-  command->add_option("--frames", options->frames, "frames, B exclusive [all]")->type_name("A:B");
+  const TextOptions add{*command};
+  add("--size", options->size, "WxH", "of the images [160x120]");
+  add("--frames", options->frames, "A:B", "frames, B exclusive [all]");
   command->add_flag("--quiet", options->quiet, "no progress");
   add_examples(*command, {"leviosim image-statistics flight rendered --frames 0:20"});
   add_json_option(*command, options->json);

@@ -412,18 +412,13 @@ Command add_platforms_command(CLI::App& app) {
                       "feasibility or stages [NAME ...], "
                       "systems");
   command->add_option("NAME", options->names, "chips: names or files");
-  command
-      ->add_option("-p,--set", run_options.overrides,
-                   "parameter of the one shown, of the second compared, or of all; repeatable")
-      ->type_name("PATH=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--from", options->from, "new: the chip that its file begins with [gap9]")
-      ->type_name("NAME|FILE");
+  const TextOptions add_of_any{*command};
+  add_of_any("-p,--set", run_options.overrides, "PATH=VALUE",
+             "parameter of the one shown, of the second compared, or of all; repeatable");
+  add_of_any("--from", options->from, "NAME|FILE",
+             "new: the chip that its file begins with [gap9]");
   const char* const group = "With feasibility, stages and systems";
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type)->group(group);
-  };
+  const TextOptions add{*command, group};
   add("--data", run_options.data, "DIR|synthetic",
       "ASL/EuRoC folder, or the synthetic flight [synthetic]");
   add("--frames", run_options.frames, "A:B", "frames, B exclusive [all]");

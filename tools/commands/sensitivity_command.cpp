@@ -52,7 +52,7 @@ Command add_sensitivity_command(CLI::App& app) {
   const auto options = std::make_shared<SensitivityOptions>();
   options->frames = kFramesByDefault;
   add_chip_run_options(*command, *options);
-  command->add_option("--csv", options->out, "write the rows to a file")->type_name("FILE");
+  TextOptions{*command}("--csv", options->out, "FILE", "write the rows to a file");
   command->add_flag("--force", options->force, "replace the file");
   add_jobs_option(*command, options->jobs, "chip");
   add_examples(*command,

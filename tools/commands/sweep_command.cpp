@@ -235,9 +235,7 @@ Command add_sweep_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Many chips, parameters, profiles, flights or seeds: all points of a plan");
   const auto words = std::make_shared<SweepWords>();
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{*command};
   command->add_option("PLAN", words->plan, "YAML file: tools/app/study/sweep/README.md");
   add("--out", words->out, "DIR", "folder for the results; a sweep that it holds is continued");
   add("--budget", words->budget, "FILE",

@@ -51,9 +51,8 @@ void run(const RunOptions& given, const Words& words) {
                 {fmt::format("leviosim run --platform {} --data {} --out mine",
                              printable(options.platform), printable(options.data))});
   };
-  const Printout text = printout(
-      options.json, lines,
-      [&] { return json_text(validation_json(validation), 2) + '\n'; });
+  const Printout text = printout(options.json, lines,
+                                 [&] { return json_text(validation_json(validation), 2) + '\n'; });
   if (!out) {
     print(text);
   } else {
@@ -72,8 +71,8 @@ Command add_validate_command(CLI::App& app, const Words& words) {
       app.add_subcommand("validate", "Compare a run with the tables of the LEVIO paper");
   const auto options = std::make_shared<RunOptions>();
   add_chip_run_options(*command, *options);
-  command->add_option("--out", options->out, "folder for the results; must be new or empty")
-      ->type_name("DIR");
+  TextOptions{*command}("--out", options->out, "DIR",
+                        "folder for the results; must be new or empty");
   command->add_flag("--force", options->force, "replace the results of an earlier run");
   add_examples(*command,
                {"leviosim validate --data flight",

@@ -35,12 +35,12 @@ struct WhatIfWords {
 /// The settings that compute a run again.
 SweepRow settings_of(const traces::WorkTrace& trace, const std::vector<std::string>& workload) {
   const traces::WorkTraceInfo& info = trace.info();
-  SweepRow again{{"data", info.data},
-                 {"profile", info.profile},
-                 {"seed", fmt::format("{}", info.seed)},
-                 {"size", fmt::format("{}x{}", info.image_width, info.image_height)},
-                 {"frames", fmt::format("{}:{}", info.first_frame,
-                                        info.first_frame + trace.frames())}};
+  SweepRow again{
+      {"data", info.data},
+      {"profile", info.profile},
+      {"seed", fmt::format("{}", info.seed)},
+      {"size", fmt::format("{}x{}", info.image_width, info.image_height)},
+      {"frames", fmt::format("{}:{}", info.first_frame, info.first_frame + trace.frames())}};
   for (const std::string& set : workload) {
     const std::size_t equals = set.find('=');
     if (equals != std::string::npos) again[set.substr(0, equals)] = set.substr(equals + 1);
@@ -72,16 +72,15 @@ Asked asked_of(const std::string& run, SweepInputs& inputs, const Words& words,
                ProgressLine::Style style) {
   if (run.empty()) {
     Asked asked{"the shipped flight", {}};
-    const SweepInputs::Trace& trace =
-        inputs.keep_trace(asked.name, recorded_flight(words, style));
+    const SweepInputs::Trace& trace = inputs.keep_trace(asked.name, recorded_flight(words, style));
     asked.again = settings_of(*trace.work, {});
     return asked;
   }
   const std::string file = trace_of(run);
   if (file.empty())
-    throw InputError(fmt::format(
-        "{}: holds no {}; expected the folder of a run with --record, or a work trace", run,
-        kWorkTraceFile));
+    throw InputError(
+        fmt::format("{}: holds no {}; expected the folder of a run with --record, or a work trace",
+                    run, kWorkTraceFile));
   const traces::WorkTrace& trace = *inputs.trace(run, {run}).work;
   if (!base::is_folder(run)) return {run, {}};
   const SweepRow again = settings_of(trace, read_run_folder(run).facts.workload);
@@ -120,10 +119,10 @@ void run(const WhatIfWords& typed, const Words& words) {
   } else if (!changes.empty() && base::is_folder(changes.front())) {
     name = changes.front();  // refused below
   }
-  std::optional<outputs::OutputFile> page = claimed_report(
-      typed.report, typed.force,
-      name.empty() ? std::vector<std::filesystem::path>{}
-                   : std::vector<std::filesystem::path>{trace_of(name)});
+  std::optional<outputs::OutputFile> page =
+      claimed_report(typed.report, typed.force,
+                     name.empty() ? std::vector<std::filesystem::path>{}
+                                  : std::vector<std::filesystem::path>{trace_of(name)});
   SweepInputs inputs(std::filesystem::current_path(), style, trace_memory(typed.memory));
   const RunnerOptions options{
       .noun = "variant", .threads = parse_jobs(typed.jobs), .progress = style};

@@ -79,10 +79,8 @@ Command add_workload_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("workload", "List the profiles of the workload and its parameters");
   const auto options = std::make_shared<WorkloadOptions>();
-  command
-      ->add_option("--profile", options->profile,
-                   fmt::format("whose values are shown [{}]", options->profile))
-      ->type_name("NAME");
+  TextOptions{*command}("--profile", options->profile, "NAME",
+                        fmt::format("whose values are shown [{}]", options->profile));
   add_examples(*command, {"leviosim workload", "leviosim workload --profile next"});
   add_json_option(*command, options->json);
   return {command, [=] { run(*options); }};

@@ -1,8 +1,8 @@
 #include "tools/app/cli/command_line.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -106,6 +106,20 @@ Words in_present_spelling(Words words, const std::vector<Command>& commands) {
 }
 
 }  // namespace
+
+void TextOptions::operator()(const std::string& names, std::string& value, const std::string& type,
+                             const std::string& help) const {
+  CLI::Option* option = command.add_option(names, value, help)->type_name(type);
+  if (!group.empty()) option->group(group);
+}
+
+void TextOptions::operator()(const std::string& names, std::vector<std::string>& values,
+                             const std::string& type, const std::string& help, bool split) const {
+  CLI::Option* option =
+      command.add_option(names, values, help)->type_name(type)->take_all()->allow_extra_args(false);
+  if (!group.empty()) option->group(group);
+  if (split) option->delimiter(',');
+}
 
 void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
   command.footer(fmt::format("Examples:\n  {}", fmt::join(lines, "\n  ")));

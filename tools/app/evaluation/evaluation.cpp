@@ -1,7 +1,7 @@
 #include "tools/app/evaluation/evaluation.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -67,25 +67,15 @@ void claim_outputs(const EvalOptions& options, EvalRequest& request) {
 void add_eval_options(CLI::App& command, EvalOptions& options) {
   command.add_option("EST", options.estimate, "estimated trajectory: a file or a run folder");
   command.add_option("GT", options.truth, "ground truth: a file or an ASL folder");
-  command
-      .add_option("--also", options.also,
-                  "another estimate of the same flight, repeatable: a row for each, side by side")
-      ->type_name("EST")
-      ->take_all()
-      ->allow_extra_args(false);
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command.add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{command};
+  add("--also", options.also, "EST",
+      "another estimate of the same flight, repeatable: a row for each, side by side");
   add("--align", options.align, "KIND",
       "what is aligned first: se3, sim3, posyaw (gravity is known, z up) or none [se3]");
   add("--max-dt", options.max_dt, "TIME",
       "to the nearest true sample of a matched pose: 10ms, 0.01s, or a number of ms [10ms]");
-  command
-      .add_option("--relative", options.relative,
-                  "lengths of sub-trajectories in metres: 10,40; repeatable [40]")
-      ->type_name("M")
-      ->take_all()
-      ->allow_extra_args(false);
+  add("--relative", options.relative, "M",
+      "lengths of sub-trajectories in metres: 10,40; repeatable [40]");
   add("--expected", options.expected, "N",
       "completion is of N poses, e.g. the frames fed in [of the ground truth's duration]");
   add("--format", options.format, "FORMAT", "of both files: tum, euroc or kitti [as they look]");
@@ -160,7 +150,7 @@ struct Picture {
   bool timed;
   std::vector<double> translation;  ///< errors [m], one per matched pose
   traces::AttitudeErrors attitude;
-  std::int64_t longest_step_ns;     ///< a longer one is a gap, over which nothing is drawn
+  std::int64_t longest_step_ns;  ///< a longer one is a gap, over which nothing is drawn
 };
 
 /// Ten times the usual step between poses.

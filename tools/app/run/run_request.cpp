@@ -1,8 +1,8 @@
 #include "tools/app/run/run_request.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -74,18 +74,13 @@ void refuse_chip_options(const CLI::App& command, const RunOptions& options) {
   for (const std::string& text : split_overrides(options.overrides).chip) refuse("--set " + text);
 }
 
-void add_text(CLI::App& command, const char* name, std::string& value, const char* type,
-              const std::string& help) {
-  command.add_option(name, value, help)->type_name(type);
-}
-
 void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
-  add_text(command, "--data", options.data, "DIR|synthetic",
-           "recording (EuRoC, TUM, KITTI), or the synthetic flight" + by_default);
-  add_text(command, "--frames", options.frames, "A:B", "frames, B exclusive [all]");
-  add_text(command, "--profile", options.profile, "NAME",
-           fmt::format("of the workload [{}]", options.profile));
-  add_text(command, "--seed", options.seed, "N", "of the workload's random draws [1]");
+  const TextOptions add{command};
+  add("--data", options.data, "DIR|synthetic",
+      "recording (EuRoC, TUM, KITTI), or the synthetic flight" + by_default);
+  add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
+  add("--profile", options.profile, "NAME", fmt::format("of the workload [{}]", options.profile));
+  add("--seed", options.seed, "N", "of the workload's random draws [1]");
   command.add_flag("--quiet", options.quiet, "no progress");
   command.get_option("--set")->description(
       "parameter of the chip, or of the workload: workload.… (leviosim workload); repeatable");
@@ -134,17 +129,15 @@ void resolve_chip(const RunOptions& options, RunRequest& request) {
 }  // namespace
 
 void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
-  add_text(command, "--platform", options.platform, "NAME|FILE",
-           "chip: a name (leviosim platforms) or a file" + by_default);
-  command.add_option("-p,--set", options.overrides, "parameter of the chip; repeatable")
-      ->type_name("PATH=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
-  add_text(command, "--cores", options.cores, "N", "worker cores [the chip's]");
+  const TextOptions add{command};
+  add("--platform", options.platform, "NAME|FILE",
+      "chip: a name (leviosim platforms) or a file" + by_default);
+  add("-p,--set", options.overrides, "PATH=VALUE", "parameter of the chip; repeatable");
+  add("--cores", options.cores, "N", "worker cores [the chip's]");
 }
 
 void add_out_options(CLI::App& command, RunOptions& options) {
-  add_text(command, "--out", options.out, "DIR", "folder for the results; must be new or empty");
+  TextOptions{command}("--out", options.out, "DIR", "folder for the results; must be new or empty");
   command.add_flag("--force", options.force, "replace the results of an earlier run");
 }
 
@@ -156,16 +149,17 @@ int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster) {
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
+  const TextOptions add{command};
   add_chip_options(command, options, " [gap9]");
   command.add_flag("--native", options.native, "no chip, no timing: the golden model");
   add_workload_options(command, options, " [synthetic]");
-  add_text(command, "--size", options.size, "WxH", "image size [160x120]");
-  add_text(command, "--fps", options.camera_fps, "F",
-           "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
-  add_text(command, "--deadline", options.deadline, "drop|queue",
-           "closed loop: what becomes of a frame that finds the front end busy [drop]");
-  add_text(command, "--initial-delay", options.initial_delay, "S",
-           "seconds that the first poses may wait for the initialisation, which corrects them [0]");
+  add("--size", options.size, "WxH", "image size [160x120]");
+  add("--fps", options.camera_fps, "F",
+      "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
+  add("--deadline", options.deadline, "drop|queue",
+      "closed loop: what becomes of a frame that finds the front end busy [drop]");
+  add("--initial-delay", options.initial_delay, "S",
+      "seconds that the first poses may wait for the initialisation, which corrects them [0]");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
   add_out_options(command, options);
   command.get_option("--out")->description(
@@ -250,12 +244,10 @@ double factor_of(std::string_view unit) {
 }  // namespace
 
 void add_memory_option(CLI::App& command, std::string& text) {
-  command
-      .add_option("--max-memory", text,
-                  fmt::format("memory that a trace may take, such as 2GiB [{}]",
-                              traces::memory_text(
-                                  static_cast<std::uint64_t>(traces::kTraceMemory.count()))))
-      ->type_name("SIZE");
+  TextOptions{command}(
+      "--max-memory", text, "SIZE",
+      fmt::format("memory that a trace may take, such as 2GiB [{}]",
+                  traces::memory_text(static_cast<std::uint64_t>(traces::kTraceMemory.count()))));
 }
 
 Bytes trace_memory(const std::string& text) {

@@ -1,8 +1,8 @@
 #include "tools/app/run/run_session.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <vector>
@@ -191,12 +191,11 @@ std::vector<std::string> parse_tables(const std::string& text) {
 }  // namespace
 
 void add_print_options(CLI::App& command, RunOptions& options) {
-  command
-      .add_option("--tables", options.tables,
-                  fmt::format("print tables in place of the summary: all, or some of {}; columns "
-                              "that do not fit the terminal are left out, COLUMNS=200 shows more",
-                              fmt::join(table_names(), ",")))
-      ->type_name("NAME,…");
+  TextOptions{command}(
+      "--tables", options.tables, "NAME,…",
+      fmt::format("print tables in place of the summary: all, or some of {}; columns "
+                  "that do not fit the terminal are left out, COLUMNS=200 shows more",
+                  fmt::join(table_names(), ",")));
   add_json_option(command, options.json);
 }
 
@@ -215,8 +214,7 @@ Printout run_printout(const RunOptions& options, const RunResult& run, const std
       return Printout(title + remarks + report(run, parse_tables(options.tables), width), false);
     const auto lines_of_remarks = std::count(remarks.begin(), remarks.end(), '\n');
     const int others = static_cast<int>(std::min<std::ptrdiff_t>(lines_of_remarks, kMostRemarks));
-    const std::string summary =
-        run_summary(title.substr(0, title.find('\n')), run, width, others);
+    const std::string summary = run_summary(title.substr(0, title.find('\n')), run, width, others);
     return Printout({summary, remarks})
         .ending("", {fmt::format("leviosim {} {}", options.record ? "whatif" : "report",
                                  printable(options.out)) +

@@ -48,10 +48,6 @@ struct BatchPlan {
   RunnerOptions runner;
 };
 
-/// Declares an option that is repeatable. @param split  whether its values may be one word, "1,2,3"
-void add_list_option(CLI::App& command, const char* name, std::vector<std::string>& values,
-                     const char* type, const char* help, bool split);
-
 /// What --seed, --profile and -p of native runs were given. @throws InputError naming the option
 std::vector<std::uint32_t> batch_seeds(const std::vector<std::string>& words);
 std::vector<std::string> known_profiles(const std::vector<std::string>& words);

@@ -1,7 +1,7 @@
 #include "tools/app/timeline/requested_timeline.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
@@ -10,6 +10,7 @@
 #include "sim/chip/chip.h"
 #include "sim/outputs/file_system.h"
 #include "sim/soc/account.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/timeline/perfetto_timeline.h"
@@ -62,16 +63,13 @@ outputs::OutputRequest file_request(const std::string& file,
 }  // namespace
 
 void add_timeline_options(CLI::App& command, TimelineOptions& options) {
-  command
-      .add_option("--timeline", options.file,
-                  "when everything happened, for ui.perfetto.dev, which opens the file locally; as "
-                  "a picture if the name ends in .svg")
-      ->type_name("FILE");
-  command
-      .add_option("--timeline-frames", options.frames,
-                  "frames of the timeline as frames.csv numbers them, B exclusive [all; of a "
-                  "picture two in the middle]")
-      ->type_name("A:B");
+  const TextOptions add{command};
+  add("--timeline", options.file, "FILE",
+      "when everything happened, for ui.perfetto.dev, which opens the file locally; as "
+      "a picture if the name ends in .svg");
+  add("--timeline-frames", options.frames, "A:B",
+      "frames of the timeline as frames.csv numbers them, B exclusive [all; of a "
+      "picture two in the middle]");
 }
 
 RequestedTimeline::RequestedTimeline(const TimelineOptions& options,

@@ -11,6 +11,7 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "sim/energy/model.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload.h"
@@ -181,9 +182,7 @@ ClockSetting setting_for(const sim::ChipConfig& chip, const std::string& name, H
 }
 
 void add_tune_options(CLI::App& command, TuneWords& words) {
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command.add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{command};
   add_chip_run_options(command, words.run);
   command.get_option("--seed")->type_name("N,...")->description(fmt::format(
       "of the workload's random draws; figures are medians over them [{}]", kTunedSeeds));
