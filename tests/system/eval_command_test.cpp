@@ -40,8 +40,8 @@ Trajectory spiral(double error, std::int64_t start_ns = 5'000'000'000) {
 class EvalCommand : public ::testing::Test {
  protected:
   EvalCommand() {
-    write_text(folder_ / "est.tum", traces::format_tum(spiral(0.02)));
-    write_text(folder_ / "gt.tum", traces::format_tum(spiral(0)));
+    tests::write_text(folder_ / "est.tum", traces::format_tum(spiral(0.02)));
+    tests::write_text(folder_ / "gt.tum", traces::format_tum(spiral(0)));
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   ProgramResult eval(std::vector<std::string> further) {
@@ -125,7 +125,7 @@ TEST_F(EvalCommand, WritesTheFiguresItPrints) {
 }
 
 TEST_F(EvalCommand, SetsSeveralEstimatesSideBySide) {
-  write_text(folder_ / "worse.tum", traces::format_tum(spiral(0.05)));
+  tests::write_text(folder_ / "worse.tum", traces::format_tum(spiral(0.05)));
   const ProgramResult result =
       eval({"--also", path("worse.tum"), "--relative", "5", "--json", path("both.json")});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -195,7 +195,7 @@ TEST_F(EvalCommand, RefusesFiles) {
   expect_files_refused("est.tum", "empty.tum", {"empty.tum", "no row"});
   outputs::write_file_atomically(folder_ / "five", "1 2 3 4 5\n");
   expect_files_refused("five", "gt.tum", {"five line 1", "5 columns", "8 (TUM)"});
-  write_text(folder_ / "later.tum", traces::format_tum(spiral(0, 90'000'000'000)));
+  tests::write_text(folder_ / "later.tum", traces::format_tum(spiral(0, 90'000'000'000)));
   expect_files_refused("est.tum", "later.tum", {"none of the 201 estimated poses", "10 ms"});
   fs::create_directory(folder_ / "folder");
   expect_files_refused("folder", "gt.tum", {"folder", "trajectory.tum"});
