@@ -11,7 +11,9 @@ namespace leviosim::platform {
 namespace {
 
 using sim::ChipConfig;
-using sim::EnergyConfig;
+using E = sim::EnergyConfig;
+using A = sim::AreaConfig;
+using S = sim::SupplyConfig;
 
 // Limits that keep typing errors out.
 constexpr double kMaxEvent = 1e-6;  // joules
@@ -49,33 +51,36 @@ Field power(const char* path, const char* description) {
   return row(path, kPower, 0, kMaxPower, description);
 }
 
-/// @param member  returns a reference to the field's place in a SupplyConfig, const or not
-template <class Member>
-Field of_supply(Field field, Member member) {
-  field.set = [member](ChipConfig& chip, double value) { put(member(chip.supply), value); };
-  field.get = [member](const ChipConfig& chip) { return as_number(member(chip.supply)); };
+/// The member of a record, or of a record in it, and so on. @param path  pointers to members
+template <class Record, class... Path>
+auto& at(Record& record, Path... path) {
+  return (record.*....*path);
+}
+
+template <class... Path>
+Field of_supply(Field field, Path... path) {
+  field.set = [=](ChipConfig& chip, double value) { put(at(chip.supply, path...), value); };
+  field.get = [=](const ChipConfig& chip) { return as_number(at(chip.supply, path...)); };
   return field;
 }
 
-/// A number with a band.
-/// @param Range   the member of ChipConfig that has the number and its ends
-/// @param member  as above, in that
-template <auto Range, class Member>
-Field banded(Field field, Member member) {
-  field.set = [member](ChipConfig& chip, double value) {
+/// A number with a band. @param Range  the member of ChipConfig that has the number and its ends
+template <auto Range, class... Path>
+Field banded(Field field, Path... path) {
+  field.set = [=](ChipConfig& chip, double value) {
     auto& range = chip.*Range;
-    for (auto* numbers : {&range.value, &range.low, &range.high}) put(member(*numbers), value);
+    for (auto* numbers : {&range.value, &range.low, &range.high}) put(at(*numbers, path...), value);
   };
-  field.get = [member](const ChipConfig& chip) { return as_number(member((chip.*Range).value)); };
-  field.set_band = [member](ChipConfig& chip, double low, double high) {
-    put(member((chip.*Range).low), low);
-    put(member((chip.*Range).high), high);
+  field.get = [=](const ChipConfig& chip) { return as_number(at((chip.*Range).value, path...)); };
+  field.set_band = [=](ChipConfig& chip, double low, double high) {
+    put(at((chip.*Range).low, path...), low);
+    put(at((chip.*Range).high, path...), high);
   };
   return field;
 }
-template <class Member>
-Field of_energy(Field field, Member member) {
-  return banded<&ChipConfig::energy>(std::move(field), member);
+template <class... Path>
+Field of_energy(Field field, Path... path) {
+  return banded<&ChipConfig::energy>(std::move(field), path...);
 }
 template <class Member>
 Field of_area(const char* path, const Dimension& dimension, double max, const char* description,
@@ -85,191 +90,129 @@ Field of_area(const char* path, const Dimension& dimension, double max, const ch
 
 std::vector<Field> supply_fields() {
   return {
-      of_supply(
-          voltage("supply.voltage", "supply of cluster, controller and memories"),
-          [](auto& s) -> auto& { return s.voltage; }),
-      of_supply(
-          row("supply.step", kVoltage, 1e-3, kMaxVoltage,
-              "granularity of the supply, counted from its lowest voltage"),
-          [](auto& s) -> auto& { return s.step; }),
-      of_supply(
-          voltage("supply.lowest.voltage", "lowest voltage of the supply"),
-          [](auto& s) -> auto& { return s.lowest.voltage; }),
-      of_supply(
-          clock("supply.lowest.clock", "highest clock at the lowest voltage"),
-          [](auto& s) -> auto& { return s.lowest.clock; }),
-      of_supply(
-          voltage("supply.highest.voltage", "highest voltage of the supply"),
-          [](auto& s) -> auto& { return s.highest.voltage; }),
-      of_supply(
-          clock("supply.highest.clock", "highest clock at the highest voltage"),
-          [](auto& s) -> auto& { return s.highest.clock; }),
+      of_supply(voltage("supply.voltage", "supply of cluster, controller and memories"),
+                &S::voltage),
+      of_supply(row("supply.step", kVoltage, 1e-3, kMaxVoltage,
+                    "granularity of the supply, counted from its lowest voltage"),
+                &S::step),
+      of_supply(voltage("supply.lowest.voltage", "lowest voltage of the supply"), &S::lowest,
+                &sim::OperatingPoint::voltage),
+      of_supply(clock("supply.lowest.clock", "highest clock at the lowest voltage"), &S::lowest,
+                &sim::OperatingPoint::clock),
+      of_supply(voltage("supply.highest.voltage", "highest voltage of the supply"), &S::highest,
+                &sim::OperatingPoint::voltage),
+      of_supply(clock("supply.highest.clock", "highest clock at the highest voltage"), &S::highest,
+                &sim::OperatingPoint::clock),
   };
 }
 
 std::vector<Field> cluster_energy_fields() {
   return {
-      of_energy(
-          event("energy.core.instruction", "an instruction, with its fetch"),
-          [](auto& e) -> auto& { return e.core.instruction; }),
-      of_energy(
-          event("energy.core.f32_operation",
-                "an operation of a floating-point unit, besides its instruction"),
-          [](auto& e) -> auto& { return e.core.f32_operation; }),
-      of_energy(
-          power("energy.core.leakage", "leakage of a core that works"),
-          [](auto& e) -> auto& { return e.core.leakage; }),
-      of_energy(
-          power("energy.core.gated_leakage", "leakage of a core that waits, clock-gated"),
-          [](auto& e) -> auto& { return e.core.gated_leakage; }),
-      of_energy(
-          event("energy.l1.access", "an access to L1 of up to 32 bits"),
-          [](auto& e) -> auto& { return e.l1.access; }),
-      of_energy(
-          power("energy.l1.bank_leakage", "leakage of a bank of L1"),
-          [](auto& e) -> auto& { return e.l1.bank_leakage; }),
-      of_energy(
-          event("energy.dma.transfer_cycle",
-                "DMA, in a cycle (of the controller's clock) of a transfer"),
-          [](auto& e) -> auto& { return e.dma.transfer_cycle; }),
-      of_energy(
-          event("energy.dma.cycle", "DMA, in a cycle of the cluster's clock"),
-          [](auto& e) -> auto& { return e.dma.cycle; }),
-      of_energy(
-          power("energy.dma.leakage", "leakage of the DMA"),
-          [](auto& e) -> auto& { return e.dma.leakage; }),
-      of_energy(
-          event("energy.cluster.cycle", "rest of the cluster, in a cycle of its clock"),
-          [](auto& e) -> auto& { return e.cluster.cycle; }),
-      of_energy(
-          power("energy.cluster.leakage", "leakage of the rest of the cluster"),
-          [](auto& e) -> auto& { return e.cluster.leakage; }),
-      of_energy(
-          row("energy.cluster.idle_clock", kRatio, 0, 1,
-              "share of the clock cycles that go on while the cluster has no work"),
-          [](auto& e) -> auto& { return e.cluster.idle_clock; }),
+      of_energy(event("energy.core.instruction", "an instruction, with its fetch"), &E::core,
+                &E::Core::instruction),
+      of_energy(event("energy.core.f32_operation",
+                      "an operation of a floating-point unit, besides its instruction"),
+                &E::core, &E::Core::f32_operation),
+      of_energy(power("energy.core.leakage", "leakage of a core that works"), &E::core,
+                &E::Core::leakage),
+      of_energy(power("energy.core.gated_leakage", "leakage of a core that waits, clock-gated"),
+                &E::core, &E::Core::gated_leakage),
+      of_energy(event("energy.l1.access", "an access to L1 of up to 32 bits"), &E::l1,
+                &E::L1::access),
+      of_energy(power("energy.l1.bank_leakage", "leakage of a bank of L1"), &E::l1,
+                &E::L1::bank_leakage),
+      of_energy(event("energy.dma.transfer_cycle",
+                      "DMA, in a cycle (of the controller's clock) of a transfer"),
+                &E::dma, &E::Dma::transfer_cycle),
+      of_energy(event("energy.dma.cycle", "DMA, in a cycle of the cluster's clock"), &E::dma,
+                &E::Dma::cycle),
+      of_energy(power("energy.dma.leakage", "leakage of the DMA"), &E::dma, &E::Dma::leakage),
+      of_energy(event("energy.cluster.cycle", "rest of the cluster, in a cycle of its clock"),
+                &E::cluster, &E::Cluster::cycle),
+      of_energy(power("energy.cluster.leakage", "leakage of the rest of the cluster"), &E::cluster,
+                &E::Cluster::leakage),
+      of_energy(row("energy.cluster.idle_clock", kRatio, 0, 1,
+                    "share of the clock cycles that go on while the cluster has no work"),
+                &E::cluster, &E::Cluster::idle_clock),
   };
 }
 
 std::vector<Field> soc_energy_fields() {
   return {
-      of_energy(
-          event("energy.l2.access", "an access to L2 of up to 32 bits"),
-          [](auto& e) -> auto& { return e.l2.access; }),
-      of_energy(
-          event("energy.soc.cycle", "rest of the chip, in a cycle of the controller's clock"),
-          [](auto& e) -> auto& { return e.soc.cycle; }),
-      of_energy(
-          power("energy.soc.static", "rest of the chip, whatever its clock"),
-          [](auto& e) -> auto& { return e.soc.static_power; }),
+      of_energy(event("energy.l2.access", "an access to L2 of up to 32 bits"), &E::l2,
+                &E::L2::access),
+      of_energy(event("energy.soc.cycle", "rest of the chip, in a cycle of the controller's clock"),
+                &E::soc, &E::Soc::cycle),
+      of_energy(power("energy.soc.static", "rest of the chip, whatever its clock"), &E::soc,
+                &E::Soc::static_power),
   };
 }
 
 std::vector<Field> energy_by_size_fields() {
   return {
-      of_energy(
-          event("energy.by_size.gate_cycle", "a thousand gates, in a cycle of their clock"),
-          [](auto& e) -> auto& { return e.by_size.gate_cycle; }),
+      of_energy(event("energy.by_size.gate_cycle", "a thousand gates, in a cycle of their clock"),
+                &E::by_size, &E::BySize::gate_cycle),
       of_energy(
           row("energy.by_size.gated", kRatio, 0, 1, "share of it while a core's clock is stopped"),
-          [](auto& e) -> auto& { return e.by_size.gated; }),
-      of_energy(
-          event("energy.by_size.bank_cycle", "a bank of L1 or block of L2, in a cycle"),
-          [](auto& e) -> auto& { return e.by_size.bank_cycle; }),
+          &E::by_size, &E::BySize::gated),
+      of_energy(event("energy.by_size.bank_cycle", "a bank of L1 or block of L2, in a cycle"),
+                &E::by_size, &E::BySize::bank_cycle),
       of_energy(
           event("energy.by_size.stalled_cycle", "a core that waits with its clock on, in a cycle"),
-          [](auto& e) -> auto& { return e.by_size.stalled_cycle; }),
-      of_energy(
-          power("energy.by_size.gate_leakage", "leakage of a thousand gates"),
-          [](auto& e) -> auto& { return e.by_size.gate_leakage; }),
-      of_energy(
-          power("energy.by_size.l1_leakage", "leakage of a KiB of L1"),
-          [](auto& e) -> auto& { return e.by_size.l1_leakage; }),
-      of_energy(
-          power("energy.by_size.l2_leakage", "leakage of a KiB of L2"),
-          [](auto& e) -> auto& { return e.by_size.l2_leakage; }),
-      of_energy(
-          row("energy.by_size.leakage_exponent", kRatio, 0, 10,
-              "power of the voltage with which leakage grows"),
-          [](auto& e) -> auto& { return e.by_size.leakage_exponent; }),
+          &E::by_size, &E::BySize::stalled_cycle),
+      of_energy(power("energy.by_size.gate_leakage", "leakage of a thousand gates"), &E::by_size,
+                &E::BySize::gate_leakage),
+      of_energy(power("energy.by_size.l1_leakage", "leakage of a KiB of L1"), &E::by_size,
+                &E::BySize::l1_leakage),
+      of_energy(power("energy.by_size.l2_leakage", "leakage of a KiB of L2"), &E::by_size,
+                &E::BySize::l2_leakage),
+      of_energy(row("energy.by_size.leakage_exponent", kRatio, 0, 10,
+                    "power of the voltage with which leakage grows"),
+                &E::by_size, &E::BySize::leakage_exponent),
   };
 }
 
 std::vector<Field> technology_fields() {
   return {
-      of_area(
-          "area.gate", kArea, kMaxArea, "a thousand gate equivalents, placed",
-          [](auto& a) -> auto& { return a.gate; }),
-      of_area(
-          "area.sram_cut", kArea, kMaxArea, "a memory block, whatever its size",
-          [](auto& a) -> auto& { return a.sram_cut; }),
-      of_area(
-          "area.sram_bit", kArea, kMaxArea, "and each of its bits",
-          [](auto& a) -> auto& { return a.sram_bit; }),
-      of_area(
-          "area.latch_bit", kArea, kMaxArea, "a bit of a memory of latches",
-          [](auto& a) -> auto& { return a.latch_bit; }),
-      of_area(
-          "area.latch_limit", kSize, kMaxBytes,
-          "largest private instruction cache that is made of latches",
-          [](auto& a) -> auto& { return a.latch_limit; }),
-      of_area(
-          "area.l2_cut", kSize, kMaxBytes, "size of a memory block of L2",
-          [](auto& a) -> auto& { return a.l2_cut; }),
+      of_area("area.gate", kArea, kMaxArea, "a thousand gate equivalents, placed", &A::gate),
+      of_area("area.sram_cut", kArea, kMaxArea, "a memory block, whatever its size", &A::sram_cut),
+      of_area("area.sram_bit", kArea, kMaxArea, "and each of its bits", &A::sram_bit),
+      of_area("area.latch_bit", kArea, kMaxArea, "a bit of a memory of latches", &A::latch_bit),
+      of_area("area.latch_limit", kSize, kMaxBytes,
+              "largest private instruction cache that is made of latches", &A::latch_limit),
+      of_area("area.l2_cut", kSize, kMaxBytes, "size of a memory block of L2", &A::l2_cut),
   };
 }
 
 std::vector<Field> logic_fields() {
   return {
-      of_area(
-          "area.core", kGates, kMaxGates, "a core without floating-point unit",
-          [](auto& a) -> auto& { return a.core; }),
-      of_area(
-          "area.fpu", kGates, kMaxGates, "a floating-point unit without divider",
-          [](auto& a) -> auto& { return a.fpu; }),
-      of_area(
-          "area.divider", kGates, kMaxGates, "a unit for quotients and square roots",
-          [](auto& a) -> auto& { return a.divider; }),
-      of_area(
-          "area.fpu_crosspoint", kGates, kMaxGates,
-          "network of shared units, for a core and a unit that it may use",
-          [](auto& a) -> auto& { return a.fpu_crosspoint; }),
-      of_area(
-          "area.memory_crosspoint", kGates, kMaxGates,
-          "networks of L1 and L2, for a master and a bank",
-          [](auto& a) -> auto& { return a.memory_crosspoint; }),
-      of_area(
-          "area.l1_masters", kUnits, kMaxPorts, "masters of L1 besides the cores",
-          [](auto& a) -> auto& { return a.l1_masters; }),
-      of_area(
-          "area.l2_masters", kUnits, kMaxPorts, "masters of L2",
-          [](auto& a) -> auto& { return a.l2_masters; }),
-      of_area(
-          "area.private_cache", kGates, kMaxGates, "control of a private instruction cache",
-          [](auto& a) -> auto& { return a.private_cache; }),
-      of_area(
-          "area.shared_cache", kGates, kMaxGates, "control of the shared instruction cache",
-          [](auto& a) -> auto& { return a.shared_cache; }),
-      of_area(
-          "area.dma", kGates, kMaxGates, "the DMA of the cluster",
-          [](auto& a) -> auto& { return a.dma; }),
-      of_area(
-          "area.event_unit", kGates, kMaxGates, "the event unit, for each core",
-          [](auto& a) -> auto& { return a.event_unit; }),
-      of_area(
-          "area.cluster_rest", kGates, kMaxGates, "buses, clock crossing, control of the cluster",
-          [](auto& a) -> auto& { return a.cluster_rest; }),
-      of_area(
-          "area.not_simulated", kGates, kMaxGates,
-          "accelerators of the cluster that are not simulated",
-          [](auto& a) -> auto& { return a.not_simulated; }),
-      of_area(
-          "area.controller_rest", kGates, kMaxGates,
-          "what the controller has besides core, floating-point unit and divider",
-          [](auto& a) -> auto& { return a.controller_rest; }),
-      of_area(
-          "area.soc_rest", kGates, kMaxGates, "peripherals and control of the chip",
-          [](auto& a) -> auto& { return a.soc_rest; }),
+      of_area("area.core", kGates, kMaxGates, "a core without floating-point unit", &A::core),
+      of_area("area.fpu", kGates, kMaxGates, "a floating-point unit without divider", &A::fpu),
+      of_area("area.divider", kGates, kMaxGates, "a unit for quotients and square roots",
+              &A::divider),
+      of_area("area.fpu_crosspoint", kGates, kMaxGates,
+              "network of shared units, for a core and a unit that it may use", &A::fpu_crosspoint),
+      of_area("area.memory_crosspoint", kGates, kMaxGates,
+              "networks of L1 and L2, for a master and a bank", &A::memory_crosspoint),
+      of_area("area.l1_masters", kUnits, kMaxPorts, "masters of L1 besides the cores",
+              &A::l1_masters),
+      of_area("area.l2_masters", kUnits, kMaxPorts, "masters of L2", &A::l2_masters),
+      of_area("area.private_cache", kGates, kMaxGates, "control of a private instruction cache",
+              &A::private_cache),
+      of_area("area.shared_cache", kGates, kMaxGates, "control of the shared instruction cache",
+              &A::shared_cache),
+      of_area("area.dma", kGates, kMaxGates, "the DMA of the cluster", &A::dma),
+      of_area("area.event_unit", kGates, kMaxGates, "the event unit, for each core",
+              &A::event_unit),
+      of_area("area.cluster_rest", kGates, kMaxGates,
+              "buses, clock crossing, control of the cluster", &A::cluster_rest),
+      of_area("area.not_simulated", kGates, kMaxGates,
+              "accelerators of the cluster that are not simulated", &A::not_simulated),
+      of_area("area.controller_rest", kGates, kMaxGates,
+              "what the controller has besides core, floating-point unit and divider",
+              &A::controller_rest),
+      of_area("area.soc_rest", kGates, kMaxGates, "peripherals and control of the chip",
+              &A::soc_rest),
   };
 }
 
@@ -289,9 +232,8 @@ std::vector<Field> area_fields() {
 
 std::vector<Field> energy_fields() {
   std::vector<Field> fields = supply_fields();
-  fields.push_back(of_energy(
-      voltage("energy.voltage", "supply for which the section holds"),
-      [](auto& e) -> auto& { return e.voltage; }));
+  fields.push_back(
+      of_energy(voltage("energy.voltage", "supply for which the section holds"), &E::voltage));
   for (std::vector<Field>& part :
        std::array{cluster_energy_fields(), soc_energy_fields(), energy_by_size_fields()})
     for (Field& field : part) fields.push_back(std::move(field));

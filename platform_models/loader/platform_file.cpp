@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "platform_models/loader/builtin.h"
-#include "platform_models/loader/configure.h"
+#include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/instruction_set.h"
 #include "platform_models/loader/override.h"
 #include "platform_models/loader/rules.h"
@@ -108,7 +108,8 @@ Settings PlatformFile::settings_with(const std::vector<std::string>& overrides) 
 const Parameter* PlatformFile::find(const std::string& path) {
   const std::size_t index = schema_.find(path);
   if (index == Schema::kNone) return nullptr;
-  const std::optional<Setting>& setting = document(split_overrides(overrides_).base).settings[index];
+  const std::optional<Setting>& setting =
+      document(split_overrides(overrides_).base).settings[index];
   return setting ? &setting->parameter : nullptr;
 }
 
@@ -129,6 +130,24 @@ std::string canonical_text(const Schema& schema, const ResolvedPlatform& platfor
     text += '\n';
   }
   return text;
+}
+
+sim::ChipConfig configure(const Schema& schema, const std::string& name, const Settings& settings) {
+  sim::ChipConfig config;
+  config.name = name;
+  for (std::size_t i = 0; i < schema.fields().size(); ++i) {
+    const Field& field = schema.fields()[i];
+    const auto& setting = settings[i];
+    if (!setting) continue;
+    field.set(config, setting->base);
+    const auto& range = setting->parameter.range;
+    if (!range || !field.set_band) continue;
+    const double factor = field.dimension->find(setting->parameter.unit)->factor;
+    field.set_band(config, range->low * factor, range->high * factor);
+  }
+  config.cluster.icache.measured_size = size_of_code(config.cluster.core.code);
+  config.controller.icache.measured_size = size_of_code(config.controller.core.code);
+  return config;
 }
 
 }  // namespace leviosim::platform

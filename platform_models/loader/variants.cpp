@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "platform_models/loader/configure.h"
+#include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/rules.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/check.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "platform_models/loader/new_platform.h"
+#include "platform_models/loader/loader.h"
 #include "platform_models/loader/override.h"
 #include "platform_models/loader/schema.h"
 #include "platform_models/loader/variants.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/events/time_limit.h"
+#include "sim/events/timebase.h"
 
 namespace leviosim::sim {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "sim/events/time_limit.h"
+#include "sim/events/timebase.h"
 
 namespace leviosim::sim {
 namespace {

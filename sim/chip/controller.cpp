@@ -7,7 +7,7 @@
 
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
-#include "sim/events/time_limit.h"
+#include "sim/events/timebase.h"
 
 namespace leviosim::sim {
 

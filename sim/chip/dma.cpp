@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sim/base/check.h"
-#include "sim/events/time_limit.h"
+#include "sim/events/timebase.h"
 
 namespace leviosim::sim {
 namespace {

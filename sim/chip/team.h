@@ -14,7 +14,6 @@
 #include "sim/events/kernel.h"
 #include "sim/events/sync.h"
 #include "sim/events/task.h"
-#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 

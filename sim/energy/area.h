@@ -1,5 +1,5 @@
 // What a chip occupies, part by part, with bands: the sums over the numbers of its section `area`
-// (sim/chip/area_config.h) and of what it has.
+// (sim/chip/config.h) and of what it has.
 //
 // Models: logic by gate equivalents; a memory block as a constant and so much a bit; the networks
 // of L1, L2 and the floating-point units by masters times slaves; caches with their tags. A band is

@@ -3,8 +3,8 @@
 #include <bit>
 #include <utility>
 
-#include "sim/events/time_limit.h"
-#include "sim/events/timer.h"
+#include "sim/events/sync.h"
+#include "sim/events/timebase.h"
 
 namespace leviosim::sim {
 namespace {

@@ -1,7 +1,7 @@
 // Event kernel: simulated time advances from event to event; processes are C++20 coroutines.
 //
 // Models: one-shot events ordered by (time, phase, sequence) (sim/events/event_queue.h), processes
-// that wait for time or for each other (sim/events/sync.h, channel.h, timer.h) and are composed of
+// that wait for time or for each other (sim/events/sync.h, channel.h, sync.h) and are composed of
 // sub-coroutines (task.h). What is scheduled is always a process; a woken process never runs inside
 // the one that wakes it, only later from the queue, in a fixed order.
 //

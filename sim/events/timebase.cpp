@@ -9,7 +9,6 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "sim/events/time_limit.h"
 
 namespace leviosim::sim {
 namespace {
@@ -84,10 +83,6 @@ Cycles ClockDomain::whole_cycles(Duration duration) const {
 Cycles ClockDomain::cycles_covering(Duration duration) const {
   const Cycles whole = whole_cycles(duration);
   return this->duration(whole) == duration ? whole : whole + Cycles(1);
-}
-
-Time ClockDomain::edge_at_or_after(Time t) const {
-  return Time{} + duration(cycles_covering(t - Time{}));
 }
 
 Timebase::Timebase(const std::vector<ClockSpec>& clocks) : ticks_per_second_(0) {

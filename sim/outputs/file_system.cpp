@@ -13,6 +13,7 @@
 #include <system_error>
 #include <thread>
 
+#include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
 
@@ -190,6 +191,25 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
     if (error || at == at.root_path()) return false;
     at = at.parent_path();
   }
+}
+
+void write_file_atomically(const std::filesystem::path& file, std::string_view contents) {
+  const std::string shown = file.string();
+  std::filesystem::path staging;
+  Descriptor out;
+  for (int k = 0; !out && (k == 0 || errno == EEXIST); ++k) {
+    staging = file.parent_path() /
+              fmt::format(".{}.partial-{}-{}", file.filename().string(), ::getpid(), k);
+    out = Descriptor(::open(staging.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  }
+  int error = out ? 0 : errno;
+  if (out) {
+    error = write_all(out.get(), contents);
+    if (const int fault = out.close(); error == 0) error = fault;
+    if (error == 0 && ::rename(staging.c_str(), file.c_str()) != 0) error = errno;
+    if (error != 0) ::unlink(staging.c_str());
+  }
+  if (error != 0) throw InputError(fmt::format("{}: cannot be written: {}", shown, reason(error)));
 }
 
 }  // namespace leviosim::outputs

@@ -12,7 +12,7 @@
 #include "tests/bench/cpu_time.h"
 #include "workload/geometry/essential_ransac.h"
 #include "workload/geometry/pnp_ransac.h"
-#include "workload/geometry/triangulate.h"
+#include "workload/geometry/recover_pose.h"
 #include "workload/inertial/preintegration.h"
 #include "workload/math/jacobi.h"
 #include "workload/math/solve.h"

@@ -10,7 +10,7 @@
 #include "sim/base/error.h"
 #include "tests/workload/optimiser_scene.h"
 #include "tests/workload/two_view_scene.h"
-#include "tools/app/run/feed.h"
+#include "tools/app/run/live_source.h"
 
 namespace leviosim::rv32 {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/check_report.h"
-#include "tools/app/budget/ci_files.h"
 #include "tools/app/comparison/run_record.h"
 
 namespace leviosim::fuzz {
@@ -52,7 +51,7 @@ inline tools::RunRecord checked_run() {
 /// Everything that a check may print. Another number of entries than of limits that are not met is
 /// a fault.
 inline void report(const tools::CheckResult& result) {
-  tools::check_text(result);
+  tools::check_printout(result, {});
   tools::check_json(result);
   tools::junit_xml(result);
   tools::github_annotations(result);

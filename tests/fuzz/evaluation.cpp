@@ -3,7 +3,7 @@
 #include "traces/trajectories/evaluation.h"
 
 #include "tests/fuzz/fuzz_target.h"
-#include "traces/trajectories/relative_error.h"
+#include "traces/trajectories/trajectory_errors.h"
 #include "traces/trajectories/trajectory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

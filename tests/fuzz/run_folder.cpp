@@ -6,7 +6,7 @@
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/run_json.h"
+#include "tools/app/html_report/page_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

@@ -13,7 +13,7 @@
 #include "tests/support/image_files.h"
 #include "tests/traces/trace_parts.h"
 #include "tests/traces/work_trace_example.h"
-#include "tools/app/study/sweep/sweep_schema.h"
+#include "tools/app/study/sweep/sweep_store.h"
 
 namespace {
 

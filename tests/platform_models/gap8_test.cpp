@@ -1,5 +1,5 @@
 // GAP8: what is known of the chip, and how its uncertain numbers are marked.
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {

@@ -1,7 +1,7 @@
 // Overrides (-p): they change what they name and nothing else, under the checks of files.
 
-#include "platform_models/loader/dimension.h"
 #include "platform_models/loader/energy_fields.h"
+#include "platform_models/loader/schema.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {

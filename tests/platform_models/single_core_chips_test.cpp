@@ -1,5 +1,5 @@
 // Chips with one core besides the STM32F405: what is known of them, and how the rest is marked.
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "sim/chip/cost.h"
 #include "tests/platform_models/platform_test.h"
 

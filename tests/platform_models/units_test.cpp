@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "platform_models/loader/dimension.h"
 #include "platform_models/loader/schema.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/error.h"

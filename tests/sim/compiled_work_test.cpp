@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "sim/chip/cost.h"
-#include "sim/chip/work_sum.h"
 #include "sim/work/code_tracker.h"
 
 namespace leviosim::sim {

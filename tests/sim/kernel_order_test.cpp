@@ -10,7 +10,6 @@
 #include "sim/events/channel.h"
 #include "sim/events/kernel.h"
 #include "sim/events/sync.h"
-#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 namespace {

@@ -75,15 +75,6 @@ TEST(Timebase, CyclesRoundOnlyAsSaid) {
   EXPECT_EQ(cluster.cycles_covering(seven + Duration(1)), Cycles(8));
 }
 
-TEST(Timebase, EdgesAreAtMultiplesOfThePeriod) {
-  const Timebase timebase = gap9();
-  const ClockDomain& fabric = timebase.clock("fabric");
-  EXPECT_EQ(fabric.edge_at_or_after(Time{0}), Time{0});
-  EXPECT_EQ(fabric.edge_at_or_after(Time{1}), Time{925});
-  EXPECT_EQ(fabric.edge_at_or_after(Time{925}), Time{925});
-  EXPECT_EQ(fabric.edge_at_or_after(Time{926}), Time{1850});
-}
-
 TEST(Timebase, RefusesClocksWithoutACommonTick) {
   const std::string message =
       refusal({{"cluster", Hertz(369'999'999)}, {"fabric", Hertz(240'000'001)}});

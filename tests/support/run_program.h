@@ -18,7 +18,7 @@
 
 #include "tests/support/paths.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/cli/screen.h"
+#include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools::testing {
 

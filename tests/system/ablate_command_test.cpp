@@ -6,9 +6,8 @@
 #include <thread>
 
 #include "tests/support/run_program.h"
-#include "tests/tools/well_formed.h"
-#include "tools/app/study/ablate/ablation_report.h"
-#include "tools/app/study/explore/dimensions.h"
+#include "tools/app/study/ablate/ablation.h"
+#include "tools/app/study/explore/exploration.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -252,12 +251,17 @@ TEST_F(BatchCommands, ExplorationsResume) {
   expect_resumes(
       folder_.path(),
       words("explore", {"--points", "30", "--profile", "levio", "--seed", "1,2", "--jobs", "1"}),
-      {"runs.csv", "points.csv", "best.md", "scatter.svg", "manifest.json"});
+      {"runs.csv", "points.csv", "best.md", "manifest.json"});
   EXPECT_EQ(lines_of(base::read_text_file(folder_ / "out/runs.csv")), 1u + 30 * 2);
   EXPECT_EQ(lines_of(base::read_text_file(folder_ / "out/points.csv")), 1u + 30);
-  const std::string picture = base::read_text_file(folder_ / "out/scatter.svg");
-  EXPECT_EQ(testing::xml_fault(picture), "");
-  EXPECT_NE(picture.find("30 of 30 marks"), std::string::npos);
+  const ProgramResult shown = run_program(
+      folder_.path(), words("explore", {"--points", "30", "--profile", "levio", "--seed", "1,2", "--force",
+                                        "--report", (folder_ / "page.html").string()}));
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  const std::string page = base::read_text_file(folder_ / "page.html");
+  for (const char* part : {R"("axes":["relative_median_percent","ate_median_m"])", R"("mark":"levio")",
+                           "levio has its least absolute error"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
 TEST_F(BatchCommands, ManifestsDoNotDependOnTheNumberOfJobs) {

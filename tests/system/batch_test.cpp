@@ -8,8 +8,8 @@
 #include <set>
 
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/runs_csv.h"
-#include "tools/app/study/sequence.h"
+#include "tools/app/study/point.h"
+#include "tools/app/study/run_outcome.h"
 #include "tools/app/study/spread.h"
 
 namespace leviosim::tools {

@@ -12,9 +12,9 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
-#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
-#include "tools/app/run/feed.h"
+#include "tools/app/result/summary.h"
+#include "tools/app/run/live_source.h"
 #include "tools/app/run/run_folder.h"
 #include "traces/synthesis/synthetic.h"
 

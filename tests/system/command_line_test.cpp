@@ -13,7 +13,7 @@
 #include "tests/support/run_program.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 
 namespace leviosim::tools {
 namespace {

@@ -5,8 +5,9 @@
 #include <map>
 
 #include "tests/support/run_program.h"
+#include "tests/support/scratch.h"
 #include "tests/tools/well_formed.h"
-#include "tools/app/evaluation/eval_options.h"
+#include "tools/app/evaluation/evaluation.h"
 #include "tools/app/report/statistic_list.h"
 #include "traces/synthesis/synthetic.h"
 #include "traces/trajectories/trajectory.h"
@@ -39,8 +40,8 @@ Trajectory spiral(double error, std::int64_t start_ns = 5'000'000'000) {
 class EvalCommand : public ::testing::Test {
  protected:
   EvalCommand() {
-    traces::write_tum(folder_ / "est.tum", spiral(0.02));
-    traces::write_tum(folder_ / "gt.tum", spiral(0));
+    tests::write_text(folder_ / "est.tum", traces::format_tum(spiral(0.02)));
+    tests::write_text(folder_ / "gt.tum", traces::format_tum(spiral(0)));
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   ProgramResult eval(std::vector<std::string> further) {
@@ -124,7 +125,7 @@ TEST_F(EvalCommand, WritesTheFiguresItPrints) {
 }
 
 TEST_F(EvalCommand, SetsSeveralEstimatesSideBySide) {
-  traces::write_tum(folder_ / "worse.tum", spiral(0.05));
+  tests::write_text(folder_ / "worse.tum", traces::format_tum(spiral(0.05)));
   const ProgramResult result =
       eval({"--also", path("worse.tum"), "--relative", "5", "--json", path("both.json")});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -194,7 +195,7 @@ TEST_F(EvalCommand, RefusesFiles) {
   expect_files_refused("est.tum", "empty.tum", {"empty.tum", "no row"});
   outputs::write_file_atomically(folder_ / "five", "1 2 3 4 5\n");
   expect_files_refused("five", "gt.tum", {"five line 1", "5 columns", "8 (TUM)"});
-  traces::write_tum(folder_ / "later.tum", spiral(0, 90'000'000'000));
+  tests::write_text(folder_ / "later.tum", traces::format_tum(spiral(0, 90'000'000'000)));
   expect_files_refused("est.tum", "later.tum", {"none of the 201 estimated poses", "10 ms"});
   fs::create_directory(folder_ / "folder");
   expect_files_refused("folder", "gt.tum", {"folder", "trajectory.tum"});

@@ -1,5 +1,4 @@
 // What an observer sees of a run is the run: its sums, its times, and what re-timing gives.
-#include "tools/app/run/run_observer.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +8,7 @@
 #include "sim/soc/job_timer.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/validation/calibration/stage_model.h"
+#include "tools/app/validation/calibration/calibration.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

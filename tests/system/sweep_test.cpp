@@ -6,8 +6,8 @@
 #include <set>
 
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/sweep/pareto.h"
 #include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/sweep_report.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"
 

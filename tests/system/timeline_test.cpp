@@ -7,7 +7,7 @@
 #include "tools/app/report/statistics.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/timeline/perfetto_timeline.h"
-#include "tools/app/timeline/timeline_collector.h"
+#include "tools/app/timeline/requested_timeline.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -91,7 +91,7 @@ TEST(SlowTraces, AreRefusedSoon) {
   const std::string trace = (folder / "slow.trace").string();
   const std::string fork = bytes({1, 0, 0});
   for (const auto& [cores, frames, steps] :
-       {std::tuple{8, 100'000, list(10, kSerial)}, std::tuple{8, 120'000, list(0, "")},
+       {std::tuple{8, 100'000, list(10, kSerialStep)}, std::tuple{8, 120'000, list(0, "")},
         std::tuple{8, 1000, list(1000, fork)}, std::tuple{1023, 1000, list(190, fork)}}) {
     TraceParts parts = gap9_parts();
     parts.cores = static_cast<std::uint64_t>(cores);
@@ -131,7 +131,7 @@ class TraceLimitsOfPrograms : public ::testing::Test {
 /// One frame of so many steps, each of the work segment in which one counter is so high.
 std::string heavy_trace(std::size_t steps, std::uint64_t count, work::Op op) {
   return trace_of_frame(gap9_parts(), list(1, constant_series(work::index(op), count)),
-                        frame(list(1, stage(list(steps, kSerial)))), steps);
+                        frame(list(1, stage(list(steps, kSerialStep)))), steps);
 }
 
 TEST_F(TraceLimitsOfPrograms, AreRaisedByMaxMemory) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "sim/energy/operating_point.h"
+#include "sim/energy/model.h"
 #include "tests/support/run_program.h"
 #include "tests/tools/well_formed.h"
 #include "tools/app/study/tune/tune_plot.h"

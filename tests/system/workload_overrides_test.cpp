@@ -1,5 +1,5 @@
 // Parameters of the workload on the command line.
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "tests/tools/example_run.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison_report.h"
-#include "tools/app/comparison/cycle_difference.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/run/run_folder.h"
 

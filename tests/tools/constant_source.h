@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "tests/sim/chip_test_config.h"
-#include "tools/app/run/run_source.h"
 #include "tools/app/run/simulate.h"
 
 namespace leviosim::tools::testing {

@@ -1,9 +1,9 @@
-#include "tools/app/run/digest.h"
+#include "tools/app/run/run_folder.h"
 
 #include <gtest/gtest.h>
 
 #include "sim/base/csv.h"
-#include "sim/outputs/atomic_file.h"
+#include "sim/outputs/file_system.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "tools/app/study/flights/benchmark_files.h"
 #include "tools/app/study/flights/benchmark_report.h"
 #include "traces/datasets/rng.h"
 

@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "tests/traces/test_folder.h"
-#include "tools/app/evaluation/images/picture_figures.h"
-#include "tools/app/evaluation/images/track_geometry.h"
+#include "tools/app/evaluation/images/feature_tracks.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"

@@ -3,9 +3,7 @@
 #include <cmath>
 
 #include "tests/tools/well_formed.h"
-#include "tools/app/report/plot/axes.h"
-#include "tools/app/report/plot/colour_scale.h"
-#include "tools/app/report/plot/svg.h"
+#include "tools/app/report/plot/plot.h"
 
 namespace leviosim::tools::plot {
 namespace {

@@ -10,8 +10,7 @@
 
 #include "platform_models/loader/loader.h"
 #include "tools/app/result/summary.h"
-#include "tools/app/run/time_bands.h"
-#include "tools/app/study/sensitivity/sensitivity_report.h"
+#include "tools/app/run/range_bands.h"
 
 namespace leviosim::tools {
 namespace {

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/sweep/sweep_schema.h"
 
 namespace leviosim::tools {
 namespace {

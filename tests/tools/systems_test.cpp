@@ -4,9 +4,8 @@
 #include <algorithm>
 
 #include "platform_models/loader/loader.h"
-#include "tests/tools/well_formed.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/ablate/other_accuracy.h"
+#include "tools/app/study/ablate/ablation.h"
 #include "tools/app/study/systems/systems_report.h"
 
 namespace leviosim::tools {
@@ -79,13 +78,22 @@ TEST(SystemsReport, PredictionsStandBesideTheirSystems) {
   EXPECT_NE(csv.find(",levio on gap9,20,29.9,30.2"), std::string::npos) << csv;
 }
 
-TEST(SystemsReport, ThePictureHasASpotForEachRateWithAPower) {
-  const std::string picture = systems_plot(example_systems());
-  EXPECT_EQ(testing::xml_fault(picture), "");
-  for (const char* part : {"Navion", "Gu et al.", "LEVIO, here", "0.1 mJ", "100 mJ"})
-    EXPECT_NE(picture.find(part), std::string::npos) << part;
-  EXPECT_EQ(picture.find("Bahnam"), std::string::npos);
-  EXPECT_EQ(testing::xml_fault(systems_plot({})), "");
+TEST(SystemsReport, ThePageHasAPointForEachRateWithAPower) {
+  const Json table = systems_page(example_systems()).at("study").at("table");
+  const auto spot = [&](const char* system, const char* by) {
+    for (std::size_t i = 0; i < table.at("system").size(); ++i)
+      if (table.at("system")[i] == system && table.at("by")[i] == by) return static_cast<int>(i);
+    return -1;
+  };
+  for (const char* system : {"Navion", "Gu et al."}) EXPECT_GE(spot(system, "published"), 0) << system;
+  EXPECT_GE(spot("LEVIO", "published, at most"), 0);
+  const int here = spot("LEVIO", "predicted here");
+  ASSERT_GE(here, 0);
+  EXPECT_NEAR(table.at("power")[here].get<double>(), 30.2, 1e-9);
+  EXPECT_NEAR(table.at("low")[here].get<double>(), 20.2, 1e-9);
+  EXPECT_NEAR(table.at("energy")[here].get<double>(), 1.51, 1e-9);
+  EXPECT_EQ(spot("Bahnam et al.", "published"), -1);
+  EXPECT_TRUE(systems_page({}).at("study").at("table").empty());
 }
 
 TEST(OtherAccuracy, StandsBesideTheAblationOfTheSameSequences) {

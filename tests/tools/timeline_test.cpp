@@ -10,11 +10,10 @@
 #include "tests/tools/timeline_checks.h"
 #include "tests/tools/well_formed.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/timeline/core_waits.h"
-#include "tools/app/timeline/protobuf_writer.h"
-#include "tools/app/timeline/short_steps.h"
-#include "tools/app/timeline/timeline_collector.h"
+#include "tools/app/timeline/core_slices.h"
+#include "tools/app/timeline/requested_timeline.h"
 #include "tools/app/timeline/timeline_picture.h"
+#include "tools/app/timeline/track_events.h"
 
 namespace leviosim::tools {
 namespace {

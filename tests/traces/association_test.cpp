@@ -1,4 +1,4 @@
-#include "traces/trajectories/association.h"
+#include "traces/trajectories/evaluation.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/rng.h"
 #include "traces/trajectories/evaluation.h"
-#include "traces/trajectories/relative_error.h"
+#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::traces {
 namespace {

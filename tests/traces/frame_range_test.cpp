@@ -1,4 +1,4 @@
-#include "traces/datasets/frame_range.h"
+#include "traces/datasets/dataset.h"
 
 #include <gtest/gtest.h>
 

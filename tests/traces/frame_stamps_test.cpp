@@ -1,4 +1,4 @@
-#include "traces/datasets/frame_stamps.h"
+#include "traces/synthesis/rendered_flight.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "traces/synthesis/illumination.h"
+#include "traces/synthesis/rendered_flight.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/datasets/euroc_models.h"
+#include "traces/datasets/asl_writer.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::traces {

@@ -1,12 +1,12 @@
 // Ideal readings must integrate back to the path; errors must have the statistics of the model.
-#include "traces/synthesis/imu_synthesis.h"
+#include "traces/synthesis/motion.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/traces/imu_integration.h"
-#include "traces/datasets/euroc_models.h"
+#include "traces/datasets/asl_writer.h"
 
 namespace leviosim::traces {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "traces/datasets/euroc_models.h"
+#include "traces/datasets/asl_writer.h"
 #include "traces/synthesis/world.h"
 
 namespace leviosim::traces {

@@ -1,10 +1,9 @@
 // What a packet of rays meets is what each ray meets alone, and boxes project into their bounds.
-#include "traces/synthesis/ray_packet.h"
+#include "traces/synthesis/renderer.h"
 
 #include <gtest/gtest.h>
 
 #include "traces/datasets/rng.h"
-#include "traces/synthesis/screen_bounds.h"
 
 namespace leviosim::traces {
 namespace {

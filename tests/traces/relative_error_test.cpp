@@ -1,4 +1,4 @@
-#include "traces/trajectories/relative_error.h"
+#include "traces/trajectories/trajectory_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "traces/datasets/euroc_models.h"
+#include "traces/datasets/asl_writer.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::traces {

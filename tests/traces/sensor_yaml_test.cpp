@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/datasets/euroc_models.h"
+#include "traces/datasets/asl_writer.h"
 
 namespace leviosim::traces {
 namespace {

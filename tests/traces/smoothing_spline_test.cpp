@@ -1,4 +1,4 @@
-#include "traces/synthesis/smoothing_spline.h"
+#include "traces/synthesis/motion.h"
 
 #include <gtest/gtest.h>
 

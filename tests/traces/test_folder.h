@@ -17,7 +17,7 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/outputs/atomic_file.h"
+#include "sim/outputs/file_system.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "traces/datasets/asl_writer.h"

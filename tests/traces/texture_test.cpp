@@ -1,4 +1,4 @@
-#include "traces/synthesis/texture.h"
+#include "traces/synthesis/world.h"
 
 #include <gtest/gtest.h>
 

@@ -35,7 +35,7 @@ inline std::string trace_with(TraceParts parts, std::string TraceParts::*part,
 
 inline const std::string kNoSeries = list(0, "");
 inline const std::string kOneSeries = list(1, constant_series(0, 0));
-inline const std::string kSerial = bytes({0, 0});
+inline const std::string kSerialStep = bytes({0, 0});
 inline const std::string kNoJob = frame(list(0, ""));
 inline const std::string kSamePeakNoSteps = bytes({0, 1, 0});
 constexpr std::size_t kMillion = 1'000'000;
@@ -93,7 +93,7 @@ inline const TraceBomb kTraceBombs[] = {
      }},
     {"Steps", "steps of a stage",
      [](TraceParts whole) {
-       return trace_of_frame(whole, kOneSeries, frame(list(1, stage(list(5 * kMillion, kSerial)))));
+       return trace_of_frame(whole, kOneSeries, frame(list(1, stage(list(5 * kMillion, kSerialStep)))));
      }},
     {"Blocks", "blocks of memory",
      [](TraceParts whole) {

@@ -23,11 +23,11 @@ std::string trace_of_stage(const std::string& steps, std::size_t segments = 0) {
 }
 
 TEST(TraceLimits, PartsMakeATrace) {
-  EXPECT_EQ(read_all(WorkTrace("t", trace_of_stage(list(3, kSerial), 3))), 1);
+  EXPECT_EQ(read_all(WorkTrace("t", trace_of_stage(list(3, kSerialStep), 3))), 1);
 }
 
 TEST(TraceLimits, AsksForTheMemoryAndSaysHowToAllowMore) {
-  const std::string file = trace_of_stage(list(20'000, kSerial), 20'000);
+  const std::string file = trace_of_stage(list(20'000, kSerialStep), 20'000);
   expect_refused(
       file,
       {"t, frames 0 to 0", "byte ", "steps of a stage (20000)", "MiB of memory", "--max-memory"},
@@ -47,8 +47,8 @@ std::string frames_that_are_large_in_turn(std::size_t frames, std::size_t steps)
   for (std::size_t i = 0; i < frames; ++i) {
     all += frame_facts() + bytes({frames});
     for (std::size_t k = 0; k < frames; ++k)
-      all += (i + k == 0 ? stage(list(steps, kSerial))
-                         : bytes({0, 1}) + list(k == i ? steps : 0, kSerial));
+      all += (i + k == 0 ? stage(list(steps, kSerialStep))
+                         : bytes({0, 1}) + list(k == i ? steps : 0, kSerialStep));
   }
   parts.frames = {section(frames, kOneSeries, all)};
   std::mt19937 random;
@@ -98,7 +98,7 @@ TEST(TraceLimits, SumsOfManyTermsAreBounded) {
   }
   const auto steps = [&](std::size_t number) {
     return trace_of_frame({}, list(1, series.bytes()),
-                          frame(list(1, stage(list(number, kSerial)))), number);
+                          frame(list(1, stage(list(number, kSerialStep)))), number);
   };
   EXPECT_EQ(read_all(WorkTrace("t", steps(200))), 1);
   expect_refused(steps(100'000), {"stands for", "from a file of"});
@@ -169,7 +169,7 @@ TEST(TraceLimits, OffloadRegionsTogetherAreAtMostTheirSegment) {
     const std::string calls = bytes({2, 1, 1, 1, 0, 2, 1, 1, 1});
     parts.offload = {text(series) + text("") + calls};
     return trace_of_frame(parts, list(1, constant_series(0, 10)),
-                          frame(list(1, stage(list(1, kSerial)))));
+                          frame(list(1, stage(list(1, kSerialStep)))));
   };
   EXPECT_EQ(read_all(WorkTrace("t", with_calls(4, 6))), 1);
   expect_refused(with_calls(11, 0), {"count more than their work segment"});

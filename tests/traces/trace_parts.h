@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "traces/work_traces/byte_stream.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_trace.h"

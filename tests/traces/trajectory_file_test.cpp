@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
-#include "traces/trajectories/kitti.h"
 
 namespace leviosim::traces {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/scratch.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/rng.h"
 
@@ -10,6 +11,7 @@ namespace {
 
 using testing::expect_input_error;
 using testing::TempFolder;
+using tests::write_text;
 
 Trajectory random_trajectory(std::size_t count) {
   Rng rng(5);
@@ -48,7 +50,7 @@ TEST(Tum, HalfTurnsHaveOneSpelling) {
 TEST(Tum, RoundTrip) {
   const TempFolder folder;
   const Trajectory written = random_trajectory(200);
-  write_tum(folder / "t.tum", written);
+  write_text(folder / "t.tum", format_tum(written));
   const Trajectory read = read_tum(folder / "t.tum");
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) {

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "platform_models/loader/loader.h"
-#include "tools/app/validation/microbench/board_kernels.h"
-#include "tools/app/validation/microbench/library_kernels.h"
+#include "tools/app/validation/microbench/kernel_benches.h"
 
 namespace leviosim::tools {
 namespace {

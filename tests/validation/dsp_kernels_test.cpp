@@ -11,10 +11,10 @@
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/loader.h"
 #include "tools/app/validation/microbench/bench.h"
-#include "tools/app/validation/microbench/library_kernels.h"
+#include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/library_programs.h"
 #include "tools/app/validation/microbench/report.h"
-#include "workload/vio/levio/geometry/eight_point.h"
+#include "workload/vio/levio/geometry/essential_ransac.h"
 
 namespace leviosim::tools {
 namespace {

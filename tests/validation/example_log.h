@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/tools/example_run.h"
-#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools::testing {
 

@@ -7,8 +7,8 @@
 
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/flow/flow_report.h"
 #include "tools/app/flow/flow_source.h"
-#include "tools/app/flow/published.h"
 #include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {

@@ -7,7 +7,7 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 #include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {

@@ -1,5 +1,5 @@
 // Means of stages on either path, and weighed as the paper's frames are.
-#include "tools/app/validation/path_weights.h"
+#include "tools/app/validation/frame_log.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "workload/geometry/eight_point.h"
+#include "workload/geometry/essential_ransac.h"
 
 #include <gtest/gtest.h>
 

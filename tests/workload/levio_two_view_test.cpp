@@ -9,7 +9,6 @@
 #include "workload/vio/levio/geometry/essential_ransac.h"
 #include "workload/vio/levio/geometry/pose_matrix.h"
 #include "workload/vio/levio/geometry/pose_recovery.h"
-#include "workload/vio/levio/geometry/triangulation.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -5,8 +5,8 @@
 #include <bit>
 
 #include "tests/workload/loop_world.h"
-#include "workload/loop/forgetting.h"
-#include "workload/loop/place_matching.h"
+#include "workload/loop/loop_graph.h"
+#include "workload/loop/place_search.h"
 
 namespace leviosim::vio::test {
 namespace {

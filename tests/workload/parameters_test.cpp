@@ -77,7 +77,6 @@ TEST(WorkloadParameters, AreWrittenAsUsersWriteThem) {
   EXPECT_EQ(value_text(parallax, parallax.get(profile_named("levio", 1))), "0.05");
   const Assignment window{find_parameter("workload.window"), 6};
   EXPECT_EQ(window.text(), "workload.window=6");
-  EXPECT_EQ(value_with_unit(*window.parameter, 6), "6 keyframes");
   EXPECT_EQ((Assignment{find_parameter("workload.gravity_updates"), 0}).text(),
             "workload.gravity_updates=off");
 }

@@ -11,10 +11,9 @@
 #include <memory>
 #include <vector>
 
+#include "traces/datasets/asl_writer.h"
 #include "traces/datasets/camera_model.h"
-#include "traces/datasets/euroc_models.h"
 #include "traces/datasets/image_preparation.h"
-#include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/motion.h"
 #include "traces/synthesis/renderer.h"
 #include "traces/synthesis/world.h"

@@ -1,4 +1,4 @@
-#include "workload/geometry/triangulate.h"
+#include "workload/geometry/recover_pose.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
 // Feature extraction from strips of rows: the features of the whole image, within the local memory.
-#include "workload/vision/strips.h"
 
 #include <gtest/gtest.h>
 

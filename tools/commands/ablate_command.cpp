@@ -1,4 +1,11 @@
-#include "tools/commands/ablate_command.h"
+// `leviosim ablate`: the paper's table of pipeline configurations, for any sequences and image
+// sizes. Its folder:
+//
+//   manifest.json   what the batch was made from
+//   runs.csv        a row per run
+//   table.md        the table that is printed
+//   table.json      its rows, with more digits
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -7,9 +14,9 @@
 
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/study/ablate/ablation_report.h"
-#include "tools/app/study/ablate/other_accuracy.h"
-#include "tools/app/study/runs_csv.h"
+#include "tools/app/study/ablate/ablation.h"
+#include "tools/app/study/ablate/published_accuracy.h"
+#include "tools/app/study/run_outcome.h"
 
 namespace leviosim::tools {
 namespace {

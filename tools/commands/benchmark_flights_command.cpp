@@ -1,4 +1,12 @@
-#include "tools/commands/benchmark_flights_command.h"
+// `leviosim benchmark-flights`: how accurate the workload is on flights that chose nothing. Its
+// folder:
+//
+//   manifest.json   what the benchmark was made from
+//   runs.csv        a row per run
+//   pieces.csv      a row per profile and piece, over the seeds
+//   table.md        the table that is printed
+//   table.json      its rows and the pieces, with more digits
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +19,6 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/study/flights/benchmark_files.h"
 #include "tools/app/study/flights/benchmark_report.h"
 
 namespace leviosim::tools {
@@ -99,9 +106,10 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
   const BenchmarkResult result = condense(benchmark, runs, outcomes);
   const std::string csv = benchmark_runs_csv(benchmark, runs, outcomes, how);
   const std::string json = json_text(benchmark_json(benchmark, result), 1) + '\n';
-  const std::vector<std::string> next{fmt::format(
-      "leviosim run --profile {} --data {} --record --out mine",
-      benchmark.plan.variants.front().profile, printable(benchmark.motions.front().sequence.folder))};
+  const std::vector<std::string> next{
+      fmt::format("leviosim run --profile {} --data {} --record --out mine",
+                  benchmark.plan.variants.front().profile,
+                  printable(benchmark.motions.front().sequence.folder))};
   const Printout text = printout(
       words.json,
       [&] {
@@ -135,19 +143,17 @@ Command add_benchmark_flights_command(CLI::App& app, const Words& words) {
                                          "Accuracy on rendered flights in worlds that chose no "
                                          "parameter, also from starts in mid-air");
   const auto typed = std::make_shared<FlightWords>();
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{*command};
   command->add_option("PLAN", typed->plan, fmt::format("a YAML file, or one of {}", plan_names()));
   add("--motions", typed->motions, "DIR",
       "folder with an ASL folder for each motion and recording of the plan (motions need no "
       "images)");
-  add_list_option(*command, "--profile", typed->profiles, "NAME,...",
-                  "of the workload, in place of the plan's variants", true);
-  add_list_option(*command, "-p,--set", typed->overrides, "PATH=VALUE",
-                  "parameter of the workload in every variant; repeatable", false);
-  add_list_option(*command, "--seed", typed->seeds, "N,...",
-                  "of the workload's random draws, in place of the plan's", true);
+  add("--profile", typed->profiles, "NAME,...", "of the workload, in place of the plan's variants",
+      true);
+  add("-p,--set", typed->overrides, "PATH=VALUE",
+      "parameter of the workload in every variant; repeatable", false);
+  add("--seed", typed->seeds, "N,...", "of the workload's random draws, in place of the plan's",
+      true);
   add_runner_options(*command, typed->runner, "run");
   command->add_flag("--list", typed->list, "print the pieces, run nothing");
   add("--out", typed->out, "DIR", "folder for the results; must be new or empty");

@@ -1,4 +1,5 @@
-#include "tools/commands/bisect_command.h"
+// leviosim bisect: whether the commit that is checked out meets a budget, as `git bisect run` asks.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -9,7 +10,7 @@
 #include "tools/app/budget/check_report.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/child.h"
-#include "tools/app/cli/limit_not_met.h"
+#include "tools/app/cli/outputs.h"
 
 namespace leviosim::tools {
 namespace {
@@ -65,8 +66,9 @@ Command add_bisect_command(CLI::App& app) {
   const auto options = std::make_shared<BisectOptions>();
   command->add_option("RUN", options->run,
                       "run folder that COMMAND leaves, or a work trace to replay");
-  command->add_option("COMMAND", options->command,
-                      "after --: what builds and runs the commit; if it fails, the commit is skipped");
+  command->add_option(
+      "COMMAND", options->command,
+      "after --: what builds and runs the commit; if it fails, the commit is skipped");
   add_gate_options(*command, options->gate);
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim bisect recorded --budget budgets.yaml -- true"});

@@ -1,4 +1,5 @@
-#include "tools/commands/budget_command.h"
+// leviosim budget: makes baselines and first budgets.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,13 +8,12 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
 #include "sim/base/input_file.h"
+#include "sim/base/nearest.h"
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/budget_edits.h"
-#include "tools/app/budget/first_budget.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/record_source.h"
 
 namespace leviosim::tools {
@@ -69,16 +69,17 @@ Command add_budget_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("budget", "Print a baseline of a run, or a budget that fits it");
   const auto options = std::make_shared<BudgetOptions>();
-  command->add_option("ACTION", options->action, "record: a baseline; init: a first budget; tighten: a budget without the room that "
-                      "is not used; accept: one in which what is missed may be, for a while");
+  command->add_option(
+      "ACTION", options->action,
+      "record: a baseline; init: a first budget; tighten: a budget without the room that "
+      "is not used; accept: one in which what is missed may be, for a while");
   command->add_option("RUN", options->run, "run folder, or a work trace to replay");
   add_gate_options(*command, options->gate);
-  command->add_option("--margin", options->margin, "init: what limits leave [5 %]")
-      ->type_name("PERCENT");
-  command->add_option("--slack", options->slack, "tighten: what limits leave at most [2 %]")
-      ->type_name("PERCENT");
-  command->add_option("--reason", options->reason, "accept: why")->type_name("TEXT");
-  command->add_option("--until", options->until, "accept: the last day")->type_name("DATE");
+  const TextOptions add{*command};
+  add("--margin", options->margin, "PERCENT", "init: what limits leave [5 %]");
+  add("--slack", options->slack, "PERCENT", "tighten: what limits leave at most [2 %]");
+  add("--reason", options->reason, "TEXT", "accept: why");
+  add("--until", options->until, "DATE", "accept: the last day");
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim budget record recorded >baseline.json",
                           "leviosim budget init recorded --margin '3 %' >first.yaml",

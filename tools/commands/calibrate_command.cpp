@@ -1,4 +1,5 @@
-#include "tools/commands/calibrate_command.h"
+// `leviosim calibrate`: fits the code-generation constants of a platform.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -8,8 +9,8 @@
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/validation/calibration/calibration_report.h"
-#include "tools/app/validation/released_work.h"
+#include "tools/app/validation/calibration/calibration.h"
+#include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {
 namespace {
@@ -64,11 +65,10 @@ Command add_calibrate_command(CLI::App& app) {
       "calibrate", "Fit code-generation constants to the paper's single-core values");
   const auto options = std::make_shared<CalibrateOptions>();
   add_chip_run_options(*command, options->run);
-  command
-      ->add_option("--constants", options->constants,
-                   fmt::format("up to {} [{}]", kMostConstants, kDefaultConstants))
-      ->type_name("PATH,…");
-  command->add_option("--yaml", options->run.out, "platform file to write")->type_name("FILE");
+  const TextOptions add{*command};
+  add("--constants", options->constants, "PATH,…",
+      fmt::format("up to {} [{}]", kMostConstants, kDefaultConstants));
+  add("--yaml", options->run.out, "FILE", "platform file to write");
   command->add_flag("--force", options->run.force, "replace the file");
   add_examples(
       *command,

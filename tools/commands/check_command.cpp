@@ -1,4 +1,5 @@
-#include "tools/commands/check_command.h"
+// leviosim check: holds a run against a budget.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -8,10 +9,8 @@
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/check_report.h"
-#include "tools/app/budget/ci_files.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/child.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/measured.h"
 #include "tools/app/history/trend.h"
@@ -92,7 +91,8 @@ void run(const CLI::App& command, const CheckOptions& options) {
   RunFiles files;
   const RunRecord record = read_record(options.run, options, &files);
   if (page && record.facts.measured)
-    throw InputError(fmt::format("{}: was measured, so it has no page; leave out --report", options.run));
+    throw InputError(
+        fmt::format("{}: was measured, so it has no page; leave out --report", options.run));
   std::vector<PastRun> before;
   if (history) before = runs_before(*history, record, options);
   if (!before.empty()) gate.use_baseline(before.back().record);
@@ -120,26 +120,19 @@ Command add_check_command(CLI::App& app) {
   command->add_option("RUN", options->run,
                       "run folder, work trace to replay, or CSV file of measured cycles");
   add_gate_options(*command, options->gate);
-  command->add_option("--junit", options->junit, "report for CI servers to write")
-      ->type_name("FILE");
-  command
-      ->add_option("--markdown", options->markdown,
-                   "comment for a pull request, or the summary of a job, to write")
-      ->type_name("FILE.md");
-  command
-      ->add_option("--history", options->history,
-                   "runs before (leviosim history add): the last is the baseline, unless there is "
-                   "another, and slow drift is found")
-      ->type_name("FILE");
-  command->add_option("--branch", options->branch, "of the history [all]")->type_name("NAME");
-  command->add_option("--commit", options->commit, "of the run, whose own runs are no history [git: HEAD]")
-      ->type_name("ID");
+  const TextOptions add{*command};
+  add("--junit", options->junit, "FILE", "report for CI servers to write");
+  add("--markdown", options->markdown, "FILE.md",
+      "comment for a pull request, or the summary of a job, to write");
+  add("--history", options->history, "FILE",
+      "runs before (leviosim history add): the last is the baseline, unless there is "
+      "another, and slow drift is found");
+  add("--branch", options->branch, "NAME", "of the history [all]");
+  add("--commit", options->commit, "ID", "of the run, whose own runs are no history [git: HEAD]");
   add_report_option(*command, options->report);
   command->add_flag("--force", options->force, "replace these files");
-  command
-      ->add_option("--annotations", options->annotations,
-                   "github: lines that mark the limits; gitlab: a code quality report on stdout")
-      ->type_name("github|gitlab");
+  add("--annotations", options->annotations, "github|gitlab",
+      "github: lines that mark the limits; gitlab: a code quality report on stdout");
   add_json_option(*command, options->json);
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim budget init recorded >budgets.yaml",

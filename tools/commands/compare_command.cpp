@@ -1,4 +1,5 @@
-#include "tools/commands/compare_command.h"
+// leviosim compare: what differs between runs, and why.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -7,15 +8,13 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/printout.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/comparison/measured.h"
 #include "tools/app/comparison/record_source.h"
-#include "tools/app/comparison/two_programs.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/study/sweep/compared_point.h"
+#include "tools/app/study/sweep/point_run.h"
 
 namespace leviosim::tools {
 namespace {
@@ -72,7 +71,8 @@ std::vector<ReportedRun> records(const CompareOptions& options) {
 std::vector<ReportedRun> runs_of_programs(const CompareOptions& options, std::string& note) {
   if (options.names_chip())
     throw InputError(
-        "compare: with --programs the chip stands behind --, as the other arguments of leviosim run");
+        "compare: with --programs the chip stands behind --, as the other arguments of leviosim "
+        "run");
   const TwoPrograms programs(options.programs, options.runs);
   std::vector<ReportedRun> list;
   for (std::size_t i = 0; i < programs.folders().size(); ++i) {
@@ -86,10 +86,11 @@ std::vector<ReportedRun> runs_of_programs(const CompareOptions& options, std::st
 }
 
 void run(const CLI::App& command, const CompareOptions& options) {
-  require(command, "RUN",
-          options.programs.empty()
-              ? "two or more run folders, work traces or points of sweeps (SWEEP:3)"
-              : "behind -- the arguments of leviosim run, such as -- --platform gap9 --data flight");
+  require(
+      command, "RUN",
+      options.programs.empty()
+          ? "two or more run folders, work traces or points of sweeps (SWEEP:3)"
+          : "behind -- the arguments of leviosim run, such as -- --platform gap9 --data flight");
   if (options.json && command.count("--format") > 0)
     throw InputError("compare: --json is --format json; leave out one");
   const ReportFormat format =
@@ -104,8 +105,8 @@ void run(const CLI::App& command, const CompareOptions& options) {
       options.programs.empty() ? records(options) : runs_of_programs(options, note);
   for (const ReportedRun& run : runs)
     if (page && run.record.facts.measured)
-      throw InputError(fmt::format("{}: was measured, so it has no page; leave out --report",
-                                   run.record.name));
+      throw InputError(
+          fmt::format("{}: was measured, so it has no page; leave out --report", run.record.name));
   for (const ReportedRun& run : runs)
     if (!run.record.facts.measured)
       for (ReportedRun& other : runs) name_stages_like(other.record, run.record);
@@ -118,8 +119,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
   std::string html;
   if (page) html = html_page(runs_report(runs, comparisons, nullptr));
   const std::string text = comparison_report(comparisons, format, options.all);
-  publish({{page, html, ""}},
-          format == ReportFormat::text ? Printout(text) : Printout(text, true));
+  publish({{page, html, ""}}, format == ReportFormat::text ? Printout(text) : Printout(text, true));
 }
 
 }  // namespace
@@ -128,9 +128,10 @@ Command add_compare_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("compare", "Show what differs between runs, and why, by mechanism");
   const auto options = std::make_shared<CompareOptions>();
-  command->add_option("RUN", options->runs,
-                      "run folders, work traces, points of sweeps (SWEEP:3), or CSV files of measured "
-                      "cycles; each against the first");
+  command->add_option(
+      "RUN", options->runs,
+      "run folders, work traces, points of sweeps (SWEEP:3), or CSV files of measured "
+      "cycles; each against the first");
   command
       ->add_option("--programs", options->programs,
                    "two builds of leviosim that are compared on what stands behind --: arguments "
@@ -139,10 +140,10 @@ Command add_compare_command(CLI::App& app) {
       ->type_size(2)  // with expected(2), CLI11 would take the -- for its end
       ->expected(1)
       ->allow_extra_args(false);
-  command->add_option("--allow", options->allow, "differences of the input that are meant")
-      ->type_name("data,frames,profile,seed,size");
-  command->add_option("--format", options->format, "text, markdown, json or csv [text]")
-      ->type_name("FORMAT");
+  const TextOptions add{*command};
+  add("--allow", options->allow, "data,frames,profile,seed,size",
+      "differences of the input that are meant");
+  add("--format", options->format, "FORMAT", "text, markdown, json or csv [text]");
   command->add_flag("--all", options->all, "all tables in place of the summary");
   add_json_option(*command, options->json);
   add_report_option(*command, options->report);

@@ -1,4 +1,5 @@
-#include "tools/commands/demo_command.h"
+// leviosim demo: both profiles on the synthetic flight, and a what-if, on one screen.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -13,7 +14,6 @@
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_folder.h"
@@ -206,9 +206,9 @@ Command add_demo_command(CLI::App& app, const Words& words) {
   options->platform = kChip;
   options->data = "synthetic";
   options->out = "leviosim-demo";
-  command->add_option("--data", options->data, "another flight: an ASL/EuRoC folder [synthetic]")
-      ->type_name("DIR|synthetic");
-  command->add_option("--frames", options->frames, "frames, B exclusive [all]")->type_name("A:B");
+  const TextOptions add{*command};
+  add("--data", options->data, "DIR|synthetic", "another flight: an ASL/EuRoC folder [synthetic]");
+  add("--frames", options->frames, "A:B", "frames, B exclusive [all]");
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
   command->get_option("--out")->description("folder for both runs and the report [leviosim-demo]");

@@ -1,4 +1,5 @@
-#include "tools/commands/doctor_command.h"
+// `leviosim doctor`: what this program is and what it finds on this machine.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -24,8 +25,7 @@
 #include "sim/base/printable_text.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/cache_folder.h"
-#include "tools/app/cli/printout.h"
-#include "tools/app/cli/screen.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistic_list.h"

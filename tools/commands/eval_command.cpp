@@ -1,4 +1,5 @@
-#include "tools/commands/eval_command.h"
+// `leviosim eval`: how far an estimated trajectory lies from the ground truth.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -9,11 +10,10 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/evaluation/eval_options.h"
-#include "tools/app/evaluation/trajectory_plot.h"
+#include "tools/app/evaluation/evaluation.h"
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/text_table.h"
-#include "traces/trajectories/attitude_error.h"
+#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::tools {
 namespace {

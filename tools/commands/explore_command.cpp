@@ -1,4 +1,10 @@
-#include "tools/commands/explore_command.h"
+// `leviosim explore`: the paper's parameter sweep. Its folder:
+//
+//   manifest.json   what the batch was made from
+//   runs.csv        a row per run
+//   points.csv      a row per point, profile and sequence: medians and spread
+//   best.md         the points of least error
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -9,9 +15,9 @@
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/study/explore/exploration_report.h"
-#include "tools/app/study/explore/scatter_plot.h"
+#include "tools/app/study/explore/exploration.h"
 
 namespace leviosim::tools {
 namespace {
@@ -23,6 +29,7 @@ struct ExploreWords {
   std::vector<std::string> vary;
   std::string points = "40";
   std::string sample_seed = "1";
+  std::string report;
 };
 
 std::vector<Dimension> dimensions_of(const ExploreWords& words) {
@@ -70,6 +77,7 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
       static_cast<std::size_t>(parse_whole("--points", words.points, 1, kMostPoints));
   const auto seed = static_cast<std::uint64_t>(
       parse_whole("--sample-seed", words.sample_seed, 0, std::numeric_limits<std::int64_t>::max()));
+  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.batch.force);
   const BatchPlan plan = make_plan(command, words.batch);
   check_plan(plan, dimensions);
   const auto points = sample_points(dimensions, count, seed);
@@ -89,10 +97,10 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
     out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
     out.write("points.csv", points_csv(dimensions, explored));
     out.write("best.md", best_markdown(plan, explored));
-    out.write("scatter.svg", scatter_plot(plan, explored));
     out.write("manifest.json",
               json_text(manifest_of(plan, words, dimensions, command_line), 2) + '\n');
   });
+  if (page) publish_report(page, exploration_page(plan, dimensions, explored), !words.batch.json);
 }
 
 }  // namespace
@@ -102,17 +110,13 @@ Command add_explore_command(CLI::App& app, const Words& words) {
       "explore", "The paper's parameter sweep: accuracy over parameters of the workload");
   const auto typed = std::make_shared<ExploreWords>();
   add_batch_options(*command, typed->batch);
+  add_report_option(*command, typed->report);
   add_json_option(*command, typed->batch.json);
-  command
-      ->add_option("--vary", typed->vary,
-                   "parameter to vary, off and on if it is a switch; repeatable [the paper's five]")
-      ->type_name("NAME[=LOW:HIGH]")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--points", typed->points, "of the parameters, the profile's first [40]")
-      ->type_name("N");
-  command->add_option("--sample-seed", typed->sample_seed, "of the points' random draws [1]")
-      ->type_name("N");
+  const TextOptions add{*command};
+  add("--vary", typed->vary, "NAME[=LOW:HIGH]",
+      "parameter to vary, off and on if it is a switch; repeatable [the paper's five]");
+  add("--points", typed->points, "N", "of the parameters, the profile's first [40]");
+  add("--sample-seed", typed->sample_seed, "N", "of the points' random draws [1]");
   add_examples(*command,
                {"leviosim explore --data flight --profile levio --vary workload.window=6:12 "
                 "--points 3 --seed 1 --relative 0.5 --out explored"});

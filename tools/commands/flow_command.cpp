@@ -1,4 +1,5 @@
-#include "tools/commands/flow_command.h"
+// `leviosim flow`: the optical flow of PX4FLOW on a chip.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -100,9 +101,7 @@ Command add_flow_command(CLI::App& app, const Words& words) {
       app.add_subcommand("flow", "Run the optical flow of PX4FLOW, a second workload, on a chip");
   const auto options = std::make_shared<FlowOptions>();
   add_chip_options(*command, *options, "");
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{*command};
   add("--data", options->data, "DIR|synthetic", "ASL/EuRoC folder, or the synthetic flight");
   add("--frames", options->frames, "A:B", "frames, B exclusive [all]");
   add("--fps", options->fps, "F", "rate of the camera, for energy and power [the recorded one]");

@@ -1,4 +1,5 @@
-#include "tools/commands/history_command.h"
+// leviosim history: runs over time, by commit, in a file.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

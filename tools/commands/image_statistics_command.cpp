@@ -1,4 +1,5 @@
-#include "tools/commands/image_statistics_command.h"
+// `leviosim image-statistics`: what the pictures of recordings are like, side by side.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,11 +10,11 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
-#include "tools/app/cli/progress_line.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/terminal.h"
 #include "tools/app/evaluation/images/image_statistics.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
@@ -73,9 +74,11 @@ Command add_image_statistics_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "image-statistics", "See what the pictures of recordings are like, side by side");
   const auto options = std::make_shared<ImageStatisticsOptions>();
-  command->add_option("DIR", options->folders, "folders of recordings; the first one is compared with");
-  command->add_option("--size", options->size, "of the images [160x120]")->type_name("WxH");
-  command->add_option("--frames", options->frames, "frames, B exclusive [all]")->type_name("A:B");
+  command->add_option("DIR", options->folders,
+                      "folders of recordings; the first one is compared with");
+  const TextOptions add{*command};
+  add("--size", options->size, "WxH", "of the images [160x120]");
+  add("--frames", options->frames, "A:B", "frames, B exclusive [all]");
   command->add_flag("--quiet", options->quiet, "no progress");
   add_examples(*command, {"leviosim image-statistics flight rendered --frames 0:20"});
   add_json_option(*command, options->json);

@@ -1,4 +1,5 @@
-#include "tools/commands/microbench_command.h"
+// leviosim microbench: small programs on a chip beside what is known of the real one.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -9,11 +10,9 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/validation/microbench/board_kernels.h"
-#include "tools/app/validation/microbench/library_kernels.h"
+#include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/report.h"
 #include "tools/app/validation/microbench/unit_benches.h"
 
@@ -74,8 +73,7 @@ void run(const MicrobenchOptions& options) {
           printout(
               options.json,
               [&] {
-                return Printout(tables).ending(microbench_conclusion(rows),
-                                               {"leviosim validate"});
+                return Printout(tables).ending(microbench_conclusion(rows), {"leviosim validate"});
               },
               [&] { return table_document("microbenchmarks", microbench_csv(rows)); }));
   if (std::any_of(rows.begin(), rows.end(),
@@ -92,11 +90,9 @@ Command add_microbench_command(CLI::App& app) {
   command->add_option("--platform", options->platform, "chip: a name or a file")
       ->type_name("NAME|FILE")
       ->capture_default_str();
-  command->add_option("-p,--set", options->overrides, "parameter of it; repeatable")
-      ->type_name("PATH=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--csv", options->csv, "write the rows to a file")->type_name("FILE");
+  const TextOptions add{*command};
+  add("-p,--set", options->overrides, "PATH=VALUE", "parameter of it; repeatable");
+  add("--csv", options->csv, "FILE", "write the rows to a file");
   command->add_flag("--force", options->force, "replace the file");
   add_examples(*command,
                {"leviosim microbench", "leviosim microbench --platform gap8 --csv board.csv"});

@@ -1,4 +1,5 @@
-#include "tools/commands/platforms_command.h"
+// `leviosim platforms`: which chips there are, and what is known about one.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,20 +12,21 @@
 #include <memory>
 #include <optional>
 
-#include "platform_models/loader/new_platform.h"
+#include "platform_models/loader/loader.h"
 #include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/area_table.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_file.h"
+#include "tools/app/report/energy_tables.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload_overrides.h"
-#include "tools/app/study/feasibility/feasibility_report.h"
+#include "tools/app/run/workload.h"
+#include "tools/app/study/feasibility/feasibility.h"
 #include "tools/app/study/systems/systems_report.h"
 
 namespace leviosim::tools {
@@ -35,15 +37,15 @@ struct PlatformsOptions {
   std::vector<std::string> names;
   RunOptions run;  ///< of feasibility and stages; the overrides are those of all actions
   std::string jobs;
-  std::string svg;
+  std::string report;
   std::string from = "gap9";  ///< of a new chip
   bool yaml = false;
 };
 
 constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
 /// Options that some actions take.
-constexpr std::array kOfSome{"--from", "--data",  "--frames", "--profile", "--seed", "--csv",
-                             "--svg",  "--force", "--quiet",  "--jobs",    "--yaml"};
+constexpr std::array kOfSome{"--from",   "--data",  "--frames", "--profile", "--seed", "--csv",
+                             "--report", "--force", "--quiet",  "--jobs",    "--yaml"};
 
 void list(const PlatformsOptions& options) {
   const auto lines = [] {
@@ -200,8 +202,8 @@ void stages(const PlatformsOptions& options) {
   std::vector<Feasibility> rows = rows_for(options, false);
   const std::string left_out = without_small_chips(rows, !options.names.empty());
   const auto lines = [&] {
-    return Printout({fmt::format("{} on {}\n\n{}", options.run.profile,
-                                 printable(options.run.data), stage_comparison(rows)),
+    return Printout({fmt::format("{} on {}\n\n{}", options.run.profile, printable(options.run.data),
+                                 stage_comparison(rows)),
                      left_out})
         .ending(feasibility_conclusion(rows), {run_on(rows.front().platform, options.run)});
   };
@@ -214,17 +216,14 @@ void systems(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
   if (!run.overrides.empty())
     throw InputError("platforms systems: the chips are those of the systems; leave out --set");
-  if (!options.svg.empty() && std::filesystem::path(options.svg).extension() != ".svg")
-    throw InputError(fmt::format("--svg {}: expected a file that ends in .svg", options.svg));
   RunOptions any_chip = run;
   any_chip.platform = "gap9";
   RunRequest request = make_chip_request(any_chip);
-  outputs::OutputRequest wanted = out_request(run, "--csv");
+  const outputs::OutputRequest wanted = out_request(run, "--csv");
   std::optional<outputs::OutputFile> csv = claimed_file(wanted);
-  wanted.option = "--svg";
-  wanted.path = options.svg;
-  std::optional<outputs::OutputFile> svg = claimed_file(wanted);
-  expect_different(csv, "--csv", svg, "--svg");
+  std::optional<outputs::OutputFile> page =
+      claimed_report(options.report, run.force, wanted.inputs);
+  expect_different(csv, "--csv", page, "--report");
   const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
   request.data = data_folder(run, style);
   ProgressLine line(style);
@@ -236,7 +235,8 @@ void systems(const PlatformsOptions& options) {
         });
       });
   line.clear();
-  publish({{csv, systems_csv(rows), "table"}, {svg, systems_plot(rows), "picture"}},
+  publish({{csv, systems_csv(rows), "table"},
+           {page, page ? html_page(systems_page(rows)) : std::string(), "report"}},
           printout(
               run.json,
               [&] {
@@ -282,9 +282,9 @@ void area(const PlatformsOptions& options) {
                    p.range ? fmt::format("{:g}–{:g}", p.range->low, p.range->high) : "–",
                    p.confidence, printable(p.source)});
     const sim::AreaItem total = sim::total_area(chip.config);
-    return Printout({fmt::format("area of {}\n\n{}\n", printable(chip.name),
-                                 area_table(chip.config)),
-                     sources.str()})
+    return Printout(
+               {fmt::format("area of {}\n\n{}\n", printable(chip.name), area_table(chip.config)),
+                sources.str()})
         .ending(fmt::format("in short: {} mm2 ({}–{})", mm2(total.area), mm2(total.low),
                             mm2(total.high)),
                 {"leviosim whatif"});
@@ -305,8 +305,8 @@ void show(const PlatformsOptions& options) {
     TextTable table({{"number", kLeft}, {"value"}, {"confidence", kLeft}, {"source", kLeft, 1}});
     for (const platform::Parameter& p : chip.parameters)
       table.add({p.path, in_words(&p), p.confidence, printable(p.source)});
-    return Printout(fmt::format("{}: {}\n\n{}", printable(chip.name),
-                                printable(chip.description), table.str()))
+    return Printout(fmt::format("{}: {}\n\n{}", printable(chip.name), printable(chip.description),
+                                table.str()))
         .ending(fmt::format("in short: {} numbers, each with its source", chip.parameters.size()),
                 {fmt::format("leviosim platforms show {} --yaml", options.names[0])});
   };
@@ -373,7 +373,7 @@ const std::array<Action, 8> kActions = {{
     {"systems",
      0,
      "no platform",
-     {"--data", "--frames", "--seed", "--csv", "--svg", "--force", "--quiet"},
+     {"--data", "--frames", "--seed", "--csv", "--report", "--force", "--quiet"},
      systems},
 }};
 
@@ -412,25 +412,20 @@ Command add_platforms_command(CLI::App& app) {
                       "feasibility or stages [NAME ...], "
                       "systems");
   command->add_option("NAME", options->names, "chips: names or files");
-  command
-      ->add_option("-p,--set", run_options.overrides,
-                   "parameter of the one shown, of the second compared, or of all; repeatable")
-      ->type_name("PATH=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--from", options->from, "new: the chip that its file begins with [gap9]")
-      ->type_name("NAME|FILE");
+  const TextOptions add_of_any{*command};
+  add_of_any("-p,--set", run_options.overrides, "PATH=VALUE",
+             "parameter of the one shown, of the second compared, or of all; repeatable");
+  add_of_any("--from", options->from, "NAME|FILE",
+             "new: the chip that its file begins with [gap9]");
   const char* const group = "With feasibility, stages and systems";
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type)->group(group);
-  };
+  const TextOptions add{*command, group};
   add("--data", run_options.data, "DIR|synthetic",
       "ASL/EuRoC folder, or the synthetic flight [synthetic]");
   add("--frames", run_options.frames, "A:B", "frames, B exclusive [all]");
   add("--profile", run_options.profile, "NAME", "of the workload [levio]; not of systems");
   add("--seed", run_options.seed, "N", "of the workload's random draws [1]");
   add("--csv", run_options.out, "FILE", "write the rows to a file; not of stages");
-  add("--svg", options->svg, "FILE", "systems: draw power over frame rate");
+  add("--report", options->report, "FILE.html", "systems: page with power over frame rate");
   command->add_flag("--force", run_options.force, "replace these files")->group(group);
   command->add_flag("--yaml", options->yaml, "show: the platform file, all of it");
   add_jobs_option(*command, options->jobs, "chip");
@@ -443,7 +438,7 @@ Command add_platforms_command(CLI::App& app) {
                 "leviosim platforms feasibility gap9 cortex-m7 --data flight "
                 "--csv chips.csv",
                 "leviosim platforms stages gap9 gap9-eigen --data flight",
-                "leviosim platforms systems --data flight --svg systems.svg"});
+                "leviosim platforms systems --data flight --report systems.html"});
   add_json_option(*command, run_options.json);
   return {command, [=] { run(*command, *options); }, {{"--out", "--csv"}}};
 }

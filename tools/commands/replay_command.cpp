@@ -1,4 +1,5 @@
-#include "tools/commands/replay_command.h"
+// `leviosim replay`: a recorded run on another chip.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -12,10 +13,9 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/run/memory_option.h"
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
-#include "tools/app/run/run_printout.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/timeline/requested_timeline.h"
 

@@ -1,11 +1,12 @@
-#include "tools/commands/report_command.h"
+// leviosim report: runs as one HTML page, from their folders alone.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/result/verdict.h"
@@ -52,9 +53,10 @@ Command add_report_command(CLI::App& app) {
       app.add_subcommand("report", "Runs as one page for a browser, which works offline");
   const auto options = std::make_shared<ReportOptions>();
   command->add_option("RUN", options->runs, "run folders; each is compared with the first");
-  command->add_option("-o,--out", options->out, "page to write")->type_name("FILE.html");
-  command->add_option("--allow", options->allow, "differences of the input that are meant")
-      ->type_name("data,frames,profile,seed,size");
+  const TextOptions add{*command};
+  add("-o,--out", options->out, "FILE.html", "page to write");
+  add("--allow", options->allow, "data,frames,profile,seed,size",
+      "differences of the input that are meant");
   command->add_flag("--force", options->force, "replace that file");
   add_examples(*command, {"leviosim report recorded --out report.html"});
   return {command, [=] { run(*command, *options); }};

@@ -1,4 +1,5 @@
-#include "tools/commands/run_command.h"
+// `leviosim run`: the workload on a chip, or natively, over recorded or synthetic data.
+#include "tools/commands/commands.h"
 
 #include <CLI/CLI.hpp>
 
@@ -8,10 +9,9 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_folder.h"
-#include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/run/trace_source.h"
 #include "tools/app/timeline/requested_timeline.h"
 
 namespace leviosim::tools {

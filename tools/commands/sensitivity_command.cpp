@@ -1,13 +1,14 @@
-#include "tools/commands/sensitivity_command.h"
+// `leviosim sensitivity`: which uncertain numbers of a platform matter.
+#include "tools/commands/commands.h"
 
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/study/sensitivity/sensitivity_report.h"
+#include "tools/app/run/trace_source.h"
+#include "tools/app/study/sensitivity/sensitivity.h"
 
 namespace leviosim::tools {
 namespace {
@@ -51,7 +52,7 @@ Command add_sensitivity_command(CLI::App& app) {
   const auto options = std::make_shared<SensitivityOptions>();
   options->frames = kFramesByDefault;
   add_chip_run_options(*command, *options);
-  command->add_option("--csv", options->out, "write the rows to a file")->type_name("FILE");
+  TextOptions{*command}("--csv", options->out, "FILE", "write the rows to a file");
   command->add_flag("--force", options->force, "replace the file");
   add_jobs_option(*command, options->jobs, "chip");
   add_examples(*command,

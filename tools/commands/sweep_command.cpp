@@ -1,4 +1,5 @@
-#include "tools/commands/sweep_command.h"
+// `leviosim sweep`: many points of one plan, by replay where there is a trace, else by live runs.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -13,17 +14,15 @@
 #include "sim/base/printable_text.h"
 #include "sim/base/sha256.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/limit_not_met.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/memory_option.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/study/runner.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_check.h"
-#include "tools/app/study/sweep/sweep_folder.h"
-#include "tools/app/study/sweep/sweep_page.h"
+#include "tools/app/study/sweep/sweep_inputs.h"
 #include "tools/app/study/sweep/sweep_report.h"
 #include "tools/app/study/sweep/sweep_store.h"
 
@@ -236,9 +235,7 @@ Command add_sweep_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Many chips, parameters, profiles, flights or seeds: all points of a plan");
   const auto words = std::make_shared<SweepWords>();
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{*command};
   command->add_option("PLAN", words->plan, "YAML file: tools/app/study/sweep/README.md");
   add("--out", words->out, "DIR", "folder for the results; a sweep that it holds is continued");
   add("--budget", words->budget, "FILE",

@@ -1,4 +1,5 @@
-#include "tools/commands/synth_command.h"
+// `leviosim synth`: the synthetic flight as an ASL folder.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -8,9 +9,9 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "traces/synthesis/place.h"
 #include "traces/synthesis/rendered_flight.h"
 
@@ -101,9 +102,7 @@ void run(const CLI::App& command, const SynthOptions& options) {
 }
 
 void add_motion_options(CLI::App& command, SynthOptions& options) {
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command.add_option(name, value, help)->type_name(type)->group("With --motion");
-  };
+  const TextOptions add{command, "With --motion"};
   add("--motion", options.motion, "DIR",
       "fly along the ground truth of this ASL folder (images not needed) through a world");
   add("--world", options.world, "KIND:N",
@@ -125,9 +124,7 @@ Command add_synth_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("synth", "Make a flight: synthetic, or rendered along a recorded motion");
   const auto options = std::make_shared<SynthOptions>();
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{*command};
   add("--out", options->out, "DIR", "folder, which becomes an ASL folder");
   add("--seed", options->seed, "N", "of world, path and noise [1]");
   add("--duration", options->duration, "S", "seconds [20]");

@@ -1,4 +1,6 @@
-#include "tools/commands/trace_command.h"
+// `leviosim trace info FILE` and `leviosim trace check FILE`: what a work trace holds, and whether
+// all of it can be read.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -8,11 +10,11 @@
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/run/memory_option.h"
-#include "tools/app/run/replay.h"
-#include "tools/app/run/trace_summary.h"
+#include "tools/app/run/replay_report.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/run/trace_source.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,4 +1,5 @@
-#include "tools/commands/trajectory_command.h"
+// `leviosim trajectory`: a trajectory in the format of other programs, on stdout.
+#include "tools/commands/commands.h"
 
 #include <CLI/CLI.hpp>
 
@@ -6,7 +7,7 @@
 #include <string>
 
 #include "sim/base/error.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "traces/trajectories/trajectory_file.h"
 
 namespace leviosim::tools {
@@ -38,10 +39,9 @@ Command add_trajectory_command(CLI::App& app) {
   const auto options = std::make_shared<TrajectoryOptions>();
   command->add_option("FILE", options->file,
                       "trajectory (TUM, EuRoC, KITTI), run folder, or ASL folder: its truth");
-  command->add_option("--as", options->format, "tum, euroc, kitti or jsonl [tum]")
-      ->type_name("FORMAT");
-  command->add_option("--times", options->times, "time stamps of a KITTI file, in seconds")
-      ->type_name("FILE");
+  const TextOptions add{*command};
+  add("--as", options->format, "FORMAT", "tum, euroc, kitti or jsonl [tum]");
+  add("--times", options->times, "FILE", "time stamps of a KITTI file, in seconds");
   add_examples(*command, {"leviosim trajectory recorded --as euroc >estimate.csv"});
   return {command, [=] { run(*command, *options); }};
 }

@@ -1,4 +1,11 @@
-#include "tools/commands/tune_command.h"
+// `leviosim tune`: closed loops over clock and frame rate. Its folder:
+//
+//   manifest.json   what the batch was made from, and what was chosen
+//   runs.csv        a row per point and seed
+//   tune.svg        error, missed frames and power over the clock
+//   chosen/         the run folder of the lowest clock that is enough, with the first seed, run
+//   again
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -9,9 +16,7 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/interrupts.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/html_report/report_file.h"
@@ -19,7 +24,6 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/study/tune/tune_page.h"
 #include "tools/app/study/tune/tune_plot.h"
 #include "tools/app/study/tune/tune_report.h"
 

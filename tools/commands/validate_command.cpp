@@ -1,4 +1,5 @@
-#include "tools/commands/validate_command.h"
+// `leviosim validate`: the paper's tables beside those of a run.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -6,11 +7,10 @@
 #include <memory>
 
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/validation/released_work.h"
+#include "tools/app/validation/validation.h"
 #include "tools/app/validation/validation_report.h"
 
 namespace leviosim::tools {
@@ -51,9 +51,8 @@ void run(const RunOptions& given, const Words& words) {
                 {fmt::format("leviosim run --platform {} --data {} --out mine",
                              printable(options.platform), printable(options.data))});
   };
-  const Printout text = printout(
-      options.json, lines,
-      [&] { return json_text(validation_json(validation), 2) + '\n'; });
+  const Printout text = printout(options.json, lines,
+                                 [&] { return json_text(validation_json(validation), 2) + '\n'; });
   if (!out) {
     print(text);
   } else {
@@ -72,8 +71,8 @@ Command add_validate_command(CLI::App& app, const Words& words) {
       app.add_subcommand("validate", "Compare a run with the tables of the LEVIO paper");
   const auto options = std::make_shared<RunOptions>();
   add_chip_run_options(*command, *options);
-  command->add_option("--out", options->out, "folder for the results; must be new or empty")
-      ->type_name("DIR");
+  TextOptions{*command}("--out", options->out, "DIR",
+                        "folder for the results; must be new or empty");
   command->add_flag("--force", options->force, "replace the results of an earlier run");
   add_examples(*command,
                {"leviosim validate --data flight",

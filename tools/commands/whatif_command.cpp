@@ -1,4 +1,5 @@
-#include "tools/commands/whatif_command.h"
+// leviosim whatif: a recorded run on other chips, a row a variant; without a change, advice.
+#include "tools/commands/commands.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -10,12 +11,11 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/limit_not_met.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/record_source.h"
 #include "tools/app/html_report/report_file.h"
 #include "tools/app/report/table_document.h"
-#include "tools/app/run/memory_option.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/whatif/whatif_report.h"
 
@@ -35,12 +35,12 @@ struct WhatIfWords {
 /// The settings that compute a run again.
 SweepRow settings_of(const traces::WorkTrace& trace, const std::vector<std::string>& workload) {
   const traces::WorkTraceInfo& info = trace.info();
-  SweepRow again{{"data", info.data},
-                 {"profile", info.profile},
-                 {"seed", fmt::format("{}", info.seed)},
-                 {"size", fmt::format("{}x{}", info.image_width, info.image_height)},
-                 {"frames", fmt::format("{}:{}", info.first_frame,
-                                        info.first_frame + trace.frames())}};
+  SweepRow again{
+      {"data", info.data},
+      {"profile", info.profile},
+      {"seed", fmt::format("{}", info.seed)},
+      {"size", fmt::format("{}x{}", info.image_width, info.image_height)},
+      {"frames", fmt::format("{}:{}", info.first_frame, info.first_frame + trace.frames())}};
   for (const std::string& set : workload) {
     const std::size_t equals = set.find('=');
     if (equals != std::string::npos) again[set.substr(0, equals)] = set.substr(equals + 1);
@@ -72,16 +72,15 @@ Asked asked_of(const std::string& run, SweepInputs& inputs, const Words& words,
                ProgressLine::Style style) {
   if (run.empty()) {
     Asked asked{"the shipped flight", {}};
-    const SweepInputs::Trace& trace =
-        inputs.keep_trace(asked.name, recorded_flight(words, style));
+    const SweepInputs::Trace& trace = inputs.keep_trace(asked.name, recorded_flight(words, style));
     asked.again = settings_of(*trace.work, {});
     return asked;
   }
   const std::string file = trace_of(run);
   if (file.empty())
-    throw InputError(fmt::format(
-        "{}: holds no {}; expected the folder of a run with --record, or a work trace", run,
-        kWorkTraceFile));
+    throw InputError(
+        fmt::format("{}: holds no {}; expected the folder of a run with --record, or a work trace",
+                    run, kWorkTraceFile));
   const traces::WorkTrace& trace = *inputs.trace(run, {run}).work;
   if (!base::is_folder(run)) return {run, {}};
   const SweepRow again = settings_of(trace, read_run_folder(run).facts.workload);
@@ -120,10 +119,10 @@ void run(const WhatIfWords& typed, const Words& words) {
   } else if (!changes.empty() && base::is_folder(changes.front())) {
     name = changes.front();  // refused below
   }
-  std::optional<outputs::OutputFile> page = claimed_report(
-      typed.report, typed.force,
-      name.empty() ? std::vector<std::filesystem::path>{}
-                   : std::vector<std::filesystem::path>{trace_of(name)});
+  std::optional<outputs::OutputFile> page =
+      claimed_report(typed.report, typed.force,
+                     name.empty() ? std::vector<std::filesystem::path>{}
+                                  : std::vector<std::filesystem::path>{trace_of(name)});
   SweepInputs inputs(std::filesystem::current_path(), style, trace_memory(typed.memory));
   const RunnerOptions options{
       .noun = "variant", .threads = parse_jobs(typed.jobs), .progress = style};

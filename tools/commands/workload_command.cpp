@@ -1,4 +1,5 @@
-#include "tools/commands/workload_command.h"
+// `leviosim workload`: profiles of the workload, and its parameters with unit, range and value.
+#include "tools/commands/commands.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -6,10 +7,10 @@
 #include <memory>
 
 #include "sim/base/csv_table.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/report/table_document.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 
 namespace leviosim::tools {
 namespace {
@@ -78,10 +79,8 @@ Command add_workload_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("workload", "List the profiles of the workload and its parameters");
   const auto options = std::make_shared<WorkloadOptions>();
-  command
-      ->add_option("--profile", options->profile,
-                   fmt::format("whose values are shown [{}]", options->profile))
-      ->type_name("NAME");
+  TextOptions{*command}("--profile", options->profile, "NAME",
+                        fmt::format("whose values are shown [{}]", options->profile));
   add_examples(*command, {"leviosim workload", "leviosim workload --profile next"});
   add_json_option(*command, options->json);
   return {command, [=] { run(*options); }};

@@ -147,7 +147,7 @@ cut 'table "kilocycles of a call"'
 
 figure systems
 needs data
-shows 'leviosim platforms systems --data euroc/MH_01_easy_t05_t20 --svg systems.svg'
+shows 'leviosim platforms systems --data euroc/MH_01_easy_t05_t20 --report systems.html'
 cut 'table system'
 
 # workload/flow/VALIDATION.md

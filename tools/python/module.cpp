@@ -15,7 +15,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/accuracy.h"
-#include "tools/app/report/area_table.h"
+#include "tools/app/report/energy_tables.h"
 #include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"

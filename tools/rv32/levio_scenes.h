@@ -8,7 +8,6 @@
 #include "workload/vio/levio/geometry/essential_ransac.h"
 #include "workload/vio/levio/geometry/pose_matrix.h"
 #include "workload/vio/levio/geometry/pose_recovery.h"
-#include "workload/vio/levio/geometry/triangulation.h"
 #include "workload/vio/levio/optimiser/optimiser.h"
 #include "workload/vio/levio/vision/extractor.h"
 #include "workload/vio/levio/vision/matcher.h"

@@ -6,19 +6,43 @@
 #pragma once
 
 #include <Eigen/Geometry>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "traces/datasets/camera_model.h"
 #include "traces/datasets/disturbance.h"
-#include "traces/datasets/frame_range.h"
-#include "traces/datasets/imu_model.h"
 
 namespace leviosim::traces {
+
+// A range of frames "A:B", B exclusive, as users write it on the command line.
+
+struct FrameRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;  ///< exclusive
+};
+
+/// Throws InputError unless `text` is A:B with 0 <= A < B.
+FrameRange parse_frame_range(std::string_view text);
+
+/// Throws InputError, which names `what`, unless the range selects from its `count` frames.
+void check_frame_range(const FrameRange& range, std::size_t count, std::string_view what);
+
+// The noise model of an inertial sensor as in EuRoC's sensor.yaml: white noise on each axis plus a
+// bias that walks at random. Left out: scale factors, axis misalignment, saturation, temperature.
+
+struct ImuModel {
+  double rate_hz = 0;
+  double gyro_noise_density = 0;   ///< [rad/s/√Hz]
+  double gyro_random_walk = 0;     ///< [rad/s²/√Hz]
+  double accel_noise_density = 0;  ///< [m/s²/√Hz]
+  double accel_random_walk = 0;    ///< [m/s³/√Hz]
+};
 
 struct FrameRef {
   std::int64_t t_ns = 0;

@@ -15,11 +15,15 @@
 // pixels that survive the decimation are computed; the result is that of undistorting everything.
 #pragma once
 
-#include <cstdint>
 #include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "traces/datasets/camera_model.h"
+#include "traces/datasets/dataset.h"
 
 namespace leviosim::traces {
 
@@ -65,6 +69,40 @@ class ImagePreparation {
   PinholeIntrinsics intrinsics_;
   cv::Mat map_whole_;     // CV_16SC2: whole source pixel of each output pixel
   cv::Mat map_fraction_;  // CV_16UC1: index of the bilinear weights
+};
+
+// The frames of a dataset as the pipeline sees them: read, checked and prepared.
+
+/// 8-bit grey, row by row without padding.
+struct GrayImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+  std::int64_t t_ns = 0;
+};
+
+/// Reads and prepares the frames of a dataset. Immutable after construction: read() is a pure
+/// function of the frame's index and may be called from several threads.
+class ImageSource {
+ public:
+  /// Throws InputError if the size does not fit.
+  ImageSource(const Dataset& data, ImageSize size);
+
+  std::size_t size() const { return frames_.size(); }
+  const PinholeIntrinsics& intrinsics() const { return preparation_.intrinsics(); }
+
+  /// The prepared image of frame i < size(). Throws InputError, naming image, file and line, if it
+  /// cannot be decoded, has another size than sensor.yaml says, or is not 8-bit grey.
+  GrayImage read(std::size_t i) const;
+
+ private:
+  cv::Mat decode(const FrameRef& frame) const;
+
+  std::filesystem::path frames_csv_;
+  std::vector<FrameRef> frames_;
+  cv::Size full_size_;
+  Disturbance disturbance_;
+  ImagePreparation preparation_;
 };
 
 }  // namespace leviosim::traces

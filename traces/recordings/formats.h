@@ -1,5 +1,5 @@
-// The readers of recordings that are no plain ASL folders, one file each; the table in recording.cpp
-// names them. All throw InputError with file, line, column or key.
+// The readers of recordings that are no plain ASL folders, one file each; the table in
+// recording.cpp names them. All throw InputError with file, line, column or key.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +29,10 @@ Dataset read_tum_rgbd(const std::filesystem::path& folder);
 bool is_kitti_odometry(const std::filesystem::path& folder);
 Dataset read_kitti_odometry(const std::filesystem::path& folder);
 
-/// A rectified drive of KITTI's raw data (Geiger et al. 2013): image_00/, else image_02/, oxts/, and
-/// the three calib_*.txt in the folder above. The truth is the navigation system's, on a Mercator
-/// plane that touches the first pose. Left out: unrectified drives, whose lens has a sixth-order
-/// term.
+/// A rectified drive of KITTI's raw data (Geiger et al. 2013): image_00/, else image_02/, oxts/,
+/// and the three calib_*.txt in the folder above. The truth is the navigation system's, on a
+/// Mercator plane that touches the first pose. Left out: unrectified drives, whose lens has a
+/// sixth-order term.
 bool is_kitti_raw(const std::filesystem::path& folder);
 Dataset read_kitti_raw(const std::filesystem::path& folder);
 

@@ -15,7 +15,7 @@
 #include "traces/datasets/image_file.h"
 #include "traces/datasets/row_values.h"
 #include "traces/recordings/formats.h"
-#include "traces/trajectories/kitti.h"
+#include "traces/trajectories/trajectory_file.h"
 
 namespace leviosim::traces {
 namespace {
@@ -36,8 +36,8 @@ std::vector<double> numbers_of(const fs::path& file, const std::string& key, std
                                      base::at_line(file, line), key, word));
     }
     if (numbers.size() == count) return numbers;
-    throw InputError(fmt::format("{}, key '{}': {} numbers; expected {}",
-                                 base::at_line(file, line), key, numbers.size(), count));
+    throw InputError(fmt::format("{}, key '{}': {} numbers; expected {}", base::at_line(file, line),
+                                 key, numbers.size(), count));
   }
   throw InputError(fmt::format("{}: no line '{}:' with {} numbers", file.string(), key, count));
 }
@@ -64,8 +64,8 @@ Eigen::Isometry3d transform_of(const fs::path& file) {
 
 /// Of two rectified cameras, grey and colour, the first that there is.
 struct Rectified {
-  std::string folder;                         ///< "image_0"
-  std::string key;                            ///< of its projection
+  std::string folder;                               ///< "image_0"
+  std::string key;                                  ///< of its projection
   Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  ///< of camera 0 in this camera's frame [m]
 };
 
@@ -113,8 +113,7 @@ std::int64_t parse_date(const base::CsvRow& row) {
     return error == std::errc() && end == from + length ? value : -1;
   };
   constexpr std::size_t kLength = 29;
-  if (text.size() != kLength)
-    row.fail("not a time; expected as 2011-09-26 13:02:25.964389445");
+  if (text.size() != kLength) row.fail("not a time; expected as 2011-09-26 13:02:25.964389445");
   const std::array<int, 7> n{number(0, 4),  number(5, 2),  number(8, 2), number(11, 2),
                              number(14, 2), number(17, 2), number(20, 9)};
   using namespace std::chrono;
@@ -147,7 +146,8 @@ constexpr std::size_t kOxtsColumns = 30;
 void read_oxts(const fs::path& file, std::int64_t t_ns, double& scale, Dataset& data) {
   constexpr double kEarthM = 6378137;  // the equatorial radius of WGS 84
   constexpr double kRadians = std::numbers::pi / 180;
-  base::CsvReader csv(file, base::Separator::blanks, std::vector<std::string>(kOxtsColumns, "oxts"));
+  base::CsvReader csv(file, base::Separator::blanks,
+                      std::vector<std::string>(kOxtsColumns, "oxts"));
   const base::CsvRow* const row = csv.next();
   if (row == nullptr) throw InputError(fmt::format("{}: holds no row", file.string()));
   data.imu.push_back({t_ns, vector_at(*row, 17, kGyroBound), vector_at(*row, 11, kAccelBound)});
@@ -159,13 +159,13 @@ void read_oxts(const fs::path& file, std::int64_t t_ns, double& scale, Dataset& 
   using Eigen::Vector3d;
   GroundTruthPose pose;
   pose.t_ns = t_ns;
-  pose.T_world_body =
-      Eigen::Translation3d(
-          scale * kEarthM * row->number(1) * kRadians,
-          scale * kEarthM * std::log(std::tan(std::numbers::pi / 4 + latitude / 2)),
-          row->number(2)) *
-      AngleAxisd(row->number(5), Vector3d::UnitZ()) *
-      AngleAxisd(row->number(4), Vector3d::UnitY()) * AngleAxisd(row->number(3), Vector3d::UnitX());
+  pose.T_world_body = Eigen::Translation3d(
+                          scale * kEarthM * row->number(1) * kRadians,
+                          scale * kEarthM * std::log(std::tan(std::numbers::pi / 4 + latitude / 2)),
+                          row->number(2)) *
+                      AngleAxisd(row->number(5), Vector3d::UnitZ()) *
+                      AngleAxisd(row->number(4), Vector3d::UnitY()) *
+                      AngleAxisd(row->number(3), Vector3d::UnitX());
   pose.velocity = {row->number(7), row->number(6), row->number(10)};
   data.ground_truth.push_back(pose);
 }
@@ -202,9 +202,8 @@ Dataset read_kitti_odometry(const fs::path& folder) {
   data.files.push_back({"poses", {truth}});
   const std::vector<Eigen::Isometry3d> poses = read_kitti_poses(truth);
   if (poses.size() != times.size())
-    throw InputError(fmt::format("{}: holds {} poses; expected {}, the times of {}",
-                                 truth.string(), poses.size(), times.size(),
-                                 data.frames_csv.string()));
+    throw InputError(fmt::format("{}: holds {} poses; expected {}, the times of {}", truth.string(),
+                                 poses.size(), times.size(), data.frames_csv.string()));
   Eigen::Matrix3d R_world_camera0;  // x right, y down, z forward to a world whose z is up
   R_world_camera0 << 1, 0, 0, 0, 0, 1, 0, -1, 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -1,10 +1,15 @@
 #include "traces/synthesis/motion.h"
 
+#include <Eigen/SparseCholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "sim/base/angles.h"
+#include "sim/base/check.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::traces {
@@ -113,6 +118,193 @@ MotionState HandHeldFlight::at(double t_s) const {
   state.acceleration = Eigen::Vector3d(c[0].second, c[1].second, c[2].second);
   state.angular_velocity = level_body.transpose() * level.angular_velocity;
   return state;
+}
+
+namespace {
+
+constexpr Eigen::Index kColumns = 7;
+
+std::vector<double> times(std::span<const GroundTruthPose> poses, std::int64_t origin_ns) {
+  std::vector<double> result;
+  for (const GroundTruthPose& pose : poses)
+    result.push_back(static_cast<double>(pose.t_ns - origin_ns) * 1e-9);
+  return result;
+}
+
+/// Of the two quaternions of each attitude, the one nearer to that of the pose before.
+Eigen::MatrixXd samples(std::span<const GroundTruthPose> poses) {
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(poses.size()), kColumns);
+  Eigen::Vector4d before = Eigen::Vector4d::Zero();
+  for (Eigen::Index i = 0; i < result.rows(); ++i) {
+    const Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)].T_world_body;
+    Eigen::Vector4d q = Eigen::Quaterniond(pose.linear()).coeffs();
+    if (q.dot(before) < 0) q = -q;
+    before = q;
+    result.row(i) << pose.translation().transpose(), q.transpose();
+  }
+  return result;
+}
+
+}  // namespace
+
+RecordedMotion::RecordedMotion(std::span<const GroundTruthPose> poses, std::int64_t origin_ns,
+                               double half_gain_hz)
+    : spline_(times(poses, origin_ns), samples(poses), half_gain_hz) {}
+
+MotionState RecordedMotion::at(double t_s) const {
+  const SplineState spline = spline_.at(t_s);
+  const Eigen::Vector4d coefficients = spline.value.tail<4>();
+  const Eigen::Vector4d rate = spline.first.tail<4>();
+  const double length = coefficients.norm();
+  const Eigen::Quaterniond q(Eigen::Vector4d(coefficients / length));
+  const Eigen::Quaterniond q_rate(Eigen::Vector4d(rate / length));
+  MotionState state;
+  state.T_world_body.linear() = q.toRotationMatrix();
+  state.T_world_body.translation() = spline.value.head<3>();
+  state.velocity = spline.first.head<3>();
+  state.acceleration = spline.second.head<3>();
+  // The part of the rate along q, which changes only its length, ends up in the real part.
+  state.angular_velocity = 2 * (q.conjugate() * q_rate).vec();
+  return state;
+}
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// Q of Green and Silverman (n x n-2): its transpose takes second differences.
+Sparse second_differences(const Eigen::VectorXd& steps) {
+  const Eigen::Index inner = steps.size() - 1;
+  Triplets entries;
+  for (Eigen::Index j = 0; j < inner; ++j) {
+    entries.emplace_back(j, j, 1 / steps[j]);
+    entries.emplace_back(j + 1, j, -1 / steps[j] - 1 / steps[j + 1]);
+    entries.emplace_back(j + 2, j, 1 / steps[j + 1]);
+  }
+  Sparse q(inner + 2, inner);
+  q.setFromTriplets(entries.begin(), entries.end());
+  return q;
+}
+
+/// R of Green and Silverman (n-2 x n-2): g R g is the integral of the squared curvature.
+Sparse curvature_products(const Eigen::VectorXd& steps) {
+  const Eigen::Index inner = steps.size() - 1;
+  Triplets entries;
+  for (Eigen::Index j = 0; j < inner; ++j) {
+    entries.emplace_back(j, j, (steps[j] + steps[j + 1]) / 3);
+    if (j + 1 == inner) break;
+    entries.emplace_back(j, j + 1, steps[j + 1] / 6);
+    entries.emplace_back(j + 1, j, steps[j + 1] / 6);
+  }
+  Sparse r(inner, inner);
+  r.setFromTriplets(entries.begin(), entries.end());
+  return r;
+}
+
+}  // namespace
+
+SmoothingSpline::SmoothingSpline(std::vector<double> times, Eigen::MatrixXd samples,
+                                 double half_gain_hz)
+    : times_(std::move(times)), values_(std::move(samples)) {
+  check(times_.size() >= 2, "SmoothingSpline: at least two samples");
+  check(half_gain_hz > 0, "SmoothingSpline: half_gain_hz above 0");
+  check_equal(times_.size(), static_cast<std::size_t>(values_.rows()), "SmoothingSpline: samples");
+  const double period_s = (times_.back() - times_.front()) / static_cast<double>(times_.size() - 1);
+  // The penalty weighs an integral against a sum, hence the sampling period.
+  fit(std::isinf(half_gain_hz) ? 0 : 1 / (period_s * std::pow(base::kTwoPi * half_gain_hz, 4)));
+}
+
+void SmoothingSpline::fit(double alpha) {
+  curvatures_.setZero(values_.rows(), values_.cols());
+  const Eigen::Index inner = values_.rows() - 2;
+  if (inner == 0) return;
+  const Eigen::Map<const Eigen::VectorXd> t(times_.data(), values_.rows());
+  const Eigen::VectorXd steps = t.tail(inner + 1) - t.head(inner + 1);
+  check(steps.minCoeff() > 0, "SmoothingSpline: times rise");
+  const Sparse q = second_differences(steps);
+  const Sparse normal = curvature_products(steps) + alpha * Sparse(q.transpose() * q);
+  const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> solver(normal);
+  check(solver.info() == Eigen::Success, "SmoothingSpline: positive definite");
+  const Eigen::MatrixXd differences = q.transpose() * values_;
+  const Eigen::MatrixXd inner_curvatures = solver.solve(differences);
+  values_ -= alpha * (q * inner_curvatures);
+  curvatures_.middleRows(1, inner) = inner_curvatures;
+}
+
+SplineState SmoothingSpline::at(double t_s) const {
+  const auto right = std::upper_bound(times_.begin() + 1, times_.end() - 1, t_s);
+  const Eigen::Index i = right - times_.begin() - 1;
+  const double from = times_[static_cast<std::size_t>(i)];
+  const double h = *right - from;
+  const double inside = std::clamp(t_s, from, *right);
+  const double b = (inside - from) / h;
+  const double a = 1 - b;
+  const auto row = [](const Eigen::MatrixXd& m, Eigen::Index r) -> Eigen::VectorXd {
+    return m.row(r);
+  };
+  const Eigen::VectorXd v0 = row(values_, i), v1 = row(values_, i + 1);
+  const Eigen::VectorXd c0 = row(curvatures_, i), c1 = row(curvatures_, i + 1);
+  SplineState state;
+  state.first = (v1 - v0) / h + h / 6 * ((1 - 3 * a * a) * c0 + (3 * b * b - 1) * c1);
+  state.value = a * v0 + b * v1 + h * h / 6 * (a * (a * a - 1) * c0 + b * (b * b - 1) * c1) +
+                (t_s - inside) * state.first;
+  state.second = a * c0 + b * c1;
+  return state;
+}
+
+ImuSample ideal_imu(const MotionState& state, std::int64_t t_ns) {
+  const Eigen::Vector3d gravity(0, 0, -kGravity);
+  ImuSample sample;
+  sample.t_ns = t_ns;
+  sample.gyro = state.angular_velocity;
+  sample.accel = state.T_world_body.linear().transpose() * (state.acceleration - gravity);
+  return sample;
+}
+
+ImuSynthesizer::ImuSynthesizer(const ImuModel& model, std::uint64_t seed)
+    : model_(model), rng_(seed) {
+  bias_gyro_ = draw(kTurnOnBiasGyro);
+  bias_accel_ = draw(kTurnOnBiasAccel);
+}
+
+Eigen::Vector3d ImuSynthesizer::draw(double deviation) {
+  const double x = rng_.normal();
+  const double y = rng_.normal();
+  const double z = rng_.normal();
+  return deviation * Eigen::Vector3d(x, y, z);
+}
+
+ImuSample ImuSynthesizer::measure(const MotionState& state, std::int64_t t_ns) {
+  const double root_rate = std::sqrt(model_.rate_hz);
+  if (!first_) {
+    bias_gyro_ += draw(model_.gyro_random_walk / root_rate);
+    bias_accel_ += draw(model_.accel_random_walk / root_rate);
+  }
+  first_ = false;
+  ImuSample sample = ideal_imu(state, t_ns);
+  sample.gyro += bias_gyro_ + draw(model_.gyro_noise_density * root_rate);
+  sample.accel += bias_accel_ + draw(model_.accel_noise_density * root_rate);
+  return sample;
+}
+
+ImuTrack record_imu(const Motion& motion, ImuSynthesizer* imu, std::int64_t origin_ns,
+                    const std::vector<std::int64_t>& stamps_ns) {
+  ImuTrack track;
+  for (const std::int64_t t_ns : stamps_ns) {
+    const MotionState state = motion.at(static_cast<double>(t_ns - origin_ns) * 1e-9);
+    track.samples.push_back(imu != nullptr ? imu->measure(state, t_ns) : ideal_imu(state, t_ns));
+    GroundTruthPose truth;
+    truth.t_ns = t_ns;
+    truth.T_world_body = state.T_world_body;
+    truth.velocity = state.velocity;
+    if (imu != nullptr) {
+      truth.bias_gyro = imu->bias_gyro();
+      truth.bias_accel = imu->bias_accel();
+    }
+    track.truth.push_back(truth);
+  }
+  return track;
 }
 
 }  // namespace leviosim::traces

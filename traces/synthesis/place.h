@@ -9,7 +9,7 @@ namespace leviosim::traces {
 
 enum class PlaceKind {
   hall,      ///< walls, boxes and posters of high contrast, 0.8 m away or more: easy
-  workshop,  ///< timber, nets, rails and cables, near before far, dark and glaring (hall_layout.h)
+  workshop,  ///< timber, nets, rails and cables, near before far, dark and glaring (hall.h)
   surround   ///< surfaces all around the path at one distance
 };
 

@@ -9,7 +9,6 @@
 #include "traces/datasets/asl_writer.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/flight_images.h"
-#include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/motion.h"
 #include "traces/synthesis/renderer.h"
 #include "traces/synthesis/world.h"

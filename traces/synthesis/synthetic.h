@@ -1,5 +1,5 @@
 // The synthetic flight: a textured room (world.h), a hand-held path through it (motion.h), EuRoC's
-// camera and IMU (euroc_models.h), written as an ASL folder with exact ground truth. Licence-free
+// camera and IMU (asl_writer.h), written as an ASL folder with exact ground truth. Licence-free
 // input for tests and demos, and the one whose truth is known exactly.
 //
 // Streams of the flight, time 0 being `kFirstFrameNs`: frames at 0, 1/20 s, ... below the duration;
@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "traces/datasets/asl_writer.h"
 #include "traces/datasets/camera_model.h"
-#include "traces/datasets/euroc_models.h"
-#include "traces/datasets/imu_model.h"
+#include "traces/datasets/dataset.h"
 #include "traces/synthesis/flight_images.h"
 #include "traces/synthesis/world.h"
 

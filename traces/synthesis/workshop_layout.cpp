@@ -1,9 +1,9 @@
-// A workshop: lay_out_workshop() of hall_layout.h.
+// A workshop: lay_out_workshop() of hall.h.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "traces/synthesis/layout_builder.h"
+#include "traces/synthesis/hall.h"
 
 namespace leviosim::traces {
 namespace {

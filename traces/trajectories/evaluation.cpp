@@ -1,11 +1,15 @@
 #include "traces/trajectories/evaluation.h"
 
+#include <Eigen/SVD>
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "sim/base/angles.h"
+#include "sim/base/check.h"
 #include "sim/base/error.h"
 
 namespace leviosim::traces {
@@ -141,6 +145,173 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
   const std::string completion = completion_words(truth, options, result);
   result.protocol = fmt::format("{}, {}, {}, {:.2f} m of path", aligned_words(options.alignment),
                                 matched_words(result, options), completion, result.path_length_m);
+  return result;
+}
+
+namespace {
+
+bool earlier(const StampedPose& pose, std::int64_t t_ns) { return pose.t_ns < t_ns; }
+
+Eigen::Isometry3d interpolate(const StampedPose& a, const StampedPose& b, std::int64_t t_ns) {
+  const double s = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
+  const Eigen::Vector3d p =
+      (1 - s) * a.T_world_body.translation() + s * b.T_world_body.translation();
+  const Eigen::Quaterniond from(a.T_world_body.linear());
+  const Eigen::Quaterniond to(b.T_world_body.linear());
+  return Eigen::Translation3d(p) * from.slerp(s, to);
+}
+
+}  // namespace
+
+std::vector<MatchedPose> associate(const Trajectory& estimate, const Trajectory& truth,
+                                   std::int64_t max_gap_ns) {
+  std::vector<MatchedPose> matches;
+  for (const StampedPose& pose : estimate) {
+    const auto right = std::lower_bound(truth.begin(), truth.end(), pose.t_ns, earlier);
+    if (right == truth.end()) continue;
+    if (right->t_ns == pose.t_ns) {
+      matches.push_back({pose.t_ns, pose.T_world_body, right->T_world_body});
+      continue;
+    }
+    if (right == truth.begin()) continue;
+    const auto left = right - 1;
+    if (std::min(pose.t_ns - left->t_ns, right->t_ns - pose.t_ns) > max_gap_ns) continue;
+    matches.push_back({pose.t_ns, pose.T_world_body, interpolate(*left, *right, pose.t_ns)});
+  }
+  return matches;
+}
+
+std::vector<double> distances_along(const Trajectory& truth,
+                                    const std::vector<MatchedPose>& matches) {
+  std::vector<double> distances;
+  if (matches.empty()) return distances;
+  double length = 0;
+  Eigen::Vector3d here = matches.front().truth.translation();
+  const auto walk_to = [&](const Eigen::Isometry3d& there) {
+    length += (there.translation() - here).norm();
+    here = there.translation();
+  };
+  auto sample = std::lower_bound(truth.begin(), truth.end(), matches.front().t_ns, earlier);
+  for (const MatchedPose& match : matches) {
+    for (; sample != truth.end() && sample->t_ns < match.t_ns; ++sample)
+      walk_to(sample->T_world_body);
+    walk_to(match.truth);
+    distances.push_back(length);
+  }
+  return distances;
+}
+
+void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stamps_ns) {
+  constexpr std::size_t kFewest = 3;
+  if (data.ground_truth.empty() || stamps_ns.size() < kFewest) return;
+  Trajectory frames;
+  for (const std::int64_t t_ns : stamps_ns) frames.push_back({t_ns, {}});
+  const EvaluationOptions how;
+  const std::size_t matched =
+      associate(frames, to_trajectory(data.ground_truth), how.max_gap_ns).size();
+  if (matched >= kFewest) return;
+  throw InputError(fmt::format(
+      "{}: {} of the {} frames ({} to {} ns) {} a true pose within {:g} ms; expected at least {}, "
+      "or no ground truth (it spans {} to {} ns)",
+      data.truth_csv.string(),
+      matched == 0 ? "none" : fmt::format("{}", matched), stamps_ns.size(), stamps_ns.front(),
+      stamps_ns.back(), matched > 1 ? "have" : "has", static_cast<double>(how.max_gap_ns) * 1e-6,
+      kFewest, data.ground_truth.front().t_ns, data.ground_truth.back().t_ns));
+}
+
+namespace {
+
+struct AlignmentRow {
+  Alignment alignment;
+  std::string_view option;
+  std::string_view name;
+  std::size_t least_points;
+};
+
+constexpr std::array<AlignmentRow, 4> kAlignments{{
+    {Alignment::none, "none", "none", 0},
+    {Alignment::se3, "se3", "SE3", 3},
+    {Alignment::sim3, "sim3", "Sim3", 3},
+    {Alignment::posyaw, "posyaw", "PosYaw", 2},
+}};
+
+const AlignmentRow& row_of(Alignment alignment) {
+  return kAlignments[static_cast<std::size_t>(alignment)];
+}
+
+/// First and second moments of two point sets.
+struct Moments {
+  Eigen::Vector3d mean_from = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_to = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of to and from
+  double variance_from = 0;
+};
+
+Moments moments_of(const std::vector<Eigen::Vector3d>& from,
+                   const std::vector<Eigen::Vector3d>& to) {
+  Moments m;
+  const auto count = static_cast<double>(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    m.mean_from += from[i] / count;
+    m.mean_to += to[i] / count;
+  }
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Eigen::Vector3d a = from[i] - m.mean_from;
+    const Eigen::Vector3d b = to[i] - m.mean_to;
+    m.covariance += b * a.transpose() / count;
+    m.variance_from += a.squaredNorm() / count;
+  }
+  return m;
+}
+
+/// Rotation about z that maximises trace(Rᵀ covariance).
+Similarity yaw_only(const Moments& m) {
+  const double yaw =
+      std::atan2(m.covariance(1, 0) - m.covariance(0, 1), m.covariance(0, 0) + m.covariance(1, 1));
+  Similarity result;
+  result.rotation = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return result;
+}
+
+/// Umeyama 1991, equations 38 to 43.
+Similarity full_rotation(const Moments& m, bool with_scale) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.covariance,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
+  Similarity result;
+  result.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  if (!with_scale) return result;
+  if (!(m.variance_from > 0))
+    throw NotComparable("Sim3 alignment: all estimated positions coincide, so there is no scale");
+  result.scale = svd.singularValues().dot(signs) / m.variance_from;
+  return result;
+}
+
+}  // namespace
+
+std::string_view name_of(Alignment alignment) { return row_of(alignment).name; }
+
+Alignment parse_alignment(std::string_view name) {
+  for (const AlignmentRow& row : kAlignments)
+    if (row.option == name) return row.alignment;
+  throw InputError(fmt::format("alignment '{}': expected one of none, se3, sim3, posyaw", name));
+}
+
+Similarity align_points(const std::vector<Eigen::Vector3d>& from,
+                        const std::vector<Eigen::Vector3d>& to, Alignment alignment) {
+  check_equal(from.size(), to.size(), "align_points: number of points");
+  if (alignment == Alignment::none) return {};
+  const AlignmentRow& row = row_of(alignment);
+  if (from.size() < row.least_points)
+    throw InputError(fmt::format("{} alignment needs at least {} matched poses; there are {}",
+                                 row.name, row.least_points, from.size()));
+  const Moments m = moments_of(from, to);
+  if (!m.covariance.allFinite() || !std::isfinite(m.variance_from))  // where an SVD means nothing
+    throw NotComparable("the positions are too large to be compared; expected metres");
+  Similarity result =
+      alignment == Alignment::posyaw ? yaw_only(m) : full_rotation(m, alignment == Alignment::sim3);
+  result.translation = m.mean_to - result.scale * (result.rotation * m.mean_from);
   return result;
 }
 

@@ -9,7 +9,6 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/outputs/atomic_file.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/row_values.h"
 
@@ -94,10 +93,6 @@ std::string format_json_lines(const Trajectory& trajectory) {
     out += "]}\n";
   }
   return out;
-}
-
-void write_tum(const std::filesystem::path& file, const Trajectory& trajectory) {
-  outputs::write_file_atomically(file, format_tum(trajectory));
 }
 
 Trajectory read_tum(const std::filesystem::path& file) {

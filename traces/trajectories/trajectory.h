@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -31,9 +32,6 @@ std::string format_euroc(const Trajectory& trajectory);
 std::string format_kitti(const Trajectory& trajectory);
 /// A JSON object a line: {"t_ns":0,"p":[x,y,z],"q":[w,x,y,z]}.
 std::string format_json_lines(const Trajectory& trajectory);
-
-/// Writes format_tum() beside `file` and renames. Throws InputError if it cannot be written.
-void write_tum(const std::filesystem::path& file, const Trajectory& trajectory);
 
 /// Throws InputError (file, line, column) for broken rows, stamps that do not rise, quaternions
 /// whose norm is not 1 within 1e-3, and files without a pose. Stamps are exact to the nanosecond;

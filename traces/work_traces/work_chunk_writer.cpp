@@ -1,6 +1,6 @@
 // Writes the frames of a work trace: the classes NameTable and ChunkWriter of work_frames.h.
+#include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_frames.h"
-#include "traces/work_traces/work_layout.h"
 
 namespace leviosim::traces {
 namespace {

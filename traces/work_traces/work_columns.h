@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/work/counts.h"
-#include "traces/work_traces/byte_stream.h"
+#include "traces/work_traces/section_file.h"
 
 namespace leviosim::traces {
 
@@ -79,5 +79,21 @@ class SeriesReader {
   std::vector<Term> terms_;
   std::vector<Sum> sums_;
 };
+
+// Numbers in the frames of a work trace (FORMAT.md) that its writer and reader share.
+
+/// Kinds of step.
+enum : std::uint64_t {
+  kSerial,
+  kFork,
+  kForkWithMaster,
+  kTransfer,
+  kBackgroundTransfer,
+  kWait,
+  kForkAlignedOnOneCore
+};
+inline constexpr std::uint64_t kStepKinds = kForkAlignedOnOneCore + 1;
+inline constexpr std::uint64_t kDirections = 4;
+inline constexpr std::uint64_t kKeyframe = 1, kBusy = 2, kOptimised = 4, kAllFlags = 7;
 
 }  // namespace leviosim::traces

@@ -20,7 +20,6 @@
 
 #include "sim/work/program.h"
 #include "traces/trajectories/evaluation.h"
-#include "traces/work_traces/memory_budget.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_memory.h"

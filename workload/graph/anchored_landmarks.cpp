@@ -1,6 +1,6 @@
 #include "workload/graph/anchored_landmarks.h"
 
-#include "workload/graph/linearise_landmark.h"
+#include "workload/graph/landmark_records.h"
 
 namespace leviosim::vio {
 namespace {

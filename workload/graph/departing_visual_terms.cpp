@@ -1,6 +1,6 @@
 #include "workload/graph/departing_visual_terms.h"
 
-#include "workload/graph/linearise_landmark.h"
+#include "workload/graph/landmark_records.h"
 #include "workload/math/matrix.h"
 
 namespace leviosim::vio {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "workload/loop/forgetting.h"
+#include "workload/loop/loop_graph.h"
 
 namespace leviosim::vio {
 namespace {

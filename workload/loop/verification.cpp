@@ -1,6 +1,6 @@
 #include "workload/loop/verification.h"
 
-#include "workload/loop/place_matching.h"
+#include "workload/loop/place_search.h"
 #include "workload/loop/upright_pose.h"
 #include "workload/vision/guided_matcher.h"
 

@@ -23,21 +23,26 @@ enum class PoseSource : std::uint8_t {
 
 struct PoseSourceInfo {
   PoseSource source;
-  std::string_view name;  ///< in files
+  std::string_view name;   ///< in files
+  std::string_view words;  ///< in what people read
+  int rank;                ///< there, from the usual to the rare
   std::string_view meaning;
 };
 
+/// All of them, by number.
 inline constexpr std::array kPoseSources{
-    PoseSourceInfo{PoseSource::First, "first", "the first frame defines the world"},
-    PoseSourceInfo{PoseSource::Epnp, "epnp", "from matches with landmarks"},
-    PoseSourceInfo{PoseSource::EightPoint, "eight_point",
+    PoseSourceInfo{PoseSource::First, "first", "first of a map", 6,
+                   "the first frame defines the world"},
+    PoseSourceInfo{PoseSource::Epnp, "epnp", "EPnP", 1, "from matches with landmarks"},
+    PoseSourceInfo{PoseSource::EightPoint, "eight_point", "8-point", 2,
                    "from matches with the previous keyframe"},
-    PoseSourceInfo{PoseSource::Kept, "kept", "too few matches: the last keyframe's pose"},
-    PoseSourceInfo{PoseSource::Predicted, "predicted",
+    PoseSourceInfo{PoseSource::Kept, "kept", "pose kept", 5,
+                   "too few matches: the last keyframe's pose"},
+    PoseSourceInfo{PoseSource::Predicted, "predicted", "predicted", 3,
                    "EPnP found too few inliers: the last keyframe's pose, moved on"},
-    PoseSourceInfo{PoseSource::Tracked, "tracked",
+    PoseSourceInfo{PoseSource::Tracked, "tracked", "tracked", 0,
                    "refined from landmarks that a predicted pose found, or from EPnP's pose"},
-    PoseSourceInfo{PoseSource::Initialising, "initialising",
+    PoseSourceInfo{PoseSource::Initialising, "initialising", "initialising", 4,
                    "moved on by the IMU before velocity, gravity and scale are known"},
 };
 
@@ -52,7 +57,7 @@ constexpr std::optional<PoseSource> source_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// What the odometry knows of its map without the truth (odometry/map_health.h).
+/// What the odometry knows of its map without the truth (odometry/back_end.h).
 enum class Health : std::uint8_t { good, unreliable, lost, not_judged };
 
 /// In files, by number.

@@ -5,13 +5,118 @@
 #include <cstdint>
 
 #include "sim/work/machine.h"
+#include "workload/geometry/camera_matrix.h"
 #include "workload/graph/pose_graph.h"
-#include "workload/vio/feature_camera.h"
-#include "workload/vio/keyframe_record.h"
+#include "workload/inertial/initialisation.h"
+#include "workload/inertial/preintegration.h"
 #include "workload/vio/profile.h"
 #include "workload/vio/records.h"
+#include "workload/vision/features.h"
 
 namespace leviosim::vio {
+
+// The camera for coordinates of features, which are whole numbers of 1/subpixel_steps px.
+
+template <class P>
+class FeatureCamera {
+ public:
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+
+  /// @param camera  in px
+  /// @param steps   per px
+  FeatureCamera(const PinholeCamera& camera, int steps)
+      : inverse_(CameraMatrix<P>::inverse_of(finer(camera, static_cast<float>(steps)))),
+        steps_(steps) {}
+
+  /// Image coordinates at depth 1.
+  Vec2<P> normalised(I32 u, I32 v) const {
+    const Vec3<P> x = inverse_ * Vec3<P>{work::to_f32(u), work::to_f32(v), 1.0f};
+    return {x.x, x.y};
+  }
+
+  /// One coordinate in px.
+  F pixel(I32 coordinate) const {
+    if (steps_ == 1) return work::to_f32(coordinate);
+    return work::to_f32(coordinate) * F(1.0f / static_cast<float>(steps_));
+  }
+
+ private:
+  static PinholeCamera finer(const PinholeCamera& c, float steps) {
+    return {steps * c.fx, steps * c.fy, steps * c.cx, steps * c.cy};
+  }
+
+  CameraMatrix<P> inverse_;
+  int steps_;
+};
+
+// The last keyframe as it lies in L2 between frames (PARAMETERS.md#memory): its features, the
+// landmark that each of them shows, the motion since then as the IMU saw it, and the buffer that
+// the camera writes the next image to.
+
+/// Landmark slot of a feature that shows none.
+inline constexpr int kNoLandmark = 0xffff;
+
+/// Features with the landmark slot of each, or kNoLandmark: 38 bytes per feature.
+template <class P>
+struct ObservedFeatures {
+  FeatureList<P> list;
+  typename P::template Span<typename P::U16> landmarks;
+};
+
+template <class P>
+ObservedFeatures<P> alloc_observed_features(work::Arena& arena, int capacity) {
+  ObservedFeatures<P> features;
+  features.list = alloc_features<P>(arena, capacity);
+  features.landmarks =
+      arena.alloc<typename P::template Span<typename P::U16>>("landmarks of features", capacity);
+  return features;
+}
+
+/// What alloc_observed_features() takes.
+template <class P>
+Bytes observed_features_size(int capacity) {
+  using Half = typename P::U16;
+  constexpr std::size_t kEach = 3 * sizeof(Half) + kDescriptorWords * sizeof(typename P::U32);
+  return Bytes(static_cast<std::int64_t>(kEach) * capacity);
+}
+
+template <class P>
+struct KeyframeRecord {
+  using F = typename P::F32;
+
+  /// @param strips       whether features are extracted from strips of the image, which takes a
+  ///                     blurred copy in L2
+  /// @param keeps_image  whether the keyframe's image stays
+  KeyframeRecord(work::Arena& arena, int capacity, int width, int height, bool strips,
+                 bool keeps_image, const StillnessOptions& standstill)
+      : features(alloc_observed_features<P>(arena, capacity)),
+        interval(
+            arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
+        last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample", kImuSampleFloats)),
+        stillness(arena.alloc<typename P::template Span<F>>(
+            "IMU sums of the last second", StillnessDetector<P>::floats(standstill))),
+        image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
+                                                                       width * height),
+              width, height} {
+    if (keeps_image)
+      seen = {arena.alloc<typename P::template Span<typename P::Byte>>("image of the keyframe",
+                                                                       width * height),
+              width, height};
+    if (strips) {
+      using Pixels = typename P::template Span<typename P::Byte>;
+      blurred = {arena.alloc<Pixels>("blurred image", width * height), width, height};
+    }
+  }
+
+  ObservedFeatures<P> features;
+  typename P::template Span<F> interval;     ///< pre-integrated motion since the keyframe
+  typename P::template Span<F> last_sample;  ///< where the next step of it begins
+  typename P::template Span<F> stillness;    ///< of the StillnessDetector
+  ImageView<P> image;
+  ImageView<P> seen;     ///< that of the keyframe; empty where patches are not aligned
+  ImageView<P> blurred;  ///< only where features are extracted from strips
+};
 
 template <class P>
 struct FrontEndState {
@@ -36,6 +141,21 @@ struct FrontEndState {
   bool started = false;                     ///< there is a map
   std::uint32_t frame_number = 0;           ///< of the present frame, from 1 on
   float time_since_keyframe = 0;            ///< [s]
+};
+
+// A front end as the odometry sees it: one frame, from pixels and IMU samples to a pose, on the
+// cluster (paper Fig. 1, right side). The two that there are have rooms of their own: levio/ is the
+// paper's, next/ ours.
+
+template <class P>
+class FrontEnd {
+ public:
+  FrontEnd() = default;
+  FrontEnd(const FrontEnd&) = delete;  // its parts refer to each other
+  FrontEnd& operator=(const FrontEnd&) = delete;
+  virtual ~FrontEnd() = default;
+
+  virtual FrameReport process(const FrameInput& input) = 0;
 };
 
 }  // namespace leviosim::vio

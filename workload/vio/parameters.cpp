@@ -480,11 +480,6 @@ std::string value_text(const Parameter& parameter, double value) {
   return fmt::format("{}", static_cast<float>(value));
 }
 
-std::string value_with_unit(const Parameter& parameter, double value) {
-  const std::string text = value_text(parameter, value);
-  return parameter.unit.empty() ? text : fmt::format("{} {}", text, parameter.unit);
-}
-
 std::string Assignment::text() const {
   return fmt::format("{}={}", parameter->name, value_text(*parameter, value));
 }

@@ -75,9 +75,6 @@ bool is_valid(const Parameter& parameter, double value);
 /// is the same value of the profile (which holds single precision).
 std::string value_text(const Parameter& parameter, double value);
 
-/// "6 keyframes", "on": value_text() with the unit.
-std::string value_with_unit(const Parameter& parameter, double value);
-
 /// What one parameter is set to.
 struct Assignment {
   const Parameter* parameter;

@@ -61,7 +61,7 @@ struct RestOptions {
   float wrong_match = 0.03f;  ///< a match that moved farther is rejected, in normalised coordinates
 };
 
-/// From where on the odometry does not call its map good (odometry/map_health.h).
+/// From where on the odometry does not call its map good (odometry/back_end.h).
 struct HealthOptions {
   /// Of whitened residuals: they are twice as large as their noise. What is assumed of the IMU is
   /// several times its data sheet's, so that good windows lie at a tenth, and one with samples that

@@ -5,7 +5,6 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "workload/vision/extraction_steps.h"
-#include "workload/vision/strips.h"
 
 namespace leviosim::vio {
 namespace {

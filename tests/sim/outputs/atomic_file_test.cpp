@@ -1,4 +1,4 @@
-#include "sim/outputs/atomic_file.h"
+#include "sim/outputs/file_system.h"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tools/app/budget/check.h"
+#include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {
 
@@ -23,5 +24,13 @@ std::string parse_day(const std::string& where, const std::string& text);
 
 /// Of the clock in UTC, or what SOURCE_DATE_EPOCH in the environment says.
 std::string today();
+
+// A first budget for a run: what it needs today and a margin, to be edited by people.
+
+/// The text of a budget file that the run meets. @param margin  in per cent
+std::string first_budget(const RunRecord& run, double margin);
+
+/// "5 %". @throws InputError that names the option, unless it is a share from 0 to 1000 %
+double parse_share(const std::string& option, const std::string& text);
 
 }  // namespace leviosim::tools

@@ -60,4 +60,11 @@ struct CheckResult {
 /// @throws InputError for limits that cannot be held: unknown figures, units, a missing baseline
 CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline);
 
+// Where a limit was missed, and why: the stage, what its cores did and by which mechanism, or the
+// blocks of a memory; against the baseline if there is one, else what weighs most in the run.
+
+/// Fills in `where` and `why` of the findings that are not met.
+/// @param baseline  may be null
+void explain(CheckResult& result, const RunRecord& run, const RunRecord* baseline);
+
 }  // namespace leviosim::tools

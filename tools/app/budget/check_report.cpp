@@ -7,10 +7,12 @@
 #include <cmath>
 
 #include "sim/base/printable_text.h"
+#include "sim/base/sha256.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison_report.h"
-#include "tools/app/report/number_text.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
+#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
@@ -46,8 +48,7 @@ std::string details(const Finding& f) {
 }
 
 std::string place(const Finding& f) {
-  return f.limit->line == 0 ? f.limit->file
-                            : fmt::format("{}:{}", f.limit->file, f.limit->line);
+  return f.limit->line == 0 ? f.limit->file : fmt::format("{}:{}", f.limit->file, f.limit->line);
 }
 
 std::string table_of(const CheckResult& result) {
@@ -62,7 +63,11 @@ std::string table_of(const CheckResult& result) {
                         printable(fmt::format("{}", fmt::join(result.not_measured, ", "))));
   TextTable table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
-    table.add({f.better() ? "better" : f.met ? "met" : f.fails() ? "NOT MET" : "warning", shortened(f.title(), kWidest),
+    table.add({f.better()  ? "better"
+               : f.met     ? "met"
+               : f.fails() ? "NOT MET"
+                           : "warning",
+               shortened(f.title(), kWidest),
                f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–", margin(f)});
   return text + table.str();
 }
@@ -85,9 +90,10 @@ std::string better_text(const CheckResult& result) {
     if (f.better() && (best == nullptr || *f.better() > *best->better())) best = &f;
   if (best == nullptr) return {};
   const std::size_t count = result.better();
-  return fmt::format("{} than {} by more than limits allow for the worse: {}{} ({:.2f} %)",
-                     count == 1 ? "a figure is better" : fmt::format("{} figures are better", count),
-                     result.baseline, count == 1 ? "" : "most of all ", best->title(), *best->better());
+  return fmt::format(
+      "{} than {} by more than limits allow for the worse: {}{} ({:.2f} %)",
+      count == 1 ? "a figure is better" : fmt::format("{} figures are better", count),
+      result.baseline, count == 1 ? "" : "most of all ", best->title(), *best->better());
 }
 
 /// The first that is not met, by how much and why.
@@ -104,15 +110,13 @@ std::string verdict_of(const CheckResult& result) {
                        limits == 1 ? "the limit" : fmt::format("all {} limits", limits),
                        result.budget, better.empty() ? "" : "; ", better);
   }
-  std::string text = fmt::format("verdict: NOT met: {} of {} limits, {}{}: {}", result.missed(),
-                                 limits, result.missed() > 1 ? "first " : "", missed->title(),
-                                 missed->excess());
+  std::string text =
+      fmt::format("verdict: NOT met: {} of {} limits, {}{}: {}", result.missed(), limits,
+                  result.missed() > 1 ? "first " : "", missed->title(), missed->excess());
   return missed->why.empty() ? text : text + "; " + missed->why.front();
 }
 
 }  // namespace
-
-std::string check_text(const CheckResult& result) { return table_of(result) + misses_of(result); }
 
 Printout check_printout(const CheckResult& result, std::vector<std::string> next) {
   if (result.missed() == 0 && result.better() > 0 && result.is_kept)
@@ -121,7 +125,8 @@ Printout check_printout(const CheckResult& result, std::vector<std::string> next
   else if (result.missed() == 0)
     next = {fmt::format("leviosim history add {} --budget {}", printable(result.run),
                         printable(result.budget))};
-  return Printout({table_of(result), misses_of(result)}).ending(verdict_of(result), std::move(next));
+  return Printout({table_of(result), misses_of(result)})
+      .ending(verdict_of(result), std::move(next));
 }
 
 Json check_json(const CheckResult& result) {
@@ -165,6 +170,189 @@ Json check_json(const CheckResult& result) {
     entry["why"] = f.why;
   }
   return json;
+}
+
+namespace {
+
+/// Text for an attribute or an element. Control characters, which XML has no form for, are escaped
+/// as everywhere (printable()).
+std::string xml(const std::string& raw) {
+  std::string text;
+  for (const char c : printable(raw)) switch (c) {
+      case '&':
+        text += "&amp;";
+        break;
+      case '<':
+        text += "&lt;";
+        break;
+      case '>':
+        text += "&gt;";
+        break;
+      case '"':
+        text += "&quot;";
+        break;
+      default:
+        text += c;
+    }
+  return text;
+}
+
+std::string test_case(const Finding& f) {
+  const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"",
+                                       xml(f.section->name), xml(f.title()));
+  if (!f.fails())
+    return f.met ? head + "/>\n"
+                 : fmt::format("{}>\n      <system-out>warning: {}</system-out>\n    </testcase>\n",
+                               head, xml(f.excess()));
+  std::string body;
+  body += xml(fmt::format("{}:{}", f.limit->file, f.limit->line)) + '\n';
+  if (!f.where.empty()) body += "where: " + xml(f.where) + '\n';
+  for (const std::string& reason : f.why) body += "why: " + xml(reason) + '\n';
+  if (!f.limit->reason.empty()) body += "reason: " + xml(f.limit->reason) + '\n';
+  if (!f.limit->owner.empty()) body += "owner: " + xml(f.limit->owner) + '\n';
+  return fmt::format(
+      "{}>\n      <failure type=\"limit\" message=\"{}\">{}</failure>\n"
+      "    </testcase>\n",
+      head, xml(f.excess()), body);
+}
+
+/// Text from outside, in which no character means something to Markdown or HTML.
+std::string markdown(const std::string& raw) {
+  std::string text;
+  for (const char c : printable(raw)) {
+    if (c == '<')
+      text += "&lt;";
+    else if (std::string_view("\\`*_[]#|>").find(c) != std::string_view::npos)
+      text += {'\\', c};
+    else
+      text += c;
+  }
+  return text;
+}
+
+/// Findings stand in the order of the sections.
+template <class F>
+void for_each_section(const CheckResult& result, F&& f) {
+  for (std::size_t begin = 0; begin < result.findings.size();) {
+    std::size_t end = begin;
+    std::size_t missed = 0;
+    std::string cases;
+    for (; end < result.findings.size() &&
+           result.findings[end].section == result.findings[begin].section;
+         ++end) {
+      if (result.findings[end].fails()) ++missed;
+      cases += test_case(result.findings[end]);
+    }
+    f(*result.findings[begin].section, end - begin, missed, cases);
+    begin = end;
+  }
+}
+
+/// All of it in one text.
+std::string message(const Finding& f) {
+  std::string text = f.excess();
+  if (!f.where.empty()) text += ". Where: " + f.where;
+  if (!f.why.empty()) text += fmt::format(". Why: {}", fmt::join(f.why, "; "));
+  if (!f.limit->reason.empty()) text += ". Reason of the limit: " + f.limit->reason;
+  if (!f.limit->owner.empty()) text += ". Owner: " + f.limit->owner;
+  return printable(text);
+}
+
+}  // namespace
+
+std::string junit_xml(const CheckResult& result) {
+  std::string suites;
+  for_each_section(result, [&](const BudgetSection& section, std::size_t tests, std::size_t missed,
+                               const std::string& cases) {
+    suites += fmt::format(
+        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\" "
+        "time=\"0\">\n{}  </testsuite>\n",
+        xml(section.name), tests, missed, cases);
+  });
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuites name=\"leviosim check\" tests=\"{}\" failures=\"{}\" errors=\"0\" "
+      "time=\"0\">\n{}</testsuites>\n",
+      result.findings.size(), result.missed(), suites);
+}
+
+std::string markdown_comment(const CheckResult& result, const RunRecord& run,
+                             const RunRecord* baseline) {
+  std::string text =
+      fmt::format("### leviosim: {}\n\n",
+                  result.missed() == 0
+                      ? result.warned() == 0 ? "all limits are met" : "met, with warnings"
+                      : fmt::format("{} of {} limits {} not met", result.missed(),
+                                    result.findings.size(), result.missed() == 1 ? "is" : "are"));
+  for (const RunVerdict& verdict : verdicts(run).list)
+    text += fmt::format("- **{}**: {}{}\n", verdict.about, markdown(std::string(verdict.word())),
+                        verdict.reason().empty() ? "" : ": " + markdown(verdict.reason()));
+  for (const Finding& f : result.findings) {
+    if (f.met) continue;
+    text += fmt::format("\n**{} {}**: {}\n", f.fails() ? "✗" : "⚠", markdown(f.title()),
+                        markdown(f.excess()));
+    if (!f.where.empty()) text += fmt::format("- where: {}\n", markdown(f.where));
+    for (const std::string& why : f.why) text += fmt::format("- why: {}\n", markdown(why));
+    if (!f.limit->owner.empty()) text += fmt::format("- owner: {}\n", markdown(f.limit->owner));
+  }
+  for (const Finding& f : result.findings)
+    if (f.better())
+      text +=
+          fmt::format("\n**✓ {}**: {}, {:.2f} % better than the baseline\n", markdown(f.title()),
+                      figure_text(*f.value, f.unit, f.limit->bound), *f.better());
+  if (result.better() > 0 && result.is_kept)
+    text += "\nThe baseline is stale: these limits do not hold what was won.\n";
+  if (baseline != nullptr)
+    text += fmt::format("\n<details><summary>What moved against {}</summary>\n\n{}\n</details>\n",
+                        markdown(baseline->name),
+                        comparison_report(compare_runs(*baseline, run), ReportFormat::markdown));
+  TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"bound"}});
+  for (const Finding& f : result.findings)
+    table.add({f.met       ? "met"
+               : f.fails() ? "**not met**"
+                           : "warning",
+               f.title(), f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–",
+               f.bound ? figure_text(*f.bound, f.unit, f.limit->bound) : "–"});
+  return text + fmt::format("\n<details><summary>All {} limits</summary>\n\n{}\n</details>\n",
+                            result.findings.size(), table.markdown());
+}
+
+std::string github_annotations(const CheckResult& result) {
+  const auto escaped = [](const std::string& text, bool property) {
+    std::string out;
+    for (const char c : text) {
+      const bool special =
+          c == '%' || c == '\r' || c == '\n' || (property && (c == ':' || c == ','));
+      out += special ? fmt::format("%{:02X}", static_cast<unsigned char>(c)) : std::string(1, c);
+    }
+    return out;
+  };
+  std::string text;
+  for (const Finding& f : result.findings)
+    if (!f.met)
+      text += fmt::format("::{} file={},line={},title={}::{}\n", f.fails() ? "error" : "warning",
+                          escaped(printable(f.limit->file), true), f.limit->line,
+                          escaped(printable(f.title()), true), escaped(message(f), false));
+  return text;
+}
+
+std::string gitlab_report(const CheckResult& result) {
+  Json list = Json::array();
+  for (const Finding& f : result.findings) {
+    if (f.met) continue;
+    Json& entry = list.emplace_back(Json::object());
+    std::string description = f.title() + ": " + f.excess();
+    if (!f.where.empty()) description += "; " + f.where;
+    for (const std::string& reason : f.why) description += "; " + reason;
+    entry["description"] = printable(description);
+    entry["check_name"] = "leviosim budget";
+    // Of the limit, not of what was found: the same fault of two commits is the same one.
+    entry["fingerprint"] = base::sha256_of(f.section->name + '\n' + f.title());
+    entry["severity"] = f.fails() ? "major" : "info";
+    entry["location"]["path"] = f.limit->file;
+    entry["location"]["lines"]["begin"] = f.limit->line;
+  }
+  return json_text(list, 2) + '\n';
 }
 
 }  // namespace leviosim::tools

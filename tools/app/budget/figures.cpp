@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
@@ -223,9 +223,10 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
   for (const Unit& unit : known->units)
     if (unit.name == bound.unit) return bound.number * unit.factor / known->factor;
   if (bound.unit == "%")
-    fail(limit, fmt::format("'{}': per cent of what? A sign is missing: {} {}{:g} % is of the baseline",
-                            limit.text, bound.at_most ? "<=" : ">=", bound.at_most ? '+' : '-',
-                            bound.number));
+    fail(limit,
+         fmt::format("'{}': per cent of what? A sign is missing: {} {}{:g} % is of the baseline",
+                     limit.text, bound.at_most ? "<=" : ">=", bound.at_most ? '+' : '-',
+                     bound.number));
   std::vector<std::string> names;
   for (const Unit& unit : known->units) names.emplace_back(unit.name.empty() ? "none" : unit.name);
   fail(limit, fmt::format(
@@ -236,7 +237,8 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
 
 ShownUnit shown_unit(std::string_view statistic_unit) {
   const StatisticUnit* known = find_unit(statistic_unit);
-  return known == nullptr ? ShownUnit{statistic_unit, 1} : ShownUnit{known->shown_unit, known->shown};
+  return known == nullptr ? ShownUnit{statistic_unit, 1}
+                          : ShownUnit{known->shown_unit, known->shown};
 }
 
 std::string figure_text(double value, std::string_view statistic_unit) {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/app/budget/limit.h"
+#include "tools/app/budget/budget.h"
 #include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {

@@ -7,7 +7,8 @@
 #include "sim/base/input_file.h"
 #include "tools/app/budget/baseline.h"
 #include "tools/app/budget/check_report.h"
-#include "tools/app/cli/limit_not_met.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/measured.h"
 
 namespace leviosim::tools {
@@ -28,15 +29,12 @@ RunRecord read_run_or_baseline(const std::string& name, const RecordOptions& chi
 }
 
 void add_gate_options(CLI::App& command, GateOptions& options) {
-  command.add_option("--budget", options.budget, "limits that the run has to meet")
-      ->type_name("FILE");
-  command
-      .add_option("--baseline", options.baseline,
-                  "what limits with a sign are relative to: a run, or what budget record printed")
-      ->type_name("RUN|FILE.json");
-  command
-      .add_option("--allow", options.allow, "differences of the baseline's input that are meant")
-      ->type_name("chip,data,frames,profile,seed,size");
+  const TextOptions add{command};
+  add("--budget", options.budget, "FILE", "limits that the run has to meet");
+  add("--baseline", options.baseline, "RUN|FILE.json",
+      "what limits with a sign are relative to: a run, or what budget record printed");
+  add("--allow", options.allow, "chip,data,frames,profile,seed,size",
+      "differences of the baseline's input that are meant");
 }
 
 Gate::Gate(const GateOptions& options, const RecordOptions& chip)

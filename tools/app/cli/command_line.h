@@ -25,6 +25,18 @@ struct Command {
   std::vector<OldSpelling> old_spellings{};
 };
 
+/// Declares options that take text: names, where it goes, what stands for it in the help, help. Those
+/// of lists are repeatable. @param split  whether values of a list may be one word, "1,2,3"
+struct TextOptions {
+  CLI::App& command;
+  std::string group{};  ///< heading in the help
+
+  void operator()(const std::string& names, std::string& value, const std::string& type,
+                  const std::string& help) const;
+  void operator()(const std::string& names, std::vector<std::string>& values,
+                  const std::string& type, const std::string& help, bool split = false) const;
+};
+
 /// Puts command lines at the end of the command's help. All work as they stand in one folder: those
 /// of synth, of run, and then of the other commands in the order in which the program lists them
 /// (tests/system/examples_test.cpp).
@@ -45,5 +57,13 @@ std::int64_t parse_whole(const std::string& option, const std::string& text, std
 double parse_positive(const std::string& option, const std::string& text);
 /// @throws InputError if the option was not given
 void require(const CLI::App& command, const std::string& option, const std::string& expected);
+
+// The command line as others describe it: a manual page, and what shells complete. All of it
+// follows from what the commands declare.
+
+/// @param format  "man", "bash", "zsh" or "fish"
+/// @throws InputError for others
+std::string manual(const CLI::App& app, const std::vector<Command>& commands,
+                   const std::string& format);
 
 }  // namespace leviosim::tools

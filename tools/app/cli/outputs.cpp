@@ -1,9 +1,14 @@
 #include "tools/app/cli/outputs.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "sim/base/error.h"
+#include "sim/base/printable_text.h"
 #include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
 namespace {
@@ -29,7 +34,8 @@ void publish(outputs::OutputFolder& out, const Printout& report, const std::func
     is_written = true;
     return elsewhere;
   });
-  print(report, is_written ? std::vector<ShownPath>{{label, out.shown_path()}} : std::vector<ShownPath>());
+  print(report,
+        is_written ? std::vector<ShownPath>{{label, out.shown_path()}} : std::vector<ShownPath>());
   if (fault) throw InputError(*fault);
 }
 
@@ -63,6 +69,37 @@ void publish(std::initializer_list<FileOutput> files, const Printout& report) {
   }
   print(report, places);
   if (first_fault) throw InputError(*first_fault);
+}
+
+using Kind = ScreenPiece::Kind;
+
+Printout Printout::ending(std::string sentence, std::vector<std::string> commands) && {
+  conclusion = std::move(sentence);
+  next = std::move(commands);
+  return std::move(*this);
+}
+
+void add_json_option(CLI::App& command, bool& json) {
+  command.add_flag("--json", json, "print JSON instead of text");
+}
+
+void print(const Printout& printout, const std::vector<ShownPath>& places) {
+  for (const std::string& part : printout.parts)
+    print_piece(printout.is_all ? Kind::document : Kind::details, part);
+  for (const ShownPath& place : places)
+    if (!printout.is_whole)
+      print_piece(Kind::kept, fmt::format("{}: {}\n", place.label, printable(place.path)));
+  if (!printout.conclusion.empty())
+    print_piece(Kind::kept, printout.conclusion + '\n');
+  if (!printout.next.empty())
+    print_piece(Kind::next, fmt::format("next: {}\n", fmt::join(printout.next, "\n      ")));
+  print_piece(Kind::commands, printout.ci_commands);
+}
+
+void expect_json_or_budget(bool json, const std::string& budget) {
+  if (json && !budget.empty())
+    throw InputError(
+        "--json and --budget both print to stdout; leave out one (leviosim check --json RUN)");
 }
 
 }  // namespace leviosim::tools

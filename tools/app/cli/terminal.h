@@ -1,18 +1,65 @@
-// All that leviosim prints. stdout has results, stderr one line per error; progress is in
-// progress_line.h. Results are kept until the command ends, and then shown as a screen of 24 lines
-// (screen.h), or all of them with --all, or as many lines as LINES in the environment says (0: all).
+// All that leviosim prints. stdout has results, stderr one line per error, and progress.
+// Results are kept until the command ends, and then shown as a screen of 24 lines,
+// or all of them with --all, or as many lines as LINES in the environment says (0: all).
 // They are coloured on a terminal only, and not where NO_COLOR is set (no-color.org). Nothing raw
 // leaves: control characters and bytes that are no UTF-8 are escaped (sim/base/printable_text.h).
 // Newlines and tabs of results stay, so texts from outside are made printable() where they enter a
 // result. No line is a command for a server of CI.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
-
-#include "tools/app/cli/screen.h"
+#include <vector>
 
 namespace leviosim::tools {
+
+// What a command shows people: one screen, so that nothing of it scrolls away. Details, such as
+// tables, give up lines for that, the longest of them first; what came out and what to do next
+// stays. And how text is fitted into lines.
+
+inline constexpr int kScreenLines = 24;
+inline constexpr int kScreenColumns = 80;
+
+struct ScreenPiece {
+  enum class Kind {
+    details,   ///< gives way
+    kept,      ///< stays
+    next,      ///< stays, below these; of several, the last
+    document,  ///< is for programs, too: all of it, whatever the screen
+    commands,  ///< is for a server of CI: behind all others
+  };
+  Kind kind;
+  std::string text;
+};
+
+/// The pieces in the order in which they are shown. Lines of details and of what is kept are broken
+/// between words where they are too wide, and so many lines of details left out that all fit:
+/// "… N more lines: --all shows them" stands in their place. Details keep their first lines.
+/// @param lines  of the screen; 0: any number, and of any width
+std::vector<ScreenPiece> on_screen(std::vector<ScreenPiece> pieces, int lines, int columns);
+
+/// Of text that may be as wide as it likes.
+inline constexpr int kAnyWidth = std::numeric_limits<int>::max();
+
+/// Columns that tables may take where no width is asked for: any, until the program says what is
+/// there.
+int table_width();
+void set_table_width(int columns);
+
+/// Columns that text takes on a terminal: code points of UTF-8.
+int display_width(std::string_view text);
+
+/// Cut to so many columns, with "…" at the end.
+std::string shortened(const std::string& text, int width);
+
+/// `items` joined by `separator`. Where a line would exceed `width` columns, a line break and
+/// `indent` blanks stand in its place; the first line is taken to begin at column `indent`.
+std::string wrap(const std::vector<std::string>& items, std::string_view separator, int indent,
+                 int width);
 
 /// For stdout, once the command ends.
 void print_piece(ScreenPiece::Kind kind, std::string text);
@@ -34,5 +81,49 @@ std::string coloured_lines(std::string_view text);
 
 /// "leviosim: MESSAGE" on one line of stderr, whatever the message holds.
 void print_error(std::string_view message);
+
+// Progress on stderr: one line that is rewritten if stderr is a terminal, else ten lines in all, so
+// that logs stay short. stdout is left to results. A stderr that cannot be written is no fault.
+
+class ProgressLine {
+ public:
+  enum class Style { None, Lines, Rewritten };
+
+  /// What suits stderr; nothing if `quiet`.
+  static Style style_of_stderr(bool quiet);
+
+  explicit ProgressLine(Style style);
+  /// Leaves a clean line behind.
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Shows `text` if it is time to: several times a second on a terminal, else at every tenth.
+  void show(std::int64_t done, std::int64_t total, const std::function<std::string()>& text);
+  /// Removes the rewritten line.
+  void clear();
+
+  double host_seconds() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Style style_;
+  Clock::time_point begin_;
+  Clock::time_point last_shown_;
+  std::int64_t last_tenth_ = 0;
+  bool visible_ = false;
+};
+
+/// "0:01:13"
+std::string duration_text(double seconds);
+
+/// " · done in 0:01:13", if the rest takes as long as what is done; empty before the first and
+/// after the last.
+std::string time_left_text(std::int64_t done, std::int64_t total, double host_seconds);
+
+/// "frame 123/300 · simulated 6.15 s · 42 frames/s · done in 0:00:04"
+std::string frame_progress(std::int64_t done, std::int64_t total, std::int64_t simulated_ns,
+                           double host_seconds);
 
 }  // namespace leviosim::tools

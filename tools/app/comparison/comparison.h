@@ -99,4 +99,14 @@ struct Leaf {
 /// All of them, the largest difference first. What is absent in a run counts as 0.
 std::vector<Leaf> leaves_by_difference(const ComparedQuantity& whole);
 
+// The difference of the cycles of a stage in two runs, split by mechanism, by fork and by cause.
+// What the parts leave over stands in a part of its own, "rest", so that all adds up.
+
+/// @param frames_a,frames_b  that the cycles are divided by
+ComparedQuantity split_by_mechanism(const StageParts* a, const StageParts* b, double frames_a,
+                                    double frames_b);
+ComparedQuantity split_by_fork(const StageParts* a, const StageParts* b, double frames_a,
+                               double frames_b);
+Causes split_by_cause(const StageParts* a, const StageParts* b, double frames_a, double frames_b);
+
 }  // namespace leviosim::tools

@@ -10,7 +10,6 @@
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/comparison/comparison_files.h"
-#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

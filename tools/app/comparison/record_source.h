@@ -1,12 +1,14 @@
 // The runs that a command line names: folders of runs, or recorded work that is replayed on a chip.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "tools/app/comparison/run_record.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/result/run_figures.h"
+#include "tools/app/run/run_request.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace CLI {
@@ -49,5 +51,14 @@ Manifest manifest_of_recording(const traces::WorkTrace& trace);
 /// The replay of a trace, with `overrides` of the chip of the recording or of options.platform.
 RunRecord replay_record(const std::string& trace, const RecordOptions& options,
                         RunFiles* files = nullptr);
+
+// Frames and positions as the files of a run folder have them.
+
+/// The rows of frames.csv; those of a native run have no times.
+/// @throws InputError for a table that cannot be read
+std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const std::string& csv);
+
+/// The rows of errors.csv. @throws InputError for a table that cannot be read
+std::vector<PositionPair> read_positions(const std::filesystem::path& file, const std::string& csv);
 
 }  // namespace leviosim::tools

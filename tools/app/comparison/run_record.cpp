@@ -7,7 +7,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/outputs/output_record.h"
-#include "tools/app/comparison/recorded_frames.h"
+#include "tools/app/comparison/record_source.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/summary.h"
 
@@ -36,8 +36,9 @@ void check_format(const std::string& where, const Json& document, const char* fo
     throw InputError(fmt::format("{}: no {}", where, format));
   const int version = document.value("version", 0);
   if (version != known)
-    throw InputError(fmt::format("{}: {} of version {}; this leviosim reads version {}: run it again",
-                                 where, format, version, known));
+    throw InputError(
+        fmt::format("{}: {} of version {}; this leviosim reads version {}: run it again", where,
+                    format, version, known));
 }
 
 std::vector<std::pair<std::string, std::string>> digests(const Json& inputs) {

@@ -15,7 +15,6 @@
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/result/run_figures.h"
-#include "tools/app/run/manifest.h"
 #include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {

@@ -15,8 +15,7 @@
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison_report.h"
 #include "tools/app/history/trend.h"
-#include "tools/app/html_report/study_json.h"
-#include "tools/app/report/number_text.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

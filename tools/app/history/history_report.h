@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/app/budget/budget.h"
-#include "tools/app/cli/printout.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/history/history.h"
 
 namespace leviosim::tools {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/app/budget/explanation.h"
+#include "tools/app/budget/check.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison_report.h"
 

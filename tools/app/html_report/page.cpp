@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sim/base/check.h"
-#include "tools/app/html_report/page_parts.h"
 
 namespace leviosim::tools {
 namespace {
@@ -19,8 +18,9 @@ std::string_view part(std::string_view name) {
 /// In the order in which they use each other.
 std::string scripts() {
   std::string text;
-  for (const char* name : {"dom", "table", "charting", "figures", "frames", "stages", "memory",
-                           "energy", "trajectory", "runs", "compare", "check", "study", "history", "main"})
+  for (const char* name :
+       {"dom", "table", "charting", "figures", "frames", "stages", "memory", "energy", "trajectory",
+        "runs", "compare", "check", "study", "history", "main"})
     text += part(name);
   return text;
 }

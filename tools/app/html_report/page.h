@@ -3,8 +3,10 @@
 // policy forbids it. Same data, same bytes.
 #pragma once
 
+#include <span>
 #include <string>
 
+#include "sim/base/builtin_file.h"
 #include "tools/app/report/statistic_list.h"
 
 namespace leviosim::tools {
@@ -21,5 +23,11 @@ std::string html_escaped(const std::string& text);
 
 /// JSON that may stand in a <script>: no text of it can end the element.
 std::string script_json(const Json& json);
+
+// The files of page/, and the chart library with its licence, as part of the program; generated
+// when it is built (tools/embed.cmake).
+
+/// Sorted by path.
+std::span<const base::BuiltinFile> page_parts();
 
 }  // namespace leviosim::tools

@@ -7,16 +7,16 @@
 #include <algorithm>
 
 #include "tools/app/budget/check_report.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/printout.h"
 #include "tools/app/comparison/comparison_files.h"
 #include "tools/app/html_report/page.h"
 
 namespace leviosim::tools {
 
 void add_report_option(CLI::App& command, std::string& file) {
-  command.add_option("--report", file, "page to write, for a browser: one file, works offline")
-      ->type_name("FILE.html");
+  TextOptions{command}("--report", file, "FILE.html",
+                       "page to write, for a browser: one file, works offline");
 }
 
 std::optional<outputs::OutputFile> claimed_report(const std::string& file, bool replace,
@@ -35,12 +35,11 @@ Json runs_report(const std::vector<ReportedRun>& runs,
     if (std::find(profiles.begin(), profiles.end(), run.record.facts.profile) == profiles.end())
       profiles.push_back(run.record.facts.profile);
   const std::string title =
-      runs.size() == 1
-          ? fmt::format("{} on {}", runs.front().record.facts.profile,
-                        runs.front().record.facts.platform.empty()
-                            ? "the host"
-                            : runs.front().record.facts.platform)
-          : fmt::format("{} runs of {}", runs.size(), fmt::join(profiles, " and "));
+      runs.size() == 1 ? fmt::format("{} on {}", runs.front().record.facts.profile,
+                                     runs.front().record.facts.platform.empty()
+                                         ? "the host"
+                                         : runs.front().record.facts.platform)
+                       : fmt::format("{} runs of {}", runs.size(), fmt::join(profiles, " and "));
   Json data = report_json(title, std::move(list));
   for (const RunComparison& comparison : comparisons)
     data["comparisons"].push_back(comparison_json(comparison));

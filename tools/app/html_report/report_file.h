@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/outputs/output_file.h"
+#include "sim/outputs/output_folder.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/html_report/run_json.h"
+#include "tools/app/html_report/page_json.h"
 
 namespace CLI {
 class App;

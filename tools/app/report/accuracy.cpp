@@ -5,7 +5,7 @@
 #include <array>
 
 #include "tools/app/report/text_table.h"
-#include "traces/trajectories/attitude_error.h"
+#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::tools {
 namespace {

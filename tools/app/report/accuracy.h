@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "tools/app/report/statistic_list.h"
-#include "traces/trajectories/attitude_error.h"
 #include "traces/trajectories/evaluation.h"
-#include "traces/trajectories/relative_error.h"
+#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::tools {
 

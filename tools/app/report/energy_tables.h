@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sim/energy/area.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/run_result.h"
 
@@ -18,5 +19,13 @@ std::string power_table(const RunResult& run, int width = table_width());
 
 /// Energy per frame and mean power at the ends of the supply's line, with the same cycles.
 std::string operating_point_table(const RunResult& run, int width = table_width());
+
+// What a chip occupies, part by part, as a table for terminals and as CSV.
+
+/// Parts with number, size, band and share; then cluster and chip. The chip must have areas.
+std::string area_table(const sim::ChipConfig& chip, int width = table_width());
+
+/// The same rows, in um2.
+std::string area_csv(const sim::ChipConfig& chip);
 
 }  // namespace leviosim::tools

@@ -8,7 +8,6 @@
 #include "sim/energy/area.h"
 #include "tools/app/report/accuracy.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"

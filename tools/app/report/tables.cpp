@@ -11,7 +11,7 @@
 #include "sim/base/printable_text.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/report/energy_tables.h"
-#include "tools/app/report/number_text.h"
+#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {

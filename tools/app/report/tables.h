@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/app/report/frame_tables.h"
+#include "tools/app/report/run_summary.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/run_result.h"
 

@@ -50,7 +50,8 @@ std::string TextTable::markdown() const {
     std::string text = "|";
     for (const std::string& cell : cells) {
       text += ' ';
-      for (const char c : cell) text += c == '|' || c == '\\' ? std::string{'\\', c} : std::string{c};
+      for (const char c : cell)
+        text += c == '|' || c == '\\' ? std::string{'\\', c} : std::string{c};
       text += " |";
     }
     return text + '\n';
@@ -118,6 +119,10 @@ std::string TextTable::str(int width) const {
   text += '\n';
   for (const auto& row : rows_) text += line(row, widths);
   return text;
+}
+
+std::string figure_text(std::optional<double> value, int decimals, std::string_view otherwise) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : std::string(otherwise);
 }
 
 }  // namespace leviosim::tools

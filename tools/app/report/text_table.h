@@ -1,10 +1,13 @@
 // Text in aligned columns for terminals.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "tools/app/cli/screen.h"
+#include "sim/base/units.h"
+#include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
 
@@ -43,5 +46,17 @@ class TextTable {
 
 inline constexpr auto kLeft = TextTable::Align::Left;
 inline constexpr auto kRight = TextTable::Align::Right;
+
+// Numbers as text for tables.
+
+/// What stands in a cell of which nothing is known.
+inline constexpr const char* kNothing = "–";
+
+/// With so many decimals; `otherwise` for what does not exist.
+std::string figure_text(std::optional<double> value, int decimals,
+                        std::string_view otherwise = kNothing);
+
+/// A clock in MHz.
+inline double megahertz(Hertz clock) { return static_cast<double>(clock.count()) / 1e6; }
 
 }  // namespace leviosim::tools

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "tools/app/report/statistics.h"
-#include "tools/app/run/replay.h"
+#include "tools/app/run/trace_source.h"
+#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
 
@@ -17,5 +18,10 @@ std::string replay_csv(const Replay& replay);
 
 /// For the manifest: what was recorded, and the digest of the trace.
 Json recording_json(const traces::WorkTrace& trace, const std::string& sha256);
+
+// What a work trace holds, for people.
+
+/// Reads all frames. @throws InputError for what cannot be replayed
+std::string trace_summary(const traces::WorkTrace& trace);
 
 }  // namespace leviosim::tools

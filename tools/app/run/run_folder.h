@@ -1,7 +1,7 @@
 // The files that a run leaves behind. Same inputs, same bytes, except the member "host" of
 // manifest.json.
 //
-//   manifest.json    what the run was made from (manifest.h)
+//   manifest.json    what the run was made from
 //   platform.yaml    the resolved platform, overrides included; loads as a platform file
 //   stats.json       every statistic with name, unit and description (statistics.h)
 //   stages.csv       a row per stage: calls, cycles, breakdown on N cores and on one, operations
@@ -17,14 +17,55 @@
 // A platform without energy figures leaves no energy.csv.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "sim/outputs/output_folder.h"
+#include "tools/app/report/statistics.h"
 #include "tools/app/result/run_result.h"
-#include "tools/app/run/manifest.h"
+#include "traces/datasets/dataset.h"
 
 namespace leviosim::tools {
+
+// What a run was made from: enough to repeat it, and to see that two runs had the same inputs.
+
+// SHA-256 of the inputs of a run, for its manifest.
+
+struct InputDigest {
+  std::string name;  ///< relative to the data folder
+  std::int64_t bytes = 0;
+  std::string sha256;
+};
+
+/// @throws InputError if the file cannot be read
+InputDigest digest_of_file(const std::filesystem::path& file);
+
+/// The text files of the streams that a run reads, and its frames as one: the concatenation of
+/// their image files. @throws InputError for files that cannot be read
+std::vector<InputDigest> digest_inputs(const traces::Dataset& data);
+
+/// Of manifests, and so of run folders: the one that is written and read. It rises when a file of
+/// the folder gets other columns.
+inline constexpr int kManifestVersion = 2;
+
+struct Manifest {
+  std::vector<std::string> command_line;  ///< words as typed
+  std::uint32_t seed = 1;                 ///< of the workload
+  std::string platform;                   ///< as requested; empty for a native run
+  std::vector<std::string> overrides;     ///< of platform parameters
+  std::vector<std::string> workload;      ///< its parameters that were set, "workload.window=6"
+  std::string data;                       ///< folder that was read, or "synthetic"
+  std::size_t first_frame = 0;            ///< index in the folder
+  std::vector<InputDigest> inputs;
+  Json recording;  ///< of a replay: what its trace says about the run that was recorded
+};
+
+/// The content of manifest.json. Its member "host" is the only part of a run folder that differs
+/// between two runs of the same program on the same inputs.
+Json manifest_json(const Manifest& manifest, const RunResult& run);
 
 inline constexpr const char* kWorkTraceFile = "work.trace";
 inline constexpr const char* kReplayFile = "replay.csv";

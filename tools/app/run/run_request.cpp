@@ -1,8 +1,20 @@
 #include "tools/app/run/run_request.h"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "platform_models/loader/schema.h"
 #include "sim/base/error.h"
+#include "sim/base/input_file.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/run/workload.h"
+#include "traces/work_traces/work_memory.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 
@@ -46,6 +58,208 @@ vio::Profile profile_of(const RunRequest& request) {
   vio::set_parameters(request.workload, profile);
   check_together(profile);
   return profile;
+}
+
+namespace {
+
+constexpr std::int64_t kLargestSide = 16384;
+
+/// A native run has no chip, so options about one are a misunderstanding.
+void refuse_chip_options(const CLI::App& command, const RunOptions& options) {
+  const auto refuse = [](const std::string& option) {
+    throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
+  };
+  for (const char* option : {"--platform", "--cores", "--record", "--fps", "--deadline"})
+    if (command.count(option) > 0) refuse(option);
+  for (const std::string& text : split_overrides(options.overrides).chip) refuse("--set " + text);
+}
+
+void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
+  const TextOptions add{command};
+  add("--data", options.data, "DIR|synthetic",
+      "recording (EuRoC, TUM, KITTI), or the synthetic flight" + by_default);
+  add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
+  add("--profile", options.profile, "NAME", fmt::format("of the workload [{}]", options.profile));
+  add("--seed", options.seed, "N", "of the workload's random draws [1]");
+  command.add_flag("--quiet", options.quiet, "no progress");
+  command.get_option("--set")->description(
+      "parameter of the chip, or of the workload: workload.… (leviosim workload); repeatable");
+}
+
+/// What does not depend on the chip.
+RunRequest make_workload_request(const RunOptions& options) {
+  RunRequest request;
+  request.native = options.native;
+  if (options.seed.find(',') != std::string::npos)
+    throw InputError(fmt::format(
+        "--seed '{0}': a run has one seed; expected a whole number, or a sweep with the points "
+        "grid: {{ seed: [{0}] }} (leviosim sweep --help)",
+        options.seed));
+  request.seed = static_cast<std::uint32_t>(
+      parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
+  request.profile = options.profile;
+  vio::profile_named(options.profile, request.seed);  // refuses unknown names
+  request.workload = parse_workload_overrides(split_overrides(options.overrides).workload);
+  request.image_size = parse_size(options.size);
+  if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
+  return request;
+}
+
+/// What waits is bounded by the memory for it.
+double parse_initial_delay(const std::string& text, const RunRequest& request) {
+  if (text.empty()) return 0;
+  constexpr double kLongest = 10;
+  const double seconds = parse_positive("--initial-delay", text);
+  if (seconds > kLongest)
+    throw InputError(fmt::format("--initial-delay '{}': expected at most {:g} s", text, kLongest));
+  if (!profile_of(request).alignment.enabled)
+    throw InputError(fmt::format(
+        "--initial-delay: profile '{}' has no initialisation that would correct poses; expected "
+        "--profile next",
+        request.profile));
+  return seconds;
+}
+
+void resolve_chip(const RunOptions& options, RunRequest& request) {
+  request.platform =
+      platform::resolve_platform(options.platform, split_overrides(options.overrides).chip);
+  request.cores = cores_of(options, request.platform.config.cluster);
+}
+
+}  // namespace
+
+void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
+  const TextOptions add{command};
+  add("--platform", options.platform, "NAME|FILE",
+      "chip: a name (leviosim platforms) or a file" + by_default);
+  add("-p,--set", options.overrides, "PATH=VALUE", "parameter of the chip; repeatable");
+  add("--cores", options.cores, "N", "worker cores [the chip's]");
+}
+
+void add_out_options(CLI::App& command, RunOptions& options) {
+  TextOptions{command}("--out", options.out, "DIR", "folder for the results; must be new or empty");
+  command.add_flag("--force", options.force, "replace the results of an earlier run");
+}
+
+int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster) {
+  if (options.cores.empty()) return cluster.workers;
+  return static_cast<int>(
+      parse_whole("--cores", options.cores, 1, cluster.max_workers,
+                  ", the chip's cluster.max_workers (-p cluster.max_workers=N sets it)"));
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  const TextOptions add{command};
+  add_chip_options(command, options, " [gap9]");
+  command.add_flag("--native", options.native, "no chip, no timing: the golden model");
+  add_workload_options(command, options, " [synthetic]");
+  add("--size", options.size, "WxH", "image size [160x120]");
+  add("--fps", options.camera_fps, "F",
+      "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
+  add("--deadline", options.deadline, "drop|queue",
+      "closed loop: what becomes of a frame that finds the front end busy [drop]");
+  add("--initial-delay", options.initial_delay, "S",
+      "seconds that the first poses may wait for the initialisation, which corrects them [0]");
+  command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
+  add_out_options(command, options);
+  command.get_option("--out")->description(
+      "folder for the results; must be new or empty [leviosim-run, or with the next free number]");
+}
+
+void set_run_defaults(RunOptions& options) {
+  if (options.platform.empty() && !options.native) options.platform = "gap9";
+  if (options.data.empty()) options.data = "synthetic";
+  const std::string name = "leviosim-run";
+  if (!options.out.empty()) return;
+  options.out = name;
+  for (int n = 2; base::exists(options.out); ++n) options.out = fmt::format("{}-{}", name, n);
+}
+
+void add_chip_run_options(CLI::App& command, RunOptions& options) {
+  options.platform = "gap9";
+  options.data = "synthetic";
+  add_chip_options(command, options, " [gap9]");
+  add_workload_options(command, options, " [synthetic]");
+}
+
+std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline) {
+  if (fps.empty() && deadline.empty()) return std::nullopt;
+  CameraRequest camera;
+  if (!fps.empty()) camera.fps = parse_positive("--fps", fps);
+  if (!deadline.empty()) camera.deadline = soc::parse_deadline(deadline);
+  return camera;
+}
+
+traces::ImageSize parse_size(const std::string& text) {
+  const auto x = text.find('x');
+  if (x == std::string::npos)
+    throw InputError(fmt::format("--size '{}': expected WxH, e.g. 160x120", text));
+  const auto side = [](const std::string& digits) {
+    return static_cast<int>(parse_whole("--size", digits, 1, kLargestSide));
+  };
+  return {side(text.substr(0, x)), side(text.substr(x + 1))};
+}
+
+RunRequest make_request(const CLI::App& command, const RunOptions& options) {
+  RunRequest request = make_workload_request(options);
+  request.initial_delay_s = parse_initial_delay(options.initial_delay, request);
+  if (options.native) {
+    refuse_chip_options(command, options);
+  } else {
+    resolve_chip(options, request);
+    request.camera = parse_camera(options.camera_fps, options.deadline);
+    const bool waits = request.initial_delay_s > 0 || profile_of(request).initial_frames > 0;
+    if (waits && options.record)
+      throw InputError(
+          "run: --record keeps poses as they were when their frames were processed; leave out "
+          "--initial-delay and workload.initialisation.frames");
+    if (request.camera && options.record)
+      throw InputError(
+          "run: --record is for open loops, whose trace holds the work of every frame; with "
+          "--fps or --deadline, frames are dropped as the chip's speed has it");
+  }
+  return request;
+}
+
+RunRequest make_chip_request(const RunOptions& options) {
+  RunRequest request = make_workload_request(options);
+  resolve_chip(options, request);
+  return request;
+}
+
+namespace {
+
+constexpr double kLeast = 1 << 20;
+constexpr double kMost = 1024.0 * (1 << 30);
+constexpr std::array kLargeUnits{platform::Unit{"GB", 1e9}, platform::Unit{"GiB", 1 << 30}};
+
+/// In bytes; 0 for no unit of a size.
+double factor_of(std::string_view unit) {
+  if (const platform::Unit* known = platform::kSize.find(unit)) return known->factor;
+  const auto large = std::find_if(kLargeUnits.begin(), kLargeUnits.end(),
+                                  [&](const platform::Unit& u) { return u.name == unit; });
+  return large == kLargeUnits.end() ? 0 : large->factor;
+}
+
+}  // namespace
+
+void add_memory_option(CLI::App& command, std::string& text) {
+  TextOptions{command}(
+      "--max-memory", text, "SIZE",
+      fmt::format("memory that a trace may take, such as 2GiB [{}]",
+                  traces::memory_text(static_cast<std::uint64_t>(traces::kTraceMemory.count()))));
+}
+
+Bytes trace_memory(const std::string& text) {
+  if (text.empty()) return traces::kTraceMemory;
+  const auto measure = platform::split_measure(text);
+  const double bytes = measure ? measure->number * factor_of(measure->unit) : 0;
+  if (!(bytes >= kLeast && bytes <= kMost))
+    throw InputError(
+        fmt::format("--max-memory '{}': expected a size from 1 MiB to 1024 GiB in {}, GB or GiB, "
+                    "such as 2GiB",
+                    text, platform::kSize.unit_names()));
+  return Bytes(static_cast<std::int64_t>(bytes));
 }
 
 }  // namespace leviosim::tools

@@ -10,8 +10,8 @@
 #include "sim/base/error.h"
 #include "sim/soc/simulation.h"
 #include "sim/work/memory_overflow.h"
-#include "tools/app/run/recording_source.h"
-#include "tools/app/run/time_bands.h"
+#include "tools/app/run/range_bands.h"
+#include "tools/app/run/trace_source.h"
 #include "tools/app/run/workload.h"
 #include "workload/vio/odometry/odometry.h"
 

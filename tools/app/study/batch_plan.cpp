@@ -11,9 +11,9 @@
 #include "tools/app/cli/interrupts.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 
 namespace leviosim::tools {
 namespace {
@@ -53,13 +53,6 @@ std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan) {
 
 }  // namespace
 
-void add_list_option(CLI::App& command, const char* name, std::vector<std::string>& values,
-                     const char* type, const char* help, bool split) {
-  CLI::Option* option =
-      command.add_option(name, values, help)->type_name(type)->take_all()->allow_extra_args(false);
-  if (split) option->delimiter(',');
-}
-
 std::vector<std::uint32_t> batch_seeds(const std::vector<std::string>& words) {
   std::vector<std::uint32_t> seeds;
   for (const std::string& word : words)
@@ -84,19 +77,15 @@ std::vector<vio::Assignment> native_workload(const std::vector<std::string>& ove
 }
 
 void add_batch_options(CLI::App& command, BatchWords& words) {
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command.add_option(name, value, help)->type_name(type);
-  };
-  add_list_option(command, "--data", words.data, "[NAME=]DIR",
-                  "ASL/EuRoC folder of a sequence; repeatable. Folders of one name are pooled",
-                  false);
-  add_list_option(command, "--profile", words.profiles, "NAME,...",
-                  "of the workload [levio,levio-no-imu,levio-no-imu-no-epnp]", true);
-  add_list_option(command, "--size", words.sizes, "WxH,...", "image sizes [160x120]", true);
-  add_list_option(command, "--seed", words.seeds, "N,...", "of the workload's random draws [1,2,3]",
-                  true);
-  add_list_option(command, "-p,--set", words.overrides, "PATH=VALUE",
-                  "parameter of the workload in every run (leviosim workload); repeatable", false);
+  const TextOptions add{command};
+  add("--data", words.data, "[NAME=]DIR",
+      "ASL/EuRoC folder of a sequence; repeatable. Folders of one name are pooled");
+  add("--profile", words.profiles, "NAME,...",
+      "of the workload [levio,levio-no-imu,levio-no-imu-no-epnp]", true);
+  add("--size", words.sizes, "WxH,...", "image sizes [160x120]", true);
+  add("--seed", words.seeds, "N,...", "of the workload's random draws [1,2,3]", true);
+  add("-p,--set", words.overrides, "PATH=VALUE",
+      "parameter of the workload in every run (leviosim workload); repeatable");
   add("--frames", words.frames, "A:B", "frames, B exclusive [all]");
   add("--align", words.align, "KIND", "se3, sim3, posyaw or none [se3]");
   add("--relative", words.relative, "M", "length of sub-trajectories in metres [40]");

@@ -9,8 +9,8 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/study/point.h"
 #include "tools/app/study/run_outcome.h"
-#include "tools/app/study/sequence.h"
 
 namespace CLI {
 class App;
@@ -47,10 +47,6 @@ struct BatchPlan {
   std::shared_ptr<outputs::OutputFolder> out;  ///< for the results
   RunnerOptions runner;
 };
-
-/// Declares an option that is repeatable. @param split  whether its values may be one word, "1,2,3"
-void add_list_option(CLI::App& command, const char* name, std::vector<std::string>& values,
-                     const char* type, const char* help, bool split);
 
 /// What --seed, --profile and -p of native runs were given. @throws InputError naming the option
 std::vector<std::uint32_t> batch_seeds(const std::vector<std::string>& words);

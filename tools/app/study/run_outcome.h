@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/result/banded.h"
-#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/study/outcome.h"
 #include "tools/app/study/point.h"
 #include "tools/app/study/runner.h"
-#include "traces/trajectories/alignment.h"
-#include "traces/trajectories/end_drift.h"
-#include "traces/trajectories/scale_windows.h"
+#include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
+#include "traces/trajectories/trajectory_errors.h"
 #include "workload/vio/frame_facts.h"
 
 namespace leviosim::tools {
@@ -82,5 +82,20 @@ std::vector<RunOutcome> run_outcomes(const std::vector<Point>& points, const Mea
 std::vector<std::vector<RunOutcome>> by_row(const std::vector<Point>& points,
                                             const std::vector<RunOutcome>& outcomes,
                                             std::size_t rows);
+
+// The runs of a study of accuracy as a tidy CSV: a row per run.
+
+struct FinishedRun {
+  const Point& point;
+  const RunOutcome& outcome;
+};
+using RunColumns = base::CsvTable<FinishedRun>;
+
+/// @param columns  those before the others, such as the values of a sweep
+std::string runs_csv(const std::vector<Point>& points, const std::vector<RunOutcome>& outcomes,
+                     const Measure& how, RunColumns columns = {});
+
+/// Text of others as a cell that needs no quotes: what would end it becomes a blank.
+std::string plain_cell(std::string text);
 
 }  // namespace leviosim::tools

@@ -48,7 +48,7 @@ void show(ProgressLine& line, const std::string& noun, const Tally& tally) {
 }  // namespace
 
 void add_jobs_option(CLI::App& command, std::string& jobs, const std::string& noun) {
-  command.add_option("--jobs", jobs, noun + "s at a time [cores of the host]")->type_name("N");
+  TextOptions{command}("--jobs", jobs, "N", noun + "s at a time [cores of the host]");
 }
 
 unsigned parse_jobs(const std::string& jobs) {
@@ -57,10 +57,8 @@ unsigned parse_jobs(const std::string& jobs) {
 
 void add_runner_options(CLI::App& command, RunnerWords& words, const std::string& noun) {
   add_jobs_option(command, words.jobs, noun);
-  command
-      .add_option("--cache", words.cache,
-                  fmt::format("where finished {}s are cached [user's cache]", noun))
-      ->type_name("DIR");
+  TextOptions{command}("--cache", words.cache, "DIR",
+                       fmt::format("where finished {}s are cached [user's cache]", noun));
 }
 
 RunnerOptions runner_options(const RunnerWords& words, const std::string& noun, bool quiet) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/cli/progress_line.h"
-#include "tools/app/study/outcome_cache.h"
+#include "tools/app/cli/terminal.h"
+#include "tools/app/study/outcome.h"
 
 namespace CLI {
 class App;

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "tools/app/timeline/core_waits.h"
-
 namespace leviosim::tools {
 namespace {
 

@@ -16,7 +16,7 @@
 #include "sim/events/timebase.h"
 #include "sim/work/program.h"
 #include "tools/app/result/run_result.h"
-#include "traces/datasets/frame_range.h"
+#include "traces/datasets/dataset.h"
 
 namespace leviosim::tools {
 
@@ -44,7 +44,7 @@ enum class StepKind : std::uint8_t {
   Fork,      ///< the team works, maybe with the master
   Transfer,  ///< the master programs the DMA, and waits for it unless it goes on in the background
   Wait,      ///< … waits for a transfer in the background
-  Several,   ///< steps that were joined (short_steps.h)
+  Several,   ///< steps that were joined (perfetto_timeline.h)
 };
 
 struct StepEvents {

@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "sim/chip/accelerator.h"
-#include "tools/app/report/plot/axes.h"
-#include "tools/app/report/plot/svg.h"
-#include "tools/app/result/camera_figures.h"
+#include "tools/app/report/plot/plot.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/timeline/core_slices.h"
-#include "tools/app/timeline/core_waits.h"
 
 namespace leviosim::tools {
 namespace {

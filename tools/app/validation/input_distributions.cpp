@@ -7,7 +7,7 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/nearest.h"
-#include "tools/app/validation/builtin_references.h"
+#include "tools/app/validation/references.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::tools {

@@ -7,8 +7,7 @@
 #include <functional>
 
 #include "tools/app/result/summary.h"
-#include "tools/app/validation/paper_stages.h"
-#include "tools/app/validation/path_weights.h"
+#include "tools/app/validation/frame_log.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "tools/app/result/summary.h"
-#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
 namespace {

@@ -2,7 +2,7 @@
 // frames is said here and nowhere else:
 //
 //   compute.STAGE.single, .multi [kcycles]  mean over the frames that the average stands for
-//                                           (paper_stages.h), on one core and on N
+//                                           (frame_log.h), on one core and on N
 //   compute.STAGE.speedup [x]               one over the other
 //   compute.imu_preintegration.per_sample   mean on one core; the stage is serial
 //   compute.imu_preintegration.share [%]    of the front end's time on N cores

@@ -11,7 +11,6 @@
 #include "sim/base/check.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "tools/app/validation/builtin_references.h"
 
 namespace leviosim::tools {
 namespace {

@@ -5,9 +5,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "sim/base/builtin_file.h"
 
 namespace leviosim::tools {
 
@@ -64,5 +67,14 @@ std::string updated_references(const std::string& file, std::string_view text,
 
 /// The text of paper.csv.
 std::string_view paper_references_text();
+
+// tools/app/validation/published/*.csv as part of the program; generated when it is built
+// (tools/embed.cmake).
+
+/// Sorted by name.
+std::span<const base::BuiltinFile> builtin_references();
+
+/// The text of published/NAME.csv, which must be there.
+std::string_view reference_text(std::string_view name);
 
 }  // namespace leviosim::tools

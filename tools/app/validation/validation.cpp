@@ -7,7 +7,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
-#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
 namespace {
@@ -255,6 +255,15 @@ Json validation_json(const Validation& validation) {
                                  {"inside", band.is_inside()}});
   }
   return document;
+}
+
+RunOptions as_released(RunOptions options) {
+  if (options.profile != "levio") return options;
+  const std::string parameter = "workload.released=";
+  const bool said = std::any_of(options.overrides.begin(), options.overrides.end(),
+                                [&](const std::string& set) { return set.starts_with(parameter); });
+  if (!said) options.overrides.push_back(parameter + "on");
+  return options;
 }
 
 }  // namespace leviosim::tools

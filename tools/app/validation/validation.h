@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "tools/app/report/statistics.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/validation/frame_log.h"
 #include "tools/app/validation/input_distributions.h"
 #include "tools/app/validation/normalised.h"
-#include "tools/app/validation/path_weights.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
 
@@ -58,5 +59,12 @@ Validation validate(const RunResult& run, const FrameLog& log, const vio::Profil
 /// column says which.
 std::string validation_csv(const Validation& validation);
 Json validation_json(const Validation& validation);
+
+// How a run is set up that is compared with the paper.
+
+/// The paper's figures are of the released program, which does some things that cost accuracy
+/// (workload/PARAMETERS.md#defects-of-the-release). So does levio in such a run, unless the options
+/// say otherwise.
+RunOptions as_released(RunOptions options);
 
 }  // namespace leviosim::tools

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/app/report/number_text.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
 namespace {

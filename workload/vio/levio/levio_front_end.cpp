@@ -1,13 +1,9 @@
 #include "workload/vio/levio/levio_front_end.h"
 
-#include "workload/vio/keyframe_matching.h"
+#include "workload/vio/keyframes.h"
+#include "workload/vio/levio/frame_pose.h"
 #include "workload/vio/levio/keyframe_insertion.h"
-#include "workload/vio/levio/keyframe_matching.h"
-#include "workload/vio/levio/landmark_pose.h"
-#include "workload/vio/levio/two_view_pose.h"
 #include "workload/vio/levio/vision/extractor.h"
-#include "workload/vio/map_start.h"
-#include "workload/vio/parallax.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

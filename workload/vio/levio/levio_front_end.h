@@ -3,7 +3,7 @@
 #pragma once
 
 #include "workload/vio/frame.h"
-#include "workload/vio/front_end.h"
+#include "workload/vio/front_end_state.h"
 #include "workload/vio/inertial_part.h"
 #include "workload/vio/levio/geometry/sampling.h"
 

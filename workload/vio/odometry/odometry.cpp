@@ -6,7 +6,6 @@
 #include "workload/vio/levio/levio_front_end.h"
 #include "workload/vio/next/next_front_end.h"
 #include "workload/vio/odometry/back_end.h"
-#include "workload/vio/odometry/map_health.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

@@ -29,6 +29,12 @@ function axisTitle(column) {
   return column.unit ? `${column.title}, ${column.unit}` : column.title;
 }
 
+/** Logarithmic for positive values over more than two orders of magnitude. */
+function axisType(values) {
+  const [least, greatest] = [Math.min(...values), Math.max(...values)];
+  return least > 0 && greatest > 100 * least ? 'logarithmic' : 'linear';
+}
+
 function capital(text) {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
@@ -265,8 +271,8 @@ function scatterFigure(study) {
         options: {
           interaction: {mode: 'nearest', intersect: true},
           scales: {
-            x: {title: {display: true, text: axisTitle(column(xName))}},
-            y: {title: {display: true, text: axisTitle(column(yName))}}
+            x: {type: axisType(all.map((p) => p.x)), title: {display: true, text: axisTitle(column(xName))}},
+            y: {type: axisType(all.map((p) => p.y)), title: {display: true, text: axisTitle(column(yName))}}
           },
           plugins: {
             tooltip: {

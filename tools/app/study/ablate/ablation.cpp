@@ -1,6 +1,13 @@
 #include "tools/app/study/ablate/ablation.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <map>
+#include <set>
+
+#include "sim/base/printable_text.h"
+#include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -116,6 +123,198 @@ std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<
     for (const std::string& profile : plan.profiles)
       rows.push_back(mean_row(single, size, profile));
   return rows;
+}
+
+namespace {
+
+constexpr const char* kMean = "mean of them";
+constexpr const char* kDiverged = "diverged";
+
+std::string median_text(const Spread& spread, int count) {
+  if (spread.runs == 0) return kNothing;
+  return figure_text(spread.median, count, kDiverged);
+}
+
+/// With the image size if it is another.
+std::string paper_text(const std::optional<AblationRow::Paper>& paper, const AblationRow& row,
+                       int count) {
+  if (!paper) return kNothing;
+  const std::string text = figure_text(paper->value, count);
+  return size_text(paper->size) == size_text(row.size)
+             ? text
+             : fmt::format("{} ({})", text, size_text(paper->size));
+}
+
+/// Nothing for a mean, whose rows have spreads of their own.
+std::string range_text(const AblationRow& row, const Spread& spread, int count) {
+  if (row.sequence.empty() || spread.runs == 0 || !spread.low) return kNothing;
+  return fmt::format("{} … {}", figure_text(spread.low, count),
+                     figure_text(spread.high, count, kDiverged));
+}
+
+TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
+  TextTable table({{"sequence", kLeft},
+                   {"images", kRight, 1},
+                   {"profile", kLeft},
+                   {"runs", kRight, 3},
+                   {"absolute [m]"},
+                   {"least … greatest", kRight, 2},
+                   {"paper", kRight, 2},
+                   {fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
+                   {"least … greatest", kRight, 2},
+                   {"paper", kRight, 2},
+                   {"completion", kRight, 1}});
+  for (const AblationRow& row : rows)
+    table.add(
+        {row.sequence.empty() ? kMean : row.sequence, size_text(row.size), row.profile,
+         fmt::format("{}", row.ate.runs), median_text(row.ate, 3), range_text(row, row.ate, 3),
+         paper_text(row.paper_ate, row, 3), median_text(row.relative, 2),
+         range_text(row, row.relative, 2), paper_text(row.paper_relative, row, 2),
+         row.least_completion ? fmt::format("{:.1f} %", 100 * *row.least_completion) : kNothing});
+  return table;
+}
+
+std::vector<std::string> protocols_of(const std::string& sequence,
+                                      const std::vector<AblationRow>& rows) {
+  std::vector<std::string> all;
+  for (const AblationRow& row : rows)
+    if (row.sequence == sequence)
+      for (const std::string& protocol : row.protocols)
+        if (std::find(all.begin(), all.end(), protocol) == all.end()) all.push_back(protocol);
+  return all;
+}
+
+std::string notes(const BatchPlan& plan, const std::vector<AblationRow>& rows,
+                  const std::string& bullet) {
+  std::string text = fmt::format(
+      "{}absolute: {}; medians over seeds and folders of a sequence; completion: the least\n",
+      bullet, measure_text(plan.measure));
+  if (std::any_of(rows.begin(), rows.end(),
+                  [](const AblationRow& row) { return row.paper_ate.has_value(); }))
+    text += fmt::format(
+        "{}paper: its golden model on recorded images, with the parameters of least absolute error "
+        "over its sequences; in brackets the image size, if another\n",
+        bullet);
+  for (const vio::Assignment& a : plan.workload)
+    text += fmt::format("{}in every run: {}\n", bullet, a.text());
+  for (const std::string& name : sequence_names(plan))
+    for (const std::string& protocol : protocols_of(name, rows))
+      text += fmt::format("{}{}: {}\n", bullet, name, protocol);
+  return text;
+}
+
+Json paper_json(const std::optional<AblationRow::Paper>& paper) {
+  if (!paper) return nullptr;
+  return {{"value", rounded(paper->value)},
+          {"width", paper->size.width},
+          {"height", paper->size.height}};
+}
+
+Json spread_json(const Spread& spread, std::string_view unit,
+                 const std::optional<AblationRow::Paper>& paper) {
+  const auto value = [](std::optional<double> v) { return v ? rounded(*v) : Json(nullptr); };
+  return {{"unit", unit},
+          {"runs", spread.runs},
+          {"failed", spread.failed},
+          {"median", value(spread.median)},
+          {"low", value(spread.low)},
+          {"high", value(spread.high)},
+          {"paper", paper_json(paper)}};
+}
+
+/// A row of the table: an estimator with images of a size, and its errors by sequence.
+struct Estimator {
+  std::string name;
+  std::string images;
+  std::string loop_closure;
+  std::map<std::string, std::string> errors{};
+};
+
+/// The estimator among the rows, which it is added to if it is new.
+Estimator& row_for(std::vector<Estimator>& table, const Estimator& wanted) {
+  const auto it = std::find_if(table.begin(), table.end(), [&](const Estimator& e) {
+    return e.name == wanted.name && e.images == wanted.images &&
+           e.loop_closure == wanted.loop_closure;
+  });
+  return it != table.end() ? *it : table.emplace_back(wanted);
+}
+
+std::string metres(double value) { return fmt::format("{:.2f}", value); }
+
+}  // namespace
+
+std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
+  return table_of(plan, rows).str() + notes(plan, rows, "  ");
+}
+
+std::string ablation_conclusion(const std::vector<AblationRow>& rows) {
+  const AblationRow* best = nullptr;
+  for (const AblationRow& row : rows)
+    if (!row.sequence.empty() && row.ate.median &&
+        (best == nullptr || *row.ate.median < *best->ate.median))
+      best = &row;
+  if (best == nullptr) return "verdict: all diverged";
+  return fmt::format("in short: {} at {} on {} has the least absolute error, {:.3f} m, of {} rows",
+                     best->profile, size_text(best->size), printable(best->sequence),
+                     *best->ate.median, rows.size());
+}
+
+std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
+  return table_of(plan, rows).markdown() + '\n' + notes(plan, rows, "- ");
+}
+
+Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
+  Json document;
+  document["format"] = "leviosim ablation";
+  document["version"] = 1;
+  document["measure"] = measure_text(plan.measure);
+  document["rows"] = Json::array();
+  for (const AblationRow& row : rows)
+    document["rows"].push_back(
+        {{"sequence", row.sequence.empty() ? Json(nullptr) : Json(row.sequence)},
+         {"width", row.size.width},
+         {"height", row.size.height},
+         {"profile", row.profile},
+         {"ate", spread_json(row.ate, "m", row.paper_ate)},
+         {"relative", spread_json(row.relative, "%", row.paper_relative)},
+         {"relative_length_m", plan.measure.length_m},
+         {"completion", row.least_completion ? rounded(*row.least_completion) : Json(nullptr)},
+         {"protocols", row.protocols}});
+  return document;
+}
+
+std::string accuracy_comparison(const BatchPlan& plan, const std::vector<AblationRow>& rows,
+                                const std::vector<PaperAccuracy>& paper,
+                                const std::vector<OtherAccuracy>& others) {
+  std::set<std::string> published;
+  for (const OtherAccuracy& other : others) published.insert(other.sequence);
+  std::vector<std::string> sequences = sequence_names(plan);
+  std::erase_if(sequences, [&](const std::string& name) { return published.count(name) == 0; });
+  if (sequences.empty()) return {};
+  std::vector<Estimator> table;
+  for (const AblationRow& row : rows)
+    if (!row.sequence.empty())
+      row_for(table, {row.profile + ", here", size_text(row.size), "no"}).errors[row.sequence] =
+          row.ate.median ? metres(*row.ate.median) : "diverged";
+  for (const PaperAccuracy& p : paper)
+    if (p.profile == "levio" && p.figure == PaperAccuracy::Figure::ate &&
+        p.chosen_by == PaperAccuracy::Figure::ate)
+      row_for(table, {"LEVIO", size_text(p.size), "no"}).errors[p.sequence] = metres(p.value);
+  for (const OtherAccuracy& other : others)
+    row_for(table, {other.estimator, size_text(other.size), other.closes_loops ? "yes" : "no"})
+        .errors[other.sequence] = metres(other.ate_m);
+  std::vector<TextTable::Column> columns{
+      {"absolute [m]", TextTable::Align::Left}, {"images"}, {"loop closure"}};
+  for (const std::string& sequence : sequences) columns.push_back({sequence});
+  TextTable text(std::move(columns));
+  for (Estimator& row : table) {
+    std::vector<std::string> cells{row.name, row.images, row.loop_closure};
+    for (const std::string& sequence : sequences)
+      cells.push_back(row.errors.count(sequence) > 0 ? row.errors[sequence] : "–");
+    text.add(std::move(cells));
+  }
+  return '\n' + text.str() +
+         "  published: LEVIO's paper, over whole sequences; loop closure takes out the drift\n";
 }
 
 }  // namespace leviosim::tools

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/study/ablate/paper_accuracy.h"
+#include "tools/app/study/ablate/published_accuracy.h"
 #include "tools/app/study/batch_plan.h"
 #include "tools/app/study/spread.h"
 
@@ -37,5 +37,20 @@ std::vector<Point> ablation_runs(const BatchPlan& plan);
 std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
                                        const std::vector<RunOutcome>& outcomes,
                                        const std::vector<PaperAccuracy>& paper);
+
+// The rows of an ablation as text, Markdown and JSON.
+
+/// Beside the paper's values where it has such, with the protocol below.
+std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows);
+/// The row with the least absolute error, in a sentence.
+std::string ablation_conclusion(const std::vector<AblationRow>& rows);
+std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationRow>& rows);
+Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows);
+
+/// Absolute errors by sequence: those of the ablation, what the paper says of LEVIO, and others'.
+/// Empty if nothing was published of the ablation's sequences.
+std::string accuracy_comparison(const BatchPlan& plan, const std::vector<AblationRow>& rows,
+                                const std::vector<PaperAccuracy>& paper,
+                                const std::vector<OtherAccuracy>& others);
 
 }  // namespace leviosim::tools

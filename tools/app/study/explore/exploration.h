@@ -1,16 +1,41 @@
-// The paper's parameter sweep: points of the parameters (dimensions.h), each run with every profile
+// The paper's parameter sweep: points of the parameters, each run with every profile
 // over every sequence, condensed to a result per point and profile.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/study/batch_plan.h"
-#include "tools/app/study/explore/dimensions.h"
+#include "tools/app/study/run_outcome.h"
 #include "tools/app/study/spread.h"
+#include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
+
+// Which parameters of the workload an exploration varies, and the points that it looks at.
+
+struct Dimension {
+  const vio::Parameter* parameter;
+  double low, high;  ///< both included; whole numbers for whole parameters
+};
+
+/// The five of the paper's sweep, which states no ranges: window size, keyframe threshold, noise of
+/// the reprojection, noise of the IMU (gyroscope and accelerometer), updates of gravity. Numbers
+/// range from a quarter to four times the profile levio's.
+std::vector<Dimension> paper_dimensions();
+
+/// "workload.window=4:12"; toggles take no range: "workload.gravity_updates".
+/// @throws InputError for unknown parameters and ranges outside of what they can be
+Dimension parse_dimension(const std::string& text);
+
+/// Point 0 sets nothing: the profile as it is. The others set each dimension at random: whole
+/// numbers and toggles evenly, other numbers evenly over the orders of magnitude, to three digits.
+/// A point does not depend on how many there are.
+std::vector<std::vector<vio::Assignment>> sample_points(const std::vector<Dimension>& dimensions,
+                                                        std::size_t count, std::uint64_t seed);
 
 /// A point with one profile.
 struct ExploredPoint {
@@ -48,5 +73,27 @@ std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const Explorat
 /// The best of a profile by a mean; nullptr if all diverged. The earlier one of equals.
 const ExploredPoint* best_of(const std::vector<ExploredPoint>& explored, const std::string& profile,
                              std::optional<double> ExploredPoint::*by);
+
+// What an exploration found, as text, CSV and JSON.
+
+/// Per profile: as it is, the point of least absolute error, and that of least relative error.
+std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
+/// What the first profile gains by its best point, in a sentence.
+std::string exploration_conclusion(const BatchPlan& plan,
+                                   const std::vector<ExploredPoint>& explored);
+std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
+
+/// A row per point, profile and sequence, with the value of every dimension; empty where it has no
+/// effect on the profile.
+std::string points_csv(const std::vector<Dimension>& dimensions,
+                       const std::vector<ExploredPoint>& explored);
+
+/// The data of a page, as the paper's figure has it: the absolute over the relative error of every
+/// point.
+Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
+                      const std::vector<ExploredPoint>& explored);
+
+/// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
+RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions);
 
 }  // namespace leviosim::tools

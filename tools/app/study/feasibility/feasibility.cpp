@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
+#include "sim/base/csv_table.h"
 #include "sim/base/interruption.h"
 #include "sim/chip/accelerator.h"
+#include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"
-#include "tools/app/run/recording_source.h"
-#include "tools/app/run/replay.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/run/trace_source.h"
+#include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
 namespace {
@@ -147,6 +151,194 @@ Feasibility FeasibilityStudy::on(const FeasibilityPoint& point) {
     found.power = energy->mean_power();
   }
   return found;
+}
+
+namespace {
+
+/// Time of a frame of LEVIO in its paper, on GAP9 at 370 MHz (validate/references.h).
+struct Published {
+  int cores;
+  std::string_view reference;
+  int decimals;
+  std::string_view about;  ///< the paper says so in round numbers
+};
+constexpr std::array<Published, 2> kPublished = {
+    {{8, "latency.epnp", 1, ""}, {1, "latency.single_core", 0, "≈ "}}};
+constexpr std::array<std::string_view, 2> kPublishedOn = {"gap9", "gap9-370mhz"};
+
+std::string published(const Feasibility& row) {
+  if (std::find(kPublishedOn.begin(), kPublishedOn.end(), row.platform) == kPublishedOn.end())
+    return {};
+  for (const Published& p : kPublished)
+    for (const Reference& reference : paper_references())
+      if (p.cores == row.cores && p.reference == reference.name)
+        return fmt::format("{}{:.{}f}", p.about, reference.value, p.decimals);
+  return {};
+}
+
+std::string missing(const char* memory, const MemoryVerdict& verdict) {
+  return fmt::format("{} kB short of {} at '{}'",
+                     ((verdict.occupied - verdict.size).count() + 999) / 1000, memory,
+                     verdict.block);
+}
+
+template <class Unit>
+std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, int decimals) {
+  if (!e) return "–";
+  return fmt::format("{:.{}f} ({:.{}f}–{:.{}f})", e->value.count() * scale, decimals,
+                     e->low().count() * scale, decimals, e->high().count() * scale, decimals);
+}
+
+}  // namespace
+
+std::string memory_verdict(const Feasibility& row) {
+  if (row.fits()) return "fits";
+  if (row.l1.fits()) return missing("L2", row.l2);
+  if (row.l2.fits()) return missing("L1", row.l1);
+  return missing("L1", row.l1) + "; " + missing("L2", row.l2);
+}
+
+std::string feasibility_table(const std::vector<Feasibility>& rows) {
+  TextTable table({{"chip", kLeft},
+                   {"cores", kRight, 1},
+                   {"MHz"},
+                   {"frame ms"},
+                   {"worst", kRight, 1},
+                   {"published", kRight, 2},
+                   {"optimiser ms", kRight, 2},
+                   {"frames/s"},
+                   {"mJ/frame"},
+                   {"mW", kRight, 1},
+                   {"memory", kLeft}});
+  bool any_without = false;
+  for (const Feasibility& row : rows) {
+    any_without = any_without || !row.fits();
+    const char* mark = row.fits() ? "" : "*";
+    table.add({row.platform, fmt::format("{}", row.cores),
+               fmt::format("{:g}", static_cast<double>(row.clock.count()) * 1e-6),
+               fmt::format("{:.1f}{}", row.front_end_ms, mark),
+               fmt::format("{:.1f}{}", row.worst_ms, mark), published(row),
+               fmt::format("{:.1f}{}", row.optimiser_ms, mark),
+               fmt::format("{:.1f}{}", row.frames_per_second(), mark),
+               banded(row.energy_per_frame, 1e3, 2), banded(row.power, 1e3, 1),
+               memory_verdict(row)});
+  }
+  std::string text = table.str();
+  text +=
+      "frame: front end, mean and worst; optimiser: per frame. A chip with one core does one after "
+      "the other, others both at once\n"
+      "energy and mean power, with bands, at the rate that the chip keeps up with, at most the "
+      "camera's\n";
+  if (any_without)
+    text += "* if it had the memory: times and energy of the same work, as though all had fitted\n";
+  return text;
+}
+
+std::string feasibility_conclusion(const std::vector<Feasibility>& rows) {
+  const Feasibility* fastest = nullptr;
+  std::size_t fit = 0;
+  for (const Feasibility& row : rows) {
+    if (!row.fits()) continue;
+    ++fit;
+    if (fastest == nullptr || row.frame_ms() < fastest->frame_ms()) fastest = &row;
+  }
+  if (fastest == nullptr)
+    return fmt::format("verdict: does not fit: {}: {}", rows.front().platform,
+                       memory_verdict(rows.front()));
+  return fmt::format("{} rows have the memory; the fastest of them, {} with {} {}, does {:.1f} "
+                     "frames/s",
+                     fit == rows.size() ? fmt::format("verdict: fits: all {}", fit)
+                                        : fmt::format("in short: {} of {}", fit, rows.size()),
+                     fastest->platform, fastest->cores, fastest->cores == 1 ? "core" : "cores",
+                     fastest->frames_per_second());
+}
+
+std::string stage_comparison(const std::vector<Feasibility>& rows) {
+  std::vector<TextTable::Column> columns{{"kilocycles of a call", TextTable::Align::Left}};
+  for (const Feasibility& row : rows) columns.push_back({row.platform});
+  TextTable table(std::move(columns));
+  const auto add = [&](const std::string& name, int decimals, auto&& of) {
+    std::vector<std::string> cells{name};
+    for (const Feasibility& row : rows) {
+      cells.push_back(fmt::format("{:.{}f}", of(row), decimals));
+      if (&row != &rows.front())
+        cells.back() += fmt::format(" (×{:.2f})", of(rows.front()) / of(row));
+    }
+    table.add(std::move(cells));
+  };
+  for (std::size_t i = 0; i < rows.front().stages.size(); ++i)
+    add(rows.front().stages[i].name, 1,
+        [&](const Feasibility& row) { return row.stages[i].kilocycles; });
+  add("frame ms", 2, [](const Feasibility& row) { return row.front_end_ms; });
+  add("worst frame ms", 2, [](const Feasibility& row) { return row.worst_ms; });
+  if (rows.front().energy_per_frame)
+    add("mJ/frame", 3, [](const Feasibility& row) {
+      return row.energy_per_frame ? row.energy_per_frame->value.count() * 1e3 : 0.0;
+    });
+  const auto add_memory = [&](const char* name, MemoryVerdict Feasibility::*memory) {
+    constexpr double kKilo = 1e-3;
+    std::vector<std::string> cells{name};
+    for (const Feasibility& row : rows)
+      cells.push_back(fmt::format("{:.1f} of {:.1f}",
+                                  kKilo * static_cast<double>((row.*memory).occupied.count()),
+                                  kKilo * static_cast<double>((row.*memory).size.count())));
+    table.add(std::move(cells));
+  };
+  add_memory("L1 peak kB", &Feasibility::l1);
+  add_memory("L2 peak kB", &Feasibility::l2);
+  return table.str();
+}
+
+std::string stage_comparison_csv(const std::vector<Feasibility>& rows) {
+  struct Row {
+    const Feasibility& chip;
+    const StageTime& stage;
+  };
+  std::vector<Row> all;
+  for (const Feasibility& chip : rows)
+    for (const StageTime& stage : chip.stages) all.push_back({chip, stage});
+  const base::CsvTable<Row> table{
+      {"platform", [](const Row& row) { return row.chip.platform; }},
+      {"cores", [](const Row& row) { return row.chip.cores; }},
+      {"stage", [](const Row& row) { return row.stage.name; }},
+      {"kilocycles", [](const Row& row) { return fmt::format("{}", row.stage.kilocycles); }}};
+  return table.text(all);
+}
+
+std::string feasibility_csv(const std::vector<Feasibility>& rows) {
+  using F = const Feasibility&;
+  const auto text = [](double value) { return fmt::format("{}", value); };
+  base::CsvTable<Feasibility> table{
+      {"platform", [](F f) { return f.platform; }},
+      {"cores", [](F f) { return f.cores; }},
+      {"clock_hz", [](F f) { return f.clock; }},
+      {"front_end_ms", [=](F f) { return text(f.front_end_ms); }},
+      {"worst_ms", [=](F f) { return text(f.worst_ms); }},
+      {"published_ms", [](F f) { return published(f); }},
+      {"optimiser_ms", [=](F f) { return text(f.optimiser_ms); }},
+      {"frames_per_s", [=](F f) { return text(f.frames_per_second()); }}};
+  const auto add_end = [&](const char* name, auto figure, auto end) {
+    table.add(name, [=](F f) {
+      return f.*figure ? text(std::invoke(end, *(f.*figure)).count()) : std::string();
+    });
+  };
+  using Energy = sim::Estimate<Joules>;
+  using Power = sim::Estimate<Watts>;
+  add_end("energy_per_frame_j", &Feasibility::energy_per_frame, &Energy::value);
+  add_end("energy_low_j", &Feasibility::energy_per_frame, &Energy::low);
+  add_end("energy_high_j", &Feasibility::energy_per_frame, &Energy::high);
+  add_end("power_w", &Feasibility::power, &Power::value);
+  add_end("power_low_w", &Feasibility::power, &Power::low);
+  add_end("power_high_w", &Feasibility::power, &Power::high);
+  table.add("fits", [](F f) { return f.fits() ? 1 : 0; });
+  const auto add_memory = [&](const std::string& name, auto of) {
+    table.add(name + "_bytes", [=](F f) { return (f.*of).occupied; });
+    table.add(name + "_size", [=](F f) { return (f.*of).size; });
+    table.add(name + "_block", [=](F f) { return (f.*of).block; });
+  };
+  add_memory("l1", &Feasibility::l1);
+  add_memory("l2", &Feasibility::l2);
+  return table.text(rows);
 }
 
 }  // namespace leviosim::tools

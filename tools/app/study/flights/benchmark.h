@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "tools/app/study/flights/flight_plan.h"
-#include "tools/app/study/flights/starts.h"
+#include "tools/app/study/point.h"
 #include "tools/app/study/run_outcome.h"
-#include "tools/app/study/sequence.h"
 
 namespace leviosim::tools {
 

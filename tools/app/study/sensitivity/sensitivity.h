@@ -68,4 +68,16 @@ std::vector<StageBand> stage_bands(const Sensitivity& sensitivity);
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
                         const traces::WorkTrace& trace, const RunnerOptions& options);
 
+// The table and the file of `leviosim sensitivity`.
+
+/// The largest effects first; numbers without any effect are only named.
+/// As parts of a screen.
+std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers);
+
+/// The number with the largest effect, in a sentence.
+std::string sensitivity_conclusion(const Sensitivity& sensitivity);
+
+/// A row per number with both ends of its range, times in ms, changes in per cent.
+std::string sensitivity_csv(const Sensitivity& sensitivity);
+
 }  // namespace leviosim::tools

@@ -1,11 +1,14 @@
 // What a sweep can vary: parameters of the chip and of the workload, and what else a run is asked.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/value.h"
+#include "sim/base/yaml_document.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
@@ -61,5 +64,30 @@ SweepNumber number_of(const SweepKey& key, const std::string& text,
 
 /// A number of the chip in its reference unit. @param base  in base units
 SweepNumber chip_number(const SweepKey& key, double base, platform::PlatformFile& reference);
+
+// The values of one key of a sweep: some that are named, or all of a range.
+
+struct Span {
+  double low = 0, high = 0;  ///< both included, in the unit
+  bool logarithmic = false;  ///< evenly spread over the orders of magnitude
+  bool whole = false;        ///< whole numbers of base units only
+  double factor = 1;         ///< base units in one of the unit
+  std::string unit;
+};
+
+struct Domain {
+  std::vector<std::string> values;  ///< normal_value(); empty for a range
+  std::optional<Span> span;
+};
+
+/// `[240, 370]`, `240`, `{ from: 100, to: 400, step: 10 }` or `{ from: 1, to: 16, scale: log }`
+/// (without step, scale is `linear` unless given).
+/// @param line  of the key
+Domain read_domain(const SweepKey& key, const base::YamlNode& node, const std::string& file,
+                   int line, const std::string& path, platform::PlatformFile& reference);
+
+/// The value that lies at `u` of the domain, 0 <= u < 1; of equal u, equal values. Numbers of a
+/// range have four digits, so that a point can be typed again.
+std::string value_at(const Domain& domain, double u);
 
 }  // namespace leviosim::tools

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/study/sweep/domain.h"
+#include "tools/app/study/sweep/key.h"
 #include "tools/app/study/sweep/sweep_inputs.h"
 
 namespace leviosim::tools {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <string>
 
+#include "tools/app/comparison/record_source.h"
 #include "tools/app/study/outcome.h"
 #include "tools/app/study/sweep/points.h"
 
@@ -30,5 +33,27 @@ inline constexpr std::array kObjectives{
 ///                    L1 and L2, operations of stages
 /// @throws Interrupted
 Outcome run_point(const ResolvedPoint& point, bool for_budget = false);
+
+// A point of a finished sweep as a run that can be compared: "swept:3". A sweep keeps figures only,
+// not where cycles went, so the point is replayed or computed again, as the sweep's plan says.
+
+/// "swept:3", where `swept` is the folder of a sweep.
+struct PointName {
+  std::string sweep;
+  std::string number;  ///< as typed
+
+  std::string text() const { return sweep + ':' + number; }
+};
+
+/// Nothing for all else, such as a folder that is called so.
+/// @throws InputError for a sweep without a number, saying which there are
+std::optional<PointName> point_name(const std::string& text);
+
+/// @param memory,quiet  of the options; the chip is the point's
+/// @param files         gets what a run folder would hold; may be null
+/// @throws InputError for a number that the sweep does not have, for points whose plan, trace or
+///         data are no longer what they were, and as the run does
+RunRecord read_point(const PointName& name, const RecordOptions& options,
+                     RunFiles* files = nullptr);
 
 }  // namespace leviosim::tools

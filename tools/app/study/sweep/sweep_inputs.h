@@ -8,12 +8,13 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/value.h"
-#include "tools/app/cli/progress_line.h"
+#include "sim/outputs/output_folder.h"
+#include "tools/app/cli/terminal.h"
 #include "traces/datasets/dataset.h"
-#include "traces/datasets/frame_range.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -56,6 +57,36 @@ class SweepInputs {
   std::map<std::string, platform::PlatformFile> platforms_;
   std::map<std::string, Trace> traces_;
   std::map<std::pair<std::string, std::string>, Data> data_;
+};
+
+// The folder of a sweep. Unlike other results it is added to, by several processes at a time, so it
+// is no folder that appears whole (sim/outputs/output_folder.h): the data base in it is never
+// removed, and sweep.csv is a single file that only replaces what leviosim wrote.
+
+class SweepFolder {
+ public:
+  struct Request {
+    std::string option;  ///< that names the folder, for messages
+    std::string path;
+    std::vector<std::filesystem::path> inputs;  ///< that are read
+    std::filesystem::path cache;                ///< may lie in the folder
+  };
+  /// Makes the folder if there is none.
+  /// @throws InputError if it holds anything that no sweep wrote, which the message names, or an
+  ///         input
+  explicit SweepFolder(const Request& request);
+
+  const std::filesystem::path& path() const { return path_; }
+  /// To be published when all is done.
+  outputs::OutputFile& csv() { return *csv_; }
+  /// Begins anew: takes all out of the data base, in one transaction.
+  void empty();
+
+ private:
+  void check_entry(const Request& request, const std::string& name) const;
+
+  std::filesystem::path path_;
+  std::optional<outputs::OutputFile> csv_;
 };
 
 }  // namespace leviosim::tools

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "sim/base/printable_text.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/sweep/pareto.h"
 
 namespace leviosim::tools {
 namespace {
@@ -131,6 +131,102 @@ std::string sweep_report(SweepStore& store) {
   for (std::size_t i = 0; i < known.size(); ++i)
     text += fmt::format("{}{}", i == 0 ? "" : ", ", kObjectives[known[i]].title);
   return text + " and as good in the others\n" + front_table(store, front, known);
+}
+
+namespace {
+
+using Values = std::array<double, kObjectives.size()>;
+
+Values values_of(const SweepOutcome& outcome) {
+  Values values{};
+  for (std::size_t k = 0; k < values.size(); ++k)
+    values[k] = outcome.objectives[k].value_or(std::numeric_limits<double>::infinity());
+  return values;
+}
+
+bool dominates(const Values& a, const Values& b) {
+  bool better = false;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (a[k] > b[k]) return false;
+    better = better || a[k] < b[k];
+  }
+  return better;
+}
+
+}  // namespace
+
+bool dominates(const SweepOutcome& a, const SweepOutcome& b) {
+  return dominates(values_of(a), values_of(b));
+}
+
+std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes) {
+  struct Candidate {
+    Values values;
+    const SweepOutcome* outcome;
+  };
+  std::vector<Candidate> sorted;
+  for (const SweepOutcome& o : outcomes)
+    if (o.failure.empty()) sorted.push_back({values_of(o), &o});
+  std::sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
+    return a.values != b.values ? a.values < b.values : a.outcome->point < b.outcome->point;
+  });
+  // What dominates a point comes before it, and if that is dominated itself, so does what is on the
+  // front: each has to be compared with the front so far only.
+  std::vector<Candidate> front;
+  for (const Candidate& c : sorted)
+    if (std::none_of(front.begin(), front.end(),
+                     [&](const Candidate& f) { return dominates(f.values, c.values); }))
+      front.push_back(c);
+  std::vector<SweepOutcome> result;
+  for (const Candidate& c : front) result.push_back(*c.outcome);
+  return result;
+}
+
+namespace {
+
+/// "platform.cluster.clock" → "cluster.clock".
+std::string title_of(const std::string& parameter) {
+  constexpr std::string_view kPlatform = "platform.";
+  return parameter.rfind(kPlatform, 0) == 0 ? parameter.substr(kPlatform.size()) : parameter;
+}
+
+}  // namespace
+
+Json sweep_page(SweepStore& store) {
+  constexpr double kNsToMs = 1e-6;
+  const std::vector<std::string> parameters = store.parameter_names();
+  StudyPage page;
+  page.title = "A sweep";
+  page.boxes = {sweep_box(store)};
+  page.best = sweep_front(store);
+  page.points = store.csv();
+  page.columns = {{"point", "point", "", true}};
+  for (const std::string& name : parameters)
+    page.columns.push_back({name, title_of(name), "", true});
+  const std::vector<StudyColumn> figures{
+      {"objective.frame_time", "mean frame", "ms"},
+      {"objective.energy", "energy per frame", "mJ"},
+      {"objective.l1_peak", "L1 peak", "kB", false, false, 1e-3},
+      {"objective.ate", "position error (ATE)", "m"},
+      {"objective.area", "area", "mm2"},
+      {"latency.all.p50", "median latency", "ms", false, false, kNsToMs},
+      {"latency.all.p99", "latency of 99 %", "ms", false, false, kNsToMs},
+      {"latency.all.worst", "worst latency", "ms", false, false, kNsToMs},
+      {"camera.missed_share", "missed frames", "%", false, false, 100},
+      {"energy.mean_power", "mean power", "mW"},
+      {"energy.front_end_power", "power of the front end", "mW"},
+      {"accuracy.completion", "completion", "%", false, true, 100},
+      {"failure", "failure", ""}};
+  page.columns.insert(page.columns.end(), figures.begin(), figures.end());
+  if (!parameters.empty() && parameters.size() <= 2)
+    page.curves = {parameters.front(),
+                   parameters.size() == 2 ? parameters.back() : std::string(),
+                   {"objective.frame_time", "objective.energy", "objective.l1_peak",
+                    "objective.ate", "objective.area"}};
+  page.x = "objective.frame_time";
+  page.y = "objective.energy";
+  page.colour = parameters.size() > 1 ? parameters.back() : std::string();
+  return study_report(page);
 }
 
 }  // namespace leviosim::tools

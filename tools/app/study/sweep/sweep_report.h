@@ -2,8 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "tools/app/html_report/study_json.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/study/sweep/sweep_store.h"
 
 namespace leviosim::tools {
@@ -18,5 +19,20 @@ std::vector<std::string> after_sweep(SweepStore& store, const std::string& folde
 /// The same for a page: a box, and the front as a table of titles and rows.
 StudyBox sweep_box(SweepStore& store);
 std::vector<std::vector<std::string>> sweep_front(SweepStore& store);
+
+// The points of a sweep that no other is better than in every respect.
+
+/// Whether `a` is at least as good as `b` in every objective and better in one. Less is better, and
+/// what is missing is worse than any number.
+bool dominates(const SweepOutcome& a, const SweepOutcome& b);
+
+/// The outcomes that no other dominates, those that failed left out; by latency, then number.
+std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes);
+
+// A sweep as a page for a browser: all finished points to explore, and curves where one or two
+// parameters vary.
+
+/// The data of the page, after the store has been published.
+Json sweep_page(SweepStore& store);
 
 }  // namespace leviosim::tools

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <map>
 
-#include "platform_models/loader/dimension.h"
+#include "platform_models/loader/schema.h"
 #include "sim/base/csv_table.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/study/sweep/pareto.h"
-#include "tools/app/study/sweep/sweep_schema.h"
+#include "tools/app/study/sweep/sweep_report.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,10 +1,22 @@
 #include "tools/app/study/systems/systems_report.h"
 
+#include <fmt/core.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <sstream>
+
+#include "platform_models/loader/loader.h"
+#include "sim/base/csv.h"
 #include "sim/base/csv_table.h"
-#include "tools/app/report/number_text.h"
+#include "tools/app/flow/flow_report.h"
+#include "tools/app/flow/flow_source.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/text_table.h"
+#include "tools/app/result/energy.h"
+#include "tools/app/run/simulate.h"
+#include "tools/app/study/feasibility/feasibility.h"
+#include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
 namespace {
@@ -123,6 +135,182 @@ std::string systems_csv(const std::vector<SystemRow>& rows) {
   add_banded("here_frame_mj", &Prediction::frame);
   table.add("here_memory", [](S s) { return s.here ? s.here->memory : std::string(); });
   return table.text(rows);
+}
+
+Json systems_page(const std::vector<SystemRow>& rows) {
+  struct Spot {
+    std::string system;
+    const char* by;
+    std::optional<double> rate, power_mw, low_mw, high_mw;
+  };
+  std::vector<Spot> spots;
+  for (const SystemRow& row : rows) {
+    const PublishedSystem& p = row.published;
+    if (p.frames_per_s && p.power_mw)
+      spots.push_back({p.name, p.is_bound ? "published, at most" : "published", p.frames_per_s,
+                       p.power_mw, {}, {}});
+    if (!row.here || !row.here->power) continue;
+    const auto mw = [](Watts power) { return power.count() * kMilli; };
+    const auto& power = *row.here->power;
+    spots.push_back({p.name, "predicted here", row.here->frames_per_s, mw(power.value),
+                     mw(power.low()), mw(power.high())});
+  }
+  using S = const Spot&;
+  const base::CsvTable<Spot> table{
+      {"system", [](S s) { return s.system; }},
+      {"by", [](S s) { return s.by; }},
+      {"rate", [](S s) { return base::fixed(s.rate, 6); }},
+      {"power", [](S s) { return base::fixed(s.power_mw, 6); }},
+      {"low", [](S s) { return base::fixed(s.low_mw, 6); }},
+      {"high", [](S s) { return base::fixed(s.high_mw, 6); }},
+      {"energy", [](S s) { return base::fixed(*s.power_mw / *s.rate, 6); }}};
+  StudyPage page;
+  page.title = "Power over frame rate of systems that estimate motion";
+  page.summary = systems_conclusion(rows);
+  page.points = table.text(spots);
+  page.columns = {{"system", "system", "", true},
+                  {"by", "known from", "", true},
+                  {"rate", "frame rate", "frames/s", false, true},
+                  {"power", "power", "mW"},
+                  {"low", "power, low end", "mW"},
+                  {"high", "power, high end", "mW"},
+                  {"energy", "energy per frame", "mJ"}};
+  page.x = "rate";
+  page.y = "power";
+  page.colour = "by";
+  return study_report(page);
+}
+
+namespace {
+
+RunRequest request_for(const PublishedSystem& system, const RunRequest& request) {
+  RunRequest own = request;
+  own.platform = platform::resolve_platform(system.platform, system.overrides);
+  own.cores = own.platform.config.cluster.workers;
+  return own;
+}
+
+/// Recorded frames stand for faster ones: the work of a frame hardly depends on what is in it.
+Prediction predict_flow(const PublishedSystem& system, const RunRequest& request,
+                        const ProgressCallback& progress) {
+  FlowSource source(request, {});
+  const RunResult run = simulate_source(request, source, progress);
+  Prediction here;
+  here.memory = "fits";
+  const std::optional<FlowCycles> cycles = flow_cycles(run);
+  if (!cycles) return here;
+  here.most_frames_per_s = static_cast<double>(run.cluster_clock.count()) / cycles->parallel;
+  here.frames_per_s =
+      std::min(system.frames_per_s.value_or(here.most_frames_per_s), here.most_frames_per_s);
+  if (const auto energy = energy_of(at_rate(run, here.frames_per_s))) {
+    here.power = energy->mean_power();
+    here.frame = energy->per_frame();
+  }
+  return here;
+}
+
+Prediction predict_levio(const PublishedSystem& system, const RunRequest& request,
+                         const ProgressCallback& progress) {
+  RunRequest own = request;
+  own.profile = system.workload;
+  FeasibilityStudy study(own, progress);
+  const Feasibility found = study.on({system.platform, request.platform, request.cores});
+  Prediction here;
+  here.most_frames_per_s = found.frames_per_second();
+  here.power = found.power;
+  here.frame = found.energy_per_frame;
+  // The rate at which the study takes energy and power.
+  here.frames_per_s = here.power && here.frame
+                          ? here.power->value.count() / here.frame->value.count()
+                          : here.most_frames_per_s;
+  here.memory = memory_verdict(found);
+  return here;
+}
+
+}  // namespace
+
+std::vector<SystemRow> predict_systems(const std::vector<PublishedSystem>& systems,
+                                       const RunRequest& request,
+                                       const ProgressCallback& progress) {
+  std::vector<SystemRow> rows;
+  for (const PublishedSystem& system : systems) {
+    rows.push_back({system, {}});
+    if (system.workload.empty()) continue;
+    const RunRequest own = request_for(system, request);
+    rows.back().here = system.workload == kFlowWorkload ? predict_flow(system, own, progress)
+                                                        : predict_levio(system, own, progress);
+  }
+  return rows;
+}
+
+namespace {
+
+const std::vector<std::string> kColumns{"system",       "year",     "class", "chip",
+                                        "frames_per_s", "power_mw", "bound", "workload",
+                                        "platform",     "set",      "source"};
+enum Column : std::size_t {
+  kSystem,
+  kYear,
+  kClass,
+  kChip,
+  kRate,
+  kPower,
+  kBound,
+  kWorkload,
+  kPlatform,
+  kSet,
+  kSource
+};
+
+std::optional<double> positive(const base::CsvRow& row, Column column) {
+  if (row.text(column).empty()) return std::nullopt;
+  const double value = row.number(column);
+  if (!(value > 0)) row.fail(column, "expected a number above 0, or nothing");
+  return value;
+}
+
+PublishedSystem system_from(const base::CsvRow& row) {
+  PublishedSystem system;
+  system.name = row.text(kSystem);
+  system.year = static_cast<int>(row.number(kYear));
+  system.kind = row.text(kClass);
+  system.chip = row.text(kChip);
+  system.frames_per_s = positive(row, kRate);
+  system.power_mw = positive(row, kPower);
+  const std::string bound(row.text(kBound));
+  if (!bound.empty() && bound != "at most") row.fail(kBound, "expected 'at most', or nothing");
+  system.is_bound = !bound.empty();
+  system.workload = row.text(kWorkload);
+  system.platform = row.text(kPlatform);
+  if (system.workload.empty() != system.platform.empty())
+    row.fail(kPlatform, "expected a workload and a platform, or neither");
+  std::istringstream words{std::string(row.text(kSet))};
+  for (std::string word; words >> word;) system.overrides.push_back(word);
+  system.source = row.text(kSource);
+  if (system.name.empty() || system.source.empty()) row.fail("has no name or no source");
+  return system;
+}
+
+}  // namespace
+
+std::optional<double> PublishedSystem::frame_mj() const {
+  if (!frames_per_s || !power_mw) return std::nullopt;
+  return *power_mw / *frames_per_s;
+}
+
+std::vector<PublishedSystem> parse_systems(const std::string& file, std::string_view text) {
+  base::CsvReader reader(file, base::Separator::comma, kColumns, std::string(text));
+  const base::CsvRow* header = reader.next();
+  for (std::size_t i = 0; header != nullptr && i < kColumns.size(); ++i)
+    if (header->text(i) != kColumns[i])
+      header->fail(i, fmt::format("expected the title {}", kColumns[i]));
+  std::vector<PublishedSystem> systems;
+  while (const base::CsvRow* row = reader.next()) systems.push_back(system_from(*row));
+  return systems;
+}
+
+std::vector<PublishedSystem> published_systems() {
+  return parse_systems("systems.csv", reference_text("systems"));
 }
 
 }  // namespace leviosim::tools

@@ -11,10 +11,10 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "sim/energy/model.h"
-#include "sim/energy/operating_point.h"
-#include "tools/app/report/number_text.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
@@ -182,9 +182,7 @@ ClockSetting setting_for(const sim::ChipConfig& chip, const std::string& name, H
 }
 
 void add_tune_options(CLI::App& command, TuneWords& words) {
-  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
-    command.add_option(name, value, help)->type_name(type);
-  };
+  const TextOptions add{command};
   add_chip_run_options(command, words.run);
   command.get_option("--seed")->type_name("N,...")->description(fmt::format(
       "of the workload's random draws; figures are medians over them [{}]", kTunedSeeds));

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim/outputs/output_folder.h"
-#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/study/point.h"
 #include "tools/app/study/run_outcome.h"
-#include "tools/app/study/sequence.h"
 
 namespace CLI {
 class App;

@@ -6,9 +6,8 @@
 #include <filesystem>
 #include <functional>
 
-#include "tools/app/report/number_text.h"
-#include "tools/app/report/plot/axes.h"
-#include "tools/app/report/plot/svg.h"
+#include "tools/app/report/plot/plot.h"
+#include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tools/app/cli/command_line.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/html_report/study_json.h"
 #include "tools/app/study/tune/tuning.h"
 
 namespace leviosim::tools {
@@ -32,5 +32,11 @@ Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices);
 /// The content of manifest.json. Nothing in it depends on the host or on cache hits.
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line);
+
+// A tuning as a page for a browser: curves over the clock, and all runs to explore.
+
+/// The data of the page.
+Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
+               const std::vector<Choice>& choices);
 
 }  // namespace leviosim::tools

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "sim/energy/model.h"
-#include "tools/app/run/workload_overrides.h"
+#include "tools/app/run/workload.h"
 #include "traces/datasets/disturbance.h"
 
 namespace leviosim::tools {

@@ -54,8 +54,8 @@ class WhatIf {
   /// @param inputs  outlives this
   WhatIf(SweepInputs& inputs, std::string trace, SweepRow again);
 
-  /// "cluster.fpu.units=2,4,8": three; "gap9-eigen", "mine.yaml"; "gap9:cluster.workers=4"; "A=1,B=2":
-  /// both at once. @throws InputError for names that do not exist
+  /// "cluster.fpu.units=2,4,8": three; "gap9-eigen", "mine.yaml"; "gap9:cluster.workers=4";
+  /// "A=1,B=2": both at once. @throws InputError for names that do not exist
   std::vector<Variant> variants(const std::string& change);
   /// A standard set, made of what the platform has: each resource halved and doubled, both clocks
   /// halved, other numbers of cores, accelerators of built-in platforms.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/html_report/study_json.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/study/whatif/whatif.h"
 
 namespace leviosim::tools {

@@ -8,14 +8,83 @@
 // from what the others predict.
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "platform_models/loader/variants.h"
-#include "tools/app/validation/calibration/constants.h"
-#include "tools/app/validation/calibration/stage_model.h"
+#include "sim/chip/config.h"
+#include "sim/chip/cost.h"
+#include "tools/app/report/statistic_list.h"
+#include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
+
+// What a stage would take on one core of a chip whose code-generation constants were others, from
+// one recorded run: its operations are costed again, without running anything.
+//
+// On one core nothing contends, so its time is the sum of what its operations cost alone
+// (sim/chip/cost.h), and of code fetches, forks, barriers, transfers and rounding, which do not
+// depend on these constants. The latter is what the recorded time exceeds the cost of the
+// operations on the chip of the run by.
+
+struct StageModel {
+  std::string key;
+  std::string title;
+  std::int64_t frames = 0;
+  sim::WorkSum work;     ///< of the frames
+  double fixed = 0;      ///< cycles beside the operations, summed over the frames
+  double reference = 0;  ///< cycles of a mean call that the fit aims at
+
+  /// Cycles of a mean call on one core.
+  double cycles(const sim::ChipConfig& chip) const;
+};
+
+/// The six stages of the paper's table from a run on `chip`; aims are the paper's one-core values.
+/// @throws InputError if the run has no frame of a stage
+std::vector<StageModel> stage_models(const FrameLog& log, const sim::ChipConfig& chip);
+
+// The constants that a calibration may fit: what a compiler adds to the operations of a source
+// program, for all code of the instruction set alike. None belongs to a kernel or a stage, and
+// nothing that a data sheet, RTL or a measurement gives is among them.
+
+struct FittableConstant {
+  std::string_view path;
+  std::string_view mechanism;
+};
+
+inline constexpr std::array kFittableConstants{
+    FittableConstant{"isa.instruction_overhead", "the vendor's compiler"},
+    FittableConstant{"isa.load_use_fraction", "loads in code that was not measured"},
+    FittableConstant{"isa.ops.loop_iteration.issue",
+                     "counter and branch of loops that are no hardware loops"},
+    FittableConstant{"isa.ops.loop_entry.issue", "pointers and counter set up before a loop"},
+    FittableConstant{"isa.ops.call.issue", "registers saved and restored around a call"},
+    FittableConstant{"isa.ops.load_indexed.issue", "address arithmetic of a load"},
+    FittableConstant{"isa.ops.store_indexed.issue", "address arithmetic of a store"},
+};
+
+inline constexpr std::size_t kMostConstants = 3;
+inline constexpr const char* kDefaultConstants =
+    "isa.instruction_overhead,isa.load_use_fraction,isa.ops.loop_iteration.issue";
+
+/// "a,b,c" → paths.
+/// @throws InputError for none, more than three, one twice, and what must not be fitted
+std::vector<std::string> parse_constants(const std::string& option, const std::string& text);
+
+/// A constant as a number between bounds, in its unit.
+struct Bounded {
+  std::string path;
+  std::string unit;
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+/// @throws InputError if the platform gives no range to fit within
+std::vector<Bounded> bounds_of(const platform::Variants& platform,
+                               const std::vector<std::string>& paths);
 
 /// A stage before and after.
 struct Residual {
@@ -53,5 +122,18 @@ Calibration calibrate(const platform::Variants& platform, const std::vector<Stag
 /// The platform with the fitted constants and their new source.
 platform::ResolvedPlatform calibrated_platform(const platform::Variants& platform,
                                                const Calibration& calibration);
+
+// The text that `leviosim calibrate` prints.
+
+std::string constants_table(const Calibration& calibration);
+std::string residual_table(const Calibration& calibration);
+std::string left_out_table(const Calibration& calibration);
+/// All of them, as parts of a screen.
+std::vector<std::string> calibration_report(const Calibration& calibration);
+/// What the fit is worth, in a sentence.
+std::string calibration_conclusion(const Calibration& calibration);
+
+/// Constants, residuals and stages left out, in the units of Calibration.
+Json calibration_json(const Calibration& calibration);
 
 }  // namespace leviosim::tools

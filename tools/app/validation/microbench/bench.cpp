@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "sim/base/csv.h"
 #include "sim/base/interruption.h"
+#include "tools/app/run/range_bands.h"
 
 namespace leviosim::tools {
 namespace {
@@ -95,6 +97,99 @@ double stream_cycles(const sim::ChipConfig& chip, int cores, int slots,
   Bench bench(chip, cores);
   const double empty = static_cast<double>(bench.fork([](work::Core&) {}).cycles.count());
   return (static_cast<double>(bench.fork(body).cycles.count()) - empty) / slots;
+}
+
+namespace {
+
+constexpr const char* kUnmeasured = "isa.unmeasured_instructions";
+
+}  // namespace
+
+double KernelJob::cycles_on(const sim::ChipConfig& chip) const {
+  const Bench bench(chip, row.cores);
+  const auto cycles = [&](const work::Job& some) {
+    return some.stages.empty() ? 0 : static_cast<double>(bench.time(some).cycles.count());
+  };
+  return calls * (cycles(job) - cycles(left_out));
+}
+
+std::vector<MicrobenchRow> banded_rows(const std::vector<KernelJob>& kernels,
+                                       const platform::Variants& platform) {
+  const std::vector<Banded> bands = range_bands(platform, [&](const sim::ChipConfig& chip) {
+    std::vector<double> cycles;
+    for (const KernelJob& kernel : kernels) cycles.push_back(kernel.cycles_on(chip));
+    return cycles;
+  });
+  std::vector<MicrobenchRow> rows;
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    MicrobenchRow& row = rows.emplace_back(kernels[i].row);
+    row.simulated = bands[i].value;
+    row.band = bands[i];
+  }
+  return rows;
+}
+
+std::vector<double> needed_instructions(const std::vector<KernelJob>& kernels,
+                                        const platform::Variants& platform) {
+  // A core that runs alone takes a line over their number, but for what its caches miss.
+  constexpr double kLess = 0.8;
+  constexpr double kMore = 1.6;
+  constexpr double kMostlyInstructions = 0.5;  // else what is published says little of them
+  const sim::ChipConfig less = platform.config({{kUnmeasured, kLess}});
+  const sim::ChipConfig more = platform.config({{kUnmeasured, kMore}});
+  std::vector<double> needed;
+  for (const KernelJob& kernel : kernels) {
+    if (kernel.row.cores != 1) continue;
+    const double cycles = kernel.cycles_on(less);
+    const double slope = (kernel.cycles_on(more) - cycles) / (kMore - kLess);
+    if (slope < kMostlyInstructions * kernel.row.reference) continue;
+    needed.push_back(kLess + (kernel.row.reference - cycles) / slope);
+  }
+  std::sort(needed.begin(), needed.end());
+  return needed;
+}
+
+namespace {
+
+const std::vector<std::string> kColumns = {"group",     "name",           "cores",     "unit",
+                                           "reference", "reference_high", "tolerance", "source"};
+const std::vector<std::string> kGuardColumns = {"group", "name",  "cores",
+                                                "unit",  "guard", "reason"};
+
+}  // namespace
+
+std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string text, int tier) {
+  base::CsvReader reader(file, base::Separator::comma, kColumns, std::move(text));
+  std::vector<MicrobenchRow> rows;
+  while (const base::CsvRow* row = reader.next()) {
+    if (row->text(0) == kColumns[0]) continue;  // the header
+    MicrobenchRow r;
+    r.group = row->text(0);
+    r.name = row->text(1);
+    r.cores = static_cast<int>(row->number(2));
+    r.unit = row->text(3);
+    r.reference = row->number(4);
+    r.reference_high = row->text(5).empty() ? r.reference : row->number(5);
+    r.tolerance = row->number(6);
+    r.source = row->text(7);
+    r.tier = tier;
+    rows.push_back(std::move(r));
+  }
+  return rows;
+}
+
+void take_guards(const std::string& file, std::string text, std::vector<MicrobenchRow>& rows) {
+  base::CsvReader reader(file, base::Separator::comma, kGuardColumns, std::move(text));
+  while (const base::CsvRow* guard = reader.next()) {
+    if (guard->text(0) == kGuardColumns[0]) continue;  // the header
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const MicrobenchRow& r) {
+      return r.group == guard->text(0) && r.name.substr(0, r.name.find(',')) == guard->text(1) &&
+             r.cores == guard->number(2) && r.unit == guard->text(3);
+    });
+    if (row == rows.end()) guard->fail(1, "no row of the comparison");
+    row->guard = guard->number(4);
+    if (!(*row->guard > row->tolerance)) guard->fail(4, "no more than the tolerance of the row");
+  }
 }
 
 }  // namespace leviosim::tools

@@ -7,14 +7,67 @@
 // and banks that they share.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "platform_models/loader/variants.h"
 #include "sim/chip/chip.h"
 #include "sim/work/machine.h"
+#include "sim/work/program.h"
+#include "tools/app/result/banded.h"
+#include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
+
+// One line of a comparison with measured hardware: what was measured or derived elsewhere, and what
+// the simulator says.
+
+struct MicrobenchRow {
+  std::string group;  ///< heading under which it is shown
+  std::string name;
+  int cores = 1;
+  std::string unit;
+  double reference = 0;       ///< or the low end of what the sources allow
+  double reference_high = 0;  ///< the same as reference where they agree
+  double simulated = 0;
+  std::optional<Banded> band = std::nullopt;  ///< of what is simulated
+  double tolerance = 0.05;  ///< largest error that is accepted, relative
+  /// Of a row that is known to miss it: the error that it may not exceed.
+  std::optional<double> guard = std::nullopt;
+  int tier = 1;  ///< 1: behaviour of a unit; 2: includes what a compiler does
+  std::string source;
+
+  /// Relative distance from the reference, or from the nearest end of its range; 0 inside.
+  double error() const {
+    const double nearest = std::clamp(simulated, reference, reference_high);
+    return (simulated - nearest) / nearest;
+  }
+  /// Whether the reference lies in the band, or some of its range does.
+  bool is_inside() const {
+    return band && band->low <= reference_high && reference <= band->high;
+  }
+  bool met() const { return std::abs(error()) <= tolerance; }
+  Verdict verdict() const { return judge(error(), tolerance, guard); }
+};
+
+// What the rows of a comparison refer to: tools/app/validation/published/*.csv, compiled into the
+// program.
+
+/// The rows of a reference file, with nothing simulated yet: columns group, name, cores, unit,
+/// reference, reference_high (empty if the sources agree), tolerance (relative), source.
+/// @throws InputError with file, line and column
+std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string text, int tier);
+
+/// Sets the guards of rows that a file names: columns group, name, cores, unit, guard (relative),
+/// reason. A row's name is what stands before its first comma.
+/// @throws InputError with file, line and column, also for a row that does not exist
+void take_guards(const std::string& file, std::string text, std::vector<MicrobenchRow>& rows);
 
 /// The chip without what compilers add, for streams in step.
 /// @param loads_used_at_once  share of loads whose result the next instruction uses
@@ -62,5 +115,26 @@ class Bench {
 /// Cycles per slot of a stream of `slots` that every core runs, forking left out.
 double stream_cycles(const sim::ChipConfig& chip, int cores, int slots,
                      const std::function<void(work::Core&)>& body);
+
+// Kernels with published cycles: what each does is recorded once and timed on any chip, so also with
+// every uncertain number of a platform at both ends of its range.
+
+struct KernelJob {
+  MicrobenchRow row{};  ///< with nothing simulated yet
+  work::Job job{};
+  work::Job left_out{};  ///< whose time is not in the published figure: the fork of one core
+  double calls = 1;      ///< that the figure is of
+
+  double cycles_on(const sim::ChipConfig& chip) const;
+};
+
+/// With the bands that the ranges of the platform's numbers leave.
+std::vector<MicrobenchRow> banded_rows(const std::vector<KernelJob>& kernels,
+                                       const platform::Variants& platform);
+
+/// isa.unmeasured_instructions of the platform with which every kernel of one core would take what
+/// is published, but for kernels that mostly wait for something else than instructions. Rising.
+std::vector<double> needed_instructions(const std::vector<KernelJob>& kernels,
+                                        const platform::Variants& platform);
 
 }  // namespace leviosim::tools

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/app/validation/microbench/row.h"
+#include "tools/app/validation/microbench/bench.h"
 
 namespace leviosim::tools {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/chip/config.h"
-#include "tools/app/validation/microbench/row.h"
+#include "tools/app/validation/microbench/bench.h"
 
 namespace leviosim::tools {
 

@@ -5,11 +5,46 @@
 // The number of iterations is fixed: nothing stops early, and nothing is fitted to the inliers.
 #pragma once
 
+#include "sim/work/arena.h"
 #include "sim/work/machine.h"
-#include "workload/vio/levio/geometry/eight_point.h"
+#include "workload/geometry/essential_ransac.h"
+#include "workload/math/matrix.h"
 #include "workload/vio/levio/geometry/sampling.h"
 
 namespace leviosim::vio::levio {
+
+// The essential matrix of eight matches as the released program computes it
+// (PARAMETERS.md#eight-point-algorithm), and the Sampson error that scores it. Nothing is checked
+// on the way; a degenerate sample gives some matrix, or one that is not a number.
+//
+// Convention: x_bᵀ E x_a = 0 for a point seen at x_a by camera a (the last keyframe) and at x_b by
+// camera b (the current frame).
+
+inline constexpr int kEssentialSample = 8;  ///< matches
+
+/// The matrix of rank 2 with two equal singular values that fits the sample. Takes about 800 bytes
+/// of scratch during the call.
+/// @param essential  3×3, the result
+/// @return the steps that the inverse power iteration took
+template <class P>
+int essential_from_sample(const TwoViewMatches<P>& matches,
+                          typename P::template Span<const typename P::U16> sample,
+                          MatrixView<P> essential, work::Arena& scratch);
+
+/// How well a hypothesis fits: places in local memory that are updated with every inlier.
+template <class P>
+struct EssentialScore {
+  typename P::template Span<typename P::I32> inliers;    ///< 1
+  typename P::template Span<typename P::F32> error_sum;  ///< 1, of the inliers' Sampson errors
+};
+
+/// Counts the matches whose squared Sampson error, in normalised coordinates, is below `threshold`
+/// and writes 1 for them, 0 for the others, to `inlier_mask` (n elements). One division per match.
+template <class P>
+void score_essential(MatrixView<P> essential, const TwoViewMatches<P>& matches,
+                     typename P::F32 threshold,
+                     typename P::template Span<typename P::Byte> inlier_mask,
+                     const EssentialScore<P>& score);
 
 struct EssentialRansacOptions {
   int iterations = 640;  ///< a multiple of `batch`

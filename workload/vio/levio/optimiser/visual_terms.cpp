@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "workload/graph/linearise_landmark.h"
+#include "workload/graph/landmark_records.h"
 #include "workload/math/host_hints.h"
 #include "workload/math/target_call.h"
 

@@ -1,0 +1,310 @@
+#include "tools/app/html_report/page_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "sim/base/error.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/verdict.h"
+#include "tools/app/result/summary.h"
+#include "tools/app/result/verdict.h"
+
+namespace leviosim::tools {
+namespace {
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Stamps since the first, in seconds: those of data sets are too large for numbers of scripts.
+void use_seconds(Json& table) {
+  if (!table.contains("t_ns")) return;
+  Json seconds = Json::array();
+  const Json& stamps = table.at("t_ns");
+  for (const Json& stamp : stamps)
+    seconds.push_back(
+        static_cast<double>(stamp.get<std::int64_t>() - stamps.front().get<std::int64_t>()) * 1e-9);
+  table.erase("t_ns");
+  table["t_s"] = std::move(seconds);
+}
+
+/// The table of a file; null if the run has none.
+Json table_of(const RunRecord& record, const RunFiles& files, const char* name) {
+  const auto file = files.find(name);
+  if (file == files.end()) return nullptr;
+  const std::string where = record.name + '/' + name;
+  Json table = csv_json(where, file->second,
+                        [](const std::string& column) { return !ends_with(column, "_ops"); });
+  try {
+    use_seconds(table);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(where + ": a time stamp is no whole number");
+  }
+  return table;
+}
+
+/// The processed frame with the longest latency, if the table knows latencies.
+/// @param stages  of stages_of()
+std::optional<WorstFrame> worst_frame(const RunRecord& record, const Json& frames,
+                                      const Json& stages) {
+  if (!frames.contains("latency_ns")) return std::nullopt;
+  const Json& latencies = frames.at("latency_ns");
+  std::optional<std::size_t> at;
+  for (std::size_t i = 0; i < latencies.size(); ++i)
+    if (latencies[i].is_number() && (!at || latencies[i] > latencies[*at])) at = i;
+  if (!at) return std::nullopt;
+  WorstFrame worst;
+  worst.frame = frames.at("frame")[*at].get<int>();
+  worst.latency_ns = latencies[*at].get<double>();
+  const double clock = record.value("run.cluster_clock").value_or(0);
+  for (const Json& stage : stages) {
+    const std::string column = kStageColumn + stage.at("key").get<std::string>();
+    if (!frames.contains(column) || !frames.at(column)[*at].is_number()) continue;
+    const double ns = frames.at(column)[*at].get<double>() / clock * 1e9;
+    if (ns <= worst.stage_ns) continue;
+    worst.stage = stage.at("name").get<std::string>();
+    worst.stage_ns = ns;
+  }
+  return worst;
+}
+
+/// Of the statistics of accuracy; empty if there are none.
+std::string protocol_of(const Json& statistics) {
+  for (const Json& entry : statistics.at("statistics"))
+    if (entry.at("name") == "accuracy.ate.rmse") return entry.value("protocol", "");
+  return {};
+}
+
+Json facts_of(const RunRecord& record, const Json& manifest) {
+  Json facts = facts_json(record.facts);
+  facts["data"] = manifest.at("data").at("folder");
+  facts["command_line"] = manifest.at("command_line");
+  for (const auto& [key, name] : {std::pair{"cluster_clock", "run.cluster_clock"},
+                                  {"controller_clock", "run.controller_clock"},
+                                  {"voltage", "run.voltage"},
+                                  {"l1_size", "run.l1_size"},
+                                  {"l2_size", "run.l2_size"}})
+    facts[key] = value_of(record.value(name));
+  facts["deadline_ns"] = deadline_ns(record);
+  return facts;
+}
+
+/// By the names that the table of stages has; without it, as the record has them.
+Json stages_of(const RunRecord& record, const Json& table) {
+  Json list = Json::array();
+  const auto add = [&](const Json& name, const Json& key, bool on_controller) {
+    list.push_back({{"name", name}, {"key", key}, {"on_controller", on_controller}});
+  };
+  if (table.is_null())
+    for (const StageName& s : record.stages) add(s.name, s.key, s.on_controller);
+  else
+    for (std::size_t i = 0; i < table.at("stage").size(); ++i) {
+      const Json& name = table.at("stage")[i];
+      add(name, key_of(name.get<std::string>()), table.at("runs_on")[i] == "controller");
+    }
+  return list;
+}
+
+/// What the parts of the breakdown are called, and what they mean.
+Json account_of(const Json& stages) {
+  Json list = Json::array();
+  for (const sim::MechanismInfo& info : sim::kMechanisms)
+    if (stages.contains(std::string(info.key) + "_core_cycles"))
+      list.push_back({{"key", info.key}, {"group", info.column}, {"meaning", info.meaning}});
+  return list;
+}
+
+Json key_figures_json(const RunRecord& record, const std::string& protocol) {
+  Json list = Json::array();
+  for (const KeyFigure& figure : key_figures(record, protocol))
+    list.push_back({{"title", figure.title},
+                    {"value", figure.value},
+                    {"unit", figure.unit},
+                    {"note", figure.note},
+                    {"share", value_of(figure.share)}});
+  return list;
+}
+
+Json verdict_json(const Verdicts& verdicts) {
+  Json list = Json::array();
+  for (const RunVerdict& v : verdicts.list)
+    list.push_back({{"about", v.about},
+                    {"grade", name_of(v.grade)},
+                    {"word", v.word()},
+                    {"reason", v.reason()}});
+  return {{"grade", verdicts.list.empty() ? Json(nullptr) : Json(name_of(verdicts.grade()))},
+          {"text", verdicts.text()},
+          {"list", std::move(list)}};
+}
+
+/// A table of columns that a script can rely on. @throws InputError for one that is missing
+void expect_columns(const std::string& where, const Json& table,
+                    std::initializer_list<const char*> columns) {
+  for (const char* column : columns)
+    if (!table.is_null() && !table.contains(column))
+      throw InputError(where + ": has no column " + column);
+}
+
+Json tables_of(const RunRecord& record, const RunFiles& files) {
+  Json tables;
+  tables["frames"] = table_of(record, files, kFramesFile);
+  tables["stages"] = table_of(record, files, kStagesFile);
+  tables["memory"] = table_of(record, files, kMemoryFile);
+  tables["energy"] = table_of(record, files, kEnergyFile);
+  tables["errors"] = table_of(record, files, kErrorsFile);
+  const auto where = [&](const char* name) { return record.name + '/' + name; };
+  expect_columns(where(kFramesFile), tables["frames"], {"frame", "source"});
+  expect_columns(where(kStagesFile), tables["stages"],
+                 {"stage", "call", "runs_on", "calls", "single_cycles", "parallel_cycles"});
+  expect_columns(where(kMemoryFile), tables["memory"],
+                 {"memory", "owner", "what", "block", "copies", "bytes"});
+  expect_columns(where(kEnergyFile), tables["energy"],
+                 {"stage", "quantity", "domain", "value", "unit", "low", "high"});
+  expect_columns(
+      where(kErrorsFile), tables["errors"],
+      {"t_s", "position_error_m", "estimate_x_m", "estimate_y_m", "truth_x_m", "truth_y_m"});
+  return tables;
+}
+
+}  // namespace
+
+Json run_json(const RunRecord& record, const RunFiles& files) {
+  const Json manifest = Json::parse(files.at("manifest.json"));
+  const std::string protocol = protocol_of(Json::parse(files.at("stats.json")));
+  Json json;
+  json["name"] = record.name;
+  json["facts"] = facts_of(record, manifest);
+  json["tables"] = tables_of(record, files);
+  json["stages"] = stages_of(record, json["tables"]["stages"]);
+  const std::optional<WorstFrame> worst =
+      worst_frame(record, json["tables"]["frames"], json["stages"]);
+  json["verdict"] = verdict_json(verdicts(record));
+  json["verdict"]["why"] = worst ? reason_of(*worst) : "";
+  json["figures"] = key_figures_json(record, protocol);
+  json["protocol"] = protocol;
+  if (!json["tables"]["stages"].is_null()) json["breakdown"] = account_of(json["tables"]["stages"]);
+  return json;
+}
+
+namespace {
+
+/// Takes the row that begins at `at`, which moves behind its line break.
+std::vector<std::string> next_row(const std::string& text, std::size_t& at) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quoted && c == '"' && at + 1 < text.size() && text[at + 1] == '"') {
+      cells.back() += '"';
+      ++at;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && c == ',') {
+      cells.emplace_back();
+    } else if (!quoted && c == '\n') {
+      ++at;
+      break;
+    } else if (quoted || c != '\r') {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+template <class T>
+bool is_number(const std::string& cell, T& value) {
+  const char* end = cell.data() + cell.size();
+  const auto [stop, error] = std::from_chars(cell.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
+Json cell_json(const std::string& cell) {
+  if (cell.empty()) return nullptr;
+  if (std::int64_t whole = 0; is_number(cell, whole)) return whole;
+  if (double number = 0; is_number(cell, number) && std::isfinite(number)) return number;
+  return cell;
+}
+
+}  // namespace
+
+Json csv_json(const std::string& where, const std::string& text,
+              const std::function<bool(const std::string&)>& wanted) {
+  std::size_t at = 0;
+  const std::vector<std::string> titles = next_row(text, at);
+  Json table = Json::object();
+  const auto is_wanted = [&](const std::string& title) { return !wanted || wanted(title); };
+  for (const std::string& title : titles)
+    if (is_wanted(title)) table[title] = Json::array();
+  for (std::size_t row = 2; at < text.size(); ++row) {
+    const std::vector<std::string> cells = next_row(text, at);
+    if (cells.size() != titles.size())
+      throw InputError(fmt::format("{}: row {} has {} cells; expected {}, as its titles", where,
+                                   row, cells.size(), titles.size()));
+    for (std::size_t i = 0; i < titles.size(); ++i)
+      if (is_wanted(titles[i])) table[titles[i]].push_back(cell_json(cells[i]));
+  }
+  return table;
+}
+
+namespace {
+
+Json scaled(Json cells, double scale) {
+  if (scale != 1)
+    for (Json& cell : cells)
+      if (cell.is_number()) cell = cell.get<double>() * scale;
+  return cells;
+}
+
+bool is_empty(const Json& cells) {
+  return std::all_of(cells.begin(), cells.end(), [](const Json& cell) { return cell.is_null(); });
+}
+
+}  // namespace
+
+Json study_report(const StudyPage& page) {
+  Json data = report_json(page.title, Json::array());
+  Json& study = data["study"];
+  study["summary"] = page.summary;
+  study["boxes"] = Json::array();
+  for (const StudyBox& box : page.boxes)
+    study["boxes"].push_back({{"good", box.good ? Json(*box.good) : Json(nullptr)},
+                              {"mark", box.mark},
+                              {"sentence", box.sentence},
+                              {"lines", box.lines}});
+  study["best"] = page.best;
+  const Json table = csv_json("points", page.points);
+  study["columns"] = Json::array();
+  study["table"] = Json::object();
+  for (const StudyColumn& column : page.columns) {
+    if (!table.contains(column.name) || is_empty(table.at(column.name))) continue;
+    study["columns"].push_back({{"name", column.name},
+                                {"title", column.title},
+                                {"unit", column.unit},
+                                {"kind", column.is_setup ? "setup" : "figure"},
+                                {"more", column.more_is_better}});
+    study["table"][column.name] = scaled(table.at(column.name), column.scale);
+  }
+  const auto known = [&](const std::string& name) { return study["table"].contains(name); };
+  const auto axis = [&](const std::string& wanted, std::size_t other) {
+    if (known(wanted) || study["columns"].empty()) return Json(wanted);
+    return study["columns"][std::min(other, study["columns"].size() - 1)]["name"];
+  };
+  study["axes"] = Json::array({axis(page.x, 0), axis(page.y, 1)});
+  study["colour"] = known(page.colour) ? page.colour : "";
+  study["limits"] = page.limits;
+  if (page.curves && known(page.curves->x) &&
+      (page.curves->series.empty() || known(page.curves->series)))
+    study["curves"] = {
+        {"x", page.curves->x},       {"series", page.curves->series},
+        {"y", page.curves->y},       {"hint", page.curves->hint},
+        {"fromZero", page.curves->from_zero}, {"names", page.curves->names},
+        {"marks", page.curves->marks}};
+  if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
+  return data;
+}
+
+}  // namespace leviosim::tools
