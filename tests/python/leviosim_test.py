@@ -1,7 +1,11 @@
 """The Python module gives what the command gives: the same files, the same refusals. Run by ctest with the
 program and the folder of the module; where the module was not built, the tests are skipped (exit status 77)."""
 
+import contextlib
+import io
+import json
 import os
+import runpy
 import signal
 import subprocess
 import sys
@@ -11,6 +15,7 @@ import time
 import unittest
 
 PROGRAM, MODULE, EXAMPLES = sys.argv[1:4]
+BUILD = os.path.dirname(PROGRAM)
 if not os.path.isdir(os.path.join(MODULE, "leviosim")):
     print(f"skipped: there is no module in {MODULE}; tools/build.sh python leviosim_python builds it")
     sys.exit(77)
@@ -164,13 +169,67 @@ class Module(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             leviosim.run(data=DATA, progress=interrupt)
 
-    def test_the_examples_run(self):
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join([MODULE, os.environ.get("PYTHONPATH", "")])}
-        for name in sorted(os.listdir(EXAMPLES)):
-            done = subprocess.run([sys.executable, os.path.join(EXAMPLES, name), DATA], env=environment,
-                                  cwd=FOLDER.name, capture_output=True, text=True)
-            self.assertEqual(done.returncode, 0, name + done.stderr)
-            self.assertGreater(len(done.stdout.splitlines()), 1, name)
+    def example(self, name):
+        """Runs a notebook in this process. @returns its variables, and what it printed"""
+        words, sys.argv, here = sys.argv, [name, DATA], os.getcwd()
+        os.chdir(FOLDER.name)
+        printed = io.StringIO()
+        try:
+            with contextlib.redirect_stdout(printed):
+                found = runpy.run_path(os.path.join(EXAMPLES, name), run_name="__main__")
+        finally:
+            sys.argv = words
+            os.chdir(here)
+        return found, printed.getvalue()
+
+    def commanded(self, *words):
+        folder = os.path.join(FOLDER.name, f"commanded-{len(os.listdir(FOLDER.name))}")
+        done = command(*words, "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return folder
+
+    def test_every_notebook_is_tested(self):
+        tested = {name[len("test_notebook_"):] + ".py" for name in dir(self) if name.startswith("test_notebook_")}
+        self.assertEqual(tested, {name for name in os.listdir(EXAMPLES) if name.endswith(".py")})
+
+    def test_notebook_whatif(self):
+        found, printed = self.example("whatif.py")
+        recorded = self.commanded("run", "--platform", "gap9", "--data", DATA, "--record")
+        self.assert_same_files(found["run"], recorded)
+        self.assert_same_files(found["point"], self.commanded("replay", recorded, "-p", "cluster.fpu.units=8"))
+        done = command("whatif", recorded, "cluster.fpu.units=1,2,8", "cluster.l1.banks=8,32", "--json")
+        for row in json.loads(done.stdout)["rows"]:
+            self.assertIn(f"{row['variant']:28} {row['frame_mean_ms']:8.2f} ms\n", printed)
+
+    def test_notebook_tuning(self):
+        found, printed = self.example("tuning.py")
+        clock = found["settings"]["MHz"]
+        folder = self.commanded("run", "--platform", "gap9", "-p", f"cluster.clock={clock}MHz", "-p",
+                                f"controller.clock={clock}MHz", "--profile", "next", "--data", DATA, "--fps", "20",
+                                "--deadline", "drop")
+        self.assert_same_files(found["run"], folder)
+        self.assertIn(f"{clock} MHz: 0 of ", printed)
+
+    def test_notebook_accuracy(self):
+        found, printed = self.example("accuracy.py")
+        folder = self.commanded("run", "--native", "--profile", "next", "--data", DATA)
+        self.assert_same_files(found["run"], folder)
+        self.assertIn("poses over", printed)
+
+    def test_notebook_own_kernel(self):
+        if subprocess.run(["cmake", "--install", BUILD, "--prefix", os.path.join(FOLDER.name, "installed")],
+                          capture_output=True).returncode != 0:
+            self.skipTest(f"{BUILD} holds no library; tools/build.sh release leviosim leviosim_library builds it")
+        installed = os.path.join(FOLDER.name, "installed")
+        os.environ["CMAKE_PREFIX_PATH"] = installed
+        os.environ["PROJECT"] = os.path.join(installed, "share/doc/libleviosim-dev/examples/outside")
+        found, printed = self.example("own_kernel.py")
+        self.assert_same_files(found["run"], self.commanded("replay", "own-kernel/recorded"))
+        self.assert_same_files(found["point"], self.commanded(
+            "replay", "own-kernel/recorded", "-p", "cluster.workers=8", "-p", "cluster.dma.bytes_per_cycle=16"))
+        times = found["times"]
+        self.assertGreater(times[1, 8], 4 * times[8, 8])
+        self.assertEqual(printed.count("\n"), 1 + 5 + 1 + 4, printed)
 
 
 if __name__ == "__main__":

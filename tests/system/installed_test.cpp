@@ -4,10 +4,12 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <vector>
 
-#include "sim/base/input_file.h"
 #include "tests/support/paths.h"
 #include "tests/support/scratch.h"
+#include "tests/support/text_lines.h"
+#include "tools/app/report/statistic_list.h"
 
 namespace leviosim::tools {
 namespace {
@@ -16,14 +18,16 @@ namespace fs = std::filesystem;
 using tests::read_text;
 using tests::Scratch;
 
-/// What the page wants typed: the block of shell lines.
-std::string commands_of_page() {
+/// What the page wants typed: its blocks of shell lines, to use the package and to measure a kernel.
+std::vector<std::string> blocks_of_page() {
   const std::string page = read_text(tests::source_folder() / "tests/examples/outside/README.md");
   const std::string begin = "\n```sh\n";
-  const std::size_t from = page.find(begin);
-  EXPECT_NE(from, std::string::npos);
-  const std::size_t at = from + begin.size();
-  return page.substr(at, page.find("```", at) - at);
+  std::vector<std::string> blocks;
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at)) {
+    at += begin.size();
+    blocks.push_back(page.substr(at, page.find("```", at) - at));
+  }
+  return blocks;
 }
 
 /// An entry of this build's cache: "CMAKE_CXX_FLAGS".
@@ -62,6 +66,14 @@ class Installed : public ::testing::Test {
         << log();
   }
   bool has(const char* file) const { return fs::exists(folder_ / file); }
+  /// Of the stage's cycles on one core, those of code that was not measured.
+  double unmeasured_in(const char* run) const {
+    const Json stats = Json::parse(read_text(folder_ / run / "stats.json"));
+    for (const Json& row : stats.at("statistics"))
+      if (row.at("name") == "stages.exposure.unmeasured") return row.at("value").get<double>();
+    ADD_FAILURE() << "stages.exposure.unmeasured is not in " << run;
+    return 0;
+  }
 
   Scratch folder_;
 };
@@ -70,11 +82,18 @@ TEST_F(Installed, AProjectOfItsOwnHasEveryCommand) {
   if (sh("command -v cpack dpkg-deb dpkg-shlibdeps") != 0)
     GTEST_SKIP() << "cpack, dpkg-deb or dpkg-shlibdeps is missing; apt-get install cmake dpkg-dev";
   unpack();
-  ASSERT_EQ(sh(commands_of_page()), 0) << log();
+  const std::vector<std::string> blocks = blocks_of_page();
+  ASSERT_EQ(blocks.size(), 2u);
+  // As a project is before its kernel was measured.
+  const std::string code = read_text(folder_ / "outside/exposure_code.h");
+  tests::write_text(folder_ / "outside/exposure_code.h",
+                    code.substr(0, code.find("  return")) + "  return {};\n}\n");
+  ASSERT_EQ(sh(blocks[0]), 0) << log();
   for (const char* file : {"recorded/work.trace", "replayed/stages.csv", "on-mychip/stages.csv",
                            "points/sweep.csv", "budgets.yaml", "page.html", "frame.svg"})
     EXPECT_TRUE(has(file)) << file << '\n' << log();
   EXPECT_NE(log().find("workload.row_step"), std::string::npos);
+  EXPECT_EQ(tests::lines_of(read_text(folder_ / "outside/mychip.yaml")).size(), 5u);
   EXPECT_NE(read_text(folder_ / "recorded/stages.csv").find("exposure"), std::string::npos);
   for (const char* program : {"leviosim-measure", "leviosim-check-counting"})
     EXPECT_EQ(sh(std::string("leviosim/bin/") + program + " --help"), 0) << log();
@@ -89,6 +108,13 @@ TEST_F(Installed, AProjectOfItsOwnHasEveryCommand) {
             2);
   EXPECT_NE(log().find("'levio' has no such parameter"), std::string::npos) << log();
   EXPECT_FALSE(has("refused") || has("no"));
+
+  EXPECT_GT(unmeasured_in("recorded"), 0.9);
+  const int measured = sh("export PATH=$PWD/build:$HOME/leviosim/bin:$PATH\n" + blocks[1]);
+  if (log().find("apt-get install") != std::string::npos) GTEST_SKIP() << log();
+  ASSERT_EQ(measured, 0) << log();
+  EXPECT_EQ(read_text(folder_ / "outside/exposure_code.h"), code);
+  EXPECT_LT(unmeasured_in("measured"), 0.01);
 }
 
 TEST_F(Installed, ThePagesForPeopleAndShellsNameEveryCommandAndOption) {
