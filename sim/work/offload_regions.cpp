@@ -1,6 +1,7 @@
 #include "sim/work/offload_regions.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "sim/base/check.h"
@@ -8,7 +9,6 @@
 namespace leviosim::work {
 namespace {
 
-/// Of one host thread, as the tally is.
 struct OffloadTally {
   struct Sum {
     std::uint64_t calls = 0;
@@ -21,12 +21,19 @@ struct OffloadTally {
   int depth = 0;  ///< of marks within marks
   bool any = false;
 };
-constinit thread_local OffloadTally offload_tally{};
+
+/// That of the host's thread, as the tally is. Made when it is needed, since what a module of Python
+/// holds for each thread has to fit into 1.5 kB that the C library leaves for all modules.
+OffloadTally& of_this_thread() {
+  static thread_local std::unique_ptr<OffloadTally> held;
+  if (!held) held = std::make_unique<OffloadTally>();
+  return *held;
+}
 
 }  // namespace
 
 void begin_offload(OffloadKind kind, std::uint64_t items) {
-  OffloadTally& t = offload_tally;
+  OffloadTally& t = of_this_thread();
   if (t.depth++ > 0) return;
   t.present = kind;
   t.any = true;
@@ -37,7 +44,7 @@ void begin_offload(OffloadKind kind, std::uint64_t items) {
 }
 
 void end_offload() {
-  OffloadTally& t = offload_tally;
+  OffloadTally& t = of_this_thread();
   if (--t.depth > 0) return;
   RawCounts& sum = t.sums[index(t.present)].counts;
   for (std::size_t i = 0; i < kOpCount; ++i) sum.n[i] += tally.n[i] - t.at_begin.n[i];
@@ -45,7 +52,7 @@ void end_offload() {
 }
 
 std::vector<OffloadWork> take_offload() {
-  OffloadTally& t = offload_tally;
+  OffloadTally& t = of_this_thread();
   if (!t.any) return {};
   check_equal(t.depth, 0, "offload regions that go on at the end of a work segment");
   std::vector<OffloadWork> taken;

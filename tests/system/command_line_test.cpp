@@ -1,8 +1,10 @@
 // The program as users meet it: exit status and messages.
+#include <elf.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,7 +12,9 @@
 
 #include "sim/base/error.h"
 #include "sim/outputs/output_folder.h"
+#include "tests/support/paths.h"
 #include "tests/support/run_program.h"
+#include "tests/support/scratch.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_request.h"
@@ -63,6 +67,21 @@ TEST_F(CommandLine, VersionAndHelpSucceed) {
   const ProgramResult help = run_program(folder_.path(), {"run", "--help"});
   EXPECT_EQ(help.status, 0);
   EXPECT_NE(help.out.find("--platform"), std::string::npos);
+}
+
+/// What is held for each thread: a module of Python is loaded late, when little room is left for it.
+TEST_F(CommandLine, HoldsLittleForEachThread) {
+  const std::string program = tests::read_text(tests::program_path());
+  Elf64_Ehdr head{};
+  ASSERT_GT(program.size(), sizeof(head));
+  std::memcpy(&head, program.data(), sizeof(head));
+  for (std::size_t i = 0; i < head.e_phnum; ++i) {
+    Elf64_Phdr segment{};
+    std::memcpy(&segment, program.data() + head.e_phoff + i * sizeof(segment), sizeof(segment));
+    if (segment.p_type == PT_TLS) {
+      EXPECT_LE(segment.p_memsz, 1520u);  // glibc 2.36: TLS_STATIC_SURPLUS
+    }
+  }
 }
 
 TEST_F(CommandLine, ListsPlatforms) {

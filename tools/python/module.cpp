@@ -109,6 +109,7 @@ py::dict run(const py::dict& words, const py::object& progress) {
     add_run_options(typed, declared);
     RunRequest request = make_request(typed, options);
     request.data = data_folder(options, ProgressLine::Style::None);
+    request.time_bands = TimeBandsOf::team;
     WorkRecording recording(request.cores);
     if (options.record) request.recording = &recording;
     const RunResult result = simulate(request, watch);
@@ -134,7 +135,8 @@ py::dict replay_bytes(const std::string& name, const py::bytes& bytes, const std
     const InputDigest digest{name, static_cast<std::int64_t>(content.size()),
                              base::sha256_of(content)};
     const traces::WorkTrace trace(name, std::move(content));
-    const RunRequest request = replay_request(trace, options);
+    RunRequest request = replay_request(trace, options);
+    request.time_bands = TimeBandsOf::team;
     const Replay result = replay(trace, request, watch);
     if (options.platform.empty()) options.platform = trace.info().platform;
     files = files_of(result.run, replay_manifest(trace, digest, options, {"python"}), request);

@@ -37,10 +37,10 @@ for k in largest:
 # Transfers from L2 or computing: which of the two is the limit? The kernel reads every byte once.
 
 # %%
-over = {"cluster.workers": [1, 2, 4, 8], "cluster.dma.bytes_per_cycle": [4, 8, 16]}
+over = {"cluster.l1.banks": [8, 16, 32], "cluster.dma.bytes_per_cycle": [4, 8, 16]}
 times = {}
 for settings, point in leviosim.sweep(over, lambda s: leviosim.replay("own-kernel/recorded", gap9.with_(s))):
     times[tuple(settings.values())] = point["stages.exposure.cycles.parallel.mean"]
-print("cores " + "".join(f"{width:8} B/cycle" for width in over["cluster.dma.bytes_per_cycle"]))
-for cores in over["cluster.workers"]:
-    print(f"{cores:5} " + "".join(f"{times[cores, width]:16.0f}" for width in over["cluster.dma.bytes_per_cycle"]))
+print("banks " + "".join(f"{width:8} B/cycle" for width in over["cluster.dma.bytes_per_cycle"]))
+for banks in over["cluster.l1.banks"]:
+    print(f"{banks:5} " + "".join(f"{times[banks, width]:16.0f}" for width in over["cluster.dma.bytes_per_cycle"]))
