@@ -69,7 +69,7 @@ TEST_F(CommandLine, VersionAndHelpSucceed) {
   EXPECT_NE(help.out.find("--platform"), std::string::npos);
 }
 
-/// What is held for each thread: a module of Python is loaded late, when little room is left for it.
+/// A module of Python is loaded late, when little room is left for what each thread holds.
 TEST_F(CommandLine, HoldsLittleForEachThread) {
   const std::string program = tests::read_text(tests::program_path());
   Elf64_Ehdr head{};
