@@ -15,7 +15,6 @@ namespace {
 
 using Path = std::vector<Eigen::Vector3d>;
 
-constexpr std::size_t kFaces = 6;
 constexpr double kPathStepM = 0.05;
 constexpr double kPatternDistanceM =
     1.5;  // at which the painter's patterns have their natural size
@@ -95,9 +94,9 @@ World make_hall(std::span<const Eigen::Vector3d> path, const CameraModel& camera
   std::vector<Box> objects;
   for (const HallObject& object : layout.objects)
     objects.push_back(box_of(object.box, layout.light));
-  base::parallel_for((1 + objects.size()) * kFaces, options.threads, [&](std::size_t job) {
-    const std::size_t index = job / kFaces;
-    const std::size_t face = job % kFaces;
+  base::parallel_for((1 + objects.size()) * kBoxFaces, options.threads, [&](std::size_t job) {
+    const std::size_t index = job / kBoxFaces;
+    const std::size_t face = job % kBoxFaces;
     Box& box = index == 0 ? room : objects[index - 1];
     SurfaceSpec spec = spec_for(distance(positions, face_of(box, face)), camera, options);
     spec.style = index == 0 ? layout.faces[face].style : layout.objects[index - 1].style;

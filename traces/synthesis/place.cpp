@@ -136,10 +136,9 @@ World make_room(std::uint64_t seed, double texel_m, unsigned threads) {
   for (const ObjectRow& row : kObjects)
     objects.push_back(unpainted_box(vector(row.min), vector(row.max), kObjectLight));
 
-  constexpr std::size_t kFaces = 6;
-  base::parallel_for((1 + kObjects.size()) * kFaces, threads, [&](std::size_t job) {
-    const std::size_t index = job / kFaces;
-    const std::size_t face = job % kFaces;
+  base::parallel_for((1 + kObjects.size()) * kBoxFaces, threads, [&](std::size_t job) {
+    const std::size_t index = job / kBoxFaces;
+    const std::size_t face = job % kBoxFaces;
     SurfaceSpec spec;
     spec.style = index == 0 ? kRoomStyles[face] : kObjects[index - 1].style;
     spec.tone = index == 0 ? kRoomTones[face] : kObjects[index - 1].tone;

@@ -51,12 +51,14 @@ struct Surface {
   float gloss = 0;
 };
 
+inline constexpr std::size_t kBoxFaces = 6;
+
 /// Face 2 a + s is perpendicular to axis a, at min (s = 0) or max (s = 1). Its texture's u and v
 /// run along the remaining two axes, in the order x, y, z, from `min`.
 struct Box {
   Eigen::Vector3f min = Eigen::Vector3f::Zero();  ///< [m]
   Eigen::Vector3f max = Eigen::Vector3f::Zero();
-  std::array<Surface, 6> faces;
+  std::array<Surface, kBoxFaces> faces;
 };
 
 struct Hit {
