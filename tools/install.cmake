@@ -33,7 +33,7 @@ function(leviosim_install_library)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/leviosim>)
   target_link_libraries(leviosim_library INTERFACE
     fmt::fmt Eigen3::Eigen nlohmann_json::nlohmann_json CLI11::CLI11 OpenSSL::Crypto SQLite::SQLite3
-    PNG::PNG ZLIB::ZLIB zstd::libzstd_shared opencv_core opencv_imgproc yaml turbojpeg)
+    PNG::PNG ZLIB::ZLIB zstd::libzstd_shared yaml turbojpeg)
   set_target_properties(leviosim PROPERTIES EXPORT_NAME program)
 
   install(TARGETS leviosim EXPORT leviosim RUNTIME COMPONENT program)
@@ -74,7 +74,6 @@ function(leviosim_install_library)
     COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_BINARY_DIR}/library/leviosim-config.cmake
                 ${CMAKE_BINARY_DIR}/library/leviosim-config-version.cmake
-                tools/opencv_modules.cmake
           DESTINATION ${package} COMPONENT library)
 endfunction()
 
@@ -96,12 +95,12 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libleviosim-dev)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "leviosim as a library, for workloads and kernels of your own")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
-    "leviosim (= ${PROJECT_VERSION}), g++, cmake, libeigen3-dev, libopencv-imgproc-dev, libfmt-dev, \
+    "leviosim (= ${PROJECT_VERSION}), g++, cmake, make, python3, libeigen3-dev, libfmt-dev, \
 libpng-dev, libturbojpeg0-dev, libyaml-dev, nlohmann-json3-dev, libcli11-dev, libssl-dev, libzstd-dev, zlib1g-dev, \
 libsqlite3-dev")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS # leviosim-check-counting, leviosim-measure
     "clang-tools, gcc-riscv64-unknown-elf, picolibc-riscv64-unknown-elf, gcc-arm-none-eabi, \
-libnewlib-arm-none-eabi, libcapstone-dev, qemu-user, make, python3")
+libnewlib-arm-none-eabi, libcapstone-dev, qemu-user")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-leviosim)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "leviosim as a Python module")

@@ -1,4 +1,5 @@
-// PNG and JPEG files of any depth and number of channels, for readers that are to refuse them.
+// Pictures of OpenCV from and to files: PNG and JPEG of any depth and number of channels, for
+// readers that are to refuse them, and the grey ones of ours.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,6 +10,8 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
+
+#include "traces/datasets/image_file.h"
 
 namespace leviosim::tests {
 
@@ -50,6 +53,19 @@ inline std::string jpeg_of(const cv::Mat& image, int quality = 90, bool progress
       0);
   const std::unique_ptr<unsigned char, void (*)(unsigned char*)> jpeg(bytes, tjFree);
   return {reinterpret_cast<const char*>(jpeg.get()), size};
+}
+
+inline traces::ImageSize size_of(const cv::Mat& image) { return {image.cols, image.rows}; }
+inline std::span<const std::uint8_t> pixels_of(const cv::Mat& image) {
+  EXPECT_TRUE(image.type() == CV_8UC1 && image.isContinuous());
+  return {image.data, image.total()};
+}
+inline std::string encoded(const cv::Mat& image) {
+  return traces::encode_png(size_of(image), pixels_of(image));
+}
+inline cv::Mat decoded(std::string_view bytes, traces::ImageSize size) {
+  const std::vector<std::uint8_t> pixels = traces::decode_gray(bytes, size);
+  return cv::Mat(pixels, true).reshape(1, size.height);
 }
 
 }  // namespace leviosim::tests

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_writer.h"
 #include "traces/datasets/rng.h"
@@ -11,11 +14,12 @@
 namespace leviosim::traces {
 namespace {
 
-cv::Mat random_image(const CameraModel& camera, std::uint64_t seed) {
+using Pixels = std::vector<std::uint8_t>;
+
+Pixels random_image(const CameraModel& camera, std::uint64_t seed) {
   Rng rng(seed);
-  cv::Mat image(camera.height, camera.width, CV_8UC1);
-  for (auto it = image.begin<uchar>(); it != image.end<uchar>(); ++it)
-    *it = static_cast<uchar>(rng.below(256));
+  Pixels image(static_cast<std::size_t>(camera.height) * camera.width);
+  for (std::uint8_t& pixel : image) pixel = static_cast<std::uint8_t>(rng.below(256));
   return image;
 }
 
@@ -23,14 +27,41 @@ TEST(ImagePreparation, ReadsNoPixelButThoseItNames) {
   const CameraModel camera = euroc_cam0();
   for (const ImageSize size : {ImageSize{160, 120}, {320, 240}, {752, 480}}) {
     const ImagePreparation preparation(camera, size);
-    const cv::Mat image = random_image(camera, 1);
-    cv::Mat spoiled = random_image(camera, 2);
-    const std::vector<std::uint8_t> read = preparation.pixels_read();
-    image.copyTo(spoiled, cv::Mat(image.size(), CV_8UC1, const_cast<std::uint8_t*>(read.data())));
+    const Pixels image = random_image(camera, 1);
+    Pixels spoiled = random_image(camera, 2);
+    const Pixels read = preparation.pixels_read();
+    for (std::size_t i = 0; i < read.size(); ++i)
+      if (read[i] != 0) spoiled[i] = image[i];
     EXPECT_EQ(preparation.apply(image), preparation.apply(spoiled)) << size.width;
   }
-  const std::vector<std::uint8_t> read = ImagePreparation(camera, {160, 120}).pixels_read();
+  const Pixels read = ImagePreparation(camera, {160, 120}).pixels_read();
   EXPECT_LE(std::count(read.begin(), read.end(), 1), 4 * 160 * 120);
+}
+
+/// Positions left of and above the image, far outside, and between its last pixels.
+TEST(ImagePreparation, PixelsAreThoseOfOpenCvsRemap) {
+  for (const double k1 : {-0.45, 0.3, 5.0}) {
+    CameraModel camera = euroc_cam0();
+    camera.k1 = k1;
+    const Pixels image = random_image(camera, 4);
+    cv::Mat u(camera.height, camera.width, CV_32F);
+    cv::Mat v = u.clone();
+    for (int y = 0; y < u.rows; ++y)
+      for (int x = 0; x < u.cols; ++x) {
+        const Eigen::Vector2d at =
+            camera.distort({(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy});
+        u.at<float>(y, x) =
+            static_cast<float>(std::rint((camera.fx * at.x() + camera.cx) * 32) / 32);
+        v.at<float>(y, x) =
+            static_cast<float>(std::rint((camera.fy * at.y() + camera.cy) * 32) / 32);
+      }
+    cv::Mat expected;
+    const cv::Mat given(camera.height, camera.width, CV_8UC1,
+                        const_cast<std::uint8_t*>(image.data()));
+    cv::remap(given, expected, u, v, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    const Pixels got = ImagePreparation(camera, {camera.width, camera.height}).apply(image);
+    EXPECT_TRUE(std::equal(got.begin(), got.end(), expected.begin<uchar>())) << k1;
+  }
 }
 
 TEST(ImagePreparation, APreparedImageIsUsedAsItIs) {
@@ -38,9 +69,8 @@ TEST(ImagePreparation, APreparedImageIsUsedAsItIs) {
     const ImagePreparation first(euroc_cam0(), size);
     const CameraModel camera = first.prepared_camera();
     const ImagePreparation second(camera, size);
-    const cv::Mat image = random_image(camera, 3);
-    const std::vector<std::uint8_t> pixels = second.apply(image);
-    EXPECT_TRUE(std::equal(pixels.begin(), pixels.end(), image.begin<uchar>(), image.end<uchar>()));
+    const Pixels image = random_image(camera, 3);
+    EXPECT_EQ(second.apply(image), image);
     EXPECT_EQ(second.intrinsics().fx, first.intrinsics().fx);
     EXPECT_EQ(second.intrinsics().fy, first.intrinsics().fy);
     EXPECT_EQ(second.intrinsics().cx, first.intrinsics().cx);

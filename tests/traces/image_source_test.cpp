@@ -28,7 +28,7 @@ cv::Mat undistorted(const CameraModel& camera, const fs::path& image) {
   const cv::Mat coefficients =
       (cv::Mat_<double>(4, 1) << camera.k1, camera.k2, camera.p1, camera.p2);
   cv::Mat result;
-  cv::undistort(decode_gray(base::read_text_file(image), {camera.width, camera.height}), result,
+  cv::undistort(tests::decoded(base::read_text_file(image), {camera.width, camera.height}), result,
                 matrix, coefficients);
   return result;
 }

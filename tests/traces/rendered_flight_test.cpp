@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tests/support/image_files.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/image_file.h"
@@ -122,7 +123,7 @@ TEST(RenderedFlight, PixelsSeeTheHallFromTheRecordedPose) {
   int differing = 0;
   for (int frame = 0; frame < AslFolder::kFrames; ++frame) {
     const cv::Mat image =
-        decode_gray(base::read_text_file(data.frames[static_cast<std::size_t>(frame)].path),
+        tests::decoded(base::read_text_file(data.frames[static_cast<std::size_t>(frame)].path),
                     {data.camera.width, data.camera.height});
     const Eigen::Isometry3d& pose =
         data.ground_truth[static_cast<std::size_t>(10 + 10 * frame)].T_world_body;

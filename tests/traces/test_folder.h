@@ -151,11 +151,12 @@ class AslFolder {
 
   void write_images() {
     for (int i = 0; i < kFrames; ++i) {
-      cv::Mat picture(camera_.height, camera_.width, CV_8UC1);
-      for (int y = 0; y < picture.rows; ++y)
-        for (int x = 0; x < picture.cols; ++x)
-          picture.at<uchar>(y, x) = static_cast<uchar>((x * 37 + y * 91 + i * 13) % 251);
-      outputs::write_file_atomically(image(i), encode_png(picture));
+      std::vector<std::uint8_t> picture;
+      for (int y = 0; y < camera_.height; ++y)
+        for (int x = 0; x < camera_.width; ++x)
+          picture.push_back(static_cast<std::uint8_t>((x * 37 + y * 91 + i * 13) % 251));
+      outputs::write_file_atomically(image(i),
+                                     encode_png({camera_.width, camera_.height}, picture));
     }
   }
 

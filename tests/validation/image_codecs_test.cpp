@@ -33,13 +33,13 @@ void expect_as_opencv(const std::string& bytes) {
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
   const cv::Mat expected = cv::imdecode(raw, cv::IMREAD_UNCHANGED);
   ASSERT_EQ(expected.type(), CV_8UC1);
-  const cv::Mat image = decode_gray(bytes, expected.size());
+  const cv::Mat image = tests::decoded(bytes, tests::size_of(expected));
   ASSERT_EQ(image.size(), expected.size());
   EXPECT_EQ(cv::countNonZero(image != expected), 0);
 }
 
 TEST(ImageCodecs, PixelsOfGreyPngAreThoseOfOpenCv) {
-  expect_as_opencv(encode_png(picture()));
+  expect_as_opencv(tests::encoded(picture()));
   for (const int bits : {1, 2, 4, 8})
     for (const bool interlaced : {false, true}) {
       SCOPED_TRACE(fmt::format("{} bits, interlaced {}", bits, interlaced));

@@ -15,7 +15,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <opencv2/core/utility.hpp>
 #include <string>
 #include <vector>
 
@@ -60,7 +59,6 @@ void add_versions(Findings& all) {
   const std::vector<std::pair<const char*, std::string>> libraries{
       {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
                           FMT_VERSION % 100)},
-      {"OpenCV", cv::getVersionString()},
       {"SQLite", sqlite3_libversion()},
       {"zstd", ZSTD_versionString()},
       {"libpng", png_get_libpng_ver(nullptr)},

@@ -1,7 +1,6 @@
 #include "traces/datasets/image_file.h"
 
 #include <fmt/core.h>
-#include <opencv2/imgproc.hpp>
 #include <png.h>
 #include <turbojpeg.h>
 #include <zlib.h>
@@ -87,7 +86,7 @@ struct Header {
   throw InputError(fmt::format("cannot be read as an image: damaged {}: {}", format, reason));
 }
 
-void require_size(const Header& header, cv::Size expected) {
+void require_size(const Header& header, ImageSize expected) {
   if (header.width != static_cast<unsigned>(expected.width) ||
       header.height != static_cast<unsigned>(expected.height))
     throw InputError(fmt::format("is {}x{}; the camera's pictures are {}x{}", header.width,
@@ -112,9 +111,10 @@ class Png {
   }
 
   /// To the end of the file.
-  void decode(cv::Mat& image) {
-    const auto rows = std::make_unique<png_bytep[]>(static_cast<std::size_t>(image.rows));
-    for (int y = 0; y < image.rows; ++y) rows[static_cast<std::size_t>(y)] = image.ptr(y);
+  void decode(std::span<std::uint8_t> image) {
+    const std::size_t count = header().height;
+    const auto rows = std::make_unique<png_bytep[]>(count);
+    for (std::size_t y = 0; y < count; ++y) rows[y] = image.data() + y * (image.size() / count);
     demand([&] {
       png_set_palette_to_rgb(calls_.png());
       png_set_expand_gray_1_2_4_to_8(calls_.png());
@@ -164,10 +164,12 @@ class Jpeg {
     return {static_cast<unsigned>(width), static_cast<unsigned>(height)};  // decoded to grey
   }
 
-  void decode(cv::Mat& image) {
+  void decode(std::span<std::uint8_t> image) {
+    const Header size = header();
     constexpr int kFlags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS;
-    demand(tjDecompress2(decoder_.get(), bytes_, size_, image.data, image.cols,
-                         static_cast<int>(image.step), image.rows, TJPF_GRAY, kFlags));
+    demand(tjDecompress2(decoder_.get(), bytes_, size_, image.data(), static_cast<int>(size.width),
+                         static_cast<int>(size.width), static_cast<int>(size.height), TJPF_GRAY,
+                         kFlags));
   }
 
  private:
@@ -180,16 +182,22 @@ class Jpeg {
   std::unique_ptr<void, int (*)(tjhandle)> decoder_;
 };
 
+/// Luma of Rec. 601 in units of 1/2^15.
+std::uint8_t luma(const std::uint8_t* rgb) {
+  return static_cast<std::uint8_t>((9798 * rgb[0] + 19235 * rgb[1] + 3735 * rgb[2] + (1 << 14)) >>
+                                   15);
+}
+
 template <class Format>
-cv::Mat decode_as(std::string_view bytes, cv::Size expected) {
+std::vector<std::uint8_t> decode_as(std::string_view bytes, ImageSize expected) {
   Format file(bytes);
   const Header header = file.header();
   require_size(header, expected);
-  cv::Mat image(expected, header.colour ? CV_8UC3 : CV_8UC1);
+  std::vector<std::uint8_t> image(expected.pixels() * (header.colour ? 3 : 1));
   file.decode(image);
   if (!header.colour) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
+  std::vector<std::uint8_t> grey(expected.pixels());
+  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = luma(&image[3 * i]);
   return grey;
 }
 
@@ -207,34 +215,34 @@ auto with_format(std::string_view bytes, const Use& use) {
 
 }  // namespace
 
-cv::Mat decode_gray(std::string_view bytes, cv::Size expected) {
+std::vector<std::uint8_t> decode_gray(std::string_view bytes, ImageSize expected) {
   return with_format(bytes, [&]<class Format>() { return decode_as<Format>(bytes, expected); });
 }
 
-cv::Size image_size(std::string_view bytes) {
-  const Header header =
-      with_format(bytes, [&]<class Format>() { return Format(bytes).header(); });
+ImageSize image_size(std::string_view bytes) {
+  const Header header = with_format(bytes, [&]<class Format>() { return Format(bytes).header(); });
   return {static_cast<int>(header.width), static_cast<int>(header.height)};
 }
 
-std::string encode_png(const cv::Mat& image) {
-  check_equal(image.type(), CV_8UC1, "encode_png");
+std::string encode_png(ImageSize size, std::span<const std::uint8_t> pixels) {
+  check_equal(pixels.size(), size.pixels(), "encode_png");
   PngCalls calls(PngCalls::Kind::Write);
   std::string bytes;
   const bool written = calls.succeed([&] {
-    const auto append = [](png_structp png, png_bytep from, std::size_t size) {
+    const auto append = [](png_structp png, png_bytep from, std::size_t count) {
       static_cast<std::string*>(png_get_io_ptr(png))
-          ->append(reinterpret_cast<const char*>(from), size);
+          ->append(reinterpret_cast<const char*>(from), count);
     };
     png_set_write_fn(calls.png(), &bytes, append, nullptr);
     // Run-length coding suits noise: faster and smaller than the search for longer matches.
     png_set_compression_level(calls.png(), 1);
     png_set_compression_strategy(calls.png(), Z_RLE);
-    png_set_IHDR(calls.png(), calls.info(), static_cast<png_uint_32>(image.cols),
-                 static_cast<png_uint_32>(image.rows), 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+    png_set_IHDR(calls.png(), calls.info(), static_cast<png_uint_32>(size.width),
+                 static_cast<png_uint_32>(size.height), 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(calls.png(), calls.info());
-    for (int y = 0; y < image.rows; ++y) png_write_row(calls.png(), image.ptr(y));
+    for (std::size_t at = 0; at < pixels.size(); at += static_cast<std::size_t>(size.width))
+      png_write_row(calls.png(), pixels.data() + at);
     png_write_end(calls.png(), nullptr);
   });
   check(written, calls.reason());

@@ -1,9 +1,9 @@
 #include "traces/datasets/image_preparation.h"
 
 #include <fmt/core.h>
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "sim/base/check.h"
@@ -15,24 +15,50 @@
 namespace leviosim::traces {
 namespace {
 
-/// Fills the fixed-point maps of cv::remap: positions in units of 1/32 px.
-void fill_maps(const CameraModel& camera, const Decimation& decimation, cv::Mat& whole,
-               cv::Mat& fraction) {
-  constexpr int kSteps = cv::INTER_TAB_SIZE;
-  for (int j = 0; j < whole.rows; ++j) {
-    for (int i = 0; i < whole.cols; ++i) {
+constexpr int kStepBits = 5;
+constexpr int kSteps = 1 << kStepBits;  ///< of a pixel
+
+/// A position in steps; one that is far from any image is black, as is one that is no number.
+int steps(double pixels) {
+  constexpr double kFar = 1e6;
+  return static_cast<int>(
+      std::lrint(pixels > -kFar && pixels < kFar ? pixels * kSteps : -kFar * kSteps));
+}
+
+/// Where each pixel of the prepared image is in the camera's [1/32 px].
+std::vector<Eigen::Vector2i> make_map(const CameraModel& camera, ImageSize size,
+                                      const Decimation& decimation) {
+  std::vector<Eigen::Vector2i> map;
+  map.reserve(size.pixels());
+  for (int j = 0; j < size.height; ++j) {
+    for (int i = 0; i < size.width; ++i) {
       const double u = decimation.x0 + decimation.factor * i + decimation.shift;
       const double v = decimation.y0 + decimation.factor * j + decimation.shift;
       const Eigen::Vector2d bent =
           camera.distort({(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy});
-      const int x = cv::saturate_cast<int>((camera.fx * bent.x() + camera.cx) * kSteps);
-      const int y = cv::saturate_cast<int>((camera.fy * bent.y() + camera.cy) * kSteps);
-      whole.at<cv::Vec2s>(j, i) = {cv::saturate_cast<short>(x >> cv::INTER_BITS),
-                                   cv::saturate_cast<short>(y >> cv::INTER_BITS)};
-      fraction.at<ushort>(j, i) =
-          static_cast<ushort>((y & (kSteps - 1)) * kSteps + (x & (kSteps - 1)));
+      map.emplace_back(steps(camera.fx * bent.x() + camera.cx),
+                       steps(camera.fy * bent.y() + camera.cy));
     }
   }
+  return map;
+}
+
+/// Grey level between four pixels, black outside, as cv::remap() rounds it.
+std::uint8_t interpolated(std::span<const std::uint8_t> image, ImageSize size,
+                          const Eigen::Vector2i& at) {
+  const int x = at.x() >> kStepBits;
+  const int y = at.y() >> kStepBits;
+  const int right = at.x() & (kSteps - 1);
+  const int below = at.y() & (kSteps - 1);
+  const auto pixel = [&](int column, int row) -> int {
+    if (column < 0 || row < 0 || column >= size.width || row >= size.height) return 0;
+    return image[static_cast<std::size_t>(row) * size.width + column];
+  };
+  const int above_level = (kSteps - right) * pixel(x, y) + right * pixel(x + 1, y);
+  const int below_level = (kSteps - right) * pixel(x, y + 1) + right * pixel(x + 1, y + 1);
+  constexpr int kHalf = kSteps * kSteps / 2;
+  return static_cast<std::uint8_t>(((kSteps - below) * above_level + below * below_level + kHalf) >>
+                                   (2 * kStepBits));
 }
 
 }  // namespace
@@ -71,17 +97,14 @@ PinholeIntrinsics decimated_intrinsics(const CameraModel& camera, ImageSize size
 ImagePreparation::ImagePreparation(const CameraModel& camera, ImageSize size) : camera_(camera) {
   const Decimation decimation = make_decimation(camera, size);
   intrinsics_ = decimated_intrinsics(camera, size, decimation);
-  map_whole_.create(size.height, size.width, CV_16SC2);
-  map_fraction_.create(size.height, size.width, CV_16UC1);
-  fill_maps(camera, decimation, map_whole_, map_fraction_);
+  map_ = make_map(camera, size, decimation);
 }
 
-std::vector<std::uint8_t> ImagePreparation::apply(const cv::Mat& full) const {
-  check(full.type() == CV_8UC1 && full.cols == camera_.width && full.rows == camera_.height,
-        "ImagePreparation: the camera's image");
-  std::vector<std::uint8_t> pixels(map_whole_.total());
-  cv::Mat output(map_whole_.size(), CV_8UC1, pixels.data());
-  cv::remap(full, output, map_whole_, map_fraction_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+std::vector<std::uint8_t> ImagePreparation::apply(std::span<const std::uint8_t> full) const {
+  const ImageSize size{camera_.width, camera_.height};
+  check_equal(full.size(), size.pixels(), "ImagePreparation: the camera's image");
+  std::vector<std::uint8_t> pixels(map_.size());
+  for (std::size_t i = 0; i < map_.size(); ++i) pixels[i] = interpolated(full, size, map_[i]);
   return pixels;
 }
 
@@ -91,8 +114,9 @@ std::vector<std::uint8_t> ImagePreparation::pixels_read() const {
     if (x >= 0 && y >= 0 && x < camera_.width && y < camera_.height)
       read[static_cast<std::size_t>(y) * camera_.width + x] = 1;
   };
-  for (auto it = map_whole_.begin<cv::Vec2s>(); it != map_whole_.end<cv::Vec2s>(); ++it)
-    for (int corner = 0; corner < 4; ++corner) mark((*it)[0] + corner % 2, (*it)[1] + corner / 2);
+  for (const Eigen::Vector2i& at : map_)
+    for (int corner = 0; corner < 4; ++corner)
+      mark((at.x() >> kStepBits) + corner % 2, (at.y() >> kStepBits) + corner / 2);
   return read;
 }
 
@@ -113,11 +137,11 @@ CameraModel ImagePreparation::prepared_camera() const {
 ImageSource::ImageSource(const Dataset& data, ImageSize size)
     : frames_csv_(data.frames_csv),
       frames_(data.frames),
-      full_size_(data.camera.width, data.camera.height),
+      full_size_{data.camera.width, data.camera.height},
       disturbance_(data.disturbance),
       preparation_(data.camera, size) {}
 
-cv::Mat ImageSource::decode(const FrameRef& frame) const {
+std::vector<std::uint8_t> ImageSource::decode(const FrameRef& frame) const {
   const std::string row = base::at_line(frames_csv_, frame.line);
   std::string bytes;
   try {

@@ -10,27 +10,22 @@
 // fx / k and (cx - x0) / k, without the s; we follow them, so for k > 1 the principal point is off
 // by s / k px (a quarter of a pixel at 160x120), as it is there.
 //
-// The maps are our own double arithmetic and the interpolation is OpenCV's fixed-point one, so the
-// bytes do not depend on the host. Since every output pixel is interpolated by itself, only the
+// The maps are double arithmetic and the interpolation is OpenCV's fixed-point one (1/32 px), so
+// the bytes do not depend on the host. Since every output pixel is interpolated by itself, only the
 // pixels that survive the decimation are computed; the result is that of undistorting everything.
 #pragma once
-
-#include <opencv2/core.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "traces/datasets/camera_model.h"
 #include "traces/datasets/dataset.h"
+#include "traces/datasets/image_file.h"
 
 namespace leviosim::traces {
-
-struct ImageSize {
-  int width = 160;
-  int height = 120;
-};
 
 /// Which pixels of the full image remain.
 struct Decimation {
@@ -56,7 +51,7 @@ class ImagePreparation {
   const PinholeIntrinsics& intrinsics() const { return intrinsics_; }
 
   /// The prepared image, row by row without padding. `full` has the camera's size, 8-bit grey.
-  std::vector<std::uint8_t> apply(const cv::Mat& full) const;
+  std::vector<std::uint8_t> apply(std::span<const std::uint8_t> full) const;
 
   /// For each pixel of the camera, row by row: whether apply() reads it (1) or not (0).
   std::vector<std::uint8_t> pixels_read() const;
@@ -67,8 +62,7 @@ class ImagePreparation {
  private:
   CameraModel camera_;
   PinholeIntrinsics intrinsics_;
-  cv::Mat map_whole_;     // CV_16SC2: whole source pixel of each output pixel
-  cv::Mat map_fraction_;  // CV_16UC1: index of the bilinear weights
+  std::vector<Eigen::Vector2i> map_;  // where each output pixel is in the camera's image [1/32 px]
 };
 
 // The frames of a dataset as the pipeline sees them: read, checked and prepared.
@@ -96,11 +90,11 @@ class ImageSource {
   GrayImage read(std::size_t i) const;
 
  private:
-  cv::Mat decode(const FrameRef& frame) const;
+  std::vector<std::uint8_t> decode(const FrameRef& frame) const;
 
   std::filesystem::path frames_csv_;
   std::vector<FrameRef> frames_;
-  cv::Size full_size_;
+  ImageSize full_size_;
   Disturbance disturbance_;
   ImagePreparation preparation_;
 };

@@ -82,7 +82,7 @@ void read_projection(const fs::path& file, Rectified& rectified, Dataset& data) 
   rectified.offset = {(p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]};
   const fs::path& picture = data.frames.front().path;
   try {
-    const cv::Size size = image_size(base::read_file(picture, base::InputKind::image));
+    const ImageSize size = image_size(base::read_file(picture, base::InputKind::image));
     data.camera.width = size.width;
     data.camera.height = size.height;
   } catch (const InputError& error) {

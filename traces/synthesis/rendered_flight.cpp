@@ -229,8 +229,7 @@ void write_pictures(outputs::OutputFolder& out, const Plan& plan,
         options.illumination ? light.gain(seconds_of_motion(plan, plan.frames[i])) : 1;
     std::vector<std::uint8_t> pixels =
         renderer.render({poses, static_cast<float>(gain), plan.numbers[i]});
-    if (!options.prepared) return pixels;
-    return preparation.apply(cv::Mat(camera.height, camera.width, CV_8UC1, pixels.data()));
+    return options.prepared ? preparation.apply(pixels) : pixels;
   };
   const PinholeIntrinsics& size = preparation.intrinsics();
   write_flight_images(out, plan.frames, {size.width, size.height}, draw, options.threads, progress);
