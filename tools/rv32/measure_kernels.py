@@ -40,20 +40,24 @@ class Refused(Exception):
 
 
 def missing_for(isa):
-    """@returns what to install, or nothing"""
+    """@returns what is missing and the packages that hold it, or nothing"""
     programs, _ = SETS[isa]
-    packages = [f"{program} is missing; apt-get install {package}" for program, package in programs
-                if shutil.which(program) is None]
     file, package = FILES[programs]
-    if not packages and not os.path.exists(file):
-        packages.append(f"{file} is missing; apt-get install {package}")
-    return packages[0] if packages else None
+    missing = [pair for pair in programs if shutil.which(pair[0]) is None]
+    if not os.path.exists(file):
+        missing.append((file, package))
+    if not missing:
+        return None
+    names, packages = zip(*missing)
+    return f"missing: {', '.join(names)}; apt-get install {' '.join(packages)}"
 
 
 def chosen(named):
     if named is None:
         if missing_for("rv32imfc"):
             raise Refused(missing_for("rv32imfc"))
+        for isa in filter(missing_for, SETS):
+            print(f"leviosim-measure: without {isa}; {missing_for(isa)}", file=sys.stderr)
         return [isa for isa in SETS if not missing_for(isa)]
     for isa in named:
         if isa not in SETS:
