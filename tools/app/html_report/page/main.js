@@ -41,8 +41,8 @@ function main() {
         'div', {class: 'card'},
         element('div', {class: 'controls'}, element('label', {}, 'Show the details of', select))));
   }
-  if (data.history) top.append(...historyCards(data.history));
   if (data.study) content.append(...studySections(data.study, top));
+  if (data.history) top.append(...historyCards(data.history));
   content.append(details);
   if (data.runs.length > 0)
     show(data.runs[0]);
