@@ -2,8 +2,8 @@
 # Builds leviosim and tests it. A summary ends it, what was printed is in build/test/, and the exit status
 # is 0 only if all is well.
 #   tools/test.sh           the program, its unit tests, a system test for each command, the pages
-#   tools/test.sh --full    all tests, and the same bytes from other compilers, fuzzing, guards: what CI
-#                           calls after the first
+#   tools/test.sh --full    and all other tests, the same bytes from other compilers, fuzzing, guards: what CI
+#                           calls
 #   tools/test.sh --asan    all tests under address and undefined-behaviour sanitizers
 #   tools/test.sh --tsan    tests of what runs in threads (sweeps, batches, drawing) under the
 #                           thread sanitizer
@@ -80,19 +80,22 @@ tests() { ctest --preset "$preset" --parallel "$(nproc)" --no-tests=error "$@"; 
 if [[ $kind == "" ]]; then
   tools/setup.sh tests
   tools/build.sh release leviosim leviosim_{sim,workload,platform_models,traces,tools,system}_tests
-  check unit tests --label-regex unit
-  check commands command_tests
-  check pages tools/check_pages.sh
 else
   tools/setup.sh full
   tools/build.sh "$preset"
-  if [[ $kind == --full ]]; then
-    check reproducible tools/check_reproducible.sh --quick
-    check fuzz tools/fuzz.sh --seconds 15 --light
-    check guard tools/ci/guard.sh
-  fi
-  check pages tools/check_pages.sh
+fi
+check pages tools/check_pages.sh
+if [[ $preset == release ]]; then
+  check unit tests --label-regex unit
+  check commands command_tests
+else
   check all-tests tests
+fi
+if [[ $kind == --full ]]; then
+  check other-tests tests --label-exclude unit
+  check fuzz tools/fuzz.sh --seconds 15 --light
+  check guard tools/ci/guard.sh
+  check reproducible tools/check_reproducible.sh --quick
 fi
 printf 'test: %s\n' "${summary[@]}"
 exit "$failed"
