@@ -40,7 +40,8 @@ class Measure(unittest.TestCase):
         self.assertEqual(list(pathlib.Path(self.scratch.name).iterdir()), [])
 
     def test_what_is_missing_is_said_in_a_line(self):
-        missing = "riscv64-unknown-elf-g++ is missing; apt-get install gcc-riscv64-unknown-elf"
+        missing = ("missing: riscv64-unknown-elf-g++, qemu-riscv32; "
+                   "apt-get install gcc-riscv64-unknown-elf qemu-user")
         self.refused(measure(SCENES, self.header, path="/none"), missing)
         self.refused(measure(SCENES, self.header, "--isa", "thumb2", path="/none"), "apt-get install gcc-arm-none-eabi")
         self.refused(measure(SCENES, self.header, "--isa", "rv64"), "--isa rv64: expected one of rv32imfc")
