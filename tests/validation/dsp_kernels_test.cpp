@@ -123,13 +123,14 @@ TEST(ValidationDspKernels, FloatProductsSpeedUpAsInAnOpenSimulator) {
     });
     return static_cast<double>(timing.cycles.count());
   };
-  EXPECT_NEAR(cycles(1) / cycles(8) / 5.85, 1, 0.15);
+  const double gain = cycles(1) / cycles(8);
+  std::printf("  float products: x%.2f for x5.85\n", gain);
+  EXPECT_NEAR(gain / 5.85, 1, 0.15);
 }
 
 /// A division per match, of which eight cores ask for more than one divider has, and fewer cores
-/// queue (FACTS.md#collisions). On one core the operands lie on word boundaries. Two and four cores
-/// miss 15 % (18 and 16 %): from one to two the reference gains 27 cycles, of which straddling
-/// words are nine and a queue of two loops of this length is one.
+/// queue (FACTS.md#collisions). On one core the operands lie on word boundaries. From one to
+/// two the reference gains 27 cycles and the model 15, of which straddling words are most.
 TEST(ValidationDspKernels, SampsonErrorsTakeWhatTheyDoInAnOpenSimulator) {
   constexpr int kMatches = 60;
   constexpr int kHypotheses = 20;
@@ -157,7 +158,8 @@ TEST(ValidationDspKernels, SampsonErrorsTakeWhatTheyDoInAnOpenSimulator) {
               .cycles.count());
     };
     const double match = (fork(2 * kHypotheses) - fork(kHypotheses)) / (kHypotheses * kMatches);
-    EXPECT_NEAR(match / reference, 1, cores == 2 || cores == 4 ? 0.2 : 0.15)
+    std::printf("  Sampson, %d cores: %.1f cycles a match for %.0f\n", cores, match, reference);
+    EXPECT_NEAR(match / reference, 1, 0.15)
         << match << " cycles on " << cores;
   }
 }
