@@ -11,11 +11,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sim/base/csv.h"
 #include "tests/support/paths.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/cli/terminal.h"
@@ -51,7 +54,48 @@ class AllLines {
   std::vector<char*> variables_;
 };
 
-/// A running program with its output in files of `folder`.
+/// The largest number in a column of a CSV file, 0 without any.
+inline double largest_in_column(const std::filesystem::path& csv, std::string_view name) {
+  double largest = 0;
+  std::ptrdiff_t column = -1;
+  std::istringstream rows(base::read_text_file(csv));
+  for (std::string row; std::getline(rows, row);) {
+    std::istringstream cells(row);
+    std::ptrdiff_t at = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++at) {
+      if (cell == name) column = at;
+      double number = 0;
+      if (at == column && base::parse_number(cell, number)) largest = std::max(largest, number);
+    }
+  }
+  return largest;
+}
+
+/// What is wrong with the verdicts of the run in a folder, by its other figures: they may not all
+/// be green where the error is above a tenth of the path (of 1 m or more), or a pose comes more
+/// than a period late. Empty if nothing is.
+inline std::string verdict_fault(const std::filesystem::path& run) {
+  const auto document = nlohmann::json::parse(base::read_text_file(run / "stats.json"));
+  std::map<std::string, nlohmann::json> values;
+  for (const auto& statistic : document.at("statistics"))
+    values[statistic.at("name")] = statistic.at("value");
+  const auto number = [&](const std::string& name) {
+    const auto& value = values[name];
+    return value.is_number() ? value.get<double>() : 0;
+  };
+  if (values["verdict.time"] != "fits" || values["verdict.memory"] != "fits" ||
+      values["verdict.map"] != "good")
+    return {};
+  const double path = number("accuracy.truth_length");
+  const double share = path < 1 ? 0 : number("accuracy.ate.rmse") / path;
+  if (share > 0.1) return fmt::format("green over an error of {:.1f} % of the path", 100 * share);
+  const double periods =
+      largest_in_column(run / "frames.csv", "latency_ns") / number("run.frame_period");
+  if (periods > 2) return fmt::format("green over a pose {:.1f} periods after its image", periods);
+  return {};
+}
+
+/// A running program with its output in files of `folder`. Runs are held to verdict_fault().
 class Program {
  public:
   Program(const std::filesystem::path& folder, std::vector<std::string> words,
@@ -62,6 +106,9 @@ class Program {
     constexpr int kFlags = O_CREAT | O_WRONLY | O_TRUNC;
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out_.c_str(), kFlags, 0600);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err_.c_str(), kFlags, 0600);
+    if (const auto out = std::find(words.begin(), words.end(), "--out");
+        words.end() - out > 1 && (words.front() == "run" || words.front() == "replay"))
+      run_ = *(out + 1);
     const std::string program = leviosim::tests::program_path();
     words.insert(words.begin(), program);
     std::vector<char*> arguments;
@@ -88,6 +135,9 @@ class Program {
         WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_);
     result.out = base::read_text_file(out_);
     result.err = base::read_text_file(err_);
+    if (result.status == 0 && std::filesystem::exists(run_ / "stats.json")) {
+      EXPECT_EQ(verdict_fault(run_), "") << run_;
+    }
     return result;
   }
 
@@ -100,6 +150,7 @@ class Program {
 
   std::filesystem::path out_;
   std::filesystem::path err_;
+  std::filesystem::path run_;  ///< what it makes, if it is a run
   pid_t pid_ = -1;
   int wait_status_ = 0;
   bool ended_ = false;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "sim/outputs/file_system.h"
 #include "tests/support/run_program.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/report/statistic_list.h"
@@ -70,13 +71,44 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
   EXPECT_LE(lines.size(), 24u) << recorded_.out;
   for (const std::string& line : lines)
     EXPECT_TRUE(line.starts_with("results: ") || display_width(line) <= 80) << line;
-  for (const char* part : {"verdict: fits: all 30 frames", "feature extraction", "frame time: mean ",
-                           "memory: L1 ", "energy: ", "trajectory: ", "--tables all"})
+  for (const char* part :
+       {"verdict: fits: all 30 frames", "feature extraction", "frame time: mean ", "memory: L1 ",
+        "energy: ", "trajectory: ", "--tables all"})
     EXPECT_NE(recorded_.out.find(part), std::string::npos) << part << " is not in:\n"
                                                            << recorded_.out;
   EXPECT_EQ(recorded_.out.find("… 0 more"), std::string::npos) << recorded_.out;
   EXPECT_NE(recorded_.out.find("results: " + path("run") + '\n'), std::string::npos);
   EXPECT_EQ(lines.back(), "next: leviosim whatif " + path("run"));
+}
+
+/// Every run that a test makes through the program is held to this.
+TEST_F(PrintoutTest, AGreenVerdictOverAWrongMapOrALatePoseIsAFault) {
+  fs::create_directories(path("verdicts"));
+  const auto fault = [&](const std::string& map, double error_m, double path_m, int latency_ms) {
+    Json list = Json::array();
+    const auto add = [&](const std::string& name, const Json& value) {
+      list.push_back({{"name", name}, {"value", value}});
+    };
+    add("verdict.time", "fits");
+    add("verdict.memory", "fits");
+    add("verdict.map", map);
+    add("run.frame_period", 50e6);
+    add("accuracy.ate.rmse", error_m);
+    add("accuracy.truth_length", path_m);
+    outputs::write_file_atomically(folder_ / "verdicts" / "stats.json",
+                                   json_text(statistics_document(list)));
+    outputs::write_file_atomically(folder_ / "verdicts" / "frames.csv",
+                                   fmt::format("frame,latency_ns,end_ns\n0,1000000,7\n1,{}000000,"
+                                               "900000000\n2,1000000,9\n",
+                                               latency_ms));
+    return testing::verdict_fault(path("verdicts"));
+  };
+  EXPECT_EQ(fault("good", 0.9, 10, 99), "");
+  EXPECT_EQ(fault("good", 1.1, 10, 49), "green over an error of 11.0 % of the path");
+  EXPECT_EQ(fault("unreliable", 1.1, 10, 49), "");
+  EXPECT_EQ(fault("good", 0.9, 0.9, 49), "") << "a path too short to tell";
+  EXPECT_EQ(fault("good", 0.9, 10, 101), "green over a pose 2.0 periods after its image");
+  EXPECT_EQ(fault("not judged", 0.9, 10, 101), "");
 }
 
 TEST_F(PrintoutTest, ARunWithoutOptionsTakesTheChipAndNamesANewFolder) {

@@ -332,6 +332,28 @@ TEST_F(SweepCommand, PointsMoveWithTheirPlanAndAreRefusedAfterItsTraceHasChanged
   testing::expect_refused(run_program(folder_, words), {"recorded"});
 }
 
+/// Hardware has a price, so the largest chip is not the only answer.
+TEST_F(SweepCommand, FrontsOf72ChipsHaveSixPointsAndMore) {
+  outputs::write_file_atomically(folder_ / "hardware.yaml",
+                                 "base: { trace: recorded }\n"
+                                 "points:\n"
+                                 "  - grid:\n"
+                                 "      platform.cluster.fpu.units: [1, 2, 4, 8]\n"
+                                 "      platform.cluster.fpu.dividers: [1, 2, 8]\n"
+                                 "      platform.cluster.icache.shared_size: [4KiB, 8KiB, 16KiB]\n"
+                                 "      platform.cluster.l1.banks: [16, 32]\n");
+  const ProgramResult swept =
+      run_program(folder_, {"sweep", path("hardware.yaml"), "--quiet", "--out", path("hardware"),
+                            "--cache", path("cache-hardware")});
+  ASSERT_EQ(swept.status, 0) << swept.err;
+  SweepStore store(folder_ / "hardware");
+  ASSERT_EQ(store.outcomes().size(), 72u);
+  EXPECT_GE(store.front().size(), 6u);
+  EXPECT_LT(store.front().size(), 72u) << "a front of all says nothing";
+  const auto of_front = store.front();
+  EXPECT_EQ(std::count(of_front.begin(), of_front.end(), 1), 1) << "the smallest has the least area";
+}
+
 TEST_F(SweepCommand, SlurmArraysMakeOneRun) {
   for (int task = 1; task <= 2; ++task)
     ASSERT_EQ(

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/loader.h"
+#include "tests/validation/int8_product.h"
+#include "tests/validation/int8_product_code.h"
 #include "tools/app/validation/microbench/bench.h"
 #include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/library_programs.h"
@@ -123,13 +126,45 @@ TEST(ValidationDspKernels, FloatProductsSpeedUpAsInAnOpenSimulator) {
     });
     return static_cast<double>(timing.cycles.count());
   };
-  EXPECT_NEAR(cycles(1) / cycles(8) / 5.85, 1, 0.15);
+  const double gain = cycles(1) / cycles(8);
+  std::printf("  float products: x%.2f for x5.85\n", gain);
+  EXPECT_NEAR(gain / 5.85, 1, 0.15);
+}
+
+/// Bytes by hand: what is spilled, and addresses that are computed anew, are no operations of the
+/// source, so the code is measured as compiled, with an instruction for a packed operation. All of
+/// it is cold once, which eight cores wait for together. The smallest share of a core misses 15 %
+/// (-21): half of its time is cold code, whose size is the compiler's.
+TEST(ValidationDspKernels, ProductsOfBytesTakeWhatTheyDoInAnOpenSimulator) {
+  std::vector<std::string> overrides = kByHand;
+  overrides.emplace_back("isa.code=rv32imfc");  // where the table stands that is read here
+  const sim::ChipConfig chip = platform::load_platform("gap9", overrides);
+  const platform::CodeTable table = int8_product_code().back();
+  ASSERT_EQ(table.set, "rv32imfc_xpulp");
+  const work::CodeMap code = platform::code_map_from("int8_product_code.h", table.text);
+  for (const auto& [n, cores, reference] : {std::tuple(16, 1, 5932.0), std::tuple(32, 1, 38708.0),
+                                            std::tuple(16, 8, 1802.0), std::tuple(32, 8, 5828.0)}) {
+    Bench bench(chip, cores, &code);
+    const int size = n;
+    const double cycles = static_cast<double>(
+        bench
+            .run([&](Machine& m) {
+              const work::Arena::Frame frame(m.local());
+              const auto a = block<P::Span<work::I8x4<P>>>(m, "a", size * size / 4);
+              const auto b = block<P::Span<P::U16>>(m, "b", size * size / 2);
+              const auto c = block<P::Span<I32>>(m, "c", size * size);
+              m.fork("product",
+                     [&](Core& core) { multiply_int8<P>(a, b, c, size, core.id, core.cores); });
+            })
+            .cycles.count());
+    std::printf("  bytes, n = %d on %d: %.0f cycles for %.0f\n", n, cores, cycles, reference);
+    EXPECT_NEAR(cycles / reference, 1, n == 16 && cores == 8 ? 0.22 : 0.15) << n << " on " << cores;
+  }
 }
 
 /// A division per match, of which eight cores ask for more than one divider has, and fewer cores
-/// queue (FACTS.md#collisions). On one core the operands lie on word boundaries. Two and four cores
-/// miss 15 % (18 and 16 %): from one to two the reference gains 27 cycles, of which straddling
-/// words are nine and a queue of two loops of this length is one.
+/// queue (FACTS.md#collisions). On one core the operands lie on word boundaries. From one to
+/// two the reference gains 27 cycles and the model 15, of which straddling words are most.
 TEST(ValidationDspKernels, SampsonErrorsTakeWhatTheyDoInAnOpenSimulator) {
   constexpr int kMatches = 60;
   constexpr int kHypotheses = 20;
@@ -157,8 +192,8 @@ TEST(ValidationDspKernels, SampsonErrorsTakeWhatTheyDoInAnOpenSimulator) {
               .cycles.count());
     };
     const double match = (fork(2 * kHypotheses) - fork(kHypotheses)) / (kHypotheses * kMatches);
-    EXPECT_NEAR(match / reference, 1, cores == 2 || cores == 4 ? 0.2 : 0.15)
-        << match << " cycles on " << cores;
+    std::printf("  Sampson, %d cores: %.1f cycles a match for %.0f\n", cores, match, reference);
+    EXPECT_NEAR(match / reference, 1, 0.15) << match << " cycles on " << cores;
   }
 }
 

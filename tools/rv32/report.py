@@ -209,7 +209,7 @@ def read_costs(path):
 def read_issue(path):
     """Slots that operations issue, from an instruction set of the platforms. Routines of the library
     are nobody's own: they have accounts of their own in the trace."""
-    text = re.sub(r"#.*", "", path.read_text())
+    text = re.sub(r"(^|\s)#.*", r"\1", path.read_text(), flags=re.MULTILINE)
     prices = collections.defaultdict(float)
     for op, price in re.findall(r"^    (\w+): \{([^}]*)\}", text, re.MULTILINE):
         prices[op] = 0.0 if "routine: true" in price else float(re.search(r"\bissue: ([0-9.]+)", price)[1])

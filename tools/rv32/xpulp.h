@@ -9,8 +9,10 @@
 //   - the counter of a loop: cv.setup.
 // A register that the rest of the piece does not read is taken to be dead.
 //
-// Left out: branches with an immediate operand, clipping to powers of two, packed integers, insertion
-// of bits, and the one register file of GAP9 for both kinds of number.
+// Packed integers are compiled as one instruction for an operation (target_xpulp).
+//
+// Left out: branches with an immediate operand, clipping to powers of two, insertion of bits, and the
+// one register file of GAP9 for both kinds of number.
 #pragma once
 
 #include <vector>
