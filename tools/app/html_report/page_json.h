@@ -3,14 +3,13 @@
 // written or not; what host and time they were made on is left out.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/app/comparison/run_record.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/report/table_document.h"
 #include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {
@@ -18,14 +17,6 @@ namespace leviosim::tools {
 /// @param record  of the files
 /// @throws InputError for files that do not hold what leviosim writes
 Json run_json(const RunRecord& record, const RunFiles& files);
-
-// CSV files of leviosim as JSON: {"column": [cells…]}, numbers as numbers, empty cells as null.
-
-/// Cells may be quoted as RFC 4180 says. @param where  of the file, for messages
-/// @param wanted  whether a column is taken; all if it is empty
-/// @throws InputError for rows of another width than the titles
-Json csv_json(const std::string& where, const std::string& text,
-              const std::function<bool(const std::string&)>& wanted = {});
 
 // A study of many points as data of a report: the points as a table of what was set and what came
 // out of it, curves over one of the settings, and the axes that the scatter begins with.
@@ -45,7 +36,7 @@ struct StudyCurves {
   std::string series;  ///< empty: one line
   std::vector<std::string> y;
   std::string hint = {};   ///< in place of one about medians
-  bool from_zero = true;  ///< where the axes of the figures begin
+  bool from_zero = true;   ///< where the axes of the figures begin
   std::string names = {};  ///< column that names the values 0, 1, … of x; empty: they are numbers
   std::map<std::string, std::vector<std::size_t>> marks = {};  ///< of a figure, points to look at
 };
@@ -67,10 +58,10 @@ struct StudyBox {
 struct StudyPage {
   std::string title;
   std::vector<StudyBox> boxes = {};
-  std::string summary;                            ///< lines below the boxes
+  std::string summary;                              ///< lines below the boxes
   std::vector<std::vector<std::string>> best = {};  ///< a table: titles, then rows; may be empty
-  std::string points;                ///< CSV, a row per point
-  std::vector<StudyColumn> columns;  ///< those that the table lacks are left out
+  std::string points;                               ///< CSV, a row per point
+  std::vector<StudyColumn> columns;                 ///< those that the table lacks are left out
   std::optional<StudyCurves> curves = {};
   std::optional<StudyBars> bars = {};
   std::map<std::string, double> limits = {};  ///< column → what it should not exceed

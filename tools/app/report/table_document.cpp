@@ -1,34 +1,36 @@
 #include "tools/app/report/table_document.h"
 
-#include <utility>
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "sim/base/check.h"
+#include "sim/base/error.h"
 
 namespace leviosim::tools {
 namespace {
 
 using Cells = std::vector<std::string>;
 
-/// By RFC 4180: a quoted cell may hold commas, line breaks, and quotes, which are doubled.
-std::vector<Cells> parse(const std::string& csv) {
-  std::vector<Cells> rows;
-  Cells row;
-  std::string cell;
+/// Takes the row that begins at `at`, which moves behind its line break. By RFC 4180: a quoted cell
+/// may hold commas, line breaks, and quotes, which are doubled.
+Cells next_row(const std::string& csv, std::size_t& at) {
+  Cells cells(1);
   bool quoted = false;
-  for (std::size_t i = 0; i < csv.size(); ++i) {
-    const char c = csv[i];
-    if (c == '"' && quoted && i + 1 < csv.size() && csv[i + 1] == '"')
-      cell += csv[i++];
+  while (at < csv.size()) {
+    const char c = csv[at++];
+    if (c == '"' && quoted && at < csv.size() && csv[at] == '"')
+      cells.back() += csv[at++];
     else if (c == '"')
       quoted = !quoted;
-    else if (quoted || (c != ',' && c != '\n'))
-      cell += c;
-    else
-      row.push_back(std::exchange(cell, {}));
-    if (c == '\n' && !quoted) rows.push_back(std::exchange(row, {}));
+    else if (quoted || (c != ',' && c != '\n' && c != '\r'))
+      cells.back() += c;
+    else if (c == ',')
+      cells.emplace_back();
+    else if (c == '\n')
+      break;
   }
-  return rows;
+  return cells;
 }
 
 /// Only what a JSON number would print alike is one: no "nan", no "+1".
@@ -42,15 +44,36 @@ Json value_of_cell(const std::string& cell) {
 }  // namespace
 
 Json rows_of_csv(const std::string& csv) {
-  const std::vector<Cells> lines = parse(csv);
-  check(!lines.empty(), "a table has a header");
+  check(!csv.empty(), "a table has a header");
+  std::size_t at = 0;
+  const Cells titles = next_row(csv, at);
   Json rows = Json::array();
-  for (std::size_t r = 1; r < lines.size(); ++r) {
-    check_equal(lines[r].size(), lines[0].size(), "cells in a row of a table");
+  while (at < csv.size()) {
+    const Cells cells = next_row(csv, at);
+    check_equal(cells.size(), titles.size(), "cells in a row of a table");
     Json& row = rows.emplace_back(Json::object());
-    for (std::size_t c = 0; c < lines[r].size(); ++c) row[lines[0][c]] = value_of_cell(lines[r][c]);
+    for (std::size_t c = 0; c < cells.size(); ++c) row[titles[c]] = value_of_cell(cells[c]);
   }
   return rows;
+}
+
+Json csv_json(const std::string& where, const std::string& text,
+              const std::function<bool(const std::string&)>& wanted) {
+  std::size_t at = 0;
+  const Cells titles = next_row(text, at);
+  Json table = Json::object();
+  const auto is_wanted = [&](const std::string& title) { return !wanted || wanted(title); };
+  for (const std::string& title : titles)
+    if (is_wanted(title)) table[title] = Json::array();
+  for (std::size_t row = 2; at < text.size(); ++row) {
+    const Cells cells = next_row(text, at);
+    if (cells.size() != titles.size())
+      throw InputError(fmt::format("{}: row {} has {} cells; expected {}, as its titles", where,
+                                   row, cells.size(), titles.size()));
+    for (std::size_t i = 0; i < titles.size(); ++i)
+      if (is_wanted(titles[i])) table[titles[i]].push_back(value_of_cell(cells[i]));
+  }
+  return table;
 }
 
 std::string table_document(const std::string& what, const std::string& csv, const Json& more) {

@@ -1,6 +1,7 @@
-// A CSV table as a JSON document, for commands whose results are rows.
+// CSV tables, as base::CsvTable writes them, as JSON.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "tools/app/report/statistic_list.h"
@@ -8,11 +9,17 @@
 namespace leviosim::tools {
 
 /// An object for each row, with a member for each column: numbers as such, null for empty cells.
-/// @param csv  as base::CsvTable writes it: a header, quotes where they are needed
 Json rows_of_csv(const std::string& csv);
 
-/// {"format": "leviosim `what`", "version": 1, the members of `more`, "rows": rows_of_csv(csv)}, and
-/// a line break.
+/// A list of cells for each column instead: {"column": [cells…]}.
+/// @param where  of the file, for messages
+/// @param wanted  whether a column is taken; all if it is empty
+/// @throws InputError for rows of another width than the titles
+Json csv_json(const std::string& where, const std::string& text,
+              const std::function<bool(const std::string&)>& wanted = {});
+
+/// {"format": "leviosim `what`", "version": 1, the members of `more`, "rows": rows_of_csv(csv)},
+/// and a line break.
 std::string table_document(const std::string& what, const std::string& csv,
                            const Json& more = Json::object());
 
