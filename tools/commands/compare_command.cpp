@@ -14,7 +14,7 @@
 #include "tools/app/comparison/record_source.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_file.h"
-#include "tools/app/study/sweep/point_run.h"
+#include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
 namespace {
@@ -124,7 +124,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
 
 }  // namespace
 
-Command add_compare_command(CLI::App& app) {
+Command add_compare_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("compare", "Show what differs between runs, and why, by mechanism");
   const auto options = std::make_shared<CompareOptions>();

@@ -18,7 +18,7 @@
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/study/whatif/whatif_report.h"
+#include "tools/app/study/whatif/whatif.h"
 
 namespace leviosim::tools {
 namespace {

@@ -41,13 +41,13 @@ struct DoctorOptions {
   bool json = false;
 };
 
-struct Finding {
+struct Remark {
   std::string group;
   std::string name;
   bool found;
   std::string detail;  ///< where it is or what it is; of what is missing, what to do
 };
-using Findings = std::vector<Finding>;
+using Findings = std::vector<Remark>;
 
 std::string variable(const char* name) {
   const char* const value = std::getenv(name);
@@ -185,7 +185,7 @@ std::string shown(const std::string& detail) {
 Printout lines(const Findings& all) {
   std::string text;
   std::size_t missing = 0;
-  for (const Finding& finding : all) {
+  for (const Remark& finding : all) {
     text += fmt::format("{:<8}  {:<23}  {:<3}  {}\n", finding.group, printable(finding.name),
                         finding.found ? "yes" : "no", shown(finding.detail));
     missing += finding.found ? 0 : 1;
@@ -197,7 +197,7 @@ Printout lines(const Findings& all) {
 
 std::string document(const Findings& all) {
   Json rows = Json::array();
-  for (const Finding& finding : all)
+  for (const Remark& finding : all)
     rows.push_back({{"about", finding.group},
                     {"what", finding.name},
                     {"found", finding.found},
@@ -218,7 +218,7 @@ void run(const DoctorOptions& options) {
 
 }  // namespace
 
-Command add_doctor_command(CLI::App& app) {
+Command add_doctor_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("doctor", "Say what this machine has: versions, caches, data, compilers");
   const auto options = std::make_shared<DoctorOptions>();

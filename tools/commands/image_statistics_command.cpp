@@ -70,7 +70,7 @@ void run(const CLI::App& command, const ImageStatisticsOptions& options) {
 
 }  // namespace
 
-Command add_image_statistics_command(CLI::App& app) {
+Command add_image_statistics_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(
       "image-statistics", "See what the pictures of recordings are like, side by side");
   const auto options = std::make_shared<ImageStatisticsOptions>();

@@ -21,7 +21,7 @@
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/workload.h"
-#include "tools/app/study/whatif/whatif_report.h"
+#include "tools/app/study/whatif/whatif.h"
 #include "traces/trajectories/trajectory_file.h"
 
 namespace leviosim::tools {

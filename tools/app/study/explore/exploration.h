@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "tools/app/cli/command_line.h"
 #include "tools/app/html_report/page_json.h"
-#include "tools/app/study/batch_plan.h"
-#include "tools/app/study/run_outcome.h"
-#include "tools/app/study/spread.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/engine.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
@@ -95,5 +95,8 @@ Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimen
 
 /// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
 RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions);
+
+/// `leviosim explore` (tools/commands/commands.h).
+Command add_explore_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "platform_models/loader/variants.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/result/banded.h"
-#include "tools/app/study/runner.h"
+#include "tools/app/study/engine.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -79,5 +80,8 @@ std::string sensitivity_conclusion(const Sensitivity& sensitivity);
 
 /// A row per number with both ends of its range, times in ms, changes in per cent.
 std::string sensitivity_csv(const Sensitivity& sensitivity);
+
+/// `leviosim sensitivity` (tools/commands/commands.h).
+Command add_sensitivity_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools
