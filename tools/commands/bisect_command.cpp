@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "tools/app/budget/check_report.h"
+#include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/child.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 
 namespace leviosim::tools {

@@ -10,11 +10,11 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/nearest.h"
-#include "tools/app/budget/baseline.h"
-#include "tools/app/budget/budget_edits.h"
 #include "tools/app/budget/gate.h"
+#include "tools/app/budget/budget.h"
+#include "tools/app/budget/check.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {
 namespace {

@@ -8,14 +8,13 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/budget/check_report.h"
+#include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/child.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/measured.h"
-#include "tools/app/history/trend.h"
+#include "tools/app/comparison/run_record.h"
+#include "tools/app/history/history.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/report_file.h"
 
 namespace leviosim::tools {
 namespace {

@@ -8,12 +8,9 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/comparability.h"
-#include "tools/app/comparison/comparison_report.h"
-#include "tools/app/comparison/measured.h"
-#include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/report_file.h"
 #include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {

@@ -24,7 +24,7 @@
 #include "sim/base/interruption.h"
 #include "sim/base/printable_text.h"
 #include "sim/base/text.h"
-#include "tools/app/cli/cache_folder.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"

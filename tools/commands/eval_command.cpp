@@ -11,7 +11,7 @@
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/evaluation/evaluation.h"
-#include "tools/app/report/accuracy.h"
+#include "tools/app/report/run_summary.h"
 #include "tools/app/report/text_table.h"
 #include "traces/trajectories/trajectory_errors.h"
 

@@ -14,11 +14,10 @@
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/child.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/history/history.h"
-#include "tools/app/history/history_report.h"
-#include "tools/app/html_report/report_file.h"
+#include "tools/app/html_report/page.h"
 
 namespace leviosim::tools {
 namespace {

@@ -13,7 +13,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/evaluation/images/image_statistics.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "traces/recordings/recording.h"
 

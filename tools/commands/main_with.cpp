@@ -19,7 +19,7 @@
 
 #include "sim/base/error.h"
 
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"

@@ -11,7 +11,7 @@
 #include "platform_models/loader/loader.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/report.h"
 #include "tools/app/validation/microbench/unit_benches.h"

@@ -7,8 +7,8 @@
 
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/comparability.h"
-#include "tools/app/html_report/report_file.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {

@@ -12,9 +12,8 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/run/replay_report.h"
-#include "tools/app/run/run_request.h"
 #include "tools/app/run/trace_source.h"
+#include "tools/app/run/run_request.h"
 
 namespace leviosim::tools {
 namespace {

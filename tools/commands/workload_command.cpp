@@ -8,7 +8,7 @@
 
 #include "sim/base/csv_table.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 

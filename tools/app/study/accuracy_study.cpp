@@ -13,7 +13,7 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"

@@ -25,6 +25,7 @@ class App;
 }
 
 namespace leviosim::tools {
+
 /// How trajectories are compared with the truth.
 struct Measure {
   traces::Alignment alignment = traces::Alignment::se3;

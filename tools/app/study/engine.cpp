@@ -19,8 +19,8 @@
 #include "sim/base/parallel_for.h"
 #include "sim/base/sha256.h"
 #include "sim/outputs/file_system.h"
-#include "tools/app/cli/cache_folder.h"
 #include "tools/app/cli/command_line.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_folder.h"
@@ -176,9 +176,10 @@ std::string header_of(const std::string& key, const std::string& text) {
   return fmt::format("leviosim cache 2 {} {}\n", key, base::sha256_of(text));
 }
 
-}  // namespace
-
+/// The one that commands use unless told otherwise.
 fs::path default_outcome_cache() { return cache_folder() / "outcomes"; }
+
+}  // namespace
 
 /// Folders of a few files each, also after a million runs.
 fs::path OutcomeCache::file_of(const std::string& key) const {

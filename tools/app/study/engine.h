@@ -19,6 +19,7 @@ class App;
 }
 
 namespace leviosim::tools {
+
 struct Sequence;
 
 /// A run, native or on a chip, or recorded work that is timed on a chip.
@@ -117,9 +118,6 @@ class OutcomeCache {
 
   std::filesystem::path folder_;
 };
-
-/// The one that commands use unless told otherwise.
-std::filesystem::path default_outcome_cache();
 
 // How the points of a study are run: on all cores of the host, with progress, until an interrupt.
 // Outcomes are found again if they have been computed before, and kept as soon as they are there.

@@ -253,6 +253,9 @@ std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>&
   return table_of(plan, rows).str() + notes(plan, rows, "  ");
 }
 
+namespace {
+
+/// The row with the least absolute error, in a sentence.
 std::string ablation_conclusion(const std::vector<AblationRow>& rows) {
   const AblationRow* best = nullptr;
   for (const AblationRow& row : rows)
@@ -268,6 +271,8 @@ std::string ablation_conclusion(const std::vector<AblationRow>& rows) {
 std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
   return table_of(plan, rows).markdown() + '\n' + notes(plan, rows, "- ");
 }
+
+}  // namespace
 
 Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
   Json document;
@@ -425,6 +430,8 @@ std::vector<OtherAccuracy> other_accuracy() {
   return parse_other_accuracy("other_accuracy.csv", reference_text("other_accuracy"));
 }
 
+namespace {
+
 // `leviosim ablate`: the paper's table of pipeline configurations, for any sequences and image
 // sizes. Its folder:
 //
@@ -432,8 +439,6 @@ std::vector<OtherAccuracy> other_accuracy() {
 //   runs.csv        a row per run
 //   table.md        the table that is printed
 //   table.json      its rows, with more digits
-
-namespace {
 
 void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
   const BatchPlan plan = make_plan(command, words);

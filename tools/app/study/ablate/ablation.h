@@ -87,9 +87,6 @@ std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<
 
 /// Beside the paper's values where it has such, with the protocol below.
 std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows);
-/// The row with the least absolute error, in a sentence.
-std::string ablation_conclusion(const std::vector<AblationRow>& rows);
-std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationRow>& rows);
 Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows);
 
 /// Absolute errors by sequence: those of the ablation, what the paper says of LEVIO, and others'.

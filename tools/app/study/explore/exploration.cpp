@@ -15,13 +15,14 @@
 #include "sim/base/interruption.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::tools {
+
 std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point,
                                        const std::string& profile) {
   const bool use_imu = vio::profile_named(profile, 1).use_imu;
@@ -31,6 +32,9 @@ std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point
   return set;
 }
 
+namespace {
+
+/// Rows are by point, profile, then sequence_names().
 std::vector<Point> exploration_runs(const BatchPlan& plan, const ExplorationPoints& points) {
   const std::vector<std::string> names = sequence_names(plan);
   std::vector<Point> runs;
@@ -53,10 +57,12 @@ std::vector<Point> exploration_runs(const BatchPlan& plan, const ExplorationPoin
   return runs;
 }
 
+/// The point of a row.
 std::size_t point_of_row(const BatchPlan& plan, std::size_t row) {
   return row / (plan.profiles.size() * sequence_names(plan).size());
 }
 
+/// By point, then profile. @param runs  exploration_runs()
 std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const ExplorationPoints& points,
                                            const std::vector<Point>& runs,
                                            const std::vector<RunOutcome>& outcomes) {
@@ -82,6 +88,7 @@ std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const Explorat
   return explored;
 }
 
+/// The best of a profile by a mean; nullptr if all diverged. The earlier one of equals.
 const ExploredPoint* best_of(const std::vector<ExploredPoint>& explored, const std::string& profile,
                              std::optional<double> ExploredPoint::*by) {
   const ExploredPoint* best = nullptr;
@@ -90,8 +97,6 @@ const ExploredPoint* best_of(const std::vector<ExploredPoint>& explored, const s
       best = &point;
   return best;
 }
-
-namespace {
 
 std::string set_text(const ExploredPoint& point) {
   std::vector<std::string> texts;
@@ -150,12 +155,12 @@ std::string gain_text(const std::string& profile, const std::vector<ExploredPoin
   return text;
 }
 
-}  // namespace
-
+/// Per profile: as it is, the point of least absolute error, and that of least relative error.
 std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
   return best_table(plan, explored).str() + "  " + note(plan);
 }
 
+/// What the first profile gains by its best point, in a sentence.
 std::string exploration_conclusion(const BatchPlan& plan,
                                    const std::vector<ExploredPoint>& explored) {
   const std::string gain = gain_text(plan.profiles.front(), explored);
@@ -166,6 +171,8 @@ std::string exploration_conclusion(const BatchPlan& plan,
 std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
   return best_table(plan, explored).markdown() + '\n' + note(plan);
 }
+
+}  // namespace
 
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored) {
@@ -202,6 +209,10 @@ std::string points_csv(const std::vector<Dimension>& dimensions,
   return text;
 }
 
+namespace {
+
+/// The data of a page, as the paper's figure has it: the absolute over the relative error of every
+/// point.
 Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
                       const std::vector<ExploredPoint>& explored) {
   StudyPage page;
@@ -233,6 +244,7 @@ Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimen
   return study_report(page);
 }
 
+/// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
 RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
   using R = const FinishedRun&;
   RunColumns columns{{"point", [&plan](R r) { return point_of_row(plan, r.point.row); }}};
@@ -241,8 +253,6 @@ RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& di
                 [&d](R r) { return value_of(d, profile_of(r.point.request)); });
   return columns;
 }
-
-namespace {
 
 using vio::Parameter;
 
@@ -281,6 +291,10 @@ std::vector<Dimension> paper_dimensions() {
           {vio::find_parameter("workload.gravity_updates"), 0, 1}};
 }
 
+namespace {
+
+/// "workload.window=4:12"; toggles take no range: "workload.gravity_updates".
+/// @throws InputError for unknown parameters and ranges outside of what they can be
 Dimension parse_dimension(const std::string& text) {
   const std::string where = "--vary " + text;
   const std::size_t equals = text.find('=');
@@ -306,6 +320,8 @@ Dimension parse_dimension(const std::string& text) {
   return dimension;
 }
 
+}  // namespace
+
 std::vector<std::vector<vio::Assignment>> sample_points(const std::vector<Dimension>& dimensions,
                                                         std::size_t count, std::uint64_t seed) {
   std::vector<std::vector<vio::Assignment>> points(count);
@@ -317,14 +333,14 @@ std::vector<std::vector<vio::Assignment>> sample_points(const std::vector<Dimens
   return points;
 }
 
+namespace {
+
 // `leviosim explore`: the paper's parameter sweep. Its folder:
 //
 //   manifest.json   what the batch was made from
 //   runs.csv        a row per run
 //   points.csv      a row per point, profile and sequence: medians and spread
 //   best.md         the points of least error
-
-namespace {
 
 constexpr std::int64_t kMostPoints = 1'000'000;
 

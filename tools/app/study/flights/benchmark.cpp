@@ -7,8 +7,9 @@
 #include <map>
 
 #include "sim/base/error.h"
+#include "sim/base/printable_text.h"
 #include "sim/base/sha256.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"
 #include "traces/datasets/asl_reader.h"
@@ -431,6 +432,21 @@ BenchmarkResult condense(const Benchmark& benchmark, const std::vector<Point>& r
           if ((recorded ? plan.recordings : plan.motions).size() > 1) add(row);
         }
   return result;
+}
+
+std::string list_text(const Benchmark& benchmark) {
+  std::string text;
+  for (const FlightPiece& piece : benchmark.pieces) {
+    const FlightMotion& motion = benchmark.motions[piece.motion];
+    const traces::Disturbance& disturbance = benchmark.plan.disturbances[piece.disturbance];
+    text +=
+        fmt::format("{}\t{}\t{}\t{}:{}\t{:.2f} s\t{:.2f} m{}\n",
+                    printable(benchmark.plan.sets[piece.set].name), printable(motion.sequence.name),
+                    motion.recorded ? "recorded" : fmt::format("world {}", piece.world.text()),
+                    piece.frames.begin, piece.frames.end, piece.start_s, piece.path_m,
+                    disturbance.kind == nullptr ? "" : "\t" + disturbance.text());
+  }
+  return text;
 }
 
 }  // namespace leviosim::tools

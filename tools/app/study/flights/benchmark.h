@@ -45,6 +45,7 @@
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
+
 /// In place of a number of frames: from the first to the last.
 inline constexpr std::size_t kWholeFlight = 0;
 /// In place of a number of frames: from every start to the last frame, where that is longer than
@@ -174,6 +175,9 @@ Benchmark make_benchmark(FlightPlan plan, const std::string& folder);
 std::vector<Point> benchmark_runs(const Benchmark& benchmark);
 std::size_t row_of(const Benchmark& benchmark, std::size_t variant, std::size_t piece);
 
+/// A line for each piece.
+std::string list_text(const Benchmark& benchmark);
+
 /// What is drawn of a motion in a world: the frames of all its pieces. Recordings are not drawn.
 struct DrawnFlight {
   std::size_t motion = 0;
@@ -276,23 +280,15 @@ BenchmarkResult condense(const Benchmark& benchmark, const std::vector<Point>& r
 /// A row for each variant, length, set and motion; below, what the figures are.
 std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& result,
                            int width = table_width());
-/// Of each variant the worst median of all motions, in a sentence.
-std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResult& result);
-std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult& result);
 /// The rows and the pieces.
 Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result);
 
 // The files of a benchmark of flights: its runs and pieces as CSV, the manifest, and a page for a
 // browser.
 
-/// A row for each variant and piece.
-std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result);
 /// A row for each run. @param runs  benchmark_runs()
 std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Point>& runs,
                                const std::vector<RunOutcome>& outcomes, const Measure& how);
-
-/// The content of manifest.json. Nothing in it depends on the host or on what was found in caches.
-Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Words& command_line);
 
 /// The data of the page. @param csv  benchmark_runs_csv()
 Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,

@@ -10,9 +10,9 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/html_report/page_json.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/flights/benchmark.h"
@@ -183,12 +183,55 @@ Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
           {"end_drift", spread_json(row.end_drift)}};
 }
 
+/// A row for each variant and piece.
+std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result) {
+  using R = const PieceRow&;
+  using base::fixed;
+  const FlightPlan& plan = benchmark.plan;
+  const auto piece_of = [&](R row) -> const FlightPiece& { return benchmark.pieces[row.piece]; };
+  base::CsvTable<PieceRow> table;
+  table.add("variant", [&](R r) { return plan.variants[r.variant].name(); });
+  table.add("piece", [=](R r) { return length_text(piece_of(r).length); });
+  table.add("set", [=, &plan](R r) { return plan.sets[piece_of(r).set].name; });
+  table.add("motion",
+            [=, &benchmark](R r) { return benchmark.motions[piece_of(r).motion].sequence.name; });
+  table.add("world", [=](R r) { return piece_of(r).world.text(); });
+  table.add("disturbance",
+            [=, &plan](R r) { return plan.disturbances[piece_of(r).disturbance].text(); });
+  table.add("start_s", [=](R r) { return fixed(piece_of(r).start_s, 3); });
+  table.add("first_frame", [=](R r) { return piece_of(r).frames.begin; });
+  table.add("frames", [=](R r) { return piece_of(r).frames.end - piece_of(r).frames.begin; });
+  table.add("path_m", [=](R r) { return fixed(piece_of(r).path_m, 6); });
+  table.add("runs", [](R r) { return r.percent.runs; });
+  const auto add = [&](const std::string& name, auto of) {
+    table.add(name, [of](R r) { return fixed(of(r), 6); });
+  };
+  const auto add_spread = [&](const std::string& name, Spread PieceRow::*of) {
+    add(name, [of](R r) { return (r.*of).median; });
+    add(name + "_low", [of](R r) { return (r.*of).low; });
+    add(name + "_high", [of](R r) { return (r.*of).high; });
+  };
+  add_spread("ate_percent", &PieceRow::percent);
+  add_spread("ate_m", &PieceRow::metres);
+  add_spread("scale", &PieceRow::scale);
+  add("scale_sigma", [](R r) { return r.scale_sigma.median; });
+  add("end_drift_m", [](R r) { return r.end_drift.median; });
+  table.add("diverged", [](R r) { return r.diverged; });
+  table.add("failed", [](R r) { return r.failed; });
+  table.add("silent", [](R r) { return r.alarms.silent; });
+  table.add("map_restarts", [](R r) { return r.map_restarts; });
+  return table.text(result.pieces);
+}
+
 }  // namespace
 
 std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& result, int width) {
   return table_of(benchmark, result).str(width) + notes(benchmark, result, "  ");
 }
 
+namespace {
+
+/// Of each variant the worst median of all motions, in a sentence.
 std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResult& result) {
   std::string text;
   for (std::size_t v = 0; v < benchmark.plan.variants.size(); ++v) {
@@ -209,6 +252,8 @@ std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResu
 std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult& result) {
   return table_of(benchmark, result).markdown() + '\n' + notes(benchmark, result, "- ");
 }
+
+}  // namespace
 
 Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result) {
   Json document;
@@ -255,45 +300,9 @@ std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Poi
   return runs_csv(runs, outcomes, how, std::move(columns));
 }
 
-std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result) {
-  using R = const PieceRow&;
-  using base::fixed;
-  const FlightPlan& plan = benchmark.plan;
-  const auto piece_of = [&](R row) -> const FlightPiece& { return benchmark.pieces[row.piece]; };
-  base::CsvTable<PieceRow> table;
-  table.add("variant", [&](R r) { return plan.variants[r.variant].name(); });
-  table.add("piece", [=](R r) { return length_text(piece_of(r).length); });
-  table.add("set", [=, &plan](R r) { return plan.sets[piece_of(r).set].name; });
-  table.add("motion",
-            [=, &benchmark](R r) { return benchmark.motions[piece_of(r).motion].sequence.name; });
-  table.add("world", [=](R r) { return piece_of(r).world.text(); });
-  table.add("disturbance",
-            [=, &plan](R r) { return plan.disturbances[piece_of(r).disturbance].text(); });
-  table.add("start_s", [=](R r) { return fixed(piece_of(r).start_s, 3); });
-  table.add("first_frame", [=](R r) { return piece_of(r).frames.begin; });
-  table.add("frames", [=](R r) { return piece_of(r).frames.end - piece_of(r).frames.begin; });
-  table.add("path_m", [=](R r) { return fixed(piece_of(r).path_m, 6); });
-  table.add("runs", [](R r) { return r.percent.runs; });
-  const auto add = [&](const std::string& name, auto of) {
-    table.add(name, [of](R r) { return fixed(of(r), 6); });
-  };
-  const auto add_spread = [&](const std::string& name, Spread PieceRow::*of) {
-    add(name, [of](R r) { return (r.*of).median; });
-    add(name + "_low", [of](R r) { return (r.*of).low; });
-    add(name + "_high", [of](R r) { return (r.*of).high; });
-  };
-  add_spread("ate_percent", &PieceRow::percent);
-  add_spread("ate_m", &PieceRow::metres);
-  add_spread("scale", &PieceRow::scale);
-  add("scale_sigma", [](R r) { return r.scale_sigma.median; });
-  add("end_drift_m", [](R r) { return r.end_drift.median; });
-  table.add("diverged", [](R r) { return r.diverged; });
-  table.add("failed", [](R r) { return r.failed; });
-  table.add("silent", [](R r) { return r.alarms.silent; });
-  table.add("map_restarts", [](R r) { return r.map_restarts; });
-  return table.text(result.pieces);
-}
+namespace {
 
+/// The content of manifest.json. Nothing in it depends on the host or on what was found in caches.
 Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Words& command_line) {
   const FlightPlan& plan = benchmark.plan;
   Json document = study_manifest("leviosim flight benchmark manifest", command_line);
@@ -312,6 +321,8 @@ Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Wo
                                    {"starts_at_rest", motion.starts.at_rest}});
   return document;
 }
+
+}  // namespace
 
 Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
                     const std::string& csv) {
@@ -342,6 +353,8 @@ Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
   return study_report(page);
 }
 
+namespace {
+
 // `leviosim benchmark-flights`: how accurate the workload is on flights that chose nothing. Its
 // folder:
 //
@@ -350,8 +363,6 @@ Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
 //   pieces.csv      a row per profile and piece, over the seeds
 //   table.md        the table that is printed
 //   table.json      its rows and the pieces, with more digits
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -389,21 +400,6 @@ FlightPlan plan_of(const FlightWords& words) {
   if (!words.seeds.empty()) plan.seeds = batch_seeds(words.seeds);
   check_variants(plan);
   return plan;
-}
-
-std::string list_text(const Benchmark& benchmark) {
-  std::string text;
-  for (const FlightPiece& piece : benchmark.pieces) {
-    const FlightMotion& motion = benchmark.motions[piece.motion];
-    const traces::Disturbance& disturbance = benchmark.plan.disturbances[piece.disturbance];
-    text +=
-        fmt::format("{}\t{}\t{}\t{}:{}\t{:.2f} s\t{:.2f} m{}\n",
-                    printable(benchmark.plan.sets[piece.set].name), printable(motion.sequence.name),
-                    motion.recorded ? "recorded" : fmt::format("world {}", piece.world.text()),
-                    piece.frames.begin, piece.frames.end, piece.start_s, piece.path_m,
-                    disturbance.kind == nullptr ? "" : "\t" + disturbance.text());
-  }
-  return text;
 }
 
 outputs::OutputRequest out_request(const FlightWords& words, const FlightPlan& plan) {

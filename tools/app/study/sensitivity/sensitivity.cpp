@@ -12,7 +12,7 @@
 #include "sim/chip/accelerator.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/range_bands.h"
@@ -131,10 +131,14 @@ double effect_on_frame(const Swing& swing, const MeanTimes& base) {
                  percent_change(swing.high.frame, base.frame));
 }
 
+namespace {
+
 double effect_on_iteration(const Swing& swing, const MeanTimes& base) {
   return largest(percent_change(swing.low.iteration, base.iteration),
                  percent_change(swing.high.iteration, base.iteration));
 }
+
+}  // namespace
 
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
                         const traces::WorkTrace& trace, const RunnerOptions& options) {
@@ -205,8 +209,7 @@ std::string bands_table(const Sensitivity& sensitivity) {
          table.str();
 }
 
-}  // namespace
-
+/// The number with the largest effect, in a sentence.
 std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
   if (sensitivity.swings.empty()) return "in short: no number of this chip has a range";
   const Swing& swing = sensitivity.swings.front();
@@ -215,6 +218,8 @@ std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
       swing.parameter.path, change_text(swing, sensitivity.base, &MeanTimes::frame),
       swing.parameter.range->low, swing.parameter.range->high, swing.parameter.unit);
 }
+
+}  // namespace
 
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers) {
   std::vector<TextTable::Column> columns{
@@ -282,9 +287,9 @@ std::string sensitivity_csv(const Sensitivity& sensitivity) {
   return table.text(sensitivity.swings);
 }
 
-// `leviosim sensitivity`: which uncertain numbers of a platform matter.
-
 namespace {
+
+// `leviosim sensitivity`: which uncertain numbers of a platform matter.
 
 constexpr const char* kFramesByDefault = "0:100";
 

@@ -56,7 +56,6 @@ std::optional<double> percent_change(std::optional<double> value, std::optional<
 
 /// Largest absolute change of the frame time at either end, in per cent.
 double effect_on_frame(const Swing& swing, const MeanTimes& base);
-double effect_on_iteration(const Swing& swing, const MeanTimes& base);
 
 /// What a stage takes if no number with a range is certain: the changes at the ends of the ranges,
 /// taken as independent, so as the root of the sum of their squares.
@@ -74,9 +73,6 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
 /// The largest effects first; numbers without any effect are only named.
 /// As parts of a screen.
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers);
-
-/// The number with the largest effect, in a sentence.
-std::string sensitivity_conclusion(const Sensitivity& sensitivity);
 
 /// A row per number with both ends of its range, times in ms, changes in per cent.
 std::string sensitivity_csv(const Sensitivity& sensitivity);

@@ -10,10 +10,11 @@
 #include "sim/base/interruption.h"
 #include "sim/base/printable_text.h"
 #include "sim/energy/area.h"
+#include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/text_table.h"
@@ -255,8 +256,7 @@ std::optional<Miss> first_miss(const CheckResult& result) {
   return std::nullopt;
 }
 
-}  // namespace
-
+/// The record of a finished point: what sections and limits of a budget ask for.
 RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int number,
                        const Outcome& outcome) {
   RunRecord record;
@@ -275,6 +275,8 @@ RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int
   add_missing(record);
   return record;
 }
+
+}  // namespace
 
 SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
                        const std::vector<SweepPoint>& points, SweepInputs& inputs,

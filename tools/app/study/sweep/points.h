@@ -17,13 +17,14 @@
 #include "sim/base/yaml_document.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/study/engine.h"
 #include "traces/datasets/dataset.h"
 #include "traces/work_traces/work_trace.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
+
 struct SweepKey {
   enum class Kind {
     chip,             ///< "platform.cluster.clock"

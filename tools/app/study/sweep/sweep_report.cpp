@@ -11,11 +11,11 @@
 #include "sim/base/input_file.h"
 #include "sim/base/printable_text.h"
 #include "sim/base/sha256.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/engine.h"
@@ -87,14 +87,13 @@ std::string failures(SweepStore& store, const std::vector<SweepOutcome>& outcome
   return count == 0 ? text : fmt::format("{} of the points cannot run:\n{}", count, text);
 }
 
-}  // namespace
-
 std::vector<std::vector<std::string>> sweep_front(SweepStore& store) {
   const std::vector<SweepOutcome> front = pareto_front(store.outcomes());
   if (front.empty()) return {};
   return front_cells(store, front, known_objectives(front), front.size());
 }
 
+/// The same for a page: a box, and the front as a table of titles and rows.
 StudyBox sweep_box(SweepStore& store) {
   const std::vector<SweepOutcome> outcomes = store.outcomes();
   const std::int64_t planned = store.planned();
@@ -117,12 +116,15 @@ StudyBox sweep_box(SweepStore& store) {
   return box;
 }
 
+/// In a sentence: whether points cannot run, else how many no other beats.
 std::string sweep_conclusion(SweepStore& store) {
   const StudyBox box = sweep_box(store);
   if (box.lines.empty()) return fmt::format("in short: {}; {}", box.mark, box.sentence);
   return fmt::format("verdict: {}; {}", box.lines.front(), box.sentence);
 }
 
+/// Command lines that say more about a sweep in that folder: what differs between its first point
+/// and the first of the front.
 std::vector<std::string> after_sweep(SweepStore& store, const std::string& folder) {
   for (const SweepOutcome& best : pareto_front(store.outcomes()))
     if (best.point != 1)
@@ -130,6 +132,7 @@ std::vector<std::string> after_sweep(SweepStore& store, const std::string& folde
   return {};
 }
 
+/// How many points are done, which failed and which are open, and the Pareto front.
 std::string sweep_report(SweepStore& store) {
   const std::vector<SweepOutcome> outcomes = store.outcomes();
   const std::vector<SweepOutcome> front = pareto_front(outcomes);
@@ -146,8 +149,6 @@ std::string sweep_report(SweepStore& store) {
     text += fmt::format("{}{}", i == 0 ? "" : ", ", kObjectives[known[i]].title);
   return text + " and as good in the others\n" + front_table(store, front, known);
 }
-
-namespace {
 
 using Values = std::array<double, kObjectives.size()>;
 
@@ -204,8 +205,7 @@ std::string title_of(const std::string& parameter) {
   return parameter.rfind(kPlatform, 0) == 0 ? parameter.substr(kPlatform.size()) : parameter;
 }
 
-}  // namespace
-
+/// The data of the page, after the store has been published.
 Json sweep_page(SweepStore& store) {
   constexpr double kNsToMs = 1e-6;
   const std::vector<std::string> parameters = store.parameter_names();
@@ -244,8 +244,6 @@ Json sweep_page(SweepStore& store) {
 }
 
 // `leviosim sweep`: many points of one plan, by replay where there is a trace, else by live runs.
-
-namespace {
 
 namespace fs = std::filesystem;
 

@@ -29,6 +29,7 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 namespace leviosim::tools {
+
 class Database {
  public:
   enum class Mode {
@@ -238,17 +239,6 @@ CREATE VIEW IF NOT EXISTS metrics AS
 
 // What `leviosim sweep` prints when it is done.
 
-/// How many points are done, which failed and which are open, and the Pareto front.
-std::string sweep_report(SweepStore& store);
-/// In a sentence: whether points cannot run, else how many no other beats.
-std::string sweep_conclusion(SweepStore& store);
-/// Command lines that say more about a sweep in that folder: what differs between its first point
-/// and the first of the front.
-std::vector<std::string> after_sweep(SweepStore& store, const std::string& folder);
-/// The same for a page: a box, and the front as a table of titles and rows.
-StudyBox sweep_box(SweepStore& store);
-std::vector<std::vector<std::string>> sweep_front(SweepStore& store);
-
 // The points of a sweep that no other is better than in every respect.
 
 /// Whether `a` is at least as good as `b` in every objective and better in one. Less is better, and
@@ -261,9 +251,6 @@ std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes
 // A sweep as a page for a browser: all finished points to explore, and curves where one or two
 // parameters vary.
 
-/// The data of the page, after the store has been published.
-Json sweep_page(SweepStore& store);
-
 // The points of a sweep held against a budget (tools/app/budget): every finished point must meet
 // every limit that is for it. Limits with a sign are relative to the first point of the plan.
 //
@@ -275,10 +262,6 @@ struct SweepCheck {
   std::string verdict;     ///< in a sentence
   std::string text;        ///< how many, and a table of them
 };
-
-/// The record of a finished point: what sections and limits of a budget ask for.
-RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int number,
-                       const Outcome& outcome);
 
 /// @throws InputError for figures that the points do not have, Interrupted
 SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,

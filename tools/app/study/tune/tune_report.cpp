@@ -10,12 +10,12 @@
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
@@ -112,65 +112,72 @@ struct Run {
   const Variation& variation;
 };
 
-base::CsvTable<Run> runs_table(const TunePlan& plan) {
+constexpr double kNsToMs = 1e-6;
+
+StudyTable<Run> runs_table(const TunePlan& plan) {
   using base::fixed;
-  base::CsvTable<Run> table;
+  StudyTable<Run> table;
   const auto general = [](double value) { return fmt::format("{:g}", value); };
-  const auto add_of_point = [&](const char* name, auto of) {
-    table.add(name, [of](const Run& r) { return base::Cell(of(r.point)); });
+  const auto add_of_point = [&](const StudyColumn& column, auto of) {
+    table.add(column, [of](const Run& r) { return base::Cell(of(r.point)); });
   };
-  const auto add_of_camera = [&](const char* name, auto of) {
-    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome.loop->camera)); });
+  const auto add_of_camera = [&](const StudyColumn& column, auto of) {
+    table.add(column, [of](const Run& r) { return base::Cell(of(r.outcome.loop->camera)); });
   };
-  const auto add = [&](const char* name, auto of) {
-    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome)); });
+  const auto add = [&](const StudyColumn& column, auto of) {
+    table.add(column, [of](const Run& r) { return base::Cell(of(r.outcome)); });
   };
   using P = const TunePoint&;
   using C = const CameraFigures&;
   using O = const RunOutcome&;
-  add_of_point("fps", [=](P p) { return general(p.fps); });
-  add_of_point("clock_mhz", [=](P p) { return general(megahertz(p.setting.clock)); });
-  add_of_point("voltage", [=](P p) {
+  add_of_point({"fps", "frame rate", "frames/s", true}, [=](P p) { return general(p.fps); });
+  add_of_point({"clock_mhz", "clock", "MHz", true},
+               [=](P p) { return general(megahertz(p.setting.clock)); });
+  add_of_point({"voltage", "supply", "V", true}, [=](P p) {
     return p.setting.voltage ? general(p.setting.voltage->count()) : std::string();
   });
-  add("deadline", [&plan](O) { return info_of(plan.deadline).name; });
-  table.add("seed", [](const Run& r) { return r.variation.seed; });
-  table.add("variation", [](const Run& r) { return r.variation.name; });
-  add_of_camera("arrived", [](C c) { return c.arrived; });
-  add_of_camera("processed", [](C c) { return c.processed; });
-  add_of_camera("dropped", [](C c) { return c.dropped; });
-  add_of_camera("late", [](C c) { return c.late; });
-  add_of_camera("missed", [](C c) { return c.missed(); });
-  add_of_camera("missed_share", [](C c) { return fixed(c.share_of(c.missed()), 6); });
-  add_of_camera("waited", [](C c) { return c.waited; });
-  add_of_camera("most_found", [](C c) { return c.most_found; });
-  add_of_camera("latency_p50_ns", [](C c) { return c.latency.p50_ns; });
-  add_of_camera("latency_p95_ns", [](C c) { return c.latency.p95_ns; });
-  add_of_camera("latency_p99_ns", [](C c) { return c.latency.p99_ns; });
-  add_of_camera("latency_worst_ns", [](C c) { return c.latency.max_ns; });
-  const auto add_milli = [&](const char* name, auto figure, double Banded::*part) {
-    add(name, [=](O o) {
+  add({"deadline"}, [&plan](O) { return info_of(plan.deadline).name; });
+  table.add({"seed"}, [](const Run& r) { return r.variation.seed; });
+  table.add({"variation", "variation", "", true}, [](const Run& r) { return r.variation.name; });
+  add_of_camera({"arrived"}, [](C c) { return c.arrived; });
+  add_of_camera({"processed"}, [](C c) { return c.processed; });
+  add_of_camera({"dropped"}, [](C c) { return c.dropped; });
+  add_of_camera({"late"}, [](C c) { return c.late; });
+  add_of_camera({"missed"}, [](C c) { return c.missed(); });
+  add_of_camera({"missed_share", "missed frames", "%", false, false, 100},
+                [](C c) { return fixed(c.share_of(c.missed()), 6); });
+  add_of_camera({"waited"}, [](C c) { return c.waited; });
+  add_of_camera({"most_found"}, [](C c) { return c.most_found; });
+  add_of_camera({"latency_p50_ns", "median latency", "ms", false, false, kNsToMs},
+                [](C c) { return c.latency.p50_ns; });
+  add_of_camera({"latency_p95_ns"}, [](C c) { return c.latency.p95_ns; });
+  add_of_camera({"latency_p99_ns", "latency of 99 %", "ms", false, false, kNsToMs},
+                [](C c) { return c.latency.p99_ns; });
+  add_of_camera({"latency_worst_ns", "worst latency", "ms", false, false, kNsToMs},
+                [](C c) { return c.latency.max_ns; });
+  const auto add_milli = [&](const StudyColumn& column, auto figure, double Banded::*part) {
+    add(column, [=](O o) {
       const std::optional<Banded>& banded = *o.loop.*figure;
       return banded ? fixed(*banded.*part * 1e3, 9) : base::Cell();
     });
   };
-  add_milli("power_mw", &LoopOutcome::power_w, &Banded::value);
-  add_milli("power_low_mw", &LoopOutcome::power_w, &Banded::low);
-  add_milli("power_high_mw", &LoopOutcome::power_w, &Banded::high);
-  add_milli("frame_mj", &LoopOutcome::frame_j, &Banded::value);
-  add_milli("frame_low_mj", &LoopOutcome::frame_j, &Banded::low);
-  add_milli("frame_high_mj", &LoopOutcome::frame_j, &Banded::high);
-  add("ate_rmse_m", [](O o) { return fixed(o.ate_m, 9); });
-  add("matched", [](O o) { return o.matched; });
-  add("completion", [](O o) { return fixed(o.completion, 9); });
-  add("path_m", [](O o) { return fixed(o.path_m, 9); });
-  add("failure", [](O o) { return plain_cell(o.failure); });
-  add_of_point("point_meets_limits", [&plan](P p) { return int{is_enough(p, plan)}; });
+  add_milli({"power_mw", "power", "mW"}, &LoopOutcome::power_w, &Banded::value);
+  add_milli({"power_low_mw"}, &LoopOutcome::power_w, &Banded::low);
+  add_milli({"power_high_mw"}, &LoopOutcome::power_w, &Banded::high);
+  add_milli({"frame_mj", "energy per frame", "mJ"}, &LoopOutcome::frame_j, &Banded::value);
+  add_milli({"frame_low_mj"}, &LoopOutcome::frame_j, &Banded::low);
+  add_milli({"frame_high_mj"}, &LoopOutcome::frame_j, &Banded::high);
+  add({"ate_rmse_m", "position error (ATE)", "m"}, [](O o) { return fixed(o.ate_m, 9); });
+  add({"matched"}, [](O o) { return o.matched; });
+  add({"completion", "completion", "%", false, true, 100},
+      [](O o) { return fixed(o.completion, 9); });
+  add({"path_m"}, [](O o) { return fixed(o.path_m, 9); });
+  add({"failure", "failure", ""}, [](O o) { return plain_cell(o.failure); });
+  add_of_point({"point_meets_limits"}, [&plan](P p) { return int{is_enough(p, plan)}; });
   return table;
 }
 
-}  // namespace
-
+/// What stands below the table: what its figures are, with the protocol of the errors.
 std::string tune_notes(const TunePlan& plan) {
   std::string text = fmt::format(
       "missed: dropped, or the pose came later than a period after the frame; {}\n"
@@ -190,6 +197,17 @@ std::string tune_notes(const TunePlan& plan) {
              "is above the limit or that diverged; poses: the least\n",
              names.size(), fmt::join(names, ", "));
 }
+
+/// By point, then variation.
+std::vector<Run> runs_of(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  std::vector<Run> runs;
+  for (const TunePoint& point : points)
+    for (std::size_t i = 0; i < plan.variations.size(); ++i)
+      runs.push_back({point, point.outcomes[i], plan.variations[i]});
+  return runs;
+}
+
+}  // namespace
 
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
   const bool several = plan.variations.size() > 1;
@@ -233,11 +251,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  std::vector<Run> runs;
-  for (const TunePoint& point : points)
-    for (std::size_t i = 0; i < plan.variations.size(); ++i)
-      runs.push_back({point, point.outcomes[i], plan.variations[i]});
-  return runs_table(plan).text(runs);
+  return runs_table(plan).csv(runs_of(plan, points));
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
@@ -256,6 +270,9 @@ std::string tune_conclusion(const std::vector<Choice>& choices) {
                      clock_text(best->setting), best->fps, point_text(*best));
 }
 
+namespace {
+
+/// The same as boxes of a page, one for each frame rate.
 std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices) {
   std::vector<StudyBox> boxes;
   for (const Choice& choice : choices) {
@@ -280,6 +297,7 @@ std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choic
   return boxes;
 }
 
+/// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.
 Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {
   Json document;
   document["lowest"] = Json::array();
@@ -295,6 +313,7 @@ Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {
   return document;
 }
 
+/// The content of manifest.json. Nothing in it depends on the host or on cache hits.
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line) {
   Json document = study_manifest("leviosim tune manifest", command_line);
@@ -318,27 +337,14 @@ Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
   return document;
 }
 
+/// The data of the page.
 Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
                const std::vector<Choice>& choices) {
-  constexpr double kNsToMs = 1e-6;
   StudyPage page;
   page.title = fmt::format("Clocks for {} on {}", plan.request.profile, plan.options.platform);
   page.boxes = choice_boxes(plan, choices);
   page.summary = tune_notes(plan);
-  page.points = tune_csv(plan, points);
-  page.columns = {{"fps", "frame rate", "frames/s", true},
-                  {"clock_mhz", "clock", "MHz", true},
-                  {"voltage", "supply", "V", true},
-                  {"variation", "variation", "", true},
-                  {"missed_share", "missed frames", "%", false, false, 100},
-                  {"latency_p50_ns", "median latency", "ms", false, false, kNsToMs},
-                  {"latency_p99_ns", "latency of 99 %", "ms", false, false, kNsToMs},
-                  {"latency_worst_ns", "worst latency", "ms", false, false, kNsToMs},
-                  {"power_mw", "power", "mW"},
-                  {"frame_mj", "energy per frame", "mJ"},
-                  {"ate_rmse_m", "position error (ATE)", "m"},
-                  {"completion", "completion", "%", false, true, 100},
-                  {"failure", "failure", ""}};
+  runs_table(plan).show(page, runs_of(plan, points));
   page.curves = {"clock_mhz", "fps", {"missed_share", "ate_rmse_m", "power_mw", "latency_p99_ns"}};
   page.limits = {{"missed_share", 100 * plan.miss_rate}, {"ate_rmse_m", plan.ate_m}};
   page.x = "power_mw";
@@ -354,8 +360,6 @@ Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
 //   tune.svg        error, missed frames and power over the clock
 //   chosen/         the run folder of the lowest clock that is enough, with the first seed, run
 //   again
-
-namespace {
 
 struct GatedTuneWords : TuneWords {
   GateOptions gate;

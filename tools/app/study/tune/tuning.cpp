@@ -117,6 +117,10 @@ std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
   return seeds;
 }
 
+namespace {
+
+/// As it is; from one frame and from two frames later; with a clock 2 % lower and 2 % higher; with
+/// a hair of gyro bias, either way.
 std::vector<Variation> perturbations(std::uint32_t seed) {
   constexpr double kHair = 1e-4;
   const auto with = [&](const char* name, auto change) {
@@ -132,8 +136,6 @@ std::vector<Variation> perturbations(std::uint32_t seed) {
           with("gyro -0.0001 rad/s", [=](Variation& v) { v.gyro_bias = -kHair; }),
           with("gyro +0.0001 rad/s", [=](Variation& v) { v.gyro_bias = kHair; })};
 }
-
-namespace {
 
 /// Perturbations for workloads that draw nothing at random while they track, unless seeds are asked
 /// for.

@@ -19,6 +19,7 @@ class App;
 }
 
 namespace leviosim::tools {
+
 /// What a draw of the workload's random numbers does to an error is seen only over several.
 inline constexpr const char* kTunedSeeds = "1,2,3";
 
@@ -31,10 +32,6 @@ struct Variation {
   double clock = 1;       ///< factor of the point's
   double gyro_bias = 0;   ///< of all samples [rad/s]
 };
-
-/// As it is; from one frame and from two frames later; with a clock 2 % lower and 2 % higher; with
-/// a hair of gyro bias, either way.
-std::vector<Variation> perturbations(std::uint32_t seed);
 
 /// As typed.
 struct TuneWords {
@@ -156,8 +153,6 @@ RunOptions run_options_of(const TunePlan& plan, const TunePoint& point);
 
 /// A row per point.
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points);
-/// What stands below the table: what its figures are, with the protocol of the errors.
-std::string tune_notes(const TunePlan& plan);
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points);
 
 /// The lowest clock at each frame rate.
@@ -166,21 +161,7 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
 /// That of all, in a sentence.
 std::string tune_conclusion(const std::vector<Choice>& choices);
 
-/// The same as boxes of a page, one for each frame rate.
-std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices);
-
-/// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.
-Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices);
-
-/// The content of manifest.json. Nothing in it depends on the host or on cache hits.
-Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
-                   const Words& command_line);
-
 // A tuning as a page for a browser: curves over the clock, and all runs to explore.
-
-/// The data of the page.
-Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
-               const std::vector<Choice>& choices);
 
 // The picture of a tuning: error, missed frames and power over the clock, a colour per frame rate.
 

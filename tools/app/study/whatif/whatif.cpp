@@ -12,7 +12,7 @@
 #include "sim/base/text.h"
 #include "sim/energy/area.h"
 #include "sim/work/offload_regions.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"

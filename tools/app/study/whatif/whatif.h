@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "tools/app/cli/command_line.h"
-#include "tools/app/comparison/main_causes.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/html_report/page_json.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
@@ -18,6 +19,7 @@
 #include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
+
 /// Begins the keys of settings that change the chip.
 inline constexpr std::string_view kChipSettings = "platform.";
 
@@ -78,27 +80,13 @@ class WhatIf {
 
 // What if, for people and programs: text of 80 columns, CSV, and a page with bars.
 
-/// A row a variant with its reason below; the first is the run as it is.
-std::string whatif_table(const std::vector<VariantResult>& results);
-
 /// A bar a variant: the time of a mean frame, and its energy.
 std::string whatif_bars(const std::vector<VariantResult>& results);
-
-/// The same ranked: time gained per area and per energy; what changes nothing, and what cannot be.
-std::string advice_text(const std::vector<VariantResult>& results);
-
-/// In a sentence: the variant that cannot run, else the fastest.
-std::string whatif_conclusion(const std::vector<VariantResult>& results);
 
 /// In one line, why a variant takes another time: "waiting for code -11.2 ms, most in EPnP RANSAC".
 std::string reason_of(const VariantResult& base, const VariantResult& variant);
 
 std::string whatif_csv(const std::vector<VariantResult>& results);
-
-/// @param title   of the page
-/// @param summary  lines
-Json whatif_page(const std::string& title, const std::string& summary,
-                 const std::vector<VariantResult>& results);
 
 /// `leviosim whatif` (tools/commands/commands.h).
 Command add_whatif_command(CLI::App& app, const Words& words);

@@ -15,9 +15,9 @@
 #include "sim/base/printable_text.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/record_source.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/comparison/run_record.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
@@ -145,6 +145,9 @@ std::string reason_of(const VariantResult& base, const VariantResult& variant) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+namespace {
+
+/// In a sentence: the variant that cannot run, else the fastest.
 std::string whatif_conclusion(const std::vector<VariantResult>& results) {
   const VariantResult* fastest = nullptr;
   for (std::size_t i = 1; i < results.size(); ++i) {
@@ -156,11 +159,14 @@ std::string whatif_conclusion(const std::vector<VariantResult>& results) {
                      printable(fastest->name), fastest->mean_ms(), results.front().mean_ms());
 }
 
+/// A row a variant with its reason below; the first is the run as it is.
 std::string whatif_table(const std::vector<VariantResult>& results) {
   std::vector<const VariantResult*> rows;
   for (std::size_t i = 1; i < results.size(); ++i) rows.push_back(&results[i]);
   return table_of(results.front(), rows);
 }
+
+}  // namespace
 
 std::string whatif_bars(const std::vector<VariantResult>& results) {
   constexpr double kBar = 34;
@@ -177,6 +183,9 @@ std::string whatif_bars(const std::vector<VariantResult>& results) {
   return text;
 }
 
+namespace {
+
+/// The same ranked: time gained per area and per energy; what changes nothing, and what cannot be.
 std::string advice_text(const std::vector<VariantResult>& results) {
   const VariantResult& base = results.front();
   std::vector<const VariantResult*> gains;
@@ -221,7 +230,8 @@ std::string advice_text(const std::vector<VariantResult>& results) {
   return text + list_of("Cannot run:", impossible);
 }
 
-std::string whatif_csv(const std::vector<VariantResult>& results) {
+/// @param results  outlive the table
+StudyTable<VariantResult> variants_table(const std::vector<VariantResult>& results) {
   using R = const VariantResult&;
   const auto time = [](Banded FrameTimes::*figure, double Banded::*part) {
     return [=](R r) {
@@ -241,63 +251,59 @@ std::string whatif_csv(const std::vector<VariantResult>& results) {
       return base::fixed(r.energy_mj ? std::optional((*r.energy_mj).*part) : std::nullopt, 6);
     };
   };
-  base::CsvTable<VariantResult> table{
-      {"variant", [](R r) { return r.name; }},
-      {"frame_mean_ms", time(&FrameTimes::mean_ns, &Banded::value)},
-      {"frame_mean_ms_low", time(&FrameTimes::mean_ns, &Banded::low)},
-      {"frame_mean_ms_high", time(&FrameTimes::mean_ns, &Banded::high)},
-      {"frame_p99_ms", time(&FrameTimes::p99_ns, &Banded::value)},
-      {"frame_p99_ms_low", time(&FrameTimes::p99_ns, &Banded::low)},
-      {"frame_p99_ms_high", time(&FrameTimes::p99_ns, &Banded::high)},
-      {"frame_worst_ms", time(&FrameTimes::worst_ns, &Banded::value)},
-      {"frame_worst_ms_low", time(&FrameTimes::worst_ns, &Banded::low)},
-      {"frame_worst_ms_high", time(&FrameTimes::worst_ns, &Banded::high)},
-      {"sustainable_fps",
+  return StudyTable<VariantResult>{
+      {{"variant", "variant", "", true}, [](R r) { return r.name; }},
+      {{"frame_mean_ms", "mean frame", "ms"}, time(&FrameTimes::mean_ns, &Banded::value)},
+      {{"frame_mean_ms_low"}, time(&FrameTimes::mean_ns, &Banded::low)},
+      {{"frame_mean_ms_high"}, time(&FrameTimes::mean_ns, &Banded::high)},
+      {{"frame_p99_ms", "frame time of 99 %", "ms"}, time(&FrameTimes::p99_ns, &Banded::value)},
+      {{"frame_p99_ms_low"}, time(&FrameTimes::p99_ns, &Banded::low)},
+      {{"frame_p99_ms_high"}, time(&FrameTimes::p99_ns, &Banded::high)},
+      {{"frame_worst_ms", "worst frame", "ms"}, time(&FrameTimes::worst_ns, &Banded::value)},
+      {{"frame_worst_ms_low"}, time(&FrameTimes::worst_ns, &Banded::low)},
+      {{"frame_worst_ms_high"}, time(&FrameTimes::worst_ns, &Banded::high)},
+      {{"sustainable_fps", "sustainable rate", "frames/s", false, true},
        [](R r) {
          return base::fixed(
              r.failure.empty() ? std::optional(r.times.sustainable_rate()) : std::nullopt, 3);
        }},
-      {"frames", [](R r) { return fmt::format("{}", r.frames); }},
-      {"late", [](R r) { return fmt::format("{}", r.times.late); }},
-      {"verdict", [](R r) { return r.failure.empty() ? r.verdict() : "cannot run"; }},
-      {"time", word("time")},
-      {"memory", word("memory")},
-      {"map", word("map")},
-      {"energy_mj", energy(&Banded::value)},
-      {"energy_mj_low", energy(&Banded::low)},
-      {"energy_mj_high", energy(&Banded::high)},
-      {"area_mm2", [](R r) { return base::fixed(r.area_mm2, 4); }},
-      {"area", [](R r) { return std::string(r.is_whole_area ? "whole" : "at least"); }},
-      {"computed", [](R r) { return std::string(r.is_run ? "run again" : "replayed"); }},
-      {"why",
+      {{"frames"}, [](R r) { return fmt::format("{}", r.frames); }},
+      {{"late", "late frames", ""}, [](R r) { return fmt::format("{}", r.times.late); }},
+      {{"verdict", "verdict", ""},
+       [](R r) { return r.failure.empty() ? r.verdict() : "cannot run"; }},
+      {{"time", "time", ""}, word("time")},
+      {{"memory", "memory", ""}, word("memory")},
+      {{"map", "map", ""}, word("map")},
+      {{"energy_mj", "energy per frame", "mJ"}, energy(&Banded::value)},
+      {{"energy_mj_low"}, energy(&Banded::low)},
+      {{"energy_mj_high"}, energy(&Banded::high)},
+      {{"area_mm2", "area", "mm2"}, [](R r) { return base::fixed(r.area_mm2, 4); }},
+      {{"area"}, [](R r) { return std::string(r.is_whole_area ? "whole" : "at least"); }},
+      {{"computed"}, [](R r) { return std::string(r.is_run ? "run again" : "replayed"); }},
+      {{"why", "why", ""},
        [&](R r) {
          return &r == &results.front() || !r.failure.empty() ? std::string()
                                                              : reason_of(results.front(), r);
        }},
-      {"failure", [](R r) { return r.failure; }}};
-  return table.text(results);
+      {{"failure", "failure", ""}, [](R r) { return r.failure; }}};
 }
 
+}  // namespace
+
+std::string whatif_csv(const std::vector<VariantResult>& results) {
+  return variants_table(results).csv(results);
+}
+
+namespace {
+
+/// @param title   of the page
+/// @param summary  lines
 Json whatif_page(const std::string& title, const std::string& summary,
                  const std::vector<VariantResult>& results) {
   StudyPage page;
   page.title = title;
   page.summary = summary;
-  page.points = whatif_csv(results);
-  page.columns = {{"variant", "variant", "", true},
-                  {"frame_mean_ms", "mean frame", "ms"},
-                  {"frame_p99_ms", "frame time of 99 %", "ms"},
-                  {"frame_worst_ms", "worst frame", "ms"},
-                  {"sustainable_fps", "sustainable rate", "frames/s", false, true},
-                  {"late", "late frames", ""},
-                  {"verdict", "verdict", ""},
-                  {"time", "time", ""},
-                  {"memory", "memory", ""},
-                  {"map", "map", ""},
-                  {"energy_mj", "energy per frame", "mJ"},
-                  {"area_mm2", "area", "mm2"},
-                  {"why", "why", ""},
-                  {"failure", "failure", ""}};
+  variants_table(results).show(page, results);
   page.bars = {"variant", {"frame_mean_ms", "energy_mj", "area_mm2"}};
   page.x = "area_mm2";
   page.y = "frame_mean_ms";
@@ -305,8 +311,6 @@ Json whatif_page(const std::string& title, const std::string& summary,
 }
 
 // leviosim whatif: a recorded run on other chips, a row a variant; without a change, advice.
-
-namespace {
 
 struct WhatIfWords {
   std::vector<std::string> words;  ///< the run, if the first one is one, and the changes
