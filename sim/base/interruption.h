@@ -1,5 +1,5 @@
 // Requests to stop (Ctrl-C, termination), as long work asks for them. A program that wants to end
-// in order keeps the signals blocked (tools/app/cli/interrupts.h); they then stay pending in the
+// in order keeps the signals blocked (tools/app/cli/host.h); they then stay pending in the
 // kernel, where every loop of every library can see them. There is no handler and no flag of ours.
 // In a program that does not block them, nothing is ever pending, and signals do what they always
 // do.

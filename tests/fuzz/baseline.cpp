@@ -1,9 +1,9 @@
 // Baselines: read, and a run held against limits that are relative to them.
-#include "tools/app/budget/baseline.h"
+#include "tools/app/budget/gate.h"
 
 #include "tests/fuzz/checked_run.h"
 #include "tests/fuzz/fuzz_target.h"
-#include "tools/app/comparison/comparability.h"
+#include "tools/app/comparison/comparison.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

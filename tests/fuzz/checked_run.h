@@ -4,7 +4,6 @@
 #include <cstdlib>
 
 #include "tools/app/budget/check.h"
-#include "tools/app/budget/check_report.h"
 #include "tools/app/comparison/run_record.h"
 
 namespace leviosim::fuzz {

@@ -8,9 +8,8 @@
 #include <set>
 
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/point.h"
-#include "tools/app/study/run_outcome.h"
-#include "tools/app/study/spread.h"
+#include "tools/app/study/engine.h"
+#include "tools/app/study/accuracy_study.h"
 
 namespace leviosim::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/program_suite.h"
 #include "tests/tools/junit_schema.h"
-#include "tools/app/budget/baseline.h"
+#include "tools/app/budget/gate.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/report/statistic_list.h"
 #include "traces/synthesis/synthetic.h"

@@ -5,10 +5,8 @@
 #include <random>
 
 #include "tests/support/program_suite.h"
-#include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/comparison_report.h"
-#include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/report/text_table.h"
 #include "traces/synthesis/synthetic.h"
 

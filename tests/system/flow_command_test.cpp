@@ -4,8 +4,7 @@
 #include "platform_models/loader/loader.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
-#include "tools/app/flow/flow_report.h"
-#include "tools/app/flow/flow_source.h"
+#include "tools/app/flow/flow.h"
 #include "tools/app/result/energy.h"
 #include "traces/synthesis/synthetic.h"
 

@@ -7,7 +7,6 @@
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/report/tables.h"
-#include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/profile.h"

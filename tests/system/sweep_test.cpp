@@ -7,7 +7,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/sweep/points.h"
-#include "tools/app/study/sweep/sweep_report.h"
+#include "tools/app/study/sweep/sweep_store.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"
 

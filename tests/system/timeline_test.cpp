@@ -6,7 +6,6 @@
 #include "tests/tools/timeline_checks.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/timeline/perfetto_timeline.h"
 #include "tools/app/timeline/requested_timeline.h"
 #include "traces/synthesis/synthetic.h"
 

@@ -7,8 +7,7 @@
 #include "sim/energy/model.h"
 #include "tests/support/run_program.h"
 #include "tests/tools/well_formed.h"
-#include "tools/app/study/tune/tune_plot.h"
-#include "tools/app/study/tune/tune_report.h"
+#include "tools/app/study/tune/tuning.h"
 
 namespace leviosim::tools {
 namespace {

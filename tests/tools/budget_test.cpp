@@ -9,10 +9,8 @@
 #include "tests/tools/example_run.h"
 #include "tests/tools/junit_schema.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/budget/baseline.h"
-#include "tools/app/budget/budget_edits.h"
+#include "tools/app/budget/gate.h"
 #include "tools/app/budget/check.h"
-#include "tools/app/budget/check_report.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/example_run.h"
-#include "tools/app/comparison/comparability.h"
-#include "tools/app/comparison/comparison_report.h"
 #include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/run/run_folder.h"

@@ -7,9 +7,8 @@
 
 #include "tests/sim/energy_test_config.h"
 #include "tests/tools/example_run.h"
-#include "tools/app/report/energy_tables.h"
-#include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
+#include "tools/app/report/statistics.h"
 #include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {

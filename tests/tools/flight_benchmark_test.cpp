@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "tools/app/study/flights/benchmark_report.h"
+#include "tools/app/study/flights/benchmark.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::tools {

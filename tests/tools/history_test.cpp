@@ -7,8 +7,7 @@
 
 #include "sim/base/error.h"
 #include "tests/support/scratch.h"
-#include "tools/app/history/history_report.h"
-#include "tools/app/history/trend.h"
+#include "tools/app/history/history.h"
 #include "tools/app/html_report/page.h"
 
 namespace leviosim::tools {

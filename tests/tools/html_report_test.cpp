@@ -6,8 +6,6 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/page_json.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/html_report/verdict.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/verdict.h"
 

@@ -1,6 +1,7 @@
-// Includes go where the build says that they may: every room, which is a folder with a library,
-// includes its own headers and those of the rooms that its line leviosim_add_room(...) names. The
-// lines name no more than is used, and make no circle. Headers of other projects are not looked at.
+// Includes go where the build says that they may: every room, which is a folder with a library and
+// the folders below it that are no rooms, includes its own headers and those of the rooms that its
+// line leviosim_add_room(...) names. The lines name no more than is used, and make no circle.
+// Headers of other projects are not looked at.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,6 +52,13 @@ std::set<std::string> folders_included(std::istream& source) {
   return folders;
 }
 
+/// The room that a folder is, or lies in; the folder itself if there is none.
+std::string room_of(const std::string& folder, const Arrows& rooms) {
+  for (fs::path at = folder; !at.empty(); at = at.parent_path())
+    if (rooms.count(at.string()) != 0) return at.string();
+  return folder;
+}
+
 /// What the sources of the rooms include; faults name sources that are in no room.
 Arrows used_arrows(const fs::path& project, const Arrows& rooms, std::vector<std::string>& faults) {
   Arrows used;
@@ -63,13 +71,14 @@ Arrows used_arrows(const fs::path& project, const Arrows& rooms, std::vector<std
       // What runs on the measured processor is built by a script; the others are the program, what others see
       // of its library, and the Python module.
       if (folder.rfind("tools/rv32", 0) == 0 || folder == "tools" || folder == "tools/python") continue;
-      if (rooms.count(folder) == 0) {
+      const std::string room = room_of(folder, rooms);
+      if (rooms.count(room) == 0) {
         faults.push_back(file.string() + " is in no room");
         continue;
       }
       std::ifstream source(entry.path());
       for (const std::string& other : folders_included(source))
-        if (other != folder) used[folder].insert(other);
+        if (room_of(other, rooms) != room) used[room].insert(room_of(other, rooms));
     }
   return used;
 }

@@ -1,4 +1,4 @@
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 
 #include <gtest/gtest.h>
 

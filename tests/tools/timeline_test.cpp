@@ -1,5 +1,5 @@
 // The timeline of work that is known: what lies where, what is joined, and what it costs.
-#include "tools/app/timeline/perfetto_timeline.h"
+#include "tools/app/timeline/requested_timeline.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,6 @@
 #include "tests/tools/well_formed.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/timeline/core_slices.h"
-#include "tools/app/timeline/requested_timeline.h"
-#include "tools/app/timeline/timeline_picture.h"
 #include "tools/app/timeline/track_events.h"
 
 namespace leviosim::tools {

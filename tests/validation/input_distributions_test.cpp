@@ -1,5 +1,5 @@
 // Distributions of a run's inputs, and of the iterations of its hypotheses.
-#include "tools/app/validation/input_distributions.h"
+#include "tools/app/validation/validation.h"
 
 #include <gtest/gtest.h>
 

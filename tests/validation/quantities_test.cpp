@@ -5,7 +5,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "tests/validation/example_log.h"
-#include "tools/app/validation/validation_report.h"
+#include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {
 namespace {

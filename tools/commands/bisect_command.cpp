@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "tools/app/budget/check_report.h"
+#include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/child.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 
 namespace leviosim::tools {
@@ -60,7 +60,7 @@ void run(const CLI::App& command, const BisectOptions& options) {
 
 }  // namespace
 
-Command add_bisect_command(CLI::App& app) {
+Command add_bisect_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(
       "bisect", "For git bisect run: build and run a commit, hold it against a budget");
   const auto options = std::make_shared<BisectOptions>();

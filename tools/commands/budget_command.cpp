@@ -10,11 +10,11 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/nearest.h"
-#include "tools/app/budget/baseline.h"
-#include "tools/app/budget/budget_edits.h"
 #include "tools/app/budget/gate.h"
+#include "tools/app/budget/budget.h"
+#include "tools/app/budget/check.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {
 namespace {
@@ -65,7 +65,7 @@ void run(const CLI::App& command, const BudgetOptions& options) {
 
 }  // namespace
 
-Command add_budget_command(CLI::App& app) {
+Command add_budget_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("budget", "Print a baseline of a run, or a budget that fits it");
   const auto options = std::make_shared<BudgetOptions>();

@@ -60,7 +60,7 @@ void run(const CalibrateOptions& given) {
 
 }  // namespace
 
-Command add_calibrate_command(CLI::App& app) {
+Command add_calibrate_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(
       "calibrate", "Fit code-generation constants to the paper's single-core values");
   const auto options = std::make_shared<CalibrateOptions>();

@@ -8,14 +8,13 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/budget/check_report.h"
+#include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/child.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/measured.h"
-#include "tools/app/history/trend.h"
+#include "tools/app/comparison/run_record.h"
+#include "tools/app/history/history.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/report_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -113,7 +112,7 @@ void run(const CLI::App& command, const CheckOptions& options) {
 
 }  // namespace
 
-Command add_check_command(CLI::App& app) {
+Command add_check_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("check", "Hold a run against a budget; status 1 if a limit is not met");
   const auto options = std::make_shared<CheckOptions>();

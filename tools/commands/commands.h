@@ -1,40 +1,47 @@
 // The commands of leviosim, one source each: it declares the options, calls what is in tools/app,
-// and prints. What a command is for, and which files it leaves, stands at the head of its source.
+// and prints. What a command is for, and which files it leaves, stands at the head of its source;
+// commands of studies lie with them (tools/app/study).
 #pragma once
 
 #include "tools/app/cli/command_line.h"
+
+/// All of them, in the order of the help: ADD(name) for each.
+#define LEVIOSIM_COMMANDS(ADD) \
+  ADD(demo)              \
+  ADD(run)               \
+  ADD(synth)             \
+  ADD(doctor)            \
+  ADD(platforms)         \
+  ADD(workload)          \
+  ADD(eval)              \
+  ADD(image_statistics)  \
+  ADD(trajectory)        \
+  ADD(ablate)            \
+  ADD(explore)           \
+  ADD(benchmark_flights) \
+  ADD(validate)          \
+  ADD(calibrate)         \
+  ADD(sensitivity)       \
+  ADD(microbench)        \
+  ADD(replay)            \
+  ADD(trace)             \
+  ADD(whatif)            \
+  ADD(tune)              \
+  ADD(sweep)             \
+  ADD(flow)              \
+  ADD(compare)           \
+  ADD(check)             \
+  ADD(budget)            \
+  ADD(history)           \
+  ADD(bisect)            \
+  ADD(report)
 
 namespace leviosim::tools {
 
 /// Adds a command with its options to the program.
 /// @param words  the whole command line, for manifests; must outlive the command
-Command add_ablate_command(CLI::App& app, const Words& words);
-Command add_benchmark_flights_command(CLI::App& app, const Words& words);
-Command add_bisect_command(CLI::App& app);
-Command add_budget_command(CLI::App& app);
-Command add_calibrate_command(CLI::App& app);
-Command add_check_command(CLI::App& app);
-Command add_compare_command(CLI::App& app);
-Command add_demo_command(CLI::App& app, const Words& words);
-Command add_doctor_command(CLI::App& app);
-Command add_eval_command(CLI::App& app);
-Command add_explore_command(CLI::App& app, const Words& words);
-Command add_flow_command(CLI::App& app, const Words& words);
-Command add_history_command(CLI::App& app);
-Command add_image_statistics_command(CLI::App& app);
-Command add_microbench_command(CLI::App& app);
-Command add_platforms_command(CLI::App& app);
-Command add_replay_command(CLI::App& app, const Words& words);
-Command add_report_command(CLI::App& app);
-Command add_run_command(CLI::App& app, const Words& words);
-Command add_sensitivity_command(CLI::App& app);
-Command add_sweep_command(CLI::App& app);
-Command add_synth_command(CLI::App& app);
-Command add_trace_command(CLI::App& app);
-Command add_trajectory_command(CLI::App& app);
-Command add_tune_command(CLI::App& app, const Words& words);
-Command add_validate_command(CLI::App& app, const Words& words);
-Command add_whatif_command(CLI::App& app, const Words& words);
-Command add_workload_command(CLI::App& app);
+#define LEVIOSIM_DECLARE(name) Command add_##name##_command(CLI::App& app, const Words& words);
+LEVIOSIM_COMMANDS(LEVIOSIM_DECLARE)
+#undef LEVIOSIM_DECLARE
 
 }  // namespace leviosim::tools

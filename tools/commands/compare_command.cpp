@@ -8,13 +8,10 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/comparability.h"
-#include "tools/app/comparison/comparison_report.h"
-#include "tools/app/comparison/measured.h"
-#include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/study/sweep/point_run.h"
+#include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
 namespace {
@@ -124,7 +121,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
 
 }  // namespace
 
-Command add_compare_command(CLI::App& app) {
+Command add_compare_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("compare", "Show what differs between runs, and why, by mechanism");
   const auto options = std::make_shared<CompareOptions>();

@@ -11,14 +11,13 @@
 
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/comparability.h"
+#include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/report_file.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/study/whatif/whatif_report.h"
+#include "tools/app/study/whatif/whatif.h"
 
 namespace leviosim::tools {
 namespace {

@@ -23,7 +23,7 @@
 #include "sim/base/interruption.h"
 #include "sim/base/printable_text.h"
 #include "sim/base/text.h"
-#include "tools/app/cli/cache_folder.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
@@ -40,13 +40,13 @@ struct DoctorOptions {
   bool json = false;
 };
 
-struct Finding {
+struct Remark {
   std::string group;
   std::string name;
   bool found;
   std::string detail;  ///< where it is or what it is; of what is missing, what to do
 };
-using Findings = std::vector<Finding>;
+using Findings = std::vector<Remark>;
 
 std::string variable(const char* name) {
   const char* const value = std::getenv(name);
@@ -183,7 +183,7 @@ std::string shown(const std::string& detail) {
 Printout lines(const Findings& all) {
   std::string text;
   std::size_t missing = 0;
-  for (const Finding& finding : all) {
+  for (const Remark& finding : all) {
     text += fmt::format("{:<8}  {:<23}  {:<3}  {}\n", finding.group, printable(finding.name),
                         finding.found ? "yes" : "no", shown(finding.detail));
     missing += finding.found ? 0 : 1;
@@ -195,7 +195,7 @@ Printout lines(const Findings& all) {
 
 std::string document(const Findings& all) {
   Json rows = Json::array();
-  for (const Finding& finding : all)
+  for (const Remark& finding : all)
     rows.push_back({{"about", finding.group},
                     {"what", finding.name},
                     {"found", finding.found},
@@ -216,7 +216,7 @@ void run(const DoctorOptions& options) {
 
 }  // namespace
 
-Command add_doctor_command(CLI::App& app) {
+Command add_doctor_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("doctor", "Say what this machine has: versions, caches, data, compilers");
   const auto options = std::make_shared<DoctorOptions>();

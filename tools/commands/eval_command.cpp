@@ -11,7 +11,7 @@
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/evaluation/evaluation.h"
-#include "tools/app/report/accuracy.h"
+#include "tools/app/report/run_summary.h"
 #include "tools/app/report/text_table.h"
 #include "traces/trajectories/trajectory_errors.h"
 
@@ -193,7 +193,7 @@ void run(const CLI::App& command, const EvalOptions& options) {
 
 }  // namespace
 
-Command add_eval_command(CLI::App& app) {
+Command add_eval_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand("eval", "Compare a trajectory with the ground truth");
   const auto options = std::make_shared<EvalOptions>();
   add_eval_options(*command, *options);

@@ -7,9 +7,8 @@
 #include <memory>
 
 #include "tools/app/cli/outputs.h"
-#include "tools/app/flow/flow_report.h"
-#include "tools/app/flow/flow_source.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/flow/flow.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 

@@ -14,11 +14,10 @@
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/child.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/history/history.h"
-#include "tools/app/history/history_report.h"
-#include "tools/app/html_report/report_file.h"
+#include "tools/app/html_report/page.h"
 
 namespace leviosim::tools {
 namespace {
@@ -168,7 +167,7 @@ void run(const CLI::App& command, const HistoryOptions& options) {
 
 }  // namespace
 
-Command add_history_command(CLI::App& app) {
+Command add_history_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("history", "Keep runs by commit in a file, and show how figures moved");
   const auto options = std::make_shared<HistoryOptions>();

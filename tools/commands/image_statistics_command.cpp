@@ -13,7 +13,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/evaluation/images/image_statistics.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "traces/recordings/recording.h"
 
@@ -70,7 +70,7 @@ void run(const CLI::App& command, const ImageStatisticsOptions& options) {
 
 }  // namespace
 
-Command add_image_statistics_command(CLI::App& app) {
+Command add_image_statistics_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(
       "image-statistics", "See what the pictures of recordings are like, side by side");
   const auto options = std::make_shared<ImageStatisticsOptions>();

@@ -19,7 +19,7 @@
 
 #include "sim/base/error.h"
 
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
@@ -140,36 +140,9 @@ int run_program(const Words& typed) {
   app.footer("leviosim help COMMAND: its options, with examples");
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
   try {
-    const int status = run_command_line(app,
-                                        {add_demo_command(app, words),
-                                         add_run_command(app, words),
-                                         add_synth_command(app),
-                                         add_doctor_command(app),
-                                         add_platforms_command(app),
-                                         add_workload_command(app),
-                                         add_eval_command(app),
-                                         add_image_statistics_command(app),
-                                         add_trajectory_command(app),
-                                         add_ablate_command(app, words),
-                                         add_explore_command(app, words),
-                                         add_benchmark_flights_command(app, words),
-                                         add_validate_command(app, words),
-                                         add_calibrate_command(app),
-                                         add_sensitivity_command(app),
-                                         add_microbench_command(app),
-                                         add_replay_command(app, words),
-                                         add_trace_command(app),
-                                         add_whatif_command(app, words),
-                                         add_tune_command(app, words),
-                                         add_sweep_command(app),
-                                         add_flow_command(app, words),
-                                         add_compare_command(app),
-                                         add_check_command(app),
-                                         add_budget_command(app),
-                                         add_history_command(app),
-                                         add_bisect_command(app),
-                                         add_report_command(app)},
-                                        typed);
+#define LEVIOSIM_ADD(name) add_##name##_command(app, words),
+    const int status = run_command_line(app, {LEVIOSIM_COMMANDS(LEVIOSIM_ADD)}, typed);
+#undef LEVIOSIM_ADD
     flush_results();
     if (!memory_ended()) throw_if_interrupted();
     return status;

@@ -11,7 +11,7 @@
 #include "platform_models/loader/loader.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/report.h"
 #include "tools/app/validation/microbench/unit_benches.h"
@@ -83,7 +83,7 @@ void run(const MicrobenchOptions& options) {
 
 }  // namespace
 
-Command add_microbench_command(CLI::App& app) {
+Command add_microbench_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("microbench", "Compare small programs with measured hardware");
   const auto options = std::make_shared<MicrobenchOptions>();

@@ -17,12 +17,11 @@
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/report_file.h"
-#include "tools/app/report/energy_tables.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/tables.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload.h"
@@ -400,7 +399,7 @@ void run(const CLI::App& command, const PlatformsOptions& options) {
 
 }  // namespace
 
-Command add_platforms_command(CLI::App& app) {
+Command add_platforms_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand("platforms",
                                          "List the chips, show one with its sources, compare two, "
                                          "or ask what a workload takes on them");

@@ -7,8 +7,8 @@
 
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/comparability.h"
-#include "tools/app/html_report/report_file.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
@@ -48,7 +48,7 @@ void run(const CLI::App& command, const ReportOptions& options) {
 
 }  // namespace
 
-Command add_report_command(CLI::App& app) {
+Command add_report_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("report", "Runs as one page for a browser, which works offline");
   const auto options = std::make_shared<ReportOptions>();

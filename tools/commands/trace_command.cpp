@@ -12,9 +12,8 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/run/replay_report.h"
-#include "tools/app/run/run_request.h"
 #include "tools/app/run/trace_source.h"
+#include "tools/app/run/run_request.h"
 
 namespace leviosim::tools {
 namespace {
@@ -95,7 +94,7 @@ void run(const CLI::App& command, const TraceOptions& options) {
 
 }  // namespace
 
-Command add_trace_command(CLI::App& app) {
+Command add_trace_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand("trace", "Show what a work trace holds, or check it");
   const auto options = std::make_shared<TraceOptions>();
   command->add_option("ACTION", options->action, "info, or check: read all of it");

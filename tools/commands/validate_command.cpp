@@ -11,7 +11,6 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/validation/validation.h"
-#include "tools/app/validation/validation_report.h"
 
 namespace leviosim::tools {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "sim/base/csv_table.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 
@@ -75,7 +75,7 @@ void run(const WorkloadOptions& options) {
 
 }  // namespace
 
-Command add_workload_command(CLI::App& app) {
+Command add_workload_command(CLI::App& app, const Words&) {
   CLI::App* command =
       app.add_subcommand("workload", "List the profiles of the workload and its parameters");
   const auto options = std::make_shared<WorkloadOptions>();

@@ -14,14 +14,14 @@
 #include "sim/energy/area.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/comparison/cycle_parts.h"
-#include "tools/app/report/accuracy.h"
-#include "tools/app/report/energy_tables.h"
-#include "tools/app/run/replay_report.h"
+#include "tools/app/report/run_summary.h"
+#include "tools/app/report/tables.h"
+#include "tools/app/run/trace_source.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/workload.h"
-#include "tools/app/study/whatif/whatif_report.h"
+#include "tools/app/study/whatif/whatif.h"
 #include "traces/trajectories/trajectory_file.h"
 
 namespace leviosim::tools {

@@ -7,10 +7,9 @@
 
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
-#include "tools/app/budget/budget_edits.h"
+#include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/comparison_report.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {

@@ -1,4 +1,4 @@
-#include "tools/app/budget/check_report.h"
+#include "tools/app/budget/check.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,8 +8,9 @@
 
 #include "sim/base/printable_text.h"
 #include "sim/base/sha256.h"
+#include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
-#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/comparison.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/verdict.h"
@@ -56,7 +57,9 @@ std::string table_of(const CheckResult& result) {
   const std::string count = fmt::format("{} limit{}", limits, limits == 1 ? "" : "s");
   std::string text = fmt::format("{} against {}: {}, {} not met", printable(result.run),
                                  printable(result.budget), count, result.missed());
-  text += result.warned() == 0 ? "\n" : fmt::format(", {} warning{}\n", result.warned(), result.warned() == 1 ? "" : "s");
+  text += result.warned() == 0
+              ? "\n"
+              : fmt::format(", {} warning{}\n", result.warned(), result.warned() == 1 ? "" : "s");
   if (!result.baseline.empty()) text += fmt::format("baseline: {}\n", printable(result.baseline));
   if (!result.not_measured.empty())
     text += fmt::format("left out, since it was not measured: {}\n",

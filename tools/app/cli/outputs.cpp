@@ -1,13 +1,13 @@
 #include "tools/app/cli/outputs.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
@@ -89,8 +89,7 @@ void print(const Printout& printout, const std::vector<ShownPath>& places) {
   for (const ShownPath& place : places)
     if (!printout.is_whole)
       print_piece(Kind::kept, fmt::format("{}: {}\n", place.label, printable(place.path)));
-  if (!printout.conclusion.empty())
-    print_piece(Kind::kept, printout.conclusion + '\n');
+  if (!printout.conclusion.empty()) print_piece(Kind::kept, printout.conclusion + '\n');
   if (!printout.next.empty())
     print_piece(Kind::next, fmt::format("next: {}\n", fmt::join(printout.next, "\n      ")));
   print_piece(Kind::commands, printout.ci_commands);

@@ -1,4 +1,4 @@
-#include "tools/app/comparison/comparability.h"
+#include "tools/app/comparison/comparison.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
-#include "tools/app/cli/child.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/run/run_folder.h"
 

@@ -1,12 +1,11 @@
-// What differs between two runs, as a tree of quantities: each has its value in run A and in run B,
-// and parts whose values add up to it. So do their differences. Plain data; comparison_report.h
-// prints it.
-//
-// Cycles are those of a mean frame on N cores. They are split twice: by mechanism and kind of
-// operation, and by fork. A third split is by cause: work, its cost, and contention.
+// Whether two runs can be compared: they must have processed the same data, frame by frame, with
+// the same random draws, at the same size, by the same profile. Anything else may differ; what
+// should be known about it is noted.
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +13,59 @@
 #include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {
+
+/// Differences that the user does not mind: "data,seed".
+using Allowed = std::set<std::string>;
+
+/// @throws InputError for names that are none of chip, data, frames, profile, seed, size
+Allowed parse_allowed(const std::string& text);
+
+/// @returns notes: what else differs, and what was allowed to
+/// @throws InputError naming each difference that is not allowed
+std::vector<std::string> check_comparable(const RunRecord& a, const RunRecord& b,
+                                          const Allowed& allowed);
+
+/// Of a run and a baseline: limits of one chip say nothing of another. Settings of the chip and the
+/// number of cores are what a user tries out, and may differ.
+/// @throws InputError unless "chip" is allowed
+void check_same_chip(const RunRecord& a, const RunRecord& b, const Allowed& allowed);
+
+// Two builds of leviosim on the same input. What each leaves is compared as any two runs are; the
+// new build also times the work that the old one recorded, so that it is known what of a difference
+// is other work, another price of the same work, and another number of the chip.
+
+/// `PROGRAM run ARGUMENTS --record --quiet --out FOLDER`, for each in a folder of its own.
+class TwoPrograms {
+ public:
+  /// @param programs   two
+  /// @param arguments  of `leviosim run`, without --out and --record; closed loops are not recorded
+  /// @throws InputError for other numbers of programs, and if one of them fails; Interrupted
+  TwoPrograms(const std::vector<std::string>& programs, const std::vector<std::string>& arguments);
+  ~TwoPrograms();
+  TwoPrograms(const TwoPrograms&) = delete;
+  TwoPrograms& operator=(const TwoPrograms&) = delete;
+
+  /// Of the runs; removed with the object.
+  const std::vector<std::string>& folders() const { return folders_; }
+  /// "of +1.34 % of a frame: …": the split. Empty where nothing was recorded, or the new build
+  /// does not take the old one's files.
+  std::string split() const;
+
+ private:
+  /// Cycles of a mean frame of the old build's work, on a chip, by the new one.
+  std::optional<double> cycles_of_replay(const std::string& platform) const;
+
+  std::string new_program_;
+  std::filesystem::path place_;
+  std::vector<std::string> folders_;
+};
+
+// What differs between two runs, as a tree of quantities: each has its value in run A and in run B,
+// and parts whose values add up to it. So do their differences. Plain data; comparison_report.cpp
+// prints it.
+//
+// Cycles are those of a mean frame on N cores. They are split twice: by mechanism and kind of
+// operation, and by fork. A third split is by cause: work, its cost, and contention.
 
 /// A figure of a run as a whole, by which runs are compared.
 struct QuantityOfRuns {
@@ -58,7 +110,8 @@ struct StageComparison {
   ComparedQuantity share;       ///< of the cycles of a frame, in per cent; none on the controller
   ComparedQuantity operations;  ///< of all calls
   bool same_work = true;
-  /// What became of work that an accelerator serves in one of the runs only: "offloaded to hamming".
+  /// What became of work that an accelerator serves in one of the runs only: "offloaded to
+  /// hamming".
   std::vector<std::string> offloaded = {};
   /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if one of
   /// the runs has no cycles.csv.
@@ -108,5 +161,91 @@ ComparedQuantity split_by_mechanism(const StageParts* a, const StageParts* b, do
 ComparedQuantity split_by_fork(const StageParts* a, const StageParts* b, double frames_a,
                                double frames_b);
 Causes split_by_cause(const StageParts* a, const StageParts* b, double frames_a, double frames_b);
+
+// A comparison for people and programs: text of 80 columns, Markdown, CSV (a row per quantity of
+// the tree), JSON (the tree). Text and Markdown show the largest parts and the sum of the others;
+// CSV and JSON hold all.
+
+enum class ReportFormat { text, markdown, json, csv };
+
+/// @throws InputError for another name than text, markdown, json, csv
+ReportFormat parse_report_format(const std::string& name);
+
+std::string comparison_report(const RunComparison& comparison, ReportFormat format);
+/// The same of several, one after the other; in JSON a list if there is more than one.
+/// @param all  else text is the summary
+std::string comparison_report(const std::vector<RunComparison>& comparisons, ReportFormat format,
+                              bool all);
+
+/// At most 24 lines of 80 columns: figures of the run, the stages that differ most, and the main
+/// causes. More lines only for notes.
+std::string comparison_summary(const RunComparison& comparison);
+
+/// Cycles of a call, or of a frame, of a model beside what was measured.
+struct ModelError {
+  std::string stage;
+  std::optional<double> measured;
+  std::optional<double> model;
+  std::optional<double> percent;  ///< of what was measured
+};
+/// Of each stage, and last of the frame, where one of the runs was measured (A, if both were).
+std::vector<ModelError> model_errors(const RunComparison& comparison);
+
+/// A table of them, and their mean.
+std::string measured_report(const RunComparison& comparison, bool markdown);
+
+/// "8-point hypotheses: issue +1.2 %": the parts of a stage that explain most of its difference,
+/// each with its share of the stage's cycles in A.
+/// @param most  of them at most
+std::vector<std::string> reasons(const StageComparison& stage, std::size_t most);
+
+/// The name of a part for people: what a mechanism is, else as it is.
+std::string part_label(const std::string& name);
+
+/// One line about the work: the same, or where it is not.
+std::string work_line(const RunComparison& comparison);
+
+// A comparison as JSON and CSV: every quantity of the tree.
+
+Json comparison_json(const RunComparison& comparison);
+
+/// subject,quantity,part,subpart,unit,a,b,difference; a row per quantity. Cells that hold commas or
+/// quotes are quoted (RFC 4180).
+std::string comparison_csv(const RunComparison& comparison);
+
+// Why a mean frame of the cluster takes another time on another chip: the difference by mechanism,
+// in words, in milliseconds. All causes together are the whole difference.
+//
+// Work that is divided among other numbers of cores, work that went to an accelerator, and another
+// clock are causes of their own: none of them makes an operation cheaper.
+
+/// Where the cycles of a run went, and what a cycle is.
+struct TimedParts {
+  std::vector<StageParts> stages;
+  int cores = 0;
+  double frames = 0;
+  Hertz clock;
+};
+
+struct MainCause {
+  std::string what;   ///< "waiting for code"
+  double ms = 0;      ///< of a mean frame; below 0: saved
+  std::string stage;  ///< that has most of it
+  double stage_ms = 0;
+};
+
+TimedParts timed_parts(const RunRecord& run);
+
+/// The largest first.
+std::vector<MainCause> main_causes(const TimedParts& a, const TimedParts& b);
+
+/// "waiting for code -11.20 ms, most in EPnP RANSAC".
+std::string cause_text(const MainCause& cause);
+
+/// Accelerators of the chip that served nothing: "hamming (cluster)".
+std::vector<std::string> unused_accelerators(const RunFigures& run);
+/// "nothing of this run uses hamming (cluster), because …"; empty if B has no unused ones that A
+/// has not.
+std::string unused_text(const std::vector<std::string>& in_a, const std::vector<std::string>& in_b);
 
 }  // namespace leviosim::tools

@@ -1,4 +1,4 @@
-#include "tools/app/comparison/comparison_files.h"
+#include "tools/app/comparison/comparison.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,7 @@
 
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/comparison/comparison_report.h"
-#include "tools/app/comparison/main_causes.h"
+#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/verdict.h"
 

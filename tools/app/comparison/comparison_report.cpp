@@ -1,4 +1,4 @@
-#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/comparison.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,6 @@
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/comparison/comparison_files.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

@@ -1,7 +1,7 @@
-#include "tools/app/comparison/record_source.h"
+#include "tools/app/comparison/run_record.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,8 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/comparison/measured.h"
-#include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/trace_source.h"
@@ -95,8 +93,8 @@ RunRecord read_record(const std::string& name, const RecordOptions& options, Run
         fmt::format("{}: does not exist; expected a run folder or a work trace", name));
   if (is_measured(name)) {
     if (options.names_chip())
-      throw InputError(fmt::format(
-          "{}: was measured on a chip; leave out --platform, -p and --cores", name));
+      throw InputError(
+          fmt::format("{}: was measured on a chip; leave out --platform, -p and --cores", name));
     return read_measured(name);
   }
   if (base::is_folder(path) && !options.names_chip()) {

@@ -1,12 +1,13 @@
 // What is known of a run when it is compared or checked: facts about its inputs, its statistics,
 // and where its cycles went. It is read from a run folder, put together after a run or a replay, or
-// read from a baseline (budget/baseline.h).
+// read from a baseline (budget/gate.h).
 //
 // Besides the statistics of stats.json there are those that follow from them and from all frames
 // (result/run_figures.h).
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,11 +17,17 @@
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/result/run_figures.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_request.h"
+#include "traces/work_traces/work_trace.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 
 struct RunFacts {
-  bool measured = false;  ///< elsewhere (measured.h): nothing is known but profile and platform
+  bool measured = false;  ///< elsewhere (see below): nothing is known but profile and platform
   std::string program;    ///< "0.1.0 ea4229934d2b"
   std::string profile;
   std::vector<std::string> workload;  ///< parameters that were set
@@ -68,5 +75,72 @@ Json parse_json(const std::string& where, const std::string& text);
 /// The facts in JSON and back: for baselines. @throws InputError
 Json facts_json(const RunFacts& facts);
 RunFacts facts_of_json(const std::string& where, const Json& json);
+
+// Cycles that were measured elsewhere, by the counters of a board or by another simulator, as a
+// record that budgets, histories and comparisons take in the place of a run:
+//
+//   # profile: levio          both lines may be missing; other comments are left alone
+//   # platform: gap9
+//   stage,cycles,calls        calls may be missing
+//   8-point RANSAC,9818116,260
+//   frame,15650300
+//
+// A row is a call, or so many with their mean. Stages have the names or the keys of leviosim; frame
+// is the front end as a whole. Left out: times, memory, energy, and where the cycles went.
+
+/// Whether a name is that of a CSV file.
+bool is_measured(const std::string& name);
+
+/// @throws InputError naming file, line and column
+RunRecord read_measured(const std::string& file);
+
+/// Gives stages of a measurement the names that a run has for their keys; leaves runs as they are.
+void name_stages_like(RunRecord& measured, const RunRecord& run);
+
+// The runs that a command line names: folders of runs, or recorded work that is replayed on a chip.
+
+/// The chip on which traces are replayed, and what a trace may take of memory.
+struct RecordOptions : RunOptions {
+  std::string memory;
+
+  bool names_chip() const { return !platform.empty() || !overrides.empty() || !cores.empty(); }
+};
+
+/// Declares --platform, -p, --cores, --max-memory and --quiet.
+void add_record_options(CLI::App& command, RecordOptions& options);
+
+/// The trace that a file is, or that a folder holds; else empty.
+std::string trace_of(const std::string& name);
+
+/// Of a folder what lies in it, unless the options name a chip; then, and of a trace, what a replay
+/// yields, on the chip of the recording if none is named. Of a CSV file what was measured.
+/// @param files  gets what a run folder holds, or would; may be null
+/// @throws InputError for what is neither, and as replay()
+RunRecord read_record(const std::string& name, const RecordOptions& options,
+                      RunFiles* files = nullptr);
+
+/// Runs or replays a request, and tells how far it is.
+using Compute = std::function<RunResult(const RunRequest&, const ProgressCallback&)>;
+
+/// The record of what `compute` yields, whose cycles are watched meanwhile.
+/// @throws InputError as it does, Interrupted
+RunRecord computed_record(const std::string& name, RunRequest request, const Manifest& manifest,
+                          const Compute& compute, bool quiet, RunFiles* files = nullptr);
+
+/// What a manifest of a replay says of the recorded run; the chip is left to the caller.
+Manifest manifest_of_recording(const traces::WorkTrace& trace);
+
+/// The replay of a trace, with `overrides` of the chip of the recording or of options.platform.
+RunRecord replay_record(const std::string& trace, const RecordOptions& options,
+                        RunFiles* files = nullptr);
+
+// Frames and positions as the files of a run folder have them.
+
+/// The rows of frames.csv; those of a native run have no times.
+/// @throws InputError for a table that cannot be read
+std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const std::string& csv);
+
+/// The rows of errors.csv. @throws InputError for a table that cannot be read
+std::vector<PositionPair> read_positions(const std::filesystem::path& file, const std::string& csv);
 
 }  // namespace leviosim::tools

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <set>
 #include <tuple>
@@ -17,7 +18,11 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/sha256.h"
-#include "tools/app/budget/baseline.h"
+#include "tools/app/budget/budget.h"
+#include "tools/app/budget/check.h"
+#include "tools/app/budget/figures.h"
+#include "tools/app/budget/gate.h"
+#include "tools/app/comparison/comparison.h"
 
 namespace leviosim::tools {
 namespace {
@@ -75,12 +80,14 @@ Origin origin_of(const Json& run) {
 
 /// Whether it is what an interrupted program leaves at the end of a file.
 bool is_unfinished(std::string_view last) {
-  const auto begins = [&](std::string_view mark) { return last.starts_with(mark.substr(0, last.size())); };
+  const auto begins = [&](std::string_view mark) {
+    return last.starts_with(mark.substr(0, last.size()));
+  };
   return (begins(kKept) || begins(kRun)) && !Json::accept(last);
 }
 
-/// The digest that a line of a run has of what it shares; empty if it has none. No string holds what
-/// is looked for: quotes in it have a backslash before them.
+/// The digest that a line of a run has of what it shares; empty if it has none. No string holds
+/// what is looked for: quotes in it have a backslash before them.
 std::string_view digest_in(std::string_view line, std::string_view what) {
   const std::string begin = fmt::format(",\"{}\":\"", what);
   const std::size_t at = line.find(begin);
@@ -111,7 +118,8 @@ std::string_view Pieces::at(std::uint64_t begin, std::size_t size) {
   if (held_from(begin).size() < size) {
     // Lines are read one after the other, forwards or backwards: what comes next is held, too.
     const std::uint64_t end = begin + size;
-    const std::uint64_t from = begin < begin_ && end > kPiece ? std::min(begin, end - kPiece) : begin;
+    const std::uint64_t from =
+        begin < begin_ && end > kPiece ? std::min(begin, end - kPiece) : begin;
     hold(from, std::min<std::uint64_t>(std::max<std::uint64_t>(kPiece, end - from), size_ - from));
   }
   return held_from(begin).substr(0, size);
@@ -157,9 +165,9 @@ void History::add_line(std::string_view text, Line line, std::size_t number) {
   const char* const from = text.data() + time + kTime.size();
   if (!text.starts_with(kRun) || time == std::string_view::npos || text.back() != '}' ||
       std::from_chars(from, text.data() + text.size(), line.time_s).ec != std::errc())
-    throw InputError(
-        fmt::format("{}:{}: no line of a history; expected those that 'leviosim history add' writes",
-                    file_, number));
+    throw InputError(fmt::format(
+        "{}:{}: no line of a history; expected those that 'leviosim history add' writes", file_,
+        number));
   line.hash = std::hash<std::string_view>()(text);
   runs_.push_back(line);
 }
@@ -182,15 +190,14 @@ const Json& History::kept(const std::string& digest) const {
   if (known != parsed_.end()) return known->second;
   const auto line = kept_.find(digest);
   if (line == kept_.end())
-    throw InputError(fmt::format("{}: lacks the line {}{}\"…, which runs need; expected all lines "
-                                 "of the histories that it was merged from",
-                                 file_, kKept, digest));
+    throw InputError(
+        fmt::format("{}: lacks the line {}{}\"…, which runs need; expected all lines "
+                    "of the histories that it was merged from",
+                    file_, kKept, digest));
   return parsed_.emplace(digest, parsed(line->second).at("value")).first->second;
 }
 
-Origin History::origin(std::size_t i) const {
-  return origin_of(parsed(runs_[i]));
-}
+Origin History::origin(std::size_t i) const { return origin_of(parsed(runs_[i])); }
 
 PastRun History::run(std::size_t i) const {
   try {
@@ -214,9 +221,10 @@ PastRun History::run(std::size_t i) const {
       add_baseline_stage(kept(string_of(stage)), past.record);
     return past;
   } catch (const nlohmann::json::exception&) {
-    throw InputError(fmt::format("{}: a run of it is damaged; expected what 'leviosim history add' "
-                                 "writes",
-                                 file_));
+    throw InputError(
+        fmt::format("{}: a run of it is damaged; expected what 'leviosim history add' "
+                    "writes",
+                    file_));
   }
 }
 
@@ -258,8 +266,8 @@ std::string History::lines_for(const PastRun& run) const {
   const auto member = [](const char* name, const Json& value) {
     return fmt::format(",\"{}\":{}", name, json_text(value));
   };
-  const std::string found = member("facts", facts.digest) + member("figures", names.digest) +
-                            member("values", values);
+  const std::string found =
+      member("facts", facts.digest) + member("figures", names.digest) + member("values", values);
   for (const Line& line : runs_) {
     if (line.time_s != run.origin.time_s) continue;
     const std::string_view text = text_of(line);
@@ -271,8 +279,8 @@ std::string History::lines_for(const PastRun& run) const {
   }
   return fmt::format("{}{}\"branch\":{}{}{}{}{}{}{}}}\n", lines, begin,
                      json_text(Json(run.origin.branch)), member("subject", run.origin.subject),
-                     member("program", run.record.facts.program),
-                     member("limits", run.limits.held), member("missed", run.limits.missed), found, member("stages", stages));
+                     member("program", run.record.facts.program), member("limits", run.limits.held),
+                     member("missed", run.limits.missed), found, member("stages", stages));
 }
 
 GrowingHistory::GrowingHistory(const std::string& file) : name_(file) {
@@ -308,6 +316,150 @@ void GrowingHistory::append(std::string lines) {
   if (error == 0) return;
   if (is_new) ::unlink(name_.c_str());
   throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(error)));
+}
+
+namespace {
+
+/// A change for the worse by as much as a limit allows meets it, whatever its last digit.
+constexpr double kRounding = 1e-9;
+
+/// For the worse, in per cent; absent where one of them is, and of nothing.
+std::optional<double> change_of(const std::optional<double>& before,
+                                const std::optional<double>& now, bool at_most) {
+  if (!before || !now || *before == 0) return std::nullopt;
+  return 100 * (*now - *before) / std::abs(*before) * (at_most ? 1 : -1);
+}
+
+/// Sorts the changes of a figure into steps and drift.
+void find_changes(Trend& trend) {
+  std::optional<double> last;
+  for (std::size_t i = 0; i < trend.values.size(); ++i) {
+    const auto change = change_of(last, trend.values[i], trend.limit->bound.at_most);
+    if (trend.values[i]) last = trend.values[i];
+    if (!change || *change == 0) continue;
+    if (*change > trend.allowed + kRounding)
+      trend.steps.push_back({i, *change});
+    else
+      trend.drift.push_back({i, *change});
+  }
+  const double worse = trend.limit->bound.at_most ? 1 : -1;
+  double ratio = 1;
+  for (const FigureChange& change : trend.drift) ratio *= 1 + worse * change.percent / 100;
+  trend.drift_percent = 100 * worse * (ratio - 1);
+  if (trend.drift_percent <= trend.allowed + kRounding) trend.drift.clear();
+}
+
+Trend trend_of(const Limit& limit, const BudgetSection& section, const FigureOf& figure,
+               const std::vector<PastRun>& runs) {
+  Trend trend;
+  trend.limit = &limit;
+  trend.section = &section;
+  trend.statistic = figure.statistic->name;
+  trend.stage = figure.stage;
+  trend.unit = figure.statistic->unit;
+  trend.allowed = limit.bound.number * (limit.bound.at_most ? 1 : -1);
+  for (const PastRun& run : runs) trend.values.push_back(run.record.value(trend.statistic));
+  find_changes(trend);
+  return trend;
+}
+
+/// How the commit of a step explains it, by the run before.
+std::vector<std::string> reasons_of(const Trend& trend, std::size_t run,
+                                    const std::vector<PastRun>& runs) {
+  CheckResult step;
+  Finding& finding = step.findings.emplace_back();
+  finding.limit = trend.limit;
+  finding.section = trend.section;
+  finding.statistic = trend.statistic;
+  finding.stage = trend.stage;
+  explain(step, runs[run].record, &runs[run - 1].record);
+  std::vector<std::string> texts{finding.where};
+  for (const std::string& why : finding.why) texts.push_back(why);
+  return texts;
+}
+
+/// The trend as a limit that is not met since the first of the runs.
+Finding finding_of(const Trend& trend, const std::vector<PastRun>& runs) {
+  Finding f;
+  f.limit = trend.limit;
+  f.section = trend.section;
+  f.statistic = trend.statistic;
+  f.stage = trend.stage;
+  f.unit = trend.unit;
+  f.value = trend.values.back();
+  f.since = runs.front().record.name;
+  const auto first = std::find_if(trend.values.begin(), trend.values.end(),
+                                  [](const std::optional<double>& v) { return v.has_value(); });
+  f.baseline = *first;
+  f.bound = **first * (1 + trend.limit->bound.number / 100);
+  return f;
+}
+
+}  // namespace
+
+std::vector<Trend> trends(const Budget& budget, const std::vector<PastRun>& runs) {
+  std::vector<Trend> found;
+  if (runs.empty()) return found;
+  const RunRecord& last = runs.back().record;
+  for (const BudgetSection* section : sections_for(budget, last))
+    for (const Limit& limit : section->limits) {
+      if (!is_percent_of_baseline(limit.bound)) continue;
+      for (const FigureOf& figure : find_figures(limit, last))
+        found.push_back(trend_of(limit, *section, figure, runs));
+    }
+  return found;
+}
+
+std::string drift_text(const Trend& trend, const std::vector<PastRun>& runs) {
+  double most = 0;
+  for (const FigureChange& change : trend.drift) most = std::max(most, change.percent);
+  return fmt::format("drift of {:+.2f} % in {} commits from {} to {}, none above {:+.2f} %",
+                     trend.drift_percent, trend.drift.size(),
+                     runs[trend.drift.front().run].record.name,
+                     runs[trend.drift.back().run].record.name, most);
+}
+
+std::string step_text(const Trend& trend, const FigureChange& step,
+                      const std::vector<PastRun>& runs) {
+  const Origin& origin = runs[step.run].origin;
+  std::string text =
+      fmt::format("step of {:+.2f} % at {}", step.percent, runs[step.run].record.name);
+  if (!origin.subject.empty()) text += fmt::format(" ({})", origin.subject);
+  const char* separator = ": ";
+  for (const std::string& reason : reasons_of(trend, step.run, runs)) {
+    text += separator + reason;
+    separator = "; ";
+  }
+  return text;
+}
+
+void add_history(CheckResult& result, const RunRecord& run, const Budget& budget,
+                 const std::vector<PastRun>& before) {
+  if (before.empty()) return;
+  const RunRecord& last = before.back().record;
+  for (Finding& finding : result.findings)
+    if (!finding.met) finding.before = last.value(finding.statistic);
+  std::vector<PastRun> all = before;
+  all.push_back({{}, {}, run});
+  for (const Trend& trend : trends(budget, all)) {
+    Finding finding = finding_of(trend, all);
+    const auto total = change_of(finding.baseline, finding.value, trend.limit->bound.at_most);
+    const bool is_said =
+        std::any_of(result.findings.begin(), result.findings.end(), [&](const Finding& f) {
+          return !f.met && f.statistic == trend.statistic && f.limit == trend.limit;
+        });
+    if (is_said || !total || *total <= trend.allowed + kRounding ||
+        (trend.steps.empty() && trend.drift.empty()))
+      continue;
+    CheckResult over_time;
+    over_time.findings.push_back(finding);
+    explain(over_time, run, &all.front().record);
+    finding.where = over_time.findings.front().where;
+    for (const FigureChange& step : trend.steps) finding.why.push_back(step_text(trend, step, all));
+    if (!trend.drift.empty()) finding.why.push_back(drift_text(trend, all));
+    finding.before = last.value(trend.statistic);
+    result.findings.push_back(std::move(finding));
+  }
 }
 
 }  // namespace leviosim::tools

@@ -1,4 +1,4 @@
-#include "tools/app/history/history_report.h"
+#include "tools/app/history/history.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,9 +12,9 @@
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
+#include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
-#include "tools/app/comparison/comparison_report.h"
-#include "tools/app/history/trend.h"
+#include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page_json.h"
 #include "tools/app/report/text_table.h"
 
@@ -62,8 +62,8 @@ std::vector<PageFigure> figures_of_page(const std::vector<Trend>& trends,
   for (const Trend& trend : trends) {
     if ((trend.steps.empty() && trend.drift.empty()) || figures.size() == kMost) continue;
     const ShownUnit shown = shown_unit(trend.unit);
-    std::string title = trend.stage.empty() ? trend.limit->figure
-                                            : trend.stage + ": " + trend.limit->figure;
+    std::string title =
+        trend.stage.empty() ? trend.limit->figure : trend.stage + ": " + trend.limit->figure;
     figures.push_back({trend.statistic, std::move(title), std::string(shown.name), 1 / shown.size});
   }
   for (const QuantityOfRuns& q : quantities_of_runs()) {
@@ -105,10 +105,10 @@ std::string conclusion_of(const std::vector<PastRun>& runs) {
   std::size_t changed = 0;
   for (std::size_t i = 1; i < runs.size(); ++i)
     changed += !is_same(runs[i - 1].record, runs[i].record);
-  return fmt::format("in short: {} runs, {} of which changed something; cycles of a frame {} in all",
-                     runs.size(), changed,
-                     change_text(runs.front().record.value(kFrameCycles),
-                                 runs.back().record.value(kFrameCycles)));
+  return fmt::format(
+      "in short: {} runs, {} of which changed something; cycles of a frame {} in all", runs.size(),
+      changed,
+      change_text(runs.front().record.value(kFrameCycles), runs.back().record.value(kFrameCycles)));
 }
 
 /// Those of which a page has room.
@@ -162,7 +162,8 @@ Json runs_json(const std::vector<const PastRun*>& runs) {
 
 /// Limits of the budget on figures of the run, in the units of the page: absolute ones, and those
 /// relative to the first of the runs.
-std::map<std::string, double> limits_of(const Budget& budget, const std::vector<PageFigure>& figures,
+std::map<std::string, double> limits_of(const Budget& budget,
+                                        const std::vector<PageFigure>& figures,
                                         const RunRecord& first, const RunRecord& last) {
   std::map<std::string, double> limits;
   for (const BudgetSection* section : sections_for(budget, last))
@@ -195,12 +196,11 @@ std::string points_csv(const std::vector<const PastRun*>& runs,
     const PastRun& run;
   };
   using R = const Row&;
-  base::CsvTable<Row> table{
-      {"run", [](R r) { return r.number; }},
-      {"commit", [](R r) { return r.run.record.name; }},
-      {"subject", [](R r) { return quoted(r.run.origin.subject); }},
-      {"date", [](R r) { return date_text(r.run.origin.time_s); }},
-      {"limits", [](R r) { return limits_text(r.run.limits); }}};
+  base::CsvTable<Row> table{{"run", [](R r) { return r.number; }},
+                            {"commit", [](R r) { return r.run.record.name; }},
+                            {"subject", [](R r) { return quoted(r.run.origin.subject); }},
+                            {"date", [](R r) { return date_text(r.run.origin.time_s); }},
+                            {"limits", [](R r) { return limits_text(r.run.limits); }}};
   for (const PageFigure& q : figures)
     table.add(q.statistic, [&q](R r) { return base::fixed(r.run.record.value(q.statistic), 6); });
   std::vector<Row> rows;
@@ -227,9 +227,10 @@ StudyBox box_of(const Trend& trend, const std::vector<PastRun>& runs) {
   box.good = false;
   box.mark = title_of(trend);
   const std::size_t count = trend.steps.size();
-  box.sentence = fmt::format("{}{}", count == 0   ? "A drift"
-                                     : count == 1 ? "A step"
-                                                  : fmt::format("{} steps", count),
+  box.sentence = fmt::format("{}{}",
+                             count == 0   ? "A drift"
+                             : count == 1 ? "A step"
+                                          : fmt::format("{} steps", count),
                              trend.drift.empty() || count == 0 ? "." : " and a drift.");
   if (!trend.drift.empty()) box.lines.push_back(drift_text(trend, runs));
   for (std::size_t i = 0; i < std::min(count, kMost); ++i)
@@ -245,9 +246,8 @@ void add_boxes(StudyPage& page, const std::vector<Trend>& trends,
   std::vector<const Trend*> moved;
   for (const Trend& trend : trends)
     if (!trend.steps.empty() || !trend.drift.empty()) moved.push_back(&trend);
-  std::stable_sort(moved.begin(), moved.end(), [](const Trend* a, const Trend* b) {
-    return worst_of(*a) > worst_of(*b);
-  });
+  std::stable_sort(moved.begin(), moved.end(),
+                   [](const Trend* a, const Trend* b) { return worst_of(*a) > worst_of(*b); });
   std::vector<std::string> others;
   for (std::size_t i = 0; i < moved.size(); ++i)
     if (i < kMost)
@@ -282,20 +282,18 @@ Printout history_printout(const std::vector<PastRun>& runs, const Budget* budget
       if (v) *v *= scale;
       return v;
     };
-    table.add({run.record.name, date_text(run.origin.time_s),
-               figure_text(value(kFrameCycles, 1e-3), 1),
-               i > 1 ? change_text(runs[i - 2].record.value(kFrameCycles),
-                                   run.record.value(kFrameCycles))
-                     : kNothing,
-               figure_text(value("frame.latency.p99", 1e-6), 2),
-               figure_text(value("energy.frame", 1), 3),
-               figure_text(value("accuracy.ate.rmse", 1), 3), limits_text(run.limits),
-               run.origin.subject});
+    table.add(
+        {run.record.name, date_text(run.origin.time_s), figure_text(value(kFrameCycles, 1e-3), 1),
+         i > 1 ? change_text(runs[i - 2].record.value(kFrameCycles), run.record.value(kFrameCycles))
+               : kNothing,
+         figure_text(value("frame.latency.p99", 1e-6), 2), figure_text(value("energy.frame", 1), 3),
+         figure_text(value("accuracy.ate.rmse", 1), 3), limits_text(run.limits),
+         run.origin.subject});
   }
   const RunFacts& facts = runs.back().record.facts;
-  const std::string head = fmt::format("{} on {}, {} cores, {} frames; the newest run first\n",
-                                       printable(facts.profile), printable(facts.platform),
-                                       facts.cores, facts.frames);
+  const std::string head =
+      fmt::format("{} on {}, {} cores, {} frames; the newest run first\n", printable(facts.profile),
+                  printable(facts.platform), facts.cores, facts.frames);
   return Printout({head + table.str(), budget == nullptr ? "" : trend_lines(runs, *budget)})
       .ending(conclusion_of(runs), std::move(next));
 }

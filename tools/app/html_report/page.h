@@ -3,11 +3,22 @@
 // policy forbids it. Same data, same bytes.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sim/base/builtin_file.h"
+#include "sim/outputs/output_folder.h"
+#include "tools/app/budget/gate.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/statistic_list.h"
+
+namespace CLI {
+class App;
+}
 
 namespace leviosim::tools {
 
@@ -29,5 +40,37 @@ std::string script_json(const Json& json);
 
 /// Sorted by path.
 std::span<const base::BuiltinFile> page_parts();
+
+// The option --report of commands: claims the file before work is done, writes the page at the end.
+
+/// Declares --report FILE.
+void add_report_option(CLI::App& command, std::string& file);
+
+/// None if no file is named. @param inputs  that stay as they are
+/// @throws InputError if it cannot be written
+std::optional<outputs::OutputFile> claimed_report(const std::string& file, bool replace,
+                                                  std::vector<std::filesystem::path> inputs = {},
+                                                  const std::string& option = "--report");
+
+/// A run with the files that it left, or would leave.
+struct ReportedRun {
+  RunRecord record;
+  RunFiles files;
+};
+
+/// The data of a page about runs. The others are compared with the first.
+/// @param check  may be null
+Json runs_report(const std::vector<ReportedRun>& runs,
+                 const std::vector<RunComparison>& comparisons, const CheckResult* check);
+
+/// How commands that run or replay end: with the page, and what a budget says, if they are asked
+/// for.
+/// @throws LimitNotMet if a limit is not met
+void report_and_check(const ReportedRun& run, std::optional<outputs::OutputFile>& page,
+                      const std::optional<Gate>& gate, bool say = true);
+
+/// Writes the page, if there is a file for it.
+/// @param say  whether to print where it is
+void publish_report(std::optional<outputs::OutputFile>& file, const Json& data, bool say = true);
 
 }  // namespace leviosim::tools

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
 #include "sim/base/error.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/verdict.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 
@@ -192,66 +190,6 @@ Json run_json(const RunRecord& record, const RunFiles& files) {
 
 namespace {
 
-/// Takes the row that begins at `at`, which moves behind its line break.
-std::vector<std::string> next_row(const std::string& text, std::size_t& at) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (quoted && c == '"' && at + 1 < text.size() && text[at + 1] == '"') {
-      cells.back() += '"';
-      ++at;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (!quoted && c == ',') {
-      cells.emplace_back();
-    } else if (!quoted && c == '\n') {
-      ++at;
-      break;
-    } else if (quoted || c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
-template <class T>
-bool is_number(const std::string& cell, T& value) {
-  const char* end = cell.data() + cell.size();
-  const auto [stop, error] = std::from_chars(cell.data(), end, value);
-  return error == std::errc() && stop == end;
-}
-
-Json cell_json(const std::string& cell) {
-  if (cell.empty()) return nullptr;
-  if (std::int64_t whole = 0; is_number(cell, whole)) return whole;
-  if (double number = 0; is_number(cell, number) && std::isfinite(number)) return number;
-  return cell;
-}
-
-}  // namespace
-
-Json csv_json(const std::string& where, const std::string& text,
-              const std::function<bool(const std::string&)>& wanted) {
-  std::size_t at = 0;
-  const std::vector<std::string> titles = next_row(text, at);
-  Json table = Json::object();
-  const auto is_wanted = [&](const std::string& title) { return !wanted || wanted(title); };
-  for (const std::string& title : titles)
-    if (is_wanted(title)) table[title] = Json::array();
-  for (std::size_t row = 2; at < text.size(); ++row) {
-    const std::vector<std::string> cells = next_row(text, at);
-    if (cells.size() != titles.size())
-      throw InputError(fmt::format("{}: row {} has {} cells; expected {}, as its titles", where,
-                                   row, cells.size(), titles.size()));
-    for (std::size_t i = 0; i < titles.size(); ++i)
-      if (is_wanted(titles[i])) table[titles[i]].push_back(cell_json(cells[i]));
-  }
-  return table;
-}
-
-namespace {
-
 Json scaled(Json cells, double scale) {
   if (scale != 1)
     for (Json& cell : cells)
@@ -298,13 +236,131 @@ Json study_report(const StudyPage& page) {
   study["limits"] = page.limits;
   if (page.curves && known(page.curves->x) &&
       (page.curves->series.empty() || known(page.curves->series)))
-    study["curves"] = {
-        {"x", page.curves->x},       {"series", page.curves->series},
-        {"y", page.curves->y},       {"hint", page.curves->hint},
-        {"fromZero", page.curves->from_zero}, {"names", page.curves->names},
-        {"marks", page.curves->marks}};
+    study["curves"] = {{"x", page.curves->x},
+                       {"series", page.curves->series},
+                       {"y", page.curves->y},
+                       {"hint", page.curves->hint},
+                       {"fromZero", page.curves->from_zero},
+                       {"names", page.curves->names},
+                       {"marks", page.curves->marks}};
   if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
   return data;
+}
+
+namespace {
+
+std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
+
+/// A memory, its highest occupation and who occupies it.
+struct MemoryUse {
+  const char* name;
+  double used;
+  double size;
+
+  double percent() const {
+    return percent_of_nominal(Bytes(std::llround(used)), Bytes(std::llround(size)));
+  }
+};
+
+std::vector<MemoryUse> memories(const RunRecord& run) {
+  std::vector<MemoryUse> list;
+  for (const auto& [name, key] : {std::pair{"L1", "l1"}, {"L2", "l2"}}) {
+    const auto used = run.value(fmt::format("memory.{}.peak", key));
+    const auto size = run.value(fmt::format("run.{}_size", key));
+    if (used && size && *size > 0) list.push_back({name, *used, *size});
+  }
+  return list;
+}
+
+/// The stage of the cluster with the highest peak.
+std::string owner_of_l1(const RunRecord& run) {
+  std::string owner;
+  double most = 0;
+  for (const StageName& stage : run.stages) {
+    const auto peak = run.value(fmt::format("stages.{}.memory.parallel", stage.key));
+    if (stage.on_controller || !peak || *peak <= most) continue;
+    most = *peak;
+    owner = stage.name;
+  }
+  return owner;
+}
+
+/// "; between 48.1 and 62.0 ms"; empty without a band.
+std::string between(const RunRecord& run, const std::string& name) {
+  const auto low = run.value(name + ".low");
+  const auto high = run.value(name + ".high");
+  if (!low || !high) return {};
+  return fmt::format("; between {:.1f} and {:.1f} ms", *low * 1e-6, *high * 1e-6);
+}
+
+void add_time(std::vector<KeyFigure>& list, const RunRecord& run) {
+  const auto worst = run.value("frame.time.worst");
+  const auto mean = run.value("frame.time.mean");
+  const auto p99 = run.value("frame.time.p99");
+  if (!worst || !mean || !p99) return;
+  const double deadline = deadline_ns(run);
+  list.push_back({"Frame time, worst", fmt::format("{:.2f}", *worst * 1e-6), "ms",
+                  fmt::format("deadline {}; mean {:.2f}, 99 % within {:.2f} ms{}", ms(deadline),
+                              *mean * 1e-6, *p99 * 1e-6, between(run, "frame.time.worst")),
+                  *worst / deadline});
+  const auto latency = run.value("frame.latency.worst");
+  if (latency && run.value("camera.arrived"))
+    list.push_back({"Latency, worst", fmt::format("{:.2f}", *latency * 1e-6), "ms",
+                    "from the camera's frame to its pose, with waiting", *latency / deadline});
+}
+
+void add_speedup(std::vector<KeyFigure>& list, const RunRecord& run) {
+  const auto single = run.value("frame.cycles.single.mean");
+  const auto parallel = run.value("frame.cycles.parallel.mean");
+  if (!single || !parallel || *parallel == 0) return;
+  list.push_back(
+      {"Speed-up", fmt::format("{:.2f}", *single / *parallel), "×",
+       fmt::format("{} over one; a mean frame takes {:.2f} Mcycles instead of {:.1f}",
+                   run.facts.cores == 1 ? "1 core" : fmt::format("{} cores", run.facts.cores),
+                   *parallel * 1e-6, *single * 1e-6)});
+}
+
+void add_memory(std::vector<KeyFigure>& list, const RunRecord& run) {
+  for (const MemoryUse& memory : memories(run)) {
+    const std::string owner = memory.name == std::string("L1") ? owner_of_l1(run) : "";
+    list.push_back({fmt::format("{} peak", memory.name), fmt::format("{:.1f}", memory.used * 1e-3),
+                    "kB",
+                    fmt::format("{:.1f} % of {:.0f} KiB{}", memory.percent(), memory.size / 1024,
+                                owner.empty() ? "" : ", in " + owner),
+                    memory.used / memory.size});
+  }
+}
+
+void add_energy(std::vector<KeyFigure>& list, const RunRecord& run) {
+  const auto energy = run.value("energy.frame");
+  const auto low = run.value("energy.frame.low");
+  const auto high = run.value("energy.frame.high");
+  if (!energy || !low || !high) return;
+  KeyFigure figure{"Energy per frame", fmt::format("{:.3f}", *energy), "mJ",
+                   fmt::format("between {:.2f} and {:.2f} mJ", *low, *high)};
+  if (const auto power = run.value("energy.mean_power"))
+    figure.note += fmt::format("; {:.1f} mW on average, idle time included", *power);
+  list.push_back(std::move(figure));
+}
+
+}  // namespace
+
+std::string reason_of(const WorstFrame& worst) {
+  if (worst.stage.empty()) return {};
+  return fmt::format("The slowest frame, number {}, spends {} of its {} in {}.", worst.frame,
+                     ms(worst.stage_ns), ms(worst.latency_ns), worst.stage);
+}
+
+std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol) {
+  std::vector<KeyFigure> list;
+  add_time(list, run);
+  add_speedup(list, run);
+  add_memory(list, run);
+  add_energy(list, run);
+  const auto error = run.value("accuracy.ate.rmse");
+  if (error && !protocol.empty())
+    list.push_back({"Position error (ATE)", fmt::format("{:.3f}", *error), "m RMSE", protocol, {}});
+  return list;
 }
 
 }  // namespace leviosim::tools

@@ -4,11 +4,14 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "sim/base/csv_table.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_folder.h"
@@ -19,21 +22,13 @@ namespace leviosim::tools {
 /// @throws InputError for files that do not hold what leviosim writes
 Json run_json(const RunRecord& record, const RunFiles& files);
 
-// CSV files of leviosim as JSON: {"column": [cells…]}, numbers as numbers, empty cells as null.
-
-/// Cells may be quoted as RFC 4180 says. @param where  of the file, for messages
-/// @param wanted  whether a column is taken; all if it is empty
-/// @throws InputError for rows of another width than the titles
-Json csv_json(const std::string& where, const std::string& text,
-              const std::function<bool(const std::string&)>& wanted = {});
-
 // A study of many points as data of a report: the points as a table of what was set and what came
 // out of it, curves over one of the settings, and the axes that the scatter begins with.
 
 struct StudyColumn {
-  std::string name;  ///< in the table of points
-  std::string title;
-  std::string unit;
+  std::string name;        ///< in the table of points
+  std::string title = {};  ///< empty: not on the page
+  std::string unit = {};
   bool is_setup = false;  ///< what was set; else what came out of it
   bool more_is_better = false;
   double scale = 1;  ///< from the table to the unit
@@ -45,7 +40,7 @@ struct StudyCurves {
   std::string series;  ///< empty: one line
   std::vector<std::string> y;
   std::string hint = {};   ///< in place of one about medians
-  bool from_zero = true;  ///< where the axes of the figures begin
+  bool from_zero = true;   ///< where the axes of the figures begin
   std::string names = {};  ///< column that names the values 0, 1, … of x; empty: they are numbers
   std::map<std::string, std::vector<std::size_t>> marks = {};  ///< of a figure, points to look at
 };
@@ -67,10 +62,10 @@ struct StudyBox {
 struct StudyPage {
   std::string title;
   std::vector<StudyBox> boxes = {};
-  std::string summary;                            ///< lines below the boxes
+  std::string summary;                              ///< lines below the boxes
   std::vector<std::vector<std::string>> best = {};  ///< a table: titles, then rows; may be empty
-  std::string points;                ///< CSV, a row per point
-  std::vector<StudyColumn> columns;  ///< those that the table lacks are left out
+  std::string points;                               ///< CSV, a row per point
+  std::vector<StudyColumn> columns;                 ///< those that the table lacks are left out
   std::optional<StudyCurves> curves = {};
   std::optional<StudyBars> bars = {};
   std::map<std::string, double> limits = {};  ///< column → what it should not exceed
@@ -79,7 +74,63 @@ struct StudyPage {
   std::string colour;  ///< setting that colours the points; may be empty
 };
 
+/// A table of a study, each column described once: for the CSV file and for the page.
+template <class Record>
+class StudyTable {
+ public:
+  using Of = std::function<base::Cell(const Record&)>;
+  struct Column {
+    StudyColumn shown;
+    Of of;
+  };
+
+  StudyTable() = default;
+  StudyTable(std::initializer_list<Column> columns) {
+    for (const Column& column : columns) add(column.shown, column.of);
+  }
+  void add(const StudyColumn& shown, Of of) {
+    csv_.add(shown.name, std::move(of));
+    if (!shown.title.empty()) shown_.push_back(shown);
+  }
+  std::string csv(const std::vector<Record>& rows) const { return csv_.text(rows); }
+  void show(StudyPage& page, const std::vector<Record>& rows) const {
+    page.points = csv(rows);
+    page.columns = shown_;
+  }
+
+ private:
+  base::CsvTable<Record> csv_;
+  std::vector<StudyColumn> shown_;
+};
+
 /// The data of a page: report_json() without runs.
 Json study_report(const StudyPage& page);
+
+// The few figures of a run that anybody asks for first, and where its slowest frame spends its
+// time. Verdicts are those of result/verdict.h.
+
+/// A stage in the frame that took longest.
+struct WorstFrame {
+  int frame = 0;
+  double latency_ns = 0;
+  std::string stage;  ///< that took most of it; empty if not known
+  double stage_ns = 0;
+};
+
+/// Where it spends its time; empty if that is not known.
+std::string reason_of(const WorstFrame& worst);
+
+/// A figure of the first screen, as text.
+struct KeyFigure {
+  std::string title;
+  std::string value;
+  std::string unit;
+  std::string note;
+  std::optional<double> share = {};  ///< of what there is: of the deadline, of a memory
+};
+
+/// Those that the run has.
+/// @param protocol  of its accuracy; without one, the error is left out
+std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol);
 
 }  // namespace leviosim::tools

@@ -10,8 +10,7 @@
 
 #include "sim/base/error.h"
 #include "sim/outputs/output_record.h"
-#include "tools/app/cli/cache_folder.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 
 namespace leviosim::tools {

@@ -44,7 +44,7 @@ enum class StepKind : std::uint8_t {
   Fork,      ///< the team works, maybe with the master
   Transfer,  ///< the master programs the DMA, and waits for it unless it goes on in the background
   Wait,      ///< … waits for a transfer in the background
-  Several,   ///< steps that were joined (perfetto_timeline.h)
+  Several,   ///< steps that were joined (perfetto_timeline.cpp)
 };
 
 struct StepEvents {

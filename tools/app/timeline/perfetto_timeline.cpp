@@ -1,4 +1,4 @@
-#include "tools/app/timeline/perfetto_timeline.h"
+#include "tools/app/timeline/requested_timeline.h"
 
 #include <fmt/core.h>
 

@@ -13,8 +13,6 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/result/energy.h"
-#include "tools/app/timeline/perfetto_timeline.h"
-#include "tools/app/timeline/timeline_picture.h"
 
 namespace leviosim::tools {
 namespace {

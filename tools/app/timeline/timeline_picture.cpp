@@ -1,4 +1,4 @@
-#include "tools/app/timeline/timeline_picture.h"
+#include "tools/app/timeline/requested_timeline.h"
 
 #include <fmt/core.h>
 

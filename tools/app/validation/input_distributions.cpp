@@ -1,4 +1,4 @@
-#include "tools/app/validation/input_distributions.h"
+#include "tools/app/validation/validation.h"
 
 #include <fmt/format.h>
 

@@ -1,18 +1,45 @@
 // A run beside the published figures: plain data, and its files.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/app/report/statistics.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/validation/frame_log.h"
-#include "tools/app/validation/input_distributions.h"
 #include "tools/app/validation/normalised.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
+
+// How the inputs of the stages are distributed over a run of `levio`, beside those of the released
+// program on the 300 frames of MH_01 (published/released_inputs.csv).
+
+/// Mean, the 10th, 50th and 90th percentile (linear between order statistics), and the largest.
+inline constexpr std::array<std::string_view, 5> kDistributionColumns{"mean", "10 %", "median",
+                                                                      "90 %", "max"};
+using Distribution = std::array<double, kDistributionColumns.size()>;
+
+/// Absent if there are no samples.
+std::optional<Distribution> distribution_of(std::vector<double> samples);
+
+struct InputDistribution {
+  using Cells = std::array<std::optional<double>, kDistributionColumns.size()>;
+  std::string quantity;
+  Cells released;   ///< absent where it is not known
+  Cells simulated;  ///< absent where the run has none; of shares there is a mean only
+};
+
+/// Rows of the published file, in its order.
+std::vector<InputDistribution> input_distributions(const FrameLog& log);
+/// Of a file of that kind. @throws InputError with file and line, and the nearest name of a
+/// quantity
+std::vector<InputDistribution> input_distributions(const std::string& file, std::string text,
+                                                   const FrameLog& log);
 
 struct Comparison {
   Reference reference;
@@ -66,5 +93,28 @@ Json validation_json(const Validation& validation);
 /// (workload/PARAMETERS.md#defects-of-the-release). So does levio in such a run, unless the options
 /// say otherwise.
 RunOptions as_released(RunOptions options);
+
+// The text that `leviosim validate` prints.
+
+/// Stages: cycles on one core and on N and the speed-up, each beside the paper's with its error.
+std::string compute_table(const Validation& validation, int cores);
+
+/// All other references, in groups by the first part of their names.
+std::string reference_table(const Validation& validation);
+
+/// Inputs, cycles per unit of work, and how a comparison of cycles must be read.
+std::string input_table(const Validation& validation);
+std::string normalised_table(const Validation& validation, int cores);
+
+/// The paper's table of cycles beside the bands of the run; empty if it has none.
+std::string band_table(const Validation& validation, int cores);
+
+/// All of them, as parts of a screen.
+std::vector<std::string> validation_report(const Validation& validation, int cores);
+
+/// Whether a figure is outside its tolerance, or the guard of what was missed before; and in a
+/// sentence how many are not.
+bool is_worse(const Validation& validation);
+std::string validation_conclusion(const Validation& validation);
 
 }  // namespace leviosim::tools

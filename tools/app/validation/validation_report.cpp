@@ -1,4 +1,4 @@
-#include "tools/app/validation/validation_report.h"
+#include "tools/app/validation/validation.h"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,22 @@
 #include "tools/app/study/ablate/ablation.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 
+#include "sim/base/csv.h"
 #include "sim/base/printable_text.h"
+#include "sim/base/text.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/validation/references.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {
@@ -128,11 +137,10 @@ std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<
 namespace {
 
 constexpr const char* kMean = "mean of them";
-constexpr const char* kDiverged = "diverged";
 
 std::string median_text(const Spread& spread, int count) {
   if (spread.runs == 0) return kNothing;
-  return figure_text(spread.median, count, kDiverged);
+  return error_text(spread.median, count);
 }
 
 /// With the image size if it is another.
@@ -148,8 +156,7 @@ std::string paper_text(const std::optional<AblationRow::Paper>& paper, const Abl
 /// Nothing for a mean, whose rows have spreads of their own.
 std::string range_text(const AblationRow& row, const Spread& spread, int count) {
   if (row.sequence.empty() || spread.runs == 0 || !spread.low) return kNothing;
-  return fmt::format("{} … {}", figure_text(spread.low, count),
-                     figure_text(spread.high, count, kDiverged));
+  return fmt::format("{} … {}", figure_text(spread.low, count), error_text(spread.high, count));
 }
 
 TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
@@ -212,13 +219,12 @@ Json paper_json(const std::optional<AblationRow::Paper>& paper) {
 
 Json spread_json(const Spread& spread, std::string_view unit,
                  const std::optional<AblationRow::Paper>& paper) {
-  const auto value = [](std::optional<double> v) { return v ? rounded(*v) : Json(nullptr); };
   return {{"unit", unit},
           {"runs", spread.runs},
           {"failed", spread.failed},
-          {"median", value(spread.median)},
-          {"low", value(spread.low)},
-          {"high", value(spread.high)},
+          {"median", figure_json(spread.median)},
+          {"low", figure_json(spread.low)},
+          {"high", figure_json(spread.high)},
           {"paper", paper_json(paper)}};
 }
 
@@ -247,6 +253,9 @@ std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>&
   return table_of(plan, rows).str() + notes(plan, rows, "  ");
 }
 
+namespace {
+
+/// The row with the least absolute error, in a sentence.
 std::string ablation_conclusion(const std::vector<AblationRow>& rows) {
   const AblationRow* best = nullptr;
   for (const AblationRow& row : rows)
@@ -263,6 +272,8 @@ std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationR
   return table_of(plan, rows).markdown() + '\n' + notes(plan, rows, "- ");
 }
 
+}  // namespace
+
 Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
   Json document;
   document["format"] = "leviosim ablation";
@@ -278,7 +289,7 @@ Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows) 
          {"ate", spread_json(row.ate, "m", row.paper_ate)},
          {"relative", spread_json(row.relative, "%", row.paper_relative)},
          {"relative_length_m", plan.measure.length_m},
-         {"completion", row.least_completion ? rounded(*row.least_completion) : Json(nullptr)},
+         {"completion", figure_json(row.least_completion)},
          {"protocols", row.protocols}});
   return document;
 }
@@ -295,7 +306,7 @@ std::string accuracy_comparison(const BatchPlan& plan, const std::vector<Ablatio
   for (const AblationRow& row : rows)
     if (!row.sequence.empty())
       row_for(table, {row.profile + ", here", size_text(row.size), "no"}).errors[row.sequence] =
-          row.ate.median ? metres(*row.ate.median) : "diverged";
+          error_text(row.ate.median, 2);
   for (const PaperAccuracy& p : paper)
     if (p.profile == "levio" && p.figure == PaperAccuracy::Figure::ate &&
         p.chosen_by == PaperAccuracy::Figure::ate)
@@ -315,6 +326,153 @@ std::string accuracy_comparison(const BatchPlan& plan, const std::vector<Ablatio
   }
   return '\n' + text.str() +
          "  published: LEVIO's paper, over whole sequences; loop closure takes out the drift\n";
+}
+
+namespace {
+
+using Figure = PaperAccuracy::Figure;
+
+constexpr std::string_view kHeader =
+    "sequence,profile,width,height,chosen_by,figure,value,unit,source";
+/// Columns of the table.
+struct PaperColumn {
+  enum Index : std::size_t {
+    kSequence,
+    kProfile,
+    kWidth,
+    kHeight,
+    kChosenBy,
+    kFigure,
+    kValue,
+    kUnit,
+    kSource
+  };
+};
+
+Figure figure_in(const base::CsvRow& row, PaperColumn::Index column) {
+  if (row.text(column) == "ate") return Figure::ate;
+  if (row.text(column) == "relative") return Figure::relative;
+  row.fail(column, "no figure; expected ate or relative");
+}
+
+PaperAccuracy paper_accuracy_from(const base::CsvRow& row) {
+  PaperAccuracy entry{std::string(row.text(PaperColumn::kSequence)),
+                      std::string(row.text(PaperColumn::kProfile)),
+                      {static_cast<int>(row.number(PaperColumn::kWidth)),
+                       static_cast<int>(row.number(PaperColumn::kHeight))},
+                      figure_in(row, PaperColumn::kChosenBy),
+                      figure_in(row, PaperColumn::kFigure),
+                      row.number(PaperColumn::kValue),
+                      std::string(row.text(PaperColumn::kSource))};
+  vio::profile_named(entry.profile, 1);
+  const std::string_view unit = entry.figure == Figure::ate ? "m" : "%";
+  if (row.text(PaperColumn::kUnit) != unit)
+    row.fail(PaperColumn::kUnit, fmt::format("not the unit of this figure; expected {}", unit));
+  if (entry.source.empty()) row.fail("has no source");
+  return entry;
+}
+
+const std::vector<std::string> kColumns{"sequence", "estimator", "loop_closure", "width",
+                                        "height",   "value",     "unit",         "source"};
+enum Column : std::size_t {
+  kSequence,
+  kEstimator,
+  kLoopClosure,
+  kWidth,
+  kHeight,
+  kValue,
+  kUnit,
+  kSource
+};
+
+OtherAccuracy accuracy_from(const base::CsvRow& row) {
+  const std::string loops(row.text(kLoopClosure));
+  if (loops != "yes" && loops != "no") row.fail(kLoopClosure, "expected yes or no");
+  if (row.text(kUnit) != "m") row.fail(kUnit, "expected m");
+  if (row.text(kSource).empty()) row.fail("has no source");
+  return {std::string(row.text(kSequence)),
+          std::string(row.text(kEstimator)),
+          loops == "yes",
+          {static_cast<int>(row.number(kWidth)), static_cast<int>(row.number(kHeight))},
+          row.number(kValue),
+          std::string(row.text(kSource))};
+}
+
+}  // namespace
+
+std::vector<PaperAccuracy> parse_paper_accuracy(const std::string& file, std::string_view text) {
+  const std::vector<std::string> names = base::split(kHeader, ',');
+  base::CsvReader reader(file, base::Separator::comma, names, std::string(text));
+  const base::CsvRow* header = reader.next();
+  for (std::size_t i = 0; header != nullptr && i < names.size(); ++i)
+    if (header->text(i) != names[i]) header->fail(fmt::format("expected the header {}", kHeader));
+  std::vector<PaperAccuracy> entries;
+  while (const base::CsvRow* row = reader.next()) entries.push_back(paper_accuracy_from(*row));
+  return entries;
+}
+
+std::vector<PaperAccuracy> paper_accuracy() {
+  return parse_paper_accuracy("paper_accuracy.csv", reference_text("paper_accuracy"));
+}
+
+std::vector<OtherAccuracy> parse_other_accuracy(const std::string& file, std::string_view text) {
+  base::CsvReader reader(file, base::Separator::comma, kColumns, std::string(text));
+  const base::CsvRow* header = reader.next();
+  for (std::size_t i = 0; header != nullptr && i < kColumns.size(); ++i)
+    if (header->text(i) != kColumns[i])
+      header->fail(i, fmt::format("expected the title {}", kColumns[i]));
+  std::vector<OtherAccuracy> entries;
+  while (const base::CsvRow* row = reader.next()) entries.push_back(accuracy_from(*row));
+  return entries;
+}
+
+std::vector<OtherAccuracy> other_accuracy() {
+  return parse_other_accuracy("other_accuracy.csv", reference_text("other_accuracy"));
+}
+
+namespace {
+
+// `leviosim ablate`: the paper's table of pipeline configurations, for any sequences and image
+// sizes. Its folder:
+//
+//   manifest.json   what the batch was made from
+//   runs.csv        a row per run
+//   table.md        the table that is printed
+//   table.json      its rows, with more digits
+
+void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
+  const BatchPlan plan = make_plan(command, words);
+  const std::vector<Point> runs = ablation_runs(plan);
+  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
+  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, paper_accuracy());
+  const Printout text = printout(
+      words.json,
+      [&] {
+        return Printout({fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
+                                     ablation_text(plan, rows)),
+                         accuracy_comparison(plan, rows, paper_accuracy(), other_accuracy())})
+            .ending(ablation_conclusion(rows), after_batch(plan));
+      },
+      [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
+  publish(*plan.out, text, [&] {
+    plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
+    plan.out->write("table.md", ablation_markdown(plan, rows));
+    plan.out->write("table.json", json_text(ablation_json(plan, rows), 2) + '\n');
+    plan.out->write("manifest.json", json_text(batch_manifest(plan, command_line), 2) + '\n');
+  });
+}
+
+}  // namespace
+
+Command add_ablate_command(CLI::App& app, const Words& words) {
+  CLI::App* command = app.add_subcommand(
+      "ablate", "The paper's table of pipeline configurations, over given sequences");
+  const auto typed = std::make_shared<BatchWords>();
+  add_batch_options(*command, *typed);
+  add_examples(*command, {"leviosim ablate --data flight --profile levio,next --size "
+                          "160x120,320x240 --seed 1 --relative 0.5 --out ablated"});
+  add_json_option(*command, typed->json);
+  return {command, [=, &words] { run(*command, *typed, words); }};
 }
 
 }  // namespace leviosim::tools

@@ -4,13 +4,58 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "tools/app/study/ablate/published_accuracy.h"
-#include "tools/app/study/batch_plan.h"
-#include "tools/app/study/spread.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/engine.h"
+#include "traces/datasets/image_preparation.h"
 
 namespace leviosim::tools {
+
+// What the LEVIO paper says of accuracy: that of its golden model, and that of other estimators.
+// Both tables, of tools/app/validation/published, are part of the program.
+
+/// A row of paper_accuracy.csv: sequence (EuRoC's name), profile, width, height, chosen_by (ate or
+/// relative), figure (ate or relative), value, unit, source.
+struct PaperAccuracy {
+  enum class Figure { ate, relative };  ///< [m]; [%] over kPaperLengthM
+
+  std::string sequence;
+  std::string profile;
+  traces::ImageSize size;
+  Figure chosen_by;
+  Figure figure;
+  double value;
+  std::string source;
+};
+
+/// Of the paper's sub-trajectories.
+inline constexpr double kPaperLengthM = 40;
+
+/// @throws InputError with file and line
+std::vector<PaperAccuracy> parse_paper_accuracy(const std::string& file, std::string_view text);
+
+std::vector<PaperAccuracy> paper_accuracy();
+
+/// A row of other_accuracy.csv: sequence (EuRoC's name), estimator, loop_closure (yes or no),
+/// width, height, value, unit (m), source.
+struct OtherAccuracy {
+  std::string sequence;
+  std::string estimator;
+  bool closes_loops = false;
+  traces::ImageSize size;
+  double ate_m = 0;
+  std::string source;
+};
+
+/// @throws InputError with file and line
+std::vector<OtherAccuracy> parse_other_accuracy(const std::string& file, std::string_view text);
+
+std::vector<OtherAccuracy> other_accuracy();
+
+// The rows of an ablation.
 
 struct AblationRow {
   std::string sequence;  ///< empty: the mean over all sequences
@@ -42,9 +87,6 @@ std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<
 
 /// Beside the paper's values where it has such, with the protocol below.
 std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows);
-/// The row with the least absolute error, in a sentence.
-std::string ablation_conclusion(const std::vector<AblationRow>& rows);
-std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationRow>& rows);
 Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows);
 
 /// Absolute errors by sequence: those of the ablation, what the paper says of LEVIO, and others'.
@@ -52,5 +94,8 @@ Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows);
 std::string accuracy_comparison(const BatchPlan& plan, const std::vector<AblationRow>& rows,
                                 const std::vector<PaperAccuracy>& paper,
                                 const std::vector<OtherAccuracy>& others);
+
+/// `leviosim ablate` (tools/commands/commands.h).
+Command add_ablate_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

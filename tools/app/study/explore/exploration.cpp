@@ -3,13 +3,20 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <memory>
 
 #include "sim/base/check.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 #include "traces/datasets/rng.h"
@@ -25,6 +32,9 @@ std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point
   return set;
 }
 
+namespace {
+
+/// Rows are by point, profile, then sequence_names().
 std::vector<Point> exploration_runs(const BatchPlan& plan, const ExplorationPoints& points) {
   const std::vector<std::string> names = sequence_names(plan);
   std::vector<Point> runs;
@@ -47,10 +57,12 @@ std::vector<Point> exploration_runs(const BatchPlan& plan, const ExplorationPoin
   return runs;
 }
 
+/// The point of a row.
 std::size_t point_of_row(const BatchPlan& plan, std::size_t row) {
   return row / (plan.profiles.size() * sequence_names(plan).size());
 }
 
+/// By point, then profile. @param runs  exploration_runs()
 std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const ExplorationPoints& points,
                                            const std::vector<Point>& runs,
                                            const std::vector<RunOutcome>& outcomes) {
@@ -76,6 +88,7 @@ std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const Explorat
   return explored;
 }
 
+/// The best of a profile by a mean; nullptr if all diverged. The earlier one of equals.
 const ExploredPoint* best_of(const std::vector<ExploredPoint>& explored, const std::string& profile,
                              std::optional<double> ExploredPoint::*by) {
   const ExploredPoint* best = nullptr;
@@ -85,19 +98,11 @@ const ExploredPoint* best_of(const std::vector<ExploredPoint>& explored, const s
   return best;
 }
 
-namespace {
-
-constexpr const char* kDiverged = "diverged";
-
 std::string set_text(const ExploredPoint& point) {
   std::vector<std::string> texts;
   for (const vio::Assignment& a : point.set)
     texts.push_back(a.text().substr(vio::kParameterPrefix.size()));
   return texts.empty() ? "as it is" : fmt::format("{}", fmt::join(texts, " "));
-}
-
-std::string error_text(std::optional<double> error, int decimals) {
-  return figure_text(error, decimals, kDiverged);
 }
 
 /// The value of a dimension with this profile.
@@ -150,12 +155,12 @@ std::string gain_text(const std::string& profile, const std::vector<ExploredPoin
   return text;
 }
 
-}  // namespace
-
+/// Per profile: as it is, the point of least absolute error, and that of least relative error.
 std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
   return best_table(plan, explored).str() + "  " + note(plan);
 }
 
+/// What the first profile gains by its best point, in a sentence.
 std::string exploration_conclusion(const BatchPlan& plan,
                                    const std::vector<ExploredPoint>& explored) {
   const std::string gain = gain_text(plan.profiles.front(), explored);
@@ -166,6 +171,8 @@ std::string exploration_conclusion(const BatchPlan& plan,
 std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
   return best_table(plan, explored).markdown() + '\n' + note(plan);
 }
+
+}  // namespace
 
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored) {
@@ -202,6 +209,10 @@ std::string points_csv(const std::vector<Dimension>& dimensions,
   return text;
 }
 
+namespace {
+
+/// The data of a page, as the paper's figure has it: the absolute over the relative error of every
+/// point.
 Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
                       const std::vector<ExploredPoint>& explored) {
   StudyPage page;
@@ -233,6 +244,7 @@ Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimen
   return study_report(page);
 }
 
+/// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
 RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
   using R = const FinishedRun&;
   RunColumns columns{{"point", [&plan](R r) { return point_of_row(plan, r.point.row); }}};
@@ -241,8 +253,6 @@ RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& di
                 [&d](R r) { return value_of(d, profile_of(r.point.request)); });
   return columns;
 }
-
-namespace {
 
 using vio::Parameter;
 
@@ -281,6 +291,10 @@ std::vector<Dimension> paper_dimensions() {
           {vio::find_parameter("workload.gravity_updates"), 0, 1}};
 }
 
+namespace {
+
+/// "workload.window=4:12"; toggles take no range: "workload.gravity_updates".
+/// @throws InputError for unknown parameters and ranges outside of what they can be
 Dimension parse_dimension(const std::string& text) {
   const std::string where = "--vary " + text;
   const std::size_t equals = text.find('=');
@@ -306,6 +320,8 @@ Dimension parse_dimension(const std::string& text) {
   return dimension;
 }
 
+}  // namespace
+
 std::vector<std::vector<vio::Assignment>> sample_points(const std::vector<Dimension>& dimensions,
                                                         std::size_t count, std::uint64_t seed) {
   std::vector<std::vector<vio::Assignment>> points(count);
@@ -315,6 +331,116 @@ std::vector<std::vector<vio::Assignment>> sample_points(const std::vector<Dimens
           {dimensions[d].parameter,
            draw(dimensions[d], traces::derive_seed(traces::derive_seed(seed, i), d))});
   return points;
+}
+
+namespace {
+
+// `leviosim explore`: the paper's parameter sweep. Its folder:
+//
+//   manifest.json   what the batch was made from
+//   runs.csv        a row per run
+//   points.csv      a row per point, profile and sequence: medians and spread
+//   best.md         the points of least error
+
+constexpr std::int64_t kMostPoints = 1'000'000;
+
+struct ExploreWords {
+  BatchWords batch;
+  std::vector<std::string> vary;
+  std::string points = "40";
+  std::string sample_seed = "1";
+  std::string report;
+};
+
+std::vector<Dimension> dimensions_of(const ExploreWords& words) {
+  std::vector<Dimension> dimensions;
+  for (const std::string& text : words.vary) dimensions.push_back(parse_dimension(text));
+  if (dimensions.empty()) dimensions = paper_dimensions();
+  for (std::size_t i = 0; i < dimensions.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (dimensions[k].parameter == dimensions[i].parameter)
+        throw InputError(fmt::format("--vary {}: is given twice", dimensions[i].parameter->name));
+  return dimensions;
+}
+
+/// What only explorations need.
+void check_plan(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
+  if (plan.sizes.size() > 1)
+    throw InputError("explore: --size: expected one image size; ablate compares several");
+  for (const vio::Assignment& a : plan.workload)
+    for (const Dimension& d : dimensions)
+      if (a.parameter == d.parameter)
+        throw InputError(fmt::format("-p {}: is varied; choose what is with --vary", a.text()));
+  for (const Sequence& s : plan.sequences)
+    if (s.path_m <= plan.measure.length_m)
+      throw InputError(
+          fmt::format("--relative {:g}: the path of {} is only {:.2f} m long; expected less",
+                      plan.measure.length_m, s.folder, s.path_m));
+}
+
+Json manifest_of(const BatchPlan& plan, const ExploreWords& words,
+                 const std::vector<Dimension>& dimensions, const Words& command_line) {
+  Json manifest = batch_manifest(plan, command_line);
+  manifest["points"] = words.points;
+  manifest["sample_seed"] = words.sample_seed;
+  for (const Dimension& d : dimensions)
+    manifest["dimensions"].push_back({{"name", d.parameter->name},
+                                      {"low", vio::value_text(*d.parameter, d.low)},
+                                      {"high", vio::value_text(*d.parameter, d.high)},
+                                      {"unit", d.parameter->unit}});
+  return manifest;
+}
+
+void run(const CLI::App& command, const ExploreWords& words, const Words& command_line) {
+  const std::vector<Dimension> dimensions = dimensions_of(words);
+  const auto count =
+      static_cast<std::size_t>(parse_whole("--points", words.points, 1, kMostPoints));
+  const auto seed = static_cast<std::uint64_t>(
+      parse_whole("--sample-seed", words.sample_seed, 0, std::numeric_limits<std::int64_t>::max()));
+  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.batch.force);
+  const BatchPlan plan = make_plan(command, words.batch);
+  check_plan(plan, dimensions);
+  const auto points = sample_points(dimensions, count, seed);
+  const std::vector<Point> runs = exploration_runs(plan, points);
+  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
+  const std::vector<ExploredPoint> explored = explored_points(plan, points, runs, outcomes);
+  const Printout text = printout(
+      words.batch.json,
+      [&] {
+        return Printout(fmt::format("leviosim {}: {} points, {} native runs\n{}", version(),
+                                    points.size(), runs.size(), best_text(plan, explored)))
+            .ending(exploration_conclusion(plan, explored), after_batch(plan));
+      },
+      [&] { return table_document("exploration", points_csv(dimensions, explored)); });
+  publish(*plan.out, text, [&] {
+    outputs::OutputFolder& out = *plan.out;
+    out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
+    out.write("points.csv", points_csv(dimensions, explored));
+    out.write("best.md", best_markdown(plan, explored));
+    out.write("manifest.json",
+              json_text(manifest_of(plan, words, dimensions, command_line), 2) + '\n');
+  });
+  if (page) publish_report(page, exploration_page(plan, dimensions, explored), !words.batch.json);
+}
+
+}  // namespace
+
+Command add_explore_command(CLI::App& app, const Words& words) {
+  CLI::App* command = app.add_subcommand(
+      "explore", "The paper's parameter sweep: accuracy over parameters of the workload");
+  const auto typed = std::make_shared<ExploreWords>();
+  add_batch_options(*command, typed->batch);
+  add_report_option(*command, typed->report);
+  add_json_option(*command, typed->batch.json);
+  const TextOptions add{*command};
+  add("--vary", typed->vary, "NAME[=LOW:HIGH]",
+      "parameter to vary, off and on if it is a switch; repeatable [the paper's five]");
+  add("--points", typed->points, "N", "of the parameters, the profile's first [40]");
+  add("--sample-seed", typed->sample_seed, "N", "of the points' random draws [1]");
+  add_examples(*command,
+               {"leviosim explore --data flight --profile levio --vary workload.window=6:12 "
+                "--points 3 --seed 1 --relative 0.5 --out explored"});
+  return {command, [=, &words] { run(*command, *typed, words); }};
 }
 
 }  // namespace leviosim::tools

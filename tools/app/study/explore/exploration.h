@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "tools/app/cli/command_line.h"
 #include "tools/app/html_report/page_json.h"
-#include "tools/app/study/batch_plan.h"
-#include "tools/app/study/run_outcome.h"
-#include "tools/app/study/spread.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/engine.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
@@ -26,10 +26,6 @@ struct Dimension {
 /// the reprojection, noise of the IMU (gyroscope and accelerometer), updates of gravity. Numbers
 /// range from a quarter to four times the profile levio's.
 std::vector<Dimension> paper_dimensions();
-
-/// "workload.window=4:12"; toggles take no range: "workload.gravity_updates".
-/// @throws InputError for unknown parameters and ranges outside of what they can be
-Dimension parse_dimension(const std::string& text);
 
 /// Point 0 sets nothing: the profile as it is. The others set each dimension at random: whole
 /// numbers and toggles evenly, other numbers evenly over the orders of magnitude, to three digits.
@@ -60,40 +56,14 @@ std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point
 /// Points of parameters.
 using ExplorationPoints = std::vector<std::vector<vio::Assignment>>;
 
-/// Rows are by point, profile, then sequence_names().
-std::vector<Point> exploration_runs(const BatchPlan& plan, const ExplorationPoints& points);
-/// The point of a row.
-std::size_t point_of_row(const BatchPlan& plan, std::size_t row);
-
-/// By point, then profile. @param runs  exploration_runs()
-std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const ExplorationPoints& points,
-                                           const std::vector<Point>& runs,
-                                           const std::vector<RunOutcome>& outcomes);
-
-/// The best of a profile by a mean; nullptr if all diverged. The earlier one of equals.
-const ExploredPoint* best_of(const std::vector<ExploredPoint>& explored, const std::string& profile,
-                             std::optional<double> ExploredPoint::*by);
-
 // What an exploration found, as text, CSV and JSON.
-
-/// Per profile: as it is, the point of least absolute error, and that of least relative error.
-std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
-/// What the first profile gains by its best point, in a sentence.
-std::string exploration_conclusion(const BatchPlan& plan,
-                                   const std::vector<ExploredPoint>& explored);
-std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored);
 
 /// A row per point, profile and sequence, with the value of every dimension; empty where it has no
 /// effect on the profile.
 std::string points_csv(const std::vector<Dimension>& dimensions,
                        const std::vector<ExploredPoint>& explored);
 
-/// The data of a page, as the paper's figure has it: the absolute over the relative error of every
-/// point.
-Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
-                      const std::vector<ExploredPoint>& explored);
-
-/// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
-RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions);
+/// `leviosim explore` (tools/commands/commands.h).
+Command add_explore_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

@@ -15,7 +15,7 @@
 
 #include "sim/energy/estimate.h"
 #include "tools/app/run/run_request.h"
-#include "tools/app/study/runner.h"
+#include "tools/app/study/engine.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {

@@ -1,26 +1,26 @@
-#include "tools/app/study/flights/benchmark_report.h"
-
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
+#include <memory>
 #include <set>
 
+#include "sim/base/error.h"
+#include "sim/base/printable_text.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/html_report/page_json.h"
-#include "tools/app/report/table_document.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/run_outcome.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/flights/benchmark.h"
 
 namespace leviosim::tools {
 namespace {
 
 constexpr const char* kAllMotions = "all";
-constexpr const char* kDiverged = "diverged";
-
-std::string error_text(const std::optional<double>& error, int decimals) {
-  return figure_text(error, decimals, kDiverged);
-}
 
 /// "1.2 … 3.4"; nothing of a single value.
 std::string interval_text(const MedianInterval& interval, int decimals) {
@@ -135,28 +135,26 @@ std::string notes(const Benchmark& benchmark, const BenchmarkResult& result,
   return text;
 }
 
-Json value(const std::optional<double>& v) { return v ? rounded(*v) : Json(nullptr); }
-
 Json interval_json(const MedianInterval& interval) {
   return {{"values", interval.values},
           {"confidence", rounded(interval.confidence)},
-          {"low", value(interval.low)},
-          {"high", value(interval.high)}};
+          {"low", figure_json(interval.low)},
+          {"high", figure_json(interval.high)}};
 }
 
 Json error_json(const RowError& error, const char* unit) {
   return {{"unit", unit},
-          {"median", value(error.median)},
+          {"median", figure_json(error.median)},
           {"over_pieces", interval_json(error.over_pieces)},
           {"over_seeds", interval_json(error.over_seeds)},
-          {"worst", value(error.worst)}};
+          {"worst", figure_json(error.worst)}};
 }
 
 Json spread_json(const Spread& spread) {
   return {{"runs", spread.runs},
-          {"median", value(spread.median)},
-          {"low", value(spread.low)},
-          {"high", value(spread.high)}};
+          {"median", figure_json(spread.median)},
+          {"low", figure_json(spread.low)},
+          {"high", figure_json(spread.high)}};
 }
 
 Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
@@ -185,12 +183,55 @@ Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
           {"end_drift", spread_json(row.end_drift)}};
 }
 
+/// A row for each variant and piece.
+std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result) {
+  using R = const PieceRow&;
+  using base::fixed;
+  const FlightPlan& plan = benchmark.plan;
+  const auto piece_of = [&](R row) -> const FlightPiece& { return benchmark.pieces[row.piece]; };
+  base::CsvTable<PieceRow> table;
+  table.add("variant", [&](R r) { return plan.variants[r.variant].name(); });
+  table.add("piece", [=](R r) { return length_text(piece_of(r).length); });
+  table.add("set", [=, &plan](R r) { return plan.sets[piece_of(r).set].name; });
+  table.add("motion",
+            [=, &benchmark](R r) { return benchmark.motions[piece_of(r).motion].sequence.name; });
+  table.add("world", [=](R r) { return piece_of(r).world.text(); });
+  table.add("disturbance",
+            [=, &plan](R r) { return plan.disturbances[piece_of(r).disturbance].text(); });
+  table.add("start_s", [=](R r) { return fixed(piece_of(r).start_s, 3); });
+  table.add("first_frame", [=](R r) { return piece_of(r).frames.begin; });
+  table.add("frames", [=](R r) { return piece_of(r).frames.end - piece_of(r).frames.begin; });
+  table.add("path_m", [=](R r) { return fixed(piece_of(r).path_m, 6); });
+  table.add("runs", [](R r) { return r.percent.runs; });
+  const auto add = [&](const std::string& name, auto of) {
+    table.add(name, [of](R r) { return fixed(of(r), 6); });
+  };
+  const auto add_spread = [&](const std::string& name, Spread PieceRow::*of) {
+    add(name, [of](R r) { return (r.*of).median; });
+    add(name + "_low", [of](R r) { return (r.*of).low; });
+    add(name + "_high", [of](R r) { return (r.*of).high; });
+  };
+  add_spread("ate_percent", &PieceRow::percent);
+  add_spread("ate_m", &PieceRow::metres);
+  add_spread("scale", &PieceRow::scale);
+  add("scale_sigma", [](R r) { return r.scale_sigma.median; });
+  add("end_drift_m", [](R r) { return r.end_drift.median; });
+  table.add("diverged", [](R r) { return r.diverged; });
+  table.add("failed", [](R r) { return r.failed; });
+  table.add("silent", [](R r) { return r.alarms.silent; });
+  table.add("map_restarts", [](R r) { return r.map_restarts; });
+  return table.text(result.pieces);
+}
+
 }  // namespace
 
 std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& result, int width) {
   return table_of(benchmark, result).str(width) + notes(benchmark, result, "  ");
 }
 
+namespace {
+
+/// Of each variant the worst median of all motions, in a sentence.
 std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResult& result) {
   std::string text;
   for (std::size_t v = 0; v < benchmark.plan.variants.size(); ++v) {
@@ -211,6 +252,8 @@ std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResu
 std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult& result) {
   return table_of(benchmark, result).markdown() + '\n' + notes(benchmark, result, "- ");
 }
+
+}  // namespace
 
 Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result) {
   Json document;
@@ -257,45 +300,9 @@ std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Poi
   return runs_csv(runs, outcomes, how, std::move(columns));
 }
 
-std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result) {
-  using R = const PieceRow&;
-  using base::fixed;
-  const FlightPlan& plan = benchmark.plan;
-  const auto piece_of = [&](R row) -> const FlightPiece& { return benchmark.pieces[row.piece]; };
-  base::CsvTable<PieceRow> table;
-  table.add("variant", [&](R r) { return plan.variants[r.variant].name(); });
-  table.add("piece", [=](R r) { return length_text(piece_of(r).length); });
-  table.add("set", [=, &plan](R r) { return plan.sets[piece_of(r).set].name; });
-  table.add("motion",
-            [=, &benchmark](R r) { return benchmark.motions[piece_of(r).motion].sequence.name; });
-  table.add("world", [=](R r) { return piece_of(r).world.text(); });
-  table.add("disturbance",
-            [=, &plan](R r) { return plan.disturbances[piece_of(r).disturbance].text(); });
-  table.add("start_s", [=](R r) { return fixed(piece_of(r).start_s, 3); });
-  table.add("first_frame", [=](R r) { return piece_of(r).frames.begin; });
-  table.add("frames", [=](R r) { return piece_of(r).frames.end - piece_of(r).frames.begin; });
-  table.add("path_m", [=](R r) { return fixed(piece_of(r).path_m, 6); });
-  table.add("runs", [](R r) { return r.percent.runs; });
-  const auto add = [&](const std::string& name, auto of) {
-    table.add(name, [of](R r) { return fixed(of(r), 6); });
-  };
-  const auto add_spread = [&](const std::string& name, Spread PieceRow::*of) {
-    add(name, [of](R r) { return (r.*of).median; });
-    add(name + "_low", [of](R r) { return (r.*of).low; });
-    add(name + "_high", [of](R r) { return (r.*of).high; });
-  };
-  add_spread("ate_percent", &PieceRow::percent);
-  add_spread("ate_m", &PieceRow::metres);
-  add_spread("scale", &PieceRow::scale);
-  add("scale_sigma", [](R r) { return r.scale_sigma.median; });
-  add("end_drift_m", [](R r) { return r.end_drift.median; });
-  table.add("diverged", [](R r) { return r.diverged; });
-  table.add("failed", [](R r) { return r.failed; });
-  table.add("silent", [](R r) { return r.alarms.silent; });
-  table.add("map_restarts", [](R r) { return r.map_restarts; });
-  return table.text(result.pieces);
-}
+namespace {
 
+/// The content of manifest.json. Nothing in it depends on the host or on what was found in caches.
 Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Words& command_line) {
   const FlightPlan& plan = benchmark.plan;
   Json document = study_manifest("leviosim flight benchmark manifest", command_line);
@@ -314,6 +321,8 @@ Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Wo
                                    {"starts_at_rest", motion.starts.at_rest}});
   return document;
 }
+
+}  // namespace
 
 Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
                     const std::string& csv) {
@@ -342,6 +351,148 @@ Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
   page.y = "ate_percent";
   page.colour = "set";
   return study_report(page);
+}
+
+namespace {
+
+// `leviosim benchmark-flights`: how accurate the workload is on flights that chose nothing. Its
+// folder:
+//
+//   manifest.json   what the benchmark was made from
+//   runs.csv        a row per run
+//   pieces.csv      a row per profile and piece, over the seeds
+//   table.md        the table that is printed
+//   table.json      its rows and the pieces, with more digits
+
+namespace fs = std::filesystem;
+
+struct FlightWords {
+  std::string plan;
+  std::string motions;
+  std::vector<std::string> profiles;
+  std::vector<std::string> overrides;
+  std::vector<std::string> seeds;
+  RunnerWords runner;
+  std::string out;
+  std::string report;
+  bool list = false;
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+/// What the command line says in place of the plan, or in addition to it.
+FlightPlan plan_of(const FlightWords& words) {
+  FlightPlan plan = flight_plan_named(words.plan);
+  if (!words.profiles.empty()) {
+    plan.variants.clear();
+    for (const std::string& profile : known_profiles(words.profiles))
+      plan.variants.push_back({profile, {}});
+  }
+  for (const vio::Assignment& a : native_workload(words.overrides))
+    for (FlightVariant& variant : plan.variants) {
+      for (const vio::Assignment& own : variant.workload)
+        if (own.parameter == a.parameter)
+          throw InputError(
+              fmt::format("-p {}: the plan sets it itself, in '{}'", a.text(), variant.name()));
+      variant.workload.push_back(a);
+    }
+  if (!words.seeds.empty()) plan.seeds = batch_seeds(words.seeds);
+  check_variants(plan);
+  return plan;
+}
+
+outputs::OutputRequest out_request(const FlightWords& words, const FlightPlan& plan) {
+  outputs::OutputRequest request{.option = "--out", .path = words.out, .replace = words.force};
+  for (const auto* folders : {&plan.motions, &plan.recordings})
+    for (const std::string& folder : *folders)
+      request.inputs.push_back(fs::path(words.motions) / folder);
+  if (fs::path(words.plan).has_parent_path()) request.inputs.emplace_back(words.plan);
+  return request;
+}
+
+void run(const CLI::App& command, const FlightWords& words, const Words& command_line) {
+  require(command, "PLAN", "a name or a file: tools/app/study/flights/README.md");
+  require(command, "--motions", "the folder with the motions of the plan");
+  if (!words.list) require(command, "--out", "a folder for the results");
+  FlightPlan plan = plan_of(words);
+  const RunnerOptions options = runner_options(words.runner, "run", words.quiet);
+  if (words.list) {
+    print(Printout(list_text(make_benchmark(std::move(plan), words.motions)), true));
+    return;
+  }
+  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.force);
+  outputs::OutputFolder out(out_request(words, plan));
+  const Benchmark benchmark = make_benchmark(std::move(plan), words.motions);
+  const Measure how;
+  std::vector<Point> runs = benchmark_runs(benchmark);
+  draw_flights(benchmark, how, options, runs);
+  const std::vector<RunOutcome> outcomes = run_outcomes(runs, how, options);
+  const BenchmarkResult result = condense(benchmark, runs, outcomes);
+  const std::string csv = benchmark_runs_csv(benchmark, runs, outcomes, how);
+  const std::string json = json_text(benchmark_json(benchmark, result), 1) + '\n';
+  const std::vector<std::string> next{
+      fmt::format("leviosim run --profile {} --data {} --record --out mine",
+                  benchmark.plan.variants.front().profile,
+                  printable(benchmark.motions.front().sequence.folder))};
+  const Printout text = printout(
+      words.json,
+      [&] {
+        return Printout(fmt::format("leviosim {}: {}, {} pieces, {} native runs\n{}", version(),
+                                    printable(benchmark.plan.name), benchmark.pieces.size(),
+                                    runs.size(), benchmark_text(benchmark, result)))
+            .ending(benchmark_conclusion(benchmark, result), next);
+      },
+      [&] { return json; });
+  publish(out, text, [&] {
+    out.write("runs.csv", csv);
+    out.write("pieces.csv", pieces_csv(benchmark, result));
+    out.write("table.md", benchmark_markdown(benchmark, result));
+    out.write("table.json", json);
+    out.write("manifest.json",
+              json_text(benchmark_manifest(benchmark, how, command_line), 2) + '\n');
+  });
+  if (page) publish_report(page, benchmark_page(benchmark, result, csv), !words.json);
+}
+
+std::string plan_names() {
+  std::vector<std::string_view> names;
+  for (const base::BuiltinFile& plan : builtin_flight_plans()) names.push_back(plan.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+Command add_benchmark_flights_command(CLI::App& app, const Words& words) {
+  CLI::App* command = app.add_subcommand("benchmark-flights",
+                                         "Accuracy on rendered flights in worlds that chose no "
+                                         "parameter, also from starts in mid-air");
+  const auto typed = std::make_shared<FlightWords>();
+  const TextOptions add{*command};
+  command->add_option("PLAN", typed->plan, fmt::format("a YAML file, or one of {}", plan_names()));
+  add("--motions", typed->motions, "DIR",
+      "folder with an ASL folder for each motion and recording of the plan (motions need no "
+      "images)");
+  add("--profile", typed->profiles, "NAME,...", "of the workload, in place of the plan's variants",
+      true);
+  add("-p,--set", typed->overrides, "PATH=VALUE",
+      "parameter of the workload in every variant; repeatable", false);
+  add("--seed", typed->seeds, "N,...", "of the workload's random draws, in place of the plan's",
+      true);
+  add_runner_options(*command, typed->runner, "run");
+  command->add_flag("--list", typed->list, "print the pieces, run nothing");
+  add("--out", typed->out, "DIR", "folder for the results; must be new or empty");
+  add_report_option(*command, typed->report);
+  command->add_flag("--force", typed->force, "replace the results of an earlier benchmark");
+  command->add_flag("--quiet", typed->quiet, "no progress");
+  add_json_option(*command, typed->json);
+  add_examples(*command,
+               {"echo 'motions: [flight]' >start.yaml",
+                "echo 'worlds: { development: [1], fresh: [2] }' >>start.yaml",
+                "echo 'pieces: [20]' >>start.yaml", "echo 'every: 1' >>start.yaml",
+                "leviosim benchmark-flights ./start.yaml --motions . --profile levio,next "
+                "--seed 1 --out flown"});
+  return {command, [=, &words] { run(*command, *typed, words); }};
 }
 
 }  // namespace leviosim::tools

@@ -1,4 +1,4 @@
-#include "tools/app/study/flights/flight_plan.h"
+#include "tools/app/study/flights/benchmark.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

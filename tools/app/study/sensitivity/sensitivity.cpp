@@ -1,17 +1,23 @@
 #include "tools/app/study/sensitivity/sensitivity.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "sim/base/csv_table.h"
 #include "sim/chip/accelerator.h"
 #include "sim/soc/job_timer.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/range_bands.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/run/trace_source.h"
 #include "traces/work_traces/work_frames.h"
 
 namespace leviosim::tools {
@@ -125,10 +131,14 @@ double effect_on_frame(const Swing& swing, const MeanTimes& base) {
                  percent_change(swing.high.frame, base.frame));
 }
 
+namespace {
+
 double effect_on_iteration(const Swing& swing, const MeanTimes& base) {
   return largest(percent_change(swing.low.iteration, base.iteration),
                  percent_change(swing.high.iteration, base.iteration));
 }
+
+}  // namespace
 
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
                         const traces::WorkTrace& trace, const RunnerOptions& options) {
@@ -137,8 +147,7 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
   result.base = times(platform.config({}));
   const auto run = [&](std::size_t count, const auto& job) { run_all(count, options, job); };
   const auto alone = [](const platform::Change& change) { return std::vector{change}; };
-  for (auto& ends :
-       at_ends(platform, ranged(platform.platform()), result.base, times, run, alone))
+  for (auto& ends : at_ends(platform, ranged(platform.platform()), result.base, times, run, alone))
     result.swings.push_back({*ends.parameter, std::move(ends.low), std::move(ends.high),
                              is_in_bands(*ends.parameter, platform.platform().config)});
   std::stable_sort(result.swings.begin(), result.swings.end(), [&](const Swing& a, const Swing& b) {
@@ -200,8 +209,7 @@ std::string bands_table(const Sensitivity& sensitivity) {
          table.str();
 }
 
-}  // namespace
-
+/// The number with the largest effect, in a sentence.
 std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
   if (sensitivity.swings.empty()) return "in short: no number of this chip has a range";
   const Swing& swing = sensitivity.swings.front();
@@ -210,6 +218,8 @@ std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
       swing.parameter.path, change_text(swing, sensitivity.base, &MeanTimes::frame),
       swing.parameter.range->low, swing.parameter.range->high, swing.parameter.unit);
 }
+
+}  // namespace
 
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers) {
   std::vector<TextTable::Column> columns{
@@ -232,14 +242,14 @@ std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int 
   }
   const MeanTimes& base = sensitivity.base;
   return {fmt::format(
-             "mean times with all numbers as they are: front end {} on {} cores (EPnP {}, 8-point "
-             "{}), optimiser {} for an iteration\n"
-             "change of them in per cent at the low and at the high end of a number's range\n{}",
-             ms(base.frame), workers, ms(base.epnp), ms(base.eight_point), ms(base.iteration),
-             table.str()),
-         bands_table(sensitivity),
-         list_line("changing nothing by 0.005 % or more:", without_effect) +
-             list_line("not certain, but without a range:", sensitivity.unbounded)};
+              "mean times with all numbers as they are: front end {} on {} cores (EPnP {}, 8-point "
+              "{}), optimiser {} for an iteration\n"
+              "change of them in per cent at the low and at the high end of a number's range\n{}",
+              ms(base.frame), workers, ms(base.epnp), ms(base.eight_point), ms(base.iteration),
+              table.str()),
+          bands_table(sensitivity),
+          list_line("changing nothing by 0.005 % or more:", without_effect) +
+              list_line("not certain, but without a range:", sensitivity.unbounded)};
 }
 
 std::string sensitivity_csv(const Sensitivity& sensitivity) {
@@ -275,6 +285,58 @@ std::string sensitivity_csv(const Sensitivity& sensitivity) {
     add("high_percent", &Swing::high);
   }
   return table.text(sensitivity.swings);
+}
+
+namespace {
+
+// `leviosim sensitivity`: which uncertain numbers of a platform matter.
+
+constexpr const char* kFramesByDefault = "0:100";
+
+struct SensitivityOptions : RunOptions {
+  std::string jobs;
+};
+
+void run(const SensitivityOptions& options) {
+  const unsigned jobs = parse_jobs(options.jobs);
+  RunRequest request = make_chip_request(options);
+  std::optional<outputs::OutputFile> out = claimed_file(out_request(options, "--csv"));
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  request.data = data_folder(options, style);
+  WorkRecording recording(request.cores);
+  request.recording = &recording;
+  const RunResult result = simulate_with_progress(request, style);
+  const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
+  const Sensitivity found =
+      sensitivity(platform::Variants(std::move(request.platform)), request.cores, trace,
+                  {.noun = "chip", .threads = jobs, .progress = style});
+  publish({{out, sensitivity_csv(found), "table"}},
+          printout(
+              options.json,
+              [&] {
+                std::vector<std::string> parts = sensitivity_tables(found, result.cores);
+                parts.front().insert(0, heading(options, result));
+                return Printout(std::move(parts))
+                    .ending(sensitivity_conclusion(found), {"leviosim microbench"});
+              },
+              [&] { return table_document("sensitivity", sensitivity_csv(found)); }));
+}
+
+}  // namespace
+
+Command add_sensitivity_command(CLI::App& app, const Words&) {
+  CLI::App* command = app.add_subcommand(
+      "sensitivity", "Sweep every uncertain number of a chip over its range, one at a time");
+  const auto options = std::make_shared<SensitivityOptions>();
+  options->frames = kFramesByDefault;
+  add_chip_run_options(*command, *options);
+  TextOptions{*command}("--csv", options->out, "FILE", "write the rows to a file");
+  command->add_flag("--force", options->force, "replace the file");
+  add_jobs_option(*command, options->jobs, "chip");
+  add_examples(*command,
+               {"leviosim sensitivity --data flight --frames 0:20 --csv sensitivity.csv"});
+  add_json_option(*command, options->json);
+  return {command, [=] { run(*options); }, {{"--out", "--csv"}}};
 }
 
 }  // namespace leviosim::tools

@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "platform_models/loader/variants.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/result/banded.h"
-#include "tools/app/study/runner.h"
+#include "tools/app/study/engine.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -55,7 +56,6 @@ std::optional<double> percent_change(std::optional<double> value, std::optional<
 
 /// Largest absolute change of the frame time at either end, in per cent.
 double effect_on_frame(const Swing& swing, const MeanTimes& base);
-double effect_on_iteration(const Swing& swing, const MeanTimes& base);
 
 /// What a stage takes if no number with a range is certain: the changes at the ends of the ranges,
 /// taken as independent, so as the root of the sum of their squares.
@@ -74,10 +74,10 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
 /// As parts of a screen.
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers);
 
-/// The number with the largest effect, in a sentence.
-std::string sensitivity_conclusion(const Sensitivity& sensitivity);
-
 /// A row per number with both ends of its range, times in ms, changes in per cent.
 std::string sensitivity_csv(const Sensitivity& sensitivity);
+
+/// `leviosim sensitivity` (tools/commands/commands.h).
+Command add_sensitivity_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

@@ -1,4 +1,4 @@
-#include "tools/app/study/sweep/plan.h"
+#include "tools/app/study/sweep/points.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

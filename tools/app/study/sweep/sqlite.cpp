@@ -1,4 +1,4 @@
-#include "tools/app/study/sweep/sqlite.h"
+#include "tools/app/study/sweep/sweep_store.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>

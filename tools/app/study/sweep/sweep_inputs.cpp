@@ -1,20 +1,324 @@
-#include "tools/app/study/sweep/sweep_inputs.h"
-
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 
+#include "platform_models/loader/instruction_set.h"
+#include "platform_models/loader/yaml_entries.h"
+#include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "sim/base/nearest.h"
 #include "sim/base/sha256.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_folder.h"
-#include "tools/app/study/point.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/run/workload.h"
+#include "tools/app/study/engine.h"
+#include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
+namespace {
+
+using Kind = SweepKey::Kind;
+
+constexpr std::string_view kChipPrefix = "platform.";
+
+struct Word {
+  std::string_view name;
+  Kind kind;
+};
+constexpr std::array kWords{Word{"platform", Kind::platform}, Word{"profile", Kind::profile},
+                            Word{"data", Kind::data},         Word{"trace", Kind::trace},
+                            Word{"seed", Kind::seed},         Word{"size", Kind::size},
+                            Word{"frames", Kind::frames},     Word{"cores", Kind::cores}};
+
+std::vector<std::string> all_names(const platform::Schema& schema) {
+  std::vector<std::string> names;
+  for (const Word& word : kWords) names.emplace_back(word.name);
+  for (const vio::Parameter& p : vio::parameters()) names.emplace_back(p.name);
+  for (const std::string& path : schema.paths()) names.push_back(std::string(kChipPrefix) + path);
+  return names;
+}
+
+const platform::Field& field_of(const SweepKey& key, const platform::Schema& schema) {
+  return schema.fields()[schema.find(key.path)];
+}
+
+/// The unit that the chip's file gives the parameter, else the base unit.
+std::string reference_unit(const SweepKey& key, platform::PlatformFile& reference) {
+  const platform::Parameter* const known = reference.find(key.path);
+  if (known != nullptr) return known->unit;
+  return std::string(field_of(key, reference.schema()).dimension->units[0].name);
+}
+
+platform::Setting read_chip_value(const SweepKey& key, std::string_view text,
+                                  platform::PlatformFile& reference, const platform::Place& place) {
+  const platform::Field& field = field_of(key, reference.schema());
+  if (field.is_choice()) return platform::read_value(field, text, "", place);
+  const std::optional<platform::Measure> measure = platform::split_measure(text);
+  if (!measure || measure->unit.empty())
+    return platform::read_value(field, text, reference_unit(key, reference), place);
+  const std::string_view number =
+      platform::trim(text.substr(0, text.size() - measure->unit.size()));
+  return platform::read_value(field, number, measure->unit, place);
+}
+
+/// Checks of the command line say the option, not the place.
+template <class Check>
+void check_at(const platform::Place& place, const Check& check) {
+  try {
+    check();
+  } catch (const InputError& error) {
+    place.fail(error.what());
+  }
+}
+
+std::int64_t most_of(Kind kind) {
+  return kind == Kind::seed ? std::numeric_limits<std::uint32_t>::max()
+                            : std::numeric_limits<int>::max();
+}
+
+}  // namespace
+
+bool SweepKey::is_number(const platform::Schema& schema) const {
+  switch (kind) {
+    case Kind::chip:
+      return !field_of(*this, schema).is_choice();
+    case Kind::workload:
+      return parameter->kind != vio::Parameter::Kind::toggle;
+    case Kind::seed:
+    case Kind::cores:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool SweepKey::belongs_to_recording() const {
+  return kind == Kind::workload || kind == Kind::profile || kind == Kind::data ||
+         kind == Kind::seed || kind == Kind::size || kind == Kind::frames;
+}
+
+SweepKey find_key(const std::string& name, const platform::Schema& schema,
+                  const platform::Place& place) {
+  for (const Word& word : kWords)
+    if (word.name == name) return {word.kind, name};
+  if (const vio::Parameter* parameter = vio::find_parameter(name))
+    return {Kind::workload, name, {}, parameter};
+  if (name.starts_with(kChipPrefix)) {
+    const std::string path = name.substr(kChipPrefix.size());
+    if (path == platform::kBasePath) return {Kind::instruction_set, name, path};
+    if (schema.find(path) != platform::Schema::kNone) return {Kind::chip, name, path};
+  }
+  place.fail("unknown key" + base::did_you_mean(name, all_names(schema)));
+}
+
+std::string SweepNumber::text() const { return platform::number_text(value) + unit; }
+
+SweepNumber chip_number(const SweepKey& key, double base, platform::PlatformFile& reference) {
+  const std::string unit = reference_unit(key, reference);
+  const double factor = field_of(key, reference.schema()).dimension->find(unit)->factor;
+  return {base / factor, factor, unit};
+}
+
+SweepNumber number_of(const SweepKey& key, const std::string& text,
+                      platform::PlatformFile& reference, const platform::Place& place) {
+  if (key.kind == Kind::chip)
+    return chip_number(key, read_chip_value(key, text, reference, place).base, reference);
+  if (key.kind == Kind::workload)
+    return {parse_workload_value(place.where, *key.parameter, text), 1, {}};
+  SweepNumber number;
+  check_at(place, [&] {
+    number.value = static_cast<double>(
+        parse_whole(key.name, text, key.kind == Kind::cores ? 1 : 0, most_of(key.kind)));
+  });
+  return number;
+}
+
+std::string normal_value(const SweepKey& key, const std::string& text,
+                         platform::PlatformFile& reference, const platform::Place& place) {
+  const std::string value(platform::trim(text));
+  if (value.empty()) place.fail("is empty; expected a value");
+  switch (key.kind) {
+    case Kind::chip: {
+      const platform::Setting setting = read_chip_value(key, value, reference, place);
+      if (field_of(key, reference.schema()).is_choice()) return setting.parameter.value;
+      return chip_number(key, setting.base, reference).text();
+    }
+    case Kind::workload:
+      return vio::value_text(*key.parameter,
+                             parse_workload_value(place.where, *key.parameter, value));
+    case Kind::seed:
+    case Kind::cores:
+      return number_of(key, value, reference, place).text();
+    case Kind::profile:
+      check_at(place, [&] { vio::profile_named(value, 1); });
+      return value;
+    case Kind::size:
+      check_at(place, [&] { parse_size(value); });
+      return value;
+    case Kind::frames:
+      check_at(place, [&] { traces::parse_frame_range(value); });
+      return value;
+    default:
+      return value;  // names of files: checked when they are opened
+  }
+}
+
+namespace {
+
+using platform::Place;
+using platform::YamlEntry;
+
+constexpr double kMostSteps = 1e6;
+
+double to_digits(double value, int digits) {
+  return platform::parse_number(fmt::format("{:.{}g}", value, digits)).value_or(value);
+}
+
+bool is_whole(const SweepKey& key, const platform::Schema& schema) {
+  if (key.kind == SweepKey::Kind::chip)
+    return schema.fields()[schema.find(key.path)].dimension->whole;
+  return key.parameter == nullptr || key.parameter->kind != vio::Parameter::Kind::number;
+}
+
+class RangeReader {
+ public:
+  RangeReader(const SweepKey& key, const std::string& file, const std::string& path,
+              platform::PlatformFile& reference)
+      : key_(key), file_(file), path_(path), reference_(reference) {}
+
+  Domain read(const std::vector<YamlEntry>& entries, const Place& place) {
+    if (!key_.is_number(reference_.schema()))
+      place.fail("has no range, as it is no number; expected a list of values");
+    check_keys(entries);
+    const SweepNumber low = number(entries, "from", place);
+    const SweepNumber high = number(entries, "to", place);
+    if (!(low.value < high.value)) place.fail("expected from below to");
+    const YamlEntry* step = find(entries, "step");
+    const YamlEntry* scale = find(entries, "scale");
+    if (step != nullptr && scale != nullptr) place.fail("has step and scale; expected one of them");
+    if (step != nullptr) return steps(low, high, *step);
+    return {{},
+            Span{low.value, high.value, is_logarithmic(scale, low, place),
+                 is_whole(key_, reference_.schema()), low.factor, low.unit}};
+  }
+
+ private:
+  static const YamlEntry* find(const std::vector<YamlEntry>& entries, std::string_view key) {
+    const auto it = std::find_if(entries.begin(), entries.end(),
+                                 [&](const YamlEntry& e) { return e.key == key; });
+    return it == entries.end() ? nullptr : &*it;
+  }
+  Place place(const YamlEntry& entry) const {
+    return platform::place_of(file_, entry.line, platform::joined(path_, entry.key));
+  }
+  void check_keys(const std::vector<YamlEntry>& entries) const {
+    const std::vector<std::string> known{"from", "to", "step", "scale"};
+    for (const YamlEntry& entry : entries)
+      if (std::find(known.begin(), known.end(), entry.key) == known.end())
+        place(entry).fail("unknown key" + base::did_you_mean(entry.key, known) +
+                          "; a range has from, to, and step or scale");
+  }
+  SweepNumber number(const std::vector<YamlEntry>& entries, const char* name, const Place& at) {
+    const YamlEntry* entry = find(entries, name);
+    if (entry == nullptr) at.fail(fmt::format("missing key '{}'", name));
+    return number_of(key_, platform::scalar(entry->value, place(*entry)), reference_,
+                     place(*entry));
+  }
+  bool is_logarithmic(const YamlEntry* scale, const SweepNumber& low, const Place& at) const {
+    if (scale == nullptr) return false;
+    const std::string text = platform::scalar(scale->value, place(*scale));
+    if (text != "log" && text != "linear")
+      place(*scale).fail(fmt::format("'{}' is not known; expected linear or log", text));
+    if (text == "log" && !(low.value > 0)) at.fail("a log scale begins above 0");
+    return text == "log";
+  }
+  /// A step has the unit of the range; it may be smaller than any valid value.
+  double step_size(const YamlEntry& entry, const SweepNumber& low) const {
+    const Place at = place(entry);
+    const std::string text = platform::scalar(entry.value, at);
+    const std::optional<platform::Measure> measure = platform::split_measure(text);
+    if (!measure || !(measure->number > 0)) at.fail(fmt::format("'{}' is no number above 0", text));
+    if (measure->unit.empty() || measure->unit == low.unit) return measure->number;
+    const platform::Schema& schema = reference_.schema();
+    const platform::Unit* unit =
+        key_.kind == SweepKey::Kind::chip
+            ? schema.fields()[schema.find(key_.path)].dimension->find(measure->unit)
+            : nullptr;
+    if (unit == nullptr) at.fail(fmt::format("'{}' is no unit of {}", measure->unit, key_.name));
+    return measure->number * unit->factor / low.factor;
+  }
+  Domain steps(const SweepNumber& low, const SweepNumber& high, const YamlEntry& entry) {
+    const double step = step_size(entry, low);
+    constexpr double kRounding = 1e-9;
+    const double count = std::floor((high.value - low.value) / step + kRounding) + 1;
+    if (count > kMostSteps)
+      place(entry).fail(fmt::format("gives {:g} values; expected at most {:g}", count, kMostSteps));
+    Domain domain;
+    for (int k = 0; k < static_cast<int>(count); ++k) {
+      SweepNumber value = low;
+      value.value = to_digits(low.value + k * step, 12);
+      domain.values.push_back(normal_value(key_, value.text(), reference_, place(entry)));
+    }
+    return domain;
+  }
+
+  const SweepKey& key_;
+  const std::string& file_;
+  const std::string& path_;
+  platform::PlatformFile& reference_;
+};
+
+}  // namespace
+
+Domain read_domain(const SweepKey& key, const platform::YamlNode& node, const std::string& file,
+                   int line, const std::string& path, platform::PlatformFile& reference) {
+  const Place place = platform::place_of(file, line, path);
+  if (node.is_mapping())
+    return RangeReader(key, file, path, reference)
+        .read(platform::entries_of(node, file, path), place);
+  Domain domain;
+  const auto add = [&](const platform::YamlNode& value) {
+    domain.values.push_back(normal_value(key, platform::scalar(value, place), reference, place));
+  };
+  if (!node.is_sequence()) {
+    add(node);
+    return domain;
+  }
+  for (const platform::YamlNode& value : node.items()) add(value);
+  if (domain.values.empty()) place.fail("is an empty list; expected values");
+  return domain;
+}
+
+std::string value_at(const Domain& domain, double u) {
+  check(u >= 0 && u < 1, "a place in a domain");
+  if (!domain.span) {
+    const auto count = static_cast<double>(domain.values.size());
+    return domain.values[static_cast<std::size_t>(u * count)];
+  }
+  const Span& span = *domain.span;
+  const auto at = [&](double low, double high) {
+    return span.logarithmic ? low * std::pow(high / low, u) : low + (high - low) * u;
+  };
+  double value = 0;
+  if (span.whole && span.factor == 1) {  // counts: each as likely as the other
+    value = std::clamp(std::floor(at(span.low, span.high + 1)), span.low, span.high);
+  } else {
+    value = std::clamp(to_digits(at(span.low, span.high), 4), span.low, span.high);
+    if (span.whole) value = std::round(value * span.factor) / span.factor;
+  }
+  return platform::number_text(value) + span.unit;
+}
+
 namespace {
 
 /// What open() returns, with the place in front of its complaints.

@@ -11,7 +11,6 @@
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/study/sweep/sweep_report.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,21 +1,113 @@
-// Results of a sweep in one SQLite file (README.md lists tables and views). Each point is written
-// as soon as it is finished, in a transaction of its own: a process that dies leaves whole points
-// only. Several processes may write to one file; a point that two of them finish is there once.
+// As much of SQLite as sweeps need: statements with bound values, rows one after the other. Faults,
+// such as a file that is no data base or a full disk, are InputErrors that name the file. Waiting
+// for other processes and long statements end with Interrupted (sim/base/interruption.h).
+//
+// A data base may be a stranger's. SQLite would play back a journal beside it, and delete whatever
+// file that names as its super-journal: a journal that names one, and whatever else beside the file
+// would be opened but is none, is refused before SQLite sees it. Functions in its schema are not
+// trusted, triggers do not run, values are bounded, and statements end after a number of steps that
+// grows with the file.
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/outputs/output_folder.h"
-#include "tools/app/study/sweep/point_run.h"
+#include "tools/app/budget/budget.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/study/sweep/points.h"
-#include "tools/app/study/sweep/sqlite.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
 
 namespace leviosim::tools {
+
+class Database {
+ public:
+  enum class Mode {
+    create,
+    existing,
+    read_only  ///< changes nothing, and refuses what a killed process left half-done
+  };
+
+  Database(const std::filesystem::path& file, Mode mode);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  /// Statements without values, separated by semicolons.
+  void run(const std::string& sql);
+  [[noreturn]] void fail(std::string_view message) const;
+  /// With what SQLite says of the last statement. @throws Interrupted if that was stopped
+  [[noreturn]] void fail_with_reason() const;
+
+ private:
+  friend class Statement;
+  void confine();
+  static int is_to_stop(void* database);
+
+  std::string file_;
+  sqlite3* handle_ = nullptr;
+  std::uint64_t steps_ = 0;  ///< of SQLite's machine, in long statements
+};
+
+class Statement {
+ public:
+  Statement(Database& database, const std::string& sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  /// Values of the statement's question marks, from 1; reset() keeps none.
+  Statement& bind(int place, std::int64_t value);
+  Statement& bind(int place, std::optional<double> value);
+  Statement& bind(int place, std::string_view value);
+  /// The next row, if there is one.
+  bool step();
+  /// Runs a statement that has no rows, and makes it ready for other values.
+  void run();
+  void reset();
+
+  std::int64_t whole(int column) const;
+  std::optional<double> number(int column) const;
+  std::string text(int column) const;
+  /// Binds the value of a column, whatever its type, at the same place of another statement.
+  void bind_column(int column, Statement& other) const;
+
+ private:
+  /// @param result  of SQLite; a value that memory lacks for would become NULL
+  void expect_bound(int result) const;
+
+  Database& database_;
+  sqlite3_stmt* handle_ = nullptr;
+};
+
+/// All or nothing: what was written is undone unless commit() is reached. Others that write wait.
+class Transaction {
+ public:
+  explicit Transaction(Database& database);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+
+  void commit();
+
+ private:
+  Database& database_;
+  bool open_ = true;
+};
+
+// Results of a sweep in one SQLite file (README.md lists tables and views). Each point is written
+// as soon as it is finished, in a transaction of its own: a process that dies leaves whole points
+// only. Several processes may write to one file; a point that two of them finish is there once.
 
 inline constexpr const char* kSweepFile = "sweep.sqlite";
 inline constexpr const char* kSweepCsv = "sweep.csv";
@@ -144,5 +236,39 @@ CREATE VIEW IF NOT EXISTS points AS
 CREATE VIEW IF NOT EXISTS metrics AS
   SELECT point, name, value, unit, description FROM figure_values JOIN figures USING (figure);
 )";
+
+// What `leviosim sweep` prints when it is done.
+
+// The points of a sweep that no other is better than in every respect.
+
+/// Whether `a` is at least as good as `b` in every objective and better in one. Less is better, and
+/// what is missing is worse than any number.
+bool dominates(const SweepOutcome& a, const SweepOutcome& b);
+
+/// The outcomes that no other dominates, those that failed left out; by latency, then number.
+std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes);
+
+// A sweep as a page for a browser: all finished points to explore, and curves where one or two
+// parameters vary.
+
+// The points of a sweep held against a budget (tools/app/budget): every finished point must meet
+// every limit that is for it. Limits with a sign are relative to the first point of the plan.
+//
+// Left out: reasons by mechanism, for which a sweep keeps too little; compare has them.
+
+struct SweepCheck {
+  std::size_t held = 0;
+  std::size_t missed = 0;  ///< points with a limit that is not met, or that cannot run
+  std::string verdict;     ///< in a sentence
+  std::string text;        ///< how many, and a table of them
+};
+
+/// @throws InputError for figures that the points do not have, Interrupted
+SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
+                       const std::vector<SweepPoint>& points, SweepInputs& inputs,
+                       SweepStore& store);
+
+/// `leviosim sweep` (tools/commands/commands.h).
+Command add_sweep_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

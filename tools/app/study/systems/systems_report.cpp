@@ -9,8 +9,7 @@
 #include "platform_models/loader/loader.h"
 #include "sim/base/csv.h"
 #include "sim/base/csv_table.h"
-#include "tools/app/flow/flow_report.h"
-#include "tools/app/flow/flow_source.h"
+#include "tools/app/flow/flow.h"
 #include "tools/app/html_report/page_json.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/energy.h"
@@ -147,8 +146,12 @@ Json systems_page(const std::vector<SystemRow>& rows) {
   for (const SystemRow& row : rows) {
     const PublishedSystem& p = row.published;
     if (p.frames_per_s && p.power_mw)
-      spots.push_back({p.name, p.is_bound ? "published, at most" : "published", p.frames_per_s,
-                       p.power_mw, {}, {}});
+      spots.push_back({p.name,
+                       p.is_bound ? "published, at most" : "published",
+                       p.frames_per_s,
+                       p.power_mw,
+                       {},
+                       {}});
     if (!row.here || !row.here->power) continue;
     const auto mw = [](Watts power) { return power.count() * kMilli; };
     const auto& power = *row.here->power;

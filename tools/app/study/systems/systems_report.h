@@ -10,7 +10,7 @@
 #include "sim/energy/estimate.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
-#include "tools/app/study/runner.h"
+#include "tools/app/study/engine.h"
 
 namespace leviosim::tools {
 

@@ -1,9 +1,8 @@
-#include "tools/app/study/tune/tune_plot.h"
+#include "tools/app/study/tune/tuning.h"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <filesystem>
 #include <functional>
 
 #include "tools/app/report/plot/plot.h"
@@ -223,13 +222,6 @@ void draw_legend(Svg& svg, const TunePlan& plan) {
   svg.text({kLegendX + 26, y}, "diverged", {});
 }
 
-/// Names of folders may be long; the last part tells most.
-std::string flight_name(const TunePlan& plan) {
-  const std::filesystem::path path =
-      std::filesystem::absolute(plan.sequence.folder).lexically_normal();
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
-
 }  // namespace
 
 std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points,
@@ -241,8 +233,8 @@ std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points
   svg.text({kLeftEdge, 56},
            fmt::format("{}, {} cores, at the lowest voltage of each clock; {}, {} frames recorded "
                        "at {:g} frames/s;",
-                       plan.request.platform.name, plan.request.cores, flight_name(plan),
-                       plan.sequence.frames, plan.recorded_hz),
+                       plan.request.platform.name, plan.request.cores,
+                       folder_name(plan.sequence.folder), plan.sequence.frames, plan.recorded_hz),
            {12});
   const std::string medians = plan.variations.size() > 1
                                   ? fmt::format("; medians over {} {}", plan.variations.size(),

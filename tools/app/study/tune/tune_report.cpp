@@ -1,15 +1,27 @@
-#include "tools/app/study/tune/tune_report.h"
-
+#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
+#include "sim/base/error.h"
 #include "sim/base/printable_text.h"
+#include "tools/app/budget/gate.h"
+#include "tools/app/cli/host.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/version.h"
+#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/batch_plan.h"
-#include "tools/app/study/run_outcome.h"
+#include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/run/simulate.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/tune/tuning.h"
 
 namespace leviosim::tools {
 namespace {
@@ -31,10 +43,6 @@ std::string volts(const ClockSetting& setting) {
   return setting.voltage ? fmt::format("{:.2f}", setting.voltage->count()) : kNothing;
 }
 
-std::string ate(const std::optional<double>& error) {
-  return error ? fmt::format("{:.3f}", *error) : "diverged";
-}
-
 /// "240 MHz and 0.65 V".
 std::string clock_text(const ClockSetting& setting) {
   std::string text = fmt::format("{:g} MHz", megahertz(setting.clock));
@@ -44,12 +52,12 @@ std::string clock_text(const ClockSetting& setting) {
 /// "300 MHz (6.0 %, 0.100)".
 std::string short_text(const TunePoint& point) {
   return fmt::format("{:g} MHz ({} %, {})", megahertz(point.setting.clock),
-                     percent(point.miss_rate()), ate(point.ate().median));
+                     percent(point.miss_rate()), error_text(point.ate().median, 3));
 }
 
 std::string point_text(const TunePoint& point) {
-  std::string text =
-      fmt::format("{} % missed, ATE {} m", percent(point.miss_rate()), ate(point.ate().median));
+  std::string text = fmt::format("{} % missed, ATE {} m", percent(point.miss_rate()),
+                                 error_text(point.ate().median, 3));
   if (const auto power = point.median(&LoopOutcome::power_w))
     text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
                         milli(point.median(&LoopOutcome::frame_j), 3));
@@ -104,65 +112,72 @@ struct Run {
   const Variation& variation;
 };
 
-base::CsvTable<Run> runs_table(const TunePlan& plan) {
+constexpr double kNsToMs = 1e-6;
+
+StudyTable<Run> runs_table(const TunePlan& plan) {
   using base::fixed;
-  base::CsvTable<Run> table;
+  StudyTable<Run> table;
   const auto general = [](double value) { return fmt::format("{:g}", value); };
-  const auto add_of_point = [&](const char* name, auto of) {
-    table.add(name, [of](const Run& r) { return base::Cell(of(r.point)); });
+  const auto add_of_point = [&](const StudyColumn& column, auto of) {
+    table.add(column, [of](const Run& r) { return base::Cell(of(r.point)); });
   };
-  const auto add_of_camera = [&](const char* name, auto of) {
-    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome.loop->camera)); });
+  const auto add_of_camera = [&](const StudyColumn& column, auto of) {
+    table.add(column, [of](const Run& r) { return base::Cell(of(r.outcome.loop->camera)); });
   };
-  const auto add = [&](const char* name, auto of) {
-    table.add(name, [of](const Run& r) { return base::Cell(of(r.outcome)); });
+  const auto add = [&](const StudyColumn& column, auto of) {
+    table.add(column, [of](const Run& r) { return base::Cell(of(r.outcome)); });
   };
   using P = const TunePoint&;
   using C = const CameraFigures&;
   using O = const RunOutcome&;
-  add_of_point("fps", [=](P p) { return general(p.fps); });
-  add_of_point("clock_mhz", [=](P p) { return general(megahertz(p.setting.clock)); });
-  add_of_point("voltage", [=](P p) {
+  add_of_point({"fps", "frame rate", "frames/s", true}, [=](P p) { return general(p.fps); });
+  add_of_point({"clock_mhz", "clock", "MHz", true},
+               [=](P p) { return general(megahertz(p.setting.clock)); });
+  add_of_point({"voltage", "supply", "V", true}, [=](P p) {
     return p.setting.voltage ? general(p.setting.voltage->count()) : std::string();
   });
-  add("deadline", [&plan](O) { return info_of(plan.deadline).name; });
-  table.add("seed", [](const Run& r) { return r.variation.seed; });
-  table.add("variation", [](const Run& r) { return r.variation.name; });
-  add_of_camera("arrived", [](C c) { return c.arrived; });
-  add_of_camera("processed", [](C c) { return c.processed; });
-  add_of_camera("dropped", [](C c) { return c.dropped; });
-  add_of_camera("late", [](C c) { return c.late; });
-  add_of_camera("missed", [](C c) { return c.missed(); });
-  add_of_camera("missed_share", [](C c) { return fixed(c.share_of(c.missed()), 6); });
-  add_of_camera("waited", [](C c) { return c.waited; });
-  add_of_camera("most_found", [](C c) { return c.most_found; });
-  add_of_camera("latency_p50_ns", [](C c) { return c.latency.p50_ns; });
-  add_of_camera("latency_p95_ns", [](C c) { return c.latency.p95_ns; });
-  add_of_camera("latency_p99_ns", [](C c) { return c.latency.p99_ns; });
-  add_of_camera("latency_worst_ns", [](C c) { return c.latency.max_ns; });
-  const auto add_milli = [&](const char* name, auto figure, double Banded::*part) {
-    add(name, [=](O o) {
+  add({"deadline"}, [&plan](O) { return info_of(plan.deadline).name; });
+  table.add({"seed"}, [](const Run& r) { return r.variation.seed; });
+  table.add({"variation", "variation", "", true}, [](const Run& r) { return r.variation.name; });
+  add_of_camera({"arrived"}, [](C c) { return c.arrived; });
+  add_of_camera({"processed"}, [](C c) { return c.processed; });
+  add_of_camera({"dropped"}, [](C c) { return c.dropped; });
+  add_of_camera({"late"}, [](C c) { return c.late; });
+  add_of_camera({"missed"}, [](C c) { return c.missed(); });
+  add_of_camera({"missed_share", "missed frames", "%", false, false, 100},
+                [](C c) { return fixed(c.share_of(c.missed()), 6); });
+  add_of_camera({"waited"}, [](C c) { return c.waited; });
+  add_of_camera({"most_found"}, [](C c) { return c.most_found; });
+  add_of_camera({"latency_p50_ns", "median latency", "ms", false, false, kNsToMs},
+                [](C c) { return c.latency.p50_ns; });
+  add_of_camera({"latency_p95_ns"}, [](C c) { return c.latency.p95_ns; });
+  add_of_camera({"latency_p99_ns", "latency of 99 %", "ms", false, false, kNsToMs},
+                [](C c) { return c.latency.p99_ns; });
+  add_of_camera({"latency_worst_ns", "worst latency", "ms", false, false, kNsToMs},
+                [](C c) { return c.latency.max_ns; });
+  const auto add_milli = [&](const StudyColumn& column, auto figure, double Banded::*part) {
+    add(column, [=](O o) {
       const std::optional<Banded>& banded = *o.loop.*figure;
       return banded ? fixed(*banded.*part * 1e3, 9) : base::Cell();
     });
   };
-  add_milli("power_mw", &LoopOutcome::power_w, &Banded::value);
-  add_milli("power_low_mw", &LoopOutcome::power_w, &Banded::low);
-  add_milli("power_high_mw", &LoopOutcome::power_w, &Banded::high);
-  add_milli("frame_mj", &LoopOutcome::frame_j, &Banded::value);
-  add_milli("frame_low_mj", &LoopOutcome::frame_j, &Banded::low);
-  add_milli("frame_high_mj", &LoopOutcome::frame_j, &Banded::high);
-  add("ate_rmse_m", [](O o) { return fixed(o.ate_m, 9); });
-  add("matched", [](O o) { return o.matched; });
-  add("completion", [](O o) { return fixed(o.completion, 9); });
-  add("path_m", [](O o) { return fixed(o.path_m, 9); });
-  add("failure", [](O o) { return plain_cell(o.failure); });
-  add_of_point("point_meets_limits", [&plan](P p) { return int{is_enough(p, plan)}; });
+  add_milli({"power_mw", "power", "mW"}, &LoopOutcome::power_w, &Banded::value);
+  add_milli({"power_low_mw"}, &LoopOutcome::power_w, &Banded::low);
+  add_milli({"power_high_mw"}, &LoopOutcome::power_w, &Banded::high);
+  add_milli({"frame_mj", "energy per frame", "mJ"}, &LoopOutcome::frame_j, &Banded::value);
+  add_milli({"frame_low_mj"}, &LoopOutcome::frame_j, &Banded::low);
+  add_milli({"frame_high_mj"}, &LoopOutcome::frame_j, &Banded::high);
+  add({"ate_rmse_m", "position error (ATE)", "m"}, [](O o) { return fixed(o.ate_m, 9); });
+  add({"matched"}, [](O o) { return o.matched; });
+  add({"completion", "completion", "%", false, true, 100},
+      [](O o) { return fixed(o.completion, 9); });
+  add({"path_m"}, [](O o) { return fixed(o.path_m, 9); });
+  add({"failure", "failure", ""}, [](O o) { return plain_cell(o.failure); });
+  add_of_point({"point_meets_limits"}, [&plan](P p) { return int{is_enough(p, plan)}; });
   return table;
 }
 
-}  // namespace
-
+/// What stands below the table: what its figures are, with the protocol of the errors.
 std::string tune_notes(const TunePlan& plan) {
   std::string text = fmt::format(
       "missed: dropped, or the pose came later than a period after the frame; {}\n"
@@ -182,6 +197,17 @@ std::string tune_notes(const TunePlan& plan) {
              "is above the limit or that diverged; poses: the least\n",
              names.size(), fmt::join(names, ", "));
 }
+
+/// By point, then variation.
+std::vector<Run> runs_of(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  std::vector<Run> runs;
+  for (const TunePoint& point : points)
+    for (std::size_t i = 0; i < plan.variations.size(); ++i)
+      runs.push_back({point, point.outcomes[i], plan.variations[i]});
+  return runs;
+}
+
+}  // namespace
 
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
   const bool several = plan.variations.size() > 1;
@@ -210,9 +236,12 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
         fmt::format("{:g}", point.fps), fmt::format("{:g}", megahertz(point.setting.clock)),
         volts(point.setting), percent(point.miss_rate()), percent(point.drop_rate())};
     for (const LatencyColumn& latency : kLatencies) cells.push_back(ms(point.median(latency.of)));
-    cells.insert(cells.end(), {milli(power, 2), milli_band(power),
-                               milli(point.median(&LoopOutcome::frame_j), 3), ate(errors.median)});
-    if (several) cells.push_back(fmt::format("{} … {}", ate(errors.low), ate(errors.high)));
+    cells.insert(cells.end(),
+                 {milli(power, 2), milli_band(power), milli(point.median(&LoopOutcome::frame_j), 3),
+                  error_text(errors.median, 3)});
+    if (several)
+      cells.push_back(
+          fmt::format("{} … {}", error_text(errors.low, 3), error_text(errors.high, 3)));
     if (plan.perturbs) cells.push_back(std::to_string(failures(point, plan)));
     cells.push_back(percent(point.completion()));
     cells.push_back(is_enough(point, plan) ? "yes" : "");
@@ -222,11 +251,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
 }
 
 std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  std::vector<Run> runs;
-  for (const TunePoint& point : points)
-    for (std::size_t i = 0; i < plan.variations.size(); ++i)
-      runs.push_back({point, point.outcomes[i], plan.variations[i]});
-  return runs_table(plan).text(runs);
+  return runs_table(plan).csv(runs_of(plan, points));
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
@@ -245,6 +270,9 @@ std::string tune_conclusion(const std::vector<Choice>& choices) {
                      clock_text(best->setting), best->fps, point_text(*best));
 }
 
+namespace {
+
+/// The same as boxes of a page, one for each frame rate.
 std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices) {
   std::vector<StudyBox> boxes;
   for (const Choice& choice : choices) {
@@ -269,6 +297,7 @@ std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choic
   return boxes;
 }
 
+/// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.
 Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {
   Json document;
   document["lowest"] = Json::array();
@@ -284,6 +313,7 @@ Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {
   return document;
 }
 
+/// The content of manifest.json. Nothing in it depends on the host or on cache hits.
 Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
                    const Words& command_line) {
   Json document = study_manifest("leviosim tune manifest", command_line);
@@ -307,33 +337,138 @@ Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
   return document;
 }
 
+/// The data of the page.
 Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
                const std::vector<Choice>& choices) {
-  constexpr double kNsToMs = 1e-6;
   StudyPage page;
   page.title = fmt::format("Clocks for {} on {}", plan.request.profile, plan.options.platform);
   page.boxes = choice_boxes(plan, choices);
   page.summary = tune_notes(plan);
-  page.points = tune_csv(plan, points);
-  page.columns = {{"fps", "frame rate", "frames/s", true},
-                  {"clock_mhz", "clock", "MHz", true},
-                  {"voltage", "supply", "V", true},
-                  {"variation", "variation", "", true},
-                  {"missed_share", "missed frames", "%", false, false, 100},
-                  {"latency_p50_ns", "median latency", "ms", false, false, kNsToMs},
-                  {"latency_p99_ns", "latency of 99 %", "ms", false, false, kNsToMs},
-                  {"latency_worst_ns", "worst latency", "ms", false, false, kNsToMs},
-                  {"power_mw", "power", "mW"},
-                  {"frame_mj", "energy per frame", "mJ"},
-                  {"ate_rmse_m", "position error (ATE)", "m"},
-                  {"completion", "completion", "%", false, true, 100},
-                  {"failure", "failure", ""}};
+  runs_table(plan).show(page, runs_of(plan, points));
   page.curves = {"clock_mhz", "fps", {"missed_share", "ate_rmse_m", "power_mw", "latency_p99_ns"}};
   page.limits = {{"missed_share", 100 * plan.miss_rate}, {"ate_rmse_m", plan.ate_m}};
   page.x = "power_mw";
   page.y = "ate_rmse_m";
   page.colour = "fps";
   return study_report(page);
+}
+
+// `leviosim tune`: closed loops over clock and frame rate. Its folder:
+//
+//   manifest.json   what the batch was made from, and what was chosen
+//   runs.csv        a row per point and seed
+//   tune.svg        error, missed frames and power over the clock
+//   chosen/         the run folder of the lowest clock that is enough, with the first seed, run
+//   again
+
+struct GatedTuneWords : TuneWords {
+  GateOptions gate;
+  std::string report;
+};
+
+/// A loop with the first variation.
+struct ChosenRun {
+  RunRequest request;
+  RunResult result;
+};
+
+/// Runs a point by itself with all variations, whatever the cache holds. @returns what the first
+/// gave
+ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
+  std::optional<ChosenRun> first;
+  for (std::size_t i = 0; i < plan.variations.size(); ++i) {
+    RunRequest request = request_of(plan, point.fps, point.setting, plan.variations[i]);
+    if (i == 0) request.time_bands = TimeBandsOf::team;  // as in the folder of a run
+    RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
+    const RunOutcome outcome = outcome_of(result, plan.sequence.truth, plan.measure);
+    if (to_text(figures_of(outcome)) != to_text(figures_of(point.outcomes[i])))
+      throw InputError(
+          "tune: run again, the chosen point gave other figures than were found in the cache of "
+          "finished runs; remove it, or choose another with --cache");
+    if (i == 0) first = ChosenRun{std::move(request), std::move(result)};
+  }
+  return std::move(*first);
+}
+
+Manifest manifest_of(const TunePlan& plan, const TunePoint& point, const ChosenRun& run,
+                     const Words& command_line) {
+  return make_manifest(run_options_of(plan, point), run.request, command_line);
+}
+
+void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
+                  const std::optional<ChosenRun>& again, const Words& command_line) {
+  const std::vector<Choice> all = choices(plan, points);
+  plan.out->write("runs.csv", tune_csv(plan, points));
+  plan.out->write("tune.svg", tune_plot(plan, points, all));
+  if (again)
+    write_run_folder(*plan.out, again->result,
+                     manifest_of(plan, *chosen(all), *again, command_line),
+                     platform::to_yaml(again->request.platform), "chosen/");
+  plan.out->write("manifest.json", json_text(tune_manifest(plan, all, command_line), 2) + '\n');
+}
+
+/// Holds the chosen point against the budget, with the first variation.
+void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
+          const std::optional<ChosenRun>& again, const Words& command_line) {
+  if (!again) {
+    print(Printout("no point to hold against the budget\n"));
+    throw LimitNotMet();
+  }
+  print_check(
+      gate.check(make_record("the chosen point", manifest_of(plan, *best, *again, command_line),
+                             again->result, cycle_parts(again->result))));
+}
+
+void run(const CLI::App& command, const GatedTuneWords& words, const Words& command_line) {
+  expect_json_or_budget(words.run.json, words.gate.budget);
+  const std::optional<Gate> gate = optional_gate(words.gate, {});
+  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.run.force);
+  const TunePlan plan = make_tune_plan(command, words);
+  const std::vector<Point> runs = tune_runs(plan);
+  const std::vector<TunePoint> points =
+      tune_points(plan, runs, run_outcomes(runs, plan.measure, plan.runner));
+  const std::vector<Choice> all = choices(plan, points);
+  const TunePoint* best = chosen(all);
+  std::optional<ChosenRun> again;
+  if (best != nullptr) again = run_again(plan, *best);
+  const auto lines = [&] {
+    const std::string head = fmt::format(
+        "leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n", version(),
+        plan.request.profile, printable(plan.options.platform), plan.request.cores,
+        plan.sequence.frames, printable(plan.options.data), runs.size());
+    std::string choice = choice_text(plan, all);
+    if (again) choice += "run again by itself, it gave the same figures: confirmed\n";
+    std::vector<std::string> next;
+    if (best != nullptr) next.push_back(printable(run_command_text(plan, *best)));
+    return Printout({head + tune_table(plan, points), tune_notes(plan), choice})
+        .ending(tune_conclusion(all), next);
+  };
+  const Printout shown = printout(words.run.json, lines, [&] {
+    return table_document("tuning", tune_csv(plan, points), choice_json(plan, all));
+  });
+  if (plan.out)
+    publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });
+  else
+    print(shown);
+  if (page) publish_report(page, tune_page(plan, points, all), !words.run.json);
+  if (gate) hold(*gate, plan, best, again, command_line);
+  if (best == nullptr) throw LimitNotMet();
+}
+
+}  // namespace
+
+Command add_tune_command(CLI::App& app, const Words& words) {
+  CLI::App* command = app.add_subcommand(
+      "tune",
+      "Accuracy and power over the clock, in closed loops; the lowest clock that meets the limits");
+  const auto typed = std::make_shared<GatedTuneWords>();
+  add_tune_options(*command, *typed);
+  add_report_option(*command, typed->report);
+  add_gate_options(*command, typed->gate);
+  add_json_option(*command, typed->run.json);
+  add_examples(*command,
+               {"leviosim tune --data flight --clock 240:370:130 --fps 10,20 --out tuned"});
+  return {command, [=, &words] { run(*command, *typed, words); }};
 }
 
 }  // namespace leviosim::tools

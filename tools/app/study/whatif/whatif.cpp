@@ -9,9 +9,10 @@
 
 #include "platform_models/loader/value.h"
 #include "sim/base/error.h"
+#include "sim/base/text.h"
 #include "sim/energy/area.h"
 #include "sim/work/offload_regions.h"
-#include "tools/app/cli/interrupts.h"
+#include "tools/app/cli/host.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
@@ -24,16 +25,6 @@ namespace {
 
 constexpr const char* kAsItIs = "as it is";
 
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(at, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 struct Choice {
   std::string path;
   std::vector<std::string> values;
@@ -42,7 +33,7 @@ struct Choice {
 /// "a=1,2,b=3": a is 1 or 2, b is 3.
 std::vector<Choice> choices_of(const std::string& text) {
   std::vector<Choice> choices;
-  for (const std::string& item : split(text, ',')) {
+  for (const std::string& item : base::split(text, ',')) {
     const std::size_t equals = item.find('=');
     if (equals == std::string::npos)
       choices.back().values.push_back(item);

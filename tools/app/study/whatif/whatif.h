@@ -8,11 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/comparison/main_causes.h"
+#include "tools/app/cli/command_line.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
-#include "tools/app/study/run_outcome.h"
-#include "tools/app/study/runner.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/engine.h"
 #include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
@@ -74,5 +77,18 @@ class WhatIf {
   SweepRow again_;
   SweepPlan plan_;
 };
+
+// What if, for people and programs: text of 80 columns, CSV, and a page with bars.
+
+/// A bar a variant: the time of a mean frame, and its energy.
+std::string whatif_bars(const std::vector<VariantResult>& results);
+
+/// In one line, why a variant takes another time: "waiting for code -11.2 ms, most in EPnP RANSAC".
+std::string reason_of(const VariantResult& base, const VariantResult& variant);
+
+std::string whatif_csv(const std::vector<VariantResult>& results);
+
+/// `leviosim whatif` (tools/commands/commands.h).
+Command add_whatif_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

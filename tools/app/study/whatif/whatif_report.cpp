@@ -1,16 +1,27 @@
-#include "tools/app/study/whatif/whatif_report.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "sim/base/csv_table.h"
+#include "sim/base/error.h"
+#include "sim/base/input_file.h"
 #include "sim/base/printable_text.h"
+#include "sim/base/text.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/comparison/run_record.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/run/run_session.h"
+#include "tools/app/study/whatif/whatif.h"
 
 namespace leviosim::tools {
 namespace {
@@ -43,13 +54,7 @@ Changes changes_of(const VariantResult& base, const VariantResult& variant) {
 }
 
 std::string wrapped(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(' ', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return std::string(kIndent, ' ') + wrap(words, " ", kIndent, kWidth) + '\n';
+  return std::string(kIndent, ' ') + wrap(base::split(text, ' '), " ", kIndent, kWidth) + '\n';
 }
 
 std::string below(const VariantResult& base, const VariantResult& variant) {
@@ -140,6 +145,9 @@ std::string reason_of(const VariantResult& base, const VariantResult& variant) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+namespace {
+
+/// In a sentence: the variant that cannot run, else the fastest.
 std::string whatif_conclusion(const std::vector<VariantResult>& results) {
   const VariantResult* fastest = nullptr;
   for (std::size_t i = 1; i < results.size(); ++i) {
@@ -151,11 +159,14 @@ std::string whatif_conclusion(const std::vector<VariantResult>& results) {
                      printable(fastest->name), fastest->mean_ms(), results.front().mean_ms());
 }
 
+/// A row a variant with its reason below; the first is the run as it is.
 std::string whatif_table(const std::vector<VariantResult>& results) {
   std::vector<const VariantResult*> rows;
   for (std::size_t i = 1; i < results.size(); ++i) rows.push_back(&results[i]);
   return table_of(results.front(), rows);
 }
+
+}  // namespace
 
 std::string whatif_bars(const std::vector<VariantResult>& results) {
   constexpr double kBar = 34;
@@ -172,6 +183,9 @@ std::string whatif_bars(const std::vector<VariantResult>& results) {
   return text;
 }
 
+namespace {
+
+/// The same ranked: time gained per area and per energy; what changes nothing, and what cannot be.
 std::string advice_text(const std::vector<VariantResult>& results) {
   const VariantResult& base = results.front();
   std::vector<const VariantResult*> gains;
@@ -216,7 +230,8 @@ std::string advice_text(const std::vector<VariantResult>& results) {
   return text + list_of("Cannot run:", impossible);
 }
 
-std::string whatif_csv(const std::vector<VariantResult>& results) {
+/// @param results  outlive the table
+StudyTable<VariantResult> variants_table(const std::vector<VariantResult>& results) {
   using R = const VariantResult&;
   const auto time = [](Banded FrameTimes::*figure, double Banded::*part) {
     return [=](R r) {
@@ -236,67 +251,214 @@ std::string whatif_csv(const std::vector<VariantResult>& results) {
       return base::fixed(r.energy_mj ? std::optional((*r.energy_mj).*part) : std::nullopt, 6);
     };
   };
-  base::CsvTable<VariantResult> table{
-      {"variant", [](R r) { return r.name; }},
-      {"frame_mean_ms", time(&FrameTimes::mean_ns, &Banded::value)},
-      {"frame_mean_ms_low", time(&FrameTimes::mean_ns, &Banded::low)},
-      {"frame_mean_ms_high", time(&FrameTimes::mean_ns, &Banded::high)},
-      {"frame_p99_ms", time(&FrameTimes::p99_ns, &Banded::value)},
-      {"frame_p99_ms_low", time(&FrameTimes::p99_ns, &Banded::low)},
-      {"frame_p99_ms_high", time(&FrameTimes::p99_ns, &Banded::high)},
-      {"frame_worst_ms", time(&FrameTimes::worst_ns, &Banded::value)},
-      {"frame_worst_ms_low", time(&FrameTimes::worst_ns, &Banded::low)},
-      {"frame_worst_ms_high", time(&FrameTimes::worst_ns, &Banded::high)},
-      {"sustainable_fps",
+  return StudyTable<VariantResult>{
+      {{"variant", "variant", "", true}, [](R r) { return r.name; }},
+      {{"frame_mean_ms", "mean frame", "ms"}, time(&FrameTimes::mean_ns, &Banded::value)},
+      {{"frame_mean_ms_low"}, time(&FrameTimes::mean_ns, &Banded::low)},
+      {{"frame_mean_ms_high"}, time(&FrameTimes::mean_ns, &Banded::high)},
+      {{"frame_p99_ms", "frame time of 99 %", "ms"}, time(&FrameTimes::p99_ns, &Banded::value)},
+      {{"frame_p99_ms_low"}, time(&FrameTimes::p99_ns, &Banded::low)},
+      {{"frame_p99_ms_high"}, time(&FrameTimes::p99_ns, &Banded::high)},
+      {{"frame_worst_ms", "worst frame", "ms"}, time(&FrameTimes::worst_ns, &Banded::value)},
+      {{"frame_worst_ms_low"}, time(&FrameTimes::worst_ns, &Banded::low)},
+      {{"frame_worst_ms_high"}, time(&FrameTimes::worst_ns, &Banded::high)},
+      {{"sustainable_fps", "sustainable rate", "frames/s", false, true},
        [](R r) {
          return base::fixed(
              r.failure.empty() ? std::optional(r.times.sustainable_rate()) : std::nullopt, 3);
        }},
-      {"frames", [](R r) { return fmt::format("{}", r.frames); }},
-      {"late", [](R r) { return fmt::format("{}", r.times.late); }},
-      {"verdict", [](R r) { return r.failure.empty() ? r.verdict() : "cannot run"; }},
-      {"time", word("time")},
-      {"memory", word("memory")},
-      {"map", word("map")},
-      {"energy_mj", energy(&Banded::value)},
-      {"energy_mj_low", energy(&Banded::low)},
-      {"energy_mj_high", energy(&Banded::high)},
-      {"area_mm2", [](R r) { return base::fixed(r.area_mm2, 4); }},
-      {"area", [](R r) { return std::string(r.is_whole_area ? "whole" : "at least"); }},
-      {"computed", [](R r) { return std::string(r.is_run ? "run again" : "replayed"); }},
-      {"why",
+      {{"frames"}, [](R r) { return fmt::format("{}", r.frames); }},
+      {{"late", "late frames", ""}, [](R r) { return fmt::format("{}", r.times.late); }},
+      {{"verdict", "verdict", ""},
+       [](R r) { return r.failure.empty() ? r.verdict() : "cannot run"; }},
+      {{"time", "time", ""}, word("time")},
+      {{"memory", "memory", ""}, word("memory")},
+      {{"map", "map", ""}, word("map")},
+      {{"energy_mj", "energy per frame", "mJ"}, energy(&Banded::value)},
+      {{"energy_mj_low"}, energy(&Banded::low)},
+      {{"energy_mj_high"}, energy(&Banded::high)},
+      {{"area_mm2", "area", "mm2"}, [](R r) { return base::fixed(r.area_mm2, 4); }},
+      {{"area"}, [](R r) { return std::string(r.is_whole_area ? "whole" : "at least"); }},
+      {{"computed"}, [](R r) { return std::string(r.is_run ? "run again" : "replayed"); }},
+      {{"why", "why", ""},
        [&](R r) {
          return &r == &results.front() || !r.failure.empty() ? std::string()
                                                              : reason_of(results.front(), r);
        }},
-      {"failure", [](R r) { return r.failure; }}};
-  return table.text(results);
+      {{"failure", "failure", ""}, [](R r) { return r.failure; }}};
 }
 
+}  // namespace
+
+std::string whatif_csv(const std::vector<VariantResult>& results) {
+  return variants_table(results).csv(results);
+}
+
+namespace {
+
+/// @param title   of the page
+/// @param summary  lines
 Json whatif_page(const std::string& title, const std::string& summary,
                  const std::vector<VariantResult>& results) {
   StudyPage page;
   page.title = title;
   page.summary = summary;
-  page.points = whatif_csv(results);
-  page.columns = {{"variant", "variant", "", true},
-                  {"frame_mean_ms", "mean frame", "ms"},
-                  {"frame_p99_ms", "frame time of 99 %", "ms"},
-                  {"frame_worst_ms", "worst frame", "ms"},
-                  {"sustainable_fps", "sustainable rate", "frames/s", false, true},
-                  {"late", "late frames", ""},
-                  {"verdict", "verdict", ""},
-                  {"time", "time", ""},
-                  {"memory", "memory", ""},
-                  {"map", "map", ""},
-                  {"energy_mj", "energy per frame", "mJ"},
-                  {"area_mm2", "area", "mm2"},
-                  {"why", "why", ""},
-                  {"failure", "failure", ""}};
+  variants_table(results).show(page, results);
   page.bars = {"variant", {"frame_mean_ms", "energy_mj", "area_mm2"}};
   page.x = "area_mm2";
   page.y = "frame_mean_ms";
   return study_report(page);
+}
+
+// leviosim whatif: a recorded run on other chips, a row a variant; without a change, advice.
+
+struct WhatIfWords {
+  std::vector<std::string> words;  ///< the run, if the first one is one, and the changes
+  std::string report;
+  std::string jobs;
+  std::string memory;
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+/// The settings that compute a run again.
+SweepRow settings_of(const traces::WorkTrace& trace, const std::vector<std::string>& workload) {
+  const traces::WorkTraceInfo& info = trace.info();
+  SweepRow again{
+      {"data", info.data},
+      {"profile", info.profile},
+      {"seed", fmt::format("{}", info.seed)},
+      {"size", fmt::format("{}x{}", info.image_width, info.image_height)},
+      {"frames", fmt::format("{}:{}", info.first_frame, info.first_frame + trace.frames())}};
+  for (const std::string& set : workload) {
+    const std::size_t equals = set.find('=');
+    if (equals != std::string::npos) again[set.substr(0, equals)] = set.substr(equals + 1);
+  }
+  return again;
+}
+
+/// levio over the shipped flight on GAP9, as the demonstration runs it.
+std::string recorded_flight(const Words& words, ProgressLine::Style style) {
+  RunOptions options;
+  options.platform = "gap9";
+  options.data = "synthetic";
+  RunRequest request = make_chip_request(options);
+  request.data = data_folder(options, style);
+  WorkRecording recording(request.cores);
+  request.recording = &recording;
+  simulate_with_progress(request, style);
+  return work_trace_of(std::move(recording), options, request,
+                       make_manifest(options, request, words));
+}
+
+/// The run that is asked about.
+struct Asked {
+  std::string name;
+  SweepRow again;
+};
+
+Asked asked_of(const std::string& run, SweepInputs& inputs, const Words& words,
+               ProgressLine::Style style) {
+  if (run.empty()) {
+    Asked asked{"the shipped flight", {}};
+    const SweepInputs::Trace& trace = inputs.keep_trace(asked.name, recorded_flight(words, style));
+    asked.again = settings_of(*trace.work, {});
+    return asked;
+  }
+  const std::string file = trace_of(run);
+  if (file.empty())
+    throw InputError(
+        fmt::format("{}: holds no {}; expected the folder of a run with --record, or a work trace",
+                    run, kWorkTraceFile));
+  const traces::WorkTrace& trace = *inputs.trace(run, {run}).work;
+  if (!base::is_folder(run)) return {run, {}};
+  const SweepRow again = settings_of(trace, read_run_folder(run).facts.workload);
+  const bool is_there = trace.info().data == "synthetic" || base::exists(trace.info().data);
+  return {run, is_there ? again : SweepRow()};
+}
+
+/// Whether a word names a run: not a change, which has '=' or is a platform.
+bool is_run(const std::string& word) {
+  return base::exists(word) && !trace_of(word).empty() && !word.ends_with(".yaml") &&
+         !word.ends_with(".yml");
+}
+
+std::string heading(const std::string& run, const traces::WorkTraceInfo& info, int frames) {
+  return fmt::format("{}: {}, {} frames of {}, recorded on {}, {} cores\n", printable(run),
+                     printable(info.profile), frames, printable(info.data),
+                     printable(info.platform), info.cores);
+}
+
+/// Command lines that say more.
+std::vector<std::string> after(const std::string& run, const std::vector<std::string>& changes) {
+  if (run.empty()) return {"leviosim run --record --out mine", "leviosim whatif mine"};
+  for (const std::string& change : changes)
+    if (change.find('=') != std::string::npos && change.find_first_of(",:") == std::string::npos)
+      return {fmt::format("leviosim compare {} -p {}", printable(run), printable(change))};
+  return {fmt::format("leviosim whatif {} --report whatif.html", printable(run))};
+}
+
+void run(const WhatIfWords& typed, const Words& words) {
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(typed.quiet);
+  std::vector<std::string> changes = typed.words;
+  std::string name;
+  if (!changes.empty() && is_run(changes.front())) {
+    name = changes.front();
+    changes.erase(changes.begin());
+  } else if (!changes.empty() && base::is_folder(changes.front())) {
+    name = changes.front();  // refused below
+  }
+  std::optional<outputs::OutputFile> page =
+      claimed_report(typed.report, typed.force,
+                     name.empty() ? std::vector<std::filesystem::path>{}
+                                  : std::vector<std::filesystem::path>{trace_of(name)});
+  SweepInputs inputs(std::filesystem::current_path(), style, trace_memory(typed.memory));
+  const RunnerOptions options{
+      .noun = "variant", .threads = parse_jobs(typed.jobs), .progress = style};
+  const Asked asked = asked_of(name, inputs, words, style);
+  WhatIf what_if(inputs, asked.name, asked.again);
+  std::vector<Variant> variants;
+  for (const std::string& change : changes)
+    for (Variant& variant : what_if.variants(change)) variants.push_back(std::move(variant));
+  const bool advises = changes.empty();
+  if (advises) variants = what_if.standard_variants();
+  const std::vector<VariantResult> results = what_if.results(variants, options);
+  const traces::WorkTrace& trace = *inputs.trace(asked.name, {asked.name}).work;
+  const std::string head = heading(asked.name, trace.info(), trace.frames());
+  print(printout(
+      typed.json,
+      [&] {
+        return Printout(head + (advises ? advice_text(results) : whatif_table(results)))
+            .ending(whatif_conclusion(results), after(name, changes));
+      },
+      [&] { return table_document("whatif", whatif_csv(results)); }));
+  if (page) publish_report(page, whatif_page("What if", head, results), !typed.json);
+  const bool failed = std::any_of(results.begin(), results.end(),
+                                  [](const VariantResult& r) { return !r.failure.empty(); });
+  if (failed && !advises) throw LimitNotMet();
+}
+
+}  // namespace
+
+Command add_whatif_command(CLI::App& app, const Words& words) {
+  CLI::App* command =
+      app.add_subcommand("whatif", "A recorded run on other chips; without a change, advice");
+  const auto typed = std::make_shared<WhatIfWords>();
+  command
+      ->add_option("RUN CHANGE", typed->words,
+                   "folder of a run with --record, or a work trace [the shipped flight]; then "
+                   "changes: PATH=V,V…, a platform, PLATFORM:PATH=V,PATH=V")
+      ->type_name("");
+  add_report_option(*command, typed->report);
+  command->add_flag("--force", typed->force, "replace that file");
+  add_jobs_option(*command, typed->jobs, "variant");
+  add_memory_option(*command, typed->memory);
+  command->add_flag("--quiet", typed->quiet, "no progress");
+  add_json_option(*command, typed->json);
+  add_examples(*command, {"leviosim whatif recorded cluster.fpu.units=2,4,8 gap9-eigen",
+                          "leviosim whatif recorded"});
+  return {command, [=, &words] { run(*typed, words); }};
 }
 
 }  // namespace leviosim::tools
