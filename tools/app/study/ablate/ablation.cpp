@@ -23,10 +23,6 @@ namespace {
 
 using PaperFigure = PaperAccuracy::Figure;
 
-bool same(const traces::ImageSize& a, const traces::ImageSize& b) {
-  return a.width == b.width && a.height == b.height;
-}
-
 std::optional<AblationRow::Paper> paper_value(const std::vector<PaperAccuracy>& paper,
                                               const AblationRow& row, PaperFigure figure) {
   std::optional<AblationRow::Paper> found;
@@ -34,7 +30,7 @@ std::optional<AblationRow::Paper> paper_value(const std::vector<PaperAccuracy>& 
     if (p.sequence != row.sequence || p.profile != row.profile || p.chosen_by != PaperFigure::ate ||
         p.figure != figure)
       continue;
-    if (same(p.size, row.size)) return AblationRow::Paper{p.value, p.size};
+    if (p.size == row.size) return AblationRow::Paper{p.value, p.size};
     if (!found || p.size.width > found->size.width) found = {p.value, p.size};
   }
   return found;
@@ -56,7 +52,7 @@ AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSiz
   mean.profile = profile;
   std::vector<const AblationRow*> rows;
   for (const AblationRow& row : all) {
-    if (row.profile != profile || !same(row.size, size)) continue;
+    if (row.profile != profile || row.size != size) continue;
     rows.push_back(&row);
     mean.ate.runs += row.ate.runs;
     mean.ate.failed += row.ate.failed;
