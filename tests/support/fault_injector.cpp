@@ -77,7 +77,7 @@ void open_files_anew() {
     if (flags < 0 || ::fstat(file, &what) != 0 || !S_ISREG(what.st_mode)) continue;
     char name[32];
     std::snprintf(name, sizeof(name), "/proc/self/fd/%d", file);
-    const int anew = ::open(name, flags & ~(O_CREAT | O_EXCL | O_TRUNC));
+    const int anew = ::open(name, flags & ~(O_CREAT | O_EXCL | O_TRUNC | O_NOFOLLOW));
     if (anew < 0) continue;
     ::lseek(anew, ::lseek(file, 0, SEEK_CUR), SEEK_SET);
     ::dup3(anew, file, ::fcntl(file, F_GETFD) & FD_CLOEXEC ? O_CLOEXEC : 0);
