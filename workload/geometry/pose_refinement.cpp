@@ -7,7 +7,7 @@
 namespace leviosim::vio {
 namespace {
 
-constexpr int kUnknowns = 6;
+constexpr int kPoseUnknowns = 6;
 /// Lower triangle of H row by row, then b.
 constexpr int kRightHandSide = 21;
 constexpr int kSums = 27;
@@ -20,11 +20,11 @@ Vec3<P> point_of(const PnpInput<P>& matches, int i) {
 
 /// A row of the Jacobian times the root of its weight.
 template <class P>
-void add_row(const typename P::F32 (&row)[kUnknowns], typename P::F32 error, typename P::F32 weight,
+void add_row(const typename P::F32 (&row)[kPoseUnknowns], typename P::F32 error, typename P::F32 weight,
              typename P::template Span<typename P::F32> sums) {
   using F = typename P::F32;
   int at = 0;
-  for (int r = 0; r < kUnknowns; ++r) {
+  for (int r = 0; r < kPoseUnknowns; ++r) {
     const F weighted = row[r] * weight;
     for (int c = 0; c <= r; ++c) sums[at++] += weighted * row[c];
     sums[kRightHandSide + r] -= weighted * error;
@@ -49,8 +49,8 @@ void add_match(const PnpInput<P>& matches, const Pose<P>& T, const RefinementOpt
     weight *= F(options.huber_px) / work::sqrt(error_sq);
   // d(u)/dx = fx/z (1, 0, −a); times φ × x and ρ.
   const F su = fx * inverse, sv = fy * inverse, ab = a * b;
-  const F of_u[kUnknowns] = {-(fx * ab), fx + fx * a * a, -(fx * b), su, 0.0f, -(su * a)};
-  const F of_v[kUnknowns] = {-(fy + fy * b * b), fy * ab, fy * a, 0.0f, sv, -(sv * b)};
+  const F of_u[kPoseUnknowns] = {-(fx * ab), fx + fx * a * a, -(fx * b), su, 0.0f, -(su * a)};
+  const F of_v[kPoseUnknowns] = {-(fy + fy * b * b), fy * ab, fy * a, 0.0f, sv, -(sv * b)};
   add_row<P>(of_u, du, weight, sums);
   add_row<P>(of_v, dv, weight, sums);
 }
@@ -77,7 +77,7 @@ template <class P>
 void gather(MatrixView<P> partial, MatrixView<P> H, typename P::template Span<typename P::F32> b) {
   using F = typename P::F32;
   int at = 0;
-  for (int r : P::range(0, kUnknowns)) {
+  for (int r : P::range(0, kPoseUnknowns)) {
     for (int c : P::range(0, r + 1)) {
       F sum = 0.0f;
       for (int core : P::range(0, partial.rows())) sum += partial(core, at);
@@ -127,8 +127,8 @@ RefinedPose<P> refine_pose(work::Machine& machine, const PnpInput<P>& matches,
   // The results must not depend on the number of cores, so the sums are those of fixed parts.
   constexpr int kParts = 8;
   const MatrixView<P> partial = alloc_matrix<P>(local, "partial normal equations", kParts, kSums);
-  const MatrixView<P> H = alloc_matrix<P>(local, "normal equations", kUnknowns, kUnknowns);
-  const Floats b = local.alloc<Floats>("right-hand side", kUnknowns);
+  const MatrixView<P> H = alloc_matrix<P>(local, "normal equations", kPoseUnknowns, kPoseUnknowns);
+  const Floats b = local.alloc<Floats>("right-hand side", kPoseUnknowns);
   const auto numbers =
       local.alloc<typename P::template Span<I32>>("inliers per core", machine.cores());
   Pose<P> T = T_predicted;

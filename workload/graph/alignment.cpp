@@ -5,6 +5,7 @@
 
 #include "workload/graph/anchored_landmarks.h"
 #include "workload/graph/carried_poses.h"
+#include "workload/graph/reduced_system.h"
 #include "workload/inertial/initialisation.h"
 
 namespace leviosim::vio {
@@ -15,8 +16,6 @@ constexpr int kVelocity = 0, kGravityAt = 3, kGyro = 6, kAccel = 9;
 
 /// Standard deviations from the minimum at which an alignment is there.
 constexpr float kArrived = 0.1f;
-
-constexpr float information(float stddev) { return 1.0f / (stddev * stddev); }
 
 /// The window's state as what the IMU carries its first keyframe from.
 template <class P>

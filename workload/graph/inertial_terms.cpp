@@ -43,9 +43,6 @@ void add_rows(MatrixView<P> rows, const ReducedSystem<P>& system, int keyframe) 
   }
 }
 
-/// 1/σ², or 0 if the part is free.
-float information(float stddev) { return stddev > 0 ? 1.0f / (stddev * stddev) : 0.0f; }
-
 template <class P>
 struct AnchorResidual {
   Vec3<P> rotation, position, velocity;

@@ -8,9 +8,9 @@ namespace {
 using namespace interval;
 
 // Columns: both keyframes, then gyro and accelerometer.
-constexpr int kGyro = 18;  ///< first column of the biases
-constexpr int kAccel = 21;
-constexpr int kResidual = 24;  ///< column of the residual
+constexpr int kGyroColumn = 18;  ///< first column of the biases
+constexpr int kAccelColumn = 21;
+constexpr int kJointResidual = 24;  ///< column of the residual
 
 template <class P>
 void store_state_jacobians(MatrixView<P> rows, const KeyframeState<P>& end,
@@ -36,29 +36,29 @@ void store_bias_jacobians(MatrixView<P> rows, const Preintegration<P>& interval,
                           const ImuBias<P>& bias, const ImuResidual<P>& residual) {
   using F = typename P::F32;
   const F minus = -1.0f;
-  store_block<P>(rows, 0, kGyro, rotation_residual_by_gyro_bias<P>(interval, bias, residual));
-  store_block<P>(rows, kVelocityRow, kGyro, scaled<P>(minus, interval.velocity_by_gyro()));
-  store_block<P>(rows, kVelocityRow, kAccel, scaled<P>(minus, interval.velocity_by_accel()));
-  store_block<P>(rows, kPositionRow, kGyro, scaled<P>(minus, interval.position_by_gyro()));
-  store_block<P>(rows, kPositionRow, kAccel, scaled<P>(minus, interval.position_by_accel()));
+  store_block<P>(rows, 0, kGyroColumn, rotation_residual_by_gyro_bias<P>(interval, bias, residual));
+  store_block<P>(rows, kVelocityRow, kGyroColumn, scaled<P>(minus, interval.velocity_by_gyro()));
+  store_block<P>(rows, kVelocityRow, kAccelColumn, scaled<P>(minus, interval.velocity_by_accel()));
+  store_block<P>(rows, kPositionRow, kGyroColumn, scaled<P>(minus, interval.position_by_gyro()));
+  store_block<P>(rows, kPositionRow, kAccelColumn, scaled<P>(minus, interval.position_by_accel()));
 }
 
 /// H += Jᵀ J and b -= Jᵀ r.
 template <class P>
-void add_rows(MatrixView<P> rows, const ReducedSystem<P>& system, int keyframe) {
+void add_joint_rows(MatrixView<P> rows, const ReducedSystem<P>& system, int keyframe) {
   using F = typename P::F32;
   const typename P::Function function("add_joint_rows");
   const MatrixView<P> matrix = system.matrix();
   const int base = keyframe * system.per_keyframe();
-  const auto place = [&](int c) { return c < kGyro ? base + c : system.shared() + c - kGyro; };
-  for (int i : P::range(0, kResidual)) {
+  const auto place = [&](int c) { return c < kGyroColumn ? base + c : system.shared() + c - kGyroColumn; };
+  for (int i : P::range(0, kJointResidual)) {
     for (int j : P::range(0, i + 1)) {
       F sum = matrix(place(i), place(j));
       for (int r : P::range(0, 9)) sum += rows(r, i) * rows(r, j);
       matrix(place(i), place(j)) = sum;
     }
     F b = system.vector()[place(i)];
-    for (int r : P::range(0, 9)) b -= rows(r, i) * rows(r, kResidual);
+    for (int r : P::range(0, 9)) b -= rows(r, i) * rows(r, kJointResidual);
     system.vector()[place(i)] = b;
   }
 }
@@ -93,7 +93,7 @@ typename P::F32 add_joint_inertial_terms(const Window<P>& window, int first, int
     linearise_interval<P>(interval, window.state.keyframe(k - 1), window.state.keyframe(k),
                           window.bias, window.gravity, window.lever_arm, scratch.rows);
     whiten<P>(interval, scratch.rows, 0, JointScratch<P>::kColumns);
-    add_rows<P>(scratch.rows, system, k - 1);
+    add_joint_rows<P>(scratch.rows, system, k - 1);
     cost += half_square_of_residual<P>(scratch.rows);
   }
   return cost;
@@ -112,7 +112,7 @@ typename P::F32 joint_inertial_cost(const Window<P>& window, const WindowState<P
                       imu_residual<P>(imu_state<P>(state.keyframe(k - 1), window.lever_arm),
                                       imu_state<P>(state.keyframe(k), window.lever_arm),
                                       interval.corrected(bias), window.gravity));
-    whiten<P>(interval, scratch.rows, kResidual, kResidual + 1);
+    whiten<P>(interval, scratch.rows, kJointResidual, kJointResidual + 1);
     cost += half_square_of_residual<P>(scratch.rows);
   }
   return cost;

@@ -1,15 +1,14 @@
 #include "workload/graph/marginalisation.h"
 
 #include "workload/graph/departing_visual_terms.h"
+#include "workload/graph/interval_rows.h"
+#include "workload/graph/reduced_system.h"
 #include "workload/math/trig.h"
 
 namespace leviosim::vio {
 namespace {
 
 constexpr int kPerKeyframe = 9;
-constexpr int kPositionColumn = 3, kVelocityColumn = 6;
-
-float information(float stddev) { return 1.0f / (stddev * stddev); }
 
 /// Where unknown i of the prior lies in a system of more keyframes.
 template <class P>

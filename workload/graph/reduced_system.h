@@ -8,6 +8,9 @@
 
 namespace leviosim::vio {
 
+/// Weight 1/σ² of what is known with a standard deviation; 0 if it is free (σ = 0).
+inline float information(float stddev) { return stddev > 0 ? 1.0f / (stddev * stddev) : 0.0f; }
+
 template <class P>
 class ReducedSystem {
  public:

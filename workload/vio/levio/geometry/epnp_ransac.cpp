@@ -8,11 +8,11 @@ namespace {
 
 /// What master and team exchange in a batch: element or row h belongs to hypothesis h.
 template <class P>
-struct Batch {
+struct EpnpBatch {
   using Indices = typename P::template Span<typename P::U16>;
   using Span = typename P::template Span<typename P::F32>;
 
-  Batch(work::Arena& a, int size)
+  EpnpBatch(work::Arena& a, int size)
       : indices(a.alloc<Indices>("samples", kEpnpSample * size)),
         points(alloc_matrix<P>(a, "sample points", size, 3 * kEpnpSample)),
         pixels(alloc_matrix<P>(a, "sample pixels", size, 2 * kEpnpSample)),
@@ -31,7 +31,7 @@ struct Batch {
 };
 
 template <class P>
-void copy_sample(const LandmarkMatches<P>& matches, const Batch<P>& batch, int h) {
+void copy_sample(const LandmarkMatches<P>& matches, const EpnpBatch<P>& batch, int h) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const typename P::Function function("levio_copy_sample");
@@ -67,7 +67,7 @@ typename P::I32 count_inliers(MatrixView<P> T_camera_world, const LandmarkMatche
 }
 
 template <class P>
-struct Best {
+struct BestPose {
   typename P::I32 inliers = 0;
   typename P::F32 error_px = 1e30f;  ///< of its sample
   bool found = false;
@@ -75,7 +75,7 @@ struct Best {
 
 /// More inliers, or as many and a smaller error of its own sample.
 template <class P>
-bool improves(typename P::I32 inliers, typename P::F32 error_px, const Best<P>& best) {
+bool improves(typename P::I32 inliers, typename P::F32 error_px, const BestPose<P>& best) {
   if (inliers > best.inliers) return true;
   if (inliers < best.inliers) return false;
   return static_cast<bool>(error_px < best.error_px);
@@ -83,9 +83,9 @@ bool improves(typename P::I32 inliers, typename P::F32 error_px, const Best<P>& 
 
 /// Scores the hypotheses of a batch one after the other; the best pose stays in `pose`.
 template <class P>
-void keep_best(const Batch<P>& batch, const LandmarkMatches<P>& matches,
+void keep_best(const EpnpBatch<P>& batch, const LandmarkMatches<P>& matches,
                const CameraConstants<P>& camera, float inlier_px, MatrixView<P> pose,
-               Best<P>& best) {
+               BestPose<P>& best) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   for (int h : P::range(0, batch.errors.size())) {
@@ -109,10 +109,10 @@ EpnpResult<P> estimate_pose_epnp(work::Machine& machine, const LandmarkMatches<P
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
   const Indices numbers = local.alloc<Indices>("match numbers", matches.n);
-  const Batch<P> batch(local, options.batch);
+  const EpnpBatch<P> batch(local, options.batch);
   const MatrixView<P> pose = alloc_matrix<P>(local, "best pose", 4, 4);
   number_consecutively<P>(numbers);
-  Best<P> best;
+  BestPose<P> best;
   for ([[maybe_unused]] int i : P::range(0, options.iterations / options.batch)) {
     for (int h : P::range(0, options.batch)) {
       draw_sample<P>(random, numbers, kEpnpSample, batch.sample(h));

@@ -15,7 +15,7 @@ struct Unknowns {
   int number;
   std::array<Product, 5> products;
 };
-constexpr std::array<Unknowns, kStarts> kUnknowns = {{
+constexpr std::array<Unknowns, kStarts> kUnknownsOfStarts = {{
     {4, {k11, k12, k13, k14}},
     {3, {k11, k12, k22}},
     {5, {k11, k12, k22, k13, k23}},
@@ -133,7 +133,7 @@ void start_betas(const DistanceSystem<P>& system, int start,
   using F = typename P::F32;
   using Span = typename P::template Span<F>;
   const typename P::Function function("levio_start_betas");
-  const Unknowns& unknowns = kUnknowns[static_cast<std::size_t>(start)];
+  const Unknowns& unknowns = kUnknownsOfStarts[static_cast<std::size_t>(start)];
   const work::Arena::Frame frame(scratch);
   const MatrixView<P> a = alloc_matrix<P>(scratch, "linear system", kDistances, unknowns.number);
   const Span b = scratch.alloc<Span>("right-hand side", kDistances);

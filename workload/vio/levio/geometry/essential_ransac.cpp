@@ -9,7 +9,7 @@ namespace {
 
 /// What master and team exchange in a batch: element or row h belongs to hypothesis h.
 template <class P>
-struct Batch {
+struct EssentialBatch {
   template <class T>
   using Span = typename P::template Span<T>;
   using Byte = typename P::Byte;
@@ -17,7 +17,7 @@ struct Batch {
   using I32 = typename P::I32;
   using U16 = typename P::U16;
 
-  Batch(work::Arena& a, int size, int matches)
+  EssentialBatch(work::Arena& a, int size, int matches)
       : indices(a.alloc<Span<U16>>("8-point samples", kEssentialSample * size)),
         essentials(alloc_matrix<P>(a, "8-point hypotheses", size, 9)),
         inliers(a.alloc<Span<I32>>("8-point inlier counts", size)),
@@ -42,22 +42,22 @@ struct Batch {
 };
 
 template <class P>
-struct Best {
+struct BestEssential {
   typename P::I32 inliers = 0;
   typename P::F32 mean_error = 1e30f;
 };
 
 /// More inliers, or as many with a smaller mean error. Without an inlier the mean is no number.
 template <class P>
-bool improves(typename P::I32 inliers, typename P::F32 mean_error, const Best<P>& best) {
+bool improves(typename P::I32 inliers, typename P::F32 mean_error, const BestEssential<P>& best) {
   if (inliers > best.inliers) return true;
   if (inliers < best.inliers) return false;
   return static_cast<bool>(mean_error < best.mean_error);
 }
 
 template <class P>
-void keep_best(const Batch<P>& batch, MatrixView<P> essential,
-               typename P::template Span<typename P::Byte> inlier_mask, Best<P>& best) {
+void keep_best(const EssentialBatch<P>& batch, MatrixView<P> essential,
+               typename P::template Span<typename P::Byte> inlier_mask, BestEssential<P>& best) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   for (int h : P::range(0, batch.size())) {
@@ -87,9 +87,9 @@ EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatch
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
   const Indices numbers = local.alloc<Indices>("8-point indices", matches.n);
-  const Batch<P> batch(local, options.batch, matches.n);
+  const EssentialBatch<P> batch(local, options.batch, matches.n);
   number_consecutively<P>(numbers);
-  Best<P> best;
+  BestEssential<P> best;
   for ([[maybe_unused]] int i : P::range(0, options.iterations / options.batch)) {
     for (int h : P::range(0, options.batch))
       draw_sample<P>(random, numbers, kEssentialSample, batch.sample(h));
