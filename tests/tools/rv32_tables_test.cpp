@@ -57,7 +57,8 @@ const std::set<std::string> kLibrary = {"f64_add",    "f64_sub",     "f64_mul",
                                         "f64_div",    "f64_compare", "f64_widen",
                                         "f64_narrow", "popcount",    "memset"};
 
-/// Those that no table has yet. Runs take them for code that was not measured, and say so.
+/// Those that no table has yet but the latest, thumb2. Runs take them for code that was not
+/// measured, and say so.
 const std::set<std::string> kNotMeasured = {"aim_landmarks", "align_from_all", "drop_disagreeing"};
 
 TEST_P(CompiledTables, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
@@ -67,7 +68,7 @@ TEST_P(CompiledTables, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   const std::set<std::string> names = leviosim::tests::named_functions();
   EXPECT_GT(names.size(), 50u);
   for (const std::string& name : names)
-    EXPECT_NE(measured.contains(name), kNotMeasured.contains(name))
+    EXPECT_NE(measured.contains(name), GetParam() != "thumb2" && kNotMeasured.contains(name))
         << name << " has no footprint, or has one now: run tools/rv32/measure.sh";
 }
 
