@@ -308,7 +308,8 @@ std::vector<PublishedSystem> parse_systems(const std::string& file, std::string_
     if (header->text(i) != kColumns[i])
       header->fail(i, fmt::format("expected the title {}", kColumns[i]));
   std::vector<PublishedSystem> systems;
-  while (const base::CsvRow* row = reader.next()) systems.push_back(system_from(*row));
+  for_each_row(file, text, kColumns,
+               [&](const base::CsvRow& row) { systems.push_back(system_from(row)); });
   return systems;
 }
 
