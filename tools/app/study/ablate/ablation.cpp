@@ -422,7 +422,7 @@ Command add_ablate_command(CLI::App& app, const Words& words) {
   add_examples(*command, {"leviosim ablate --data flight --profile levio,next --size "
                           "160x120,320x240 --seed 1 --relative 0.5 --out ablated"});
   add_json_option(*command, typed->json);
-  return {command, [=, &words] { run(*command, *typed, words); }};
+  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

@@ -440,7 +440,7 @@ Command add_explore_command(CLI::App& app, const Words& words) {
   add_examples(*command,
                {"leviosim explore --data flight --profile levio --vary workload.window=6:12 "
                 "--points 3 --seed 1 --relative 0.5 --out explored"});
-  return {command, [=, &words] { run(*command, *typed, words); }};
+  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

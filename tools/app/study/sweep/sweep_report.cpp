@@ -474,7 +474,7 @@ Command add_sweep_command(CLI::App& app, const Words&) {
                 "echo 'points: { grid: { platform.cluster.fpu.units: [1, 2, 4] } }' >>fpus.yaml",
                 "leviosim sweep fpus.yaml --list", "leviosim sweep fpus.yaml --out swept"});
   add_json_option(*command, words->json);
-  return {command, [=] { run(*command, *words); }};
+  return {.app = command, .run = [=] { run(*command, *words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

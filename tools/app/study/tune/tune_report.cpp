@@ -468,7 +468,7 @@ Command add_tune_command(CLI::App& app, const Words& words) {
   add_json_option(*command, typed->run.json);
   add_examples(*command,
                {"leviosim tune --data flight --clock 240:370:130 --fps 10,20 --out tuned"});
-  return {command, [=, &words] { run(*command, *typed, words); }};
+  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools
