@@ -226,6 +226,12 @@ TEST_F(InBrowser, APageOfSeveralRunsIsToo) {
   expect_fine("both.html");
 }
 
+TEST_F(InBrowser, APageOfAnEvaluationIsToo) {
+  const std::string truth = path("a/trajectory.tum");
+  expect_done({"eval", truth, truth, "--also", truth, "--report", path("errors.html")});
+  expect_fine("errors.html", 0);
+}
+
 /// Stages may be called as what every object of a script has.
 TEST_F(InBrowser, APageOfStagesWithNamesOfScriptsIsToo) {
   fs::copy(path("a"), path("names"));
