@@ -60,8 +60,8 @@ commands() { # commands LEVIOSIM DATA FRAMES
   step next "$leviosim" run --platform gap9 --profile next --data "$data" --quiet --out next
   step native "$leviosim" run --native --data "$data" "${part[@]}" --quiet --out native
   step loop "$leviosim" run --platform gap9 -p cluster.clock=100MHz -p controller.clock=100MHz \
-    --camera-fps 15 --deadline drop --data "$data" "${part[@]}" --quiet --out loop
-  step queue "$leviosim" run --platform cortex-m7-h7a3 --camera-fps 10 --deadline queue \
+    --fps 15 --deadline drop --data "$data" "${part[@]}" --quiet --out loop
+  step queue "$leviosim" run --platform cortex-m7-h7a3 --fps 10 --deadline queue \
     --data "$data" "${part[@]}" --quiet --out queue
   step replay "$leviosim" replay run/work.trace --quiet --out replay
   step replay-gap8 "$leviosim" replay run/work.trace --platform gap9-hamming --quiet --out replay-gap8

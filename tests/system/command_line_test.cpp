@@ -125,15 +125,12 @@ TEST_F(CommandLine, SuggestsCommandsAndOptions) {
   expect_refusal({"hepl", "run"}, {"did you mean 'help'?"});
 }
 
-/// The names of before still work, and no help shows them.
 TEST_F(CommandLine, OptionsHaveOneNameEach) {
   const auto help = [&](const std::string& command) {
     return run_program(folder_.path(), {command, "--help"}).out;
   };
   for (const char* command : {"run", "tune", "flow"})
     EXPECT_NE(help(command).find("  --fps F"), std::string::npos) << command;
-  EXPECT_EQ(help("run").find("--camera-fps"), std::string::npos);
-  EXPECT_EQ(help("synth").find("--overwrite"), std::string::npos);
   for (const char* command : {"sensitivity", "microbench", "platforms", "calibrate"})
     EXPECT_EQ(help(command).find("  --out"), std::string::npos) << command;
   for (const char* command :
@@ -142,11 +139,8 @@ TEST_F(CommandLine, OptionsHaveOneNameEach) {
   for (const char* command :
        {"tune", "sweep", "ablate", "explore", "sensitivity", "platforms", "benchmark-flights"})
     EXPECT_NE(help(command).find("  --jobs N"), std::string::npos) << command;
-  expect_run_refused({"--camera-fps", "0"}, {"--fps '0'"});
-  expect_run_refused({"--camera-fps=0"}, {"--fps '0'"});
   fs::create_directory(folder_ / "folder");
-  for (const char* option : {"--out", "--csv"})
-    expect_refusal({"microbench", option, (folder_ / "folder").string()}, {"--csv", "is a folder"});
+  expect_refusal({"microbench", "--csv", (folder_ / "folder").string()}, {"--csv", "is a folder"});
 }
 
 TEST_F(CommandLine, NamesMissingOptions) {

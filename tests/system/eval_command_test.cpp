@@ -6,8 +6,6 @@
 
 #include "tests/support/run_program.h"
 #include "tests/support/scratch.h"
-#include "tests/tools/well_formed.h"
-#include "tools/app/evaluation/evaluation.h"
 #include "tools/app/report/statistic_list.h"
 #include "traces/synthesis/synthetic.h"
 #include "traces/trajectories/trajectory.h"
@@ -48,6 +46,13 @@ class EvalCommand : public ::testing::Test {
     std::vector<std::string> words{"eval", path("est.tum"), path("gt.tum")};
     words.insert(words.end(), further.begin(), further.end());
     return run_program(folder_.path(), words);
+  }
+  /// What a page draws.
+  Json page_data(const std::string& name) const {
+    constexpr std::string_view kBegin = "id=\"data\">";
+    const std::string page = base::read_text_file(folder_ / name);
+    const std::size_t begin = page.find(kBegin) + kBegin.size();
+    return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
   }
   void expect_files_refused(const std::string& est, const std::string& gt,
                             const std::vector<std::string>& parts) {
@@ -98,7 +103,9 @@ TEST_F(EvalCommand, TakesOtherProtocols) {
   expect_parts(eval({"--align", "posyaw"}).out, {"PosYaw-aligned"});
   expect_parts(eval({"--align", "sim3"}).out, {"Sim3-aligned", "scale of the estimate: times "});
   expect_parts(eval({"--max-dt", "0.002s"}).out, {"a sample within 2 ms"});
-  expect_parts(eval({"--max-dt", "3"}).out, {"a sample within 3 ms"});
+  expect_parts(eval({"--max-dt", "10ms"}).out, {"a sample within 10 ms"});
+  expect_parts(eval({"--max-dt", "2.5"}).out, {"a sample within 2.5 ms"});
+  expect_parts(eval({"--max-dt", "0"}).out, {"a sample within 0 ms"});
   expect_parts(eval({"--expected", "402"}).out, {"completion 50.0 % (402 expected poses)"});
 }
 
@@ -140,20 +147,31 @@ TEST_F(EvalCommand, SetsSeveralEstimatesSideBySide) {
   EXPECT_GT(errors[1], 2 * errors[0]);
   expect_parts(result.out, {fmt::format("{:.4f}", errors[0]), fmt::format("{:.4f}", errors[1])});
 
-  expect_refused(eval({"--also", path("worse.tum"), "--plot", path("both.svg")}),
-                 {"--plot", "draws one estimate", "--also"});
   expect_refused(eval({"--also", path("none.tum")}), {"none.tum"});
   expect_refused(eval({"--also", path("worse.tum"), "--json", path("worse.tum"), "--force"}),
                  {"--json", "worse.tum"});
 }
 
-TEST_F(EvalCommand, DrawsTheSamePictureAgain) {
-  for (const char* name : {"a.svg", "b.svg"}) EXPECT_EQ(eval({"--plot", path(name)}).status, 0);
-  const std::string picture = base::read_text_file(folder_ / "a.svg");
-  EXPECT_EQ(picture, base::read_text_file(folder_ / "b.svg"));
-  EXPECT_EQ(testing::xml_fault(picture), "");
-  expect_parts(picture, {"x [m]", "y [m]", "z [m]", "[deg]", "ground truth", ">start<",
-                         "SE3-aligned, 201 of 201", "time since the first matched pose [s]"});
+TEST_F(EvalCommand, WritesTheSamePageAgain) {
+  for (const char* name : {"a.html", "b.html"}) EXPECT_EQ(eval({"--report", path(name)}).status, 0);
+  EXPECT_EQ(base::read_text_file(folder_ / "a.html"), base::read_text_file(folder_ / "b.html"));
+  const Json data = page_data("a.html");
+  ASSERT_EQ(data.at("evaluations").size(), 1u);
+  const Json& shown = data.at("evaluations")[0];
+  EXPECT_EQ(shown.at("time"), "s since the first pose");
+  expect_parts(shown.at("protocol").get<std::string>(), {"SE3-aligned, 201 of 201"});
+  for (const char* column :
+       {"t_s", "position_error_m", "tilt_error_deg", "heading_error_deg", "estimate_x_m",
+        "estimate_y_m", "estimate_z_m", "truth_x_m", "truth_y_m", "truth_z_m"})
+    EXPECT_EQ(shown.at("tables").at("errors").at(column).size(), 201u) << column;
+}
+
+TEST_F(EvalCommand, APageShowsAllEstimates) {
+  ASSERT_EQ(eval({"--also", path("gt.tum"), "--report", path("both.html")}).status, 0);
+  const Json evaluations = page_data("both.html").at("evaluations");
+  ASSERT_EQ(evaluations.size(), 2u);
+  expect_parts(evaluations[0].at("name").get<std::string>(), {"est.tum"});
+  expect_parts(evaluations[1].at("name").get<std::string>(), {"gt.tum"});
 }
 
 TEST_F(EvalCommand, NamesOfFilesMayHoldAnything) {
@@ -161,11 +179,10 @@ TEST_F(EvalCommand, NamesOfFilesMayHoldAnything) {
   fs::copy_file(folder_ / "est.tum", odd);
   const ProgramResult result = run_program(
       folder_.path(),
-      {"eval", odd.string(), path("gt.tum"), "--plot", path("o.svg"), "--json", path("o.json")});
+      {"eval", odd.string(), path("gt.tum"), "--report", path("o.html"), "--json", path("o.json")});
   EXPECT_EQ(result.status, 0) << result.err;
-  const std::string picture = base::read_text_file(folder_ / "o.svg");
-  EXPECT_EQ(testing::xml_fault(picture), "");
-  expect_parts(picture, {"a &lt;b&gt; &amp; &quot;c&quot; \xEF\xBF\xBD.tum"});
+  expect_parts(page_data("o.html").at("evaluations")[0].at("name").get<std::string>(),
+               {"a <b> & \"c\" "});
   EXPECT_TRUE(Json::accept(base::read_text_file(folder_ / "o.json")));
 }
 
@@ -180,11 +197,11 @@ TEST_F(EvalCommand, KittiFilesNeedNoTimes) {
   expect_parts(result.out,
                {"(KITTI, 4 poses)", "4 of 4 poses matched by number", "   1 m       3"});
   std::vector<std::string> timed = words;
-  timed.insert(timed.end(), {"--times", path("times.txt"), "--plot", path("k.svg")});
+  timed.insert(timed.end(), {"--times", path("times.txt"), "--report", path("k.html")});
   result = run_program(folder_.path(), timed);
   EXPECT_EQ(result.status, 0) << result.err;
   expect_parts(result.out, {"(0.30 s of truth, longest gap 0.10 s)"});
-  EXPECT_EQ(testing::xml_fault(base::read_text_file(folder_ / "k.svg")), "");
+  EXPECT_EQ(page_data("k.html").at("evaluations")[0].at("time"), "s since the first pose");
 }
 
 TEST_F(EvalCommand, RefusesFiles) {
@@ -221,16 +238,15 @@ TEST_F(EvalCommand, RefusesOptions) {
 }
 
 TEST_F(EvalCommand, ReplacesFilesOnlyIfForced) {
-  outputs::write_file_atomically(folder_ / "mine.svg", "mine");
-  expect_refused(eval({"--plot", path("mine.svg"), "--force"}), {"--plot", "exists"});
-  expect_refused(eval({"--json", path("mine.svg"), "--force"}), {"--json", "exists"});
-  expect_refused(eval({"--plot", path("picture.png")}), {"--plot", ".svg"});
-  expect_refused(eval({"--plot", path("none/a.svg")}), {"no folder"});
-  expect_refused(eval({"--plot", path("a.svg"), "--json", path("a.svg")}), {"--plot too"});
-  EXPECT_EQ(base::read_text_file(folder_ / "mine.svg"), "mine");
-  ASSERT_EQ(eval({"--plot", path("own.svg")}).status, 0);
-  expect_refused(eval({"--plot", path("own.svg")}), {"--plot", "exists", "--force"});
-  EXPECT_EQ(eval({"--plot", path("own.svg"), "--force"}).status, 0);
+  outputs::write_file_atomically(folder_ / "mine.html", "mine");
+  expect_refused(eval({"--report", path("mine.html"), "--force"}), {"--report", "exists"});
+  expect_refused(eval({"--json", path("mine.html"), "--force"}), {"--json", "exists"});
+  expect_refused(eval({"--report", path("none/a.html")}), {"no folder"});
+  expect_refused(eval({"--report", path("a.html"), "--json", path("a.html")}), {"--report too"});
+  EXPECT_EQ(base::read_text_file(folder_ / "mine.html"), "mine");
+  ASSERT_EQ(eval({"--report", path("own.html")}).status, 0);
+  expect_refused(eval({"--report", path("own.html")}), {"--report", "exists", "--force"});
+  EXPECT_EQ(eval({"--report", path("own.html"), "--force"}).status, 0);
 }
 
 /// The figures of a run and of its folder are the same, up to the nine decimals of its trajectory.
@@ -263,20 +279,14 @@ TEST_F(EvalCommand, AgreesWithTheRunThatMadeTheTrajectory) {
   EXPECT_EQ(compared, 7);  // of attitudes only eval says more
 }
 
-TEST(EvalOptions, TolerancesHaveUnits) {
-  EXPECT_EQ(parse_tolerance("--max-dt", "10ms"), 10'000'000);
-  EXPECT_EQ(parse_tolerance("--max-dt", "0.01s"), 10'000'000);
-  EXPECT_EQ(parse_tolerance("--max-dt", "2.5"), 2'500'000);
-  EXPECT_EQ(parse_tolerance("--max-dt", "0"), 0);
-}
-
 /// The angle after an alignment of positions is nowhere taken for the error of the attitude.
 TEST_F(EvalCommand, GivesTiltAndHeadingEverywhere) {
-  const ProgramResult drawn = eval({"--plot", path("errors.svg"), "--json", path("errors.json")});
+  const ProgramResult drawn =
+      eval({"--report", path("errors.html"), "--json", path("errors.json")});
   ASSERT_EQ(drawn.status, 0) << drawn.err;
-  const std::string picture = base::read_text_file(folder_ / "errors.svg");
-  expect_parts(picture, {"tilt error", "heading error", ", tilt 0.00°, heading 0.00° RMSE"});
-  EXPECT_EQ(picture.find("rotation"), std::string::npos);
+  const Json shown = page_data("errors.html").at("evaluations")[0];
+  expect_parts(shown.at("sentence").get<std::string>(), {", tilt 0.00°, heading 0.00° RMSE"});
+  EXPECT_EQ(shown.dump().find("rotation"), std::string::npos);
   std::map<std::string, Json> found = statistics_in(folder_ / "errors.json");
   EXPECT_NEAR(found.at("accuracy.tilt.rmse").at("value").get<double>(), 0, 1e-6);
   EXPECT_NEAR(found.at("accuracy.heading.rmse").at("value").get<double>(), 0, 1e-6);

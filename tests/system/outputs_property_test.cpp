@@ -95,7 +95,7 @@ struct Inputs {
          "out.xml"},
         {"microbench", {"microbench"}, "--csv", "out.csv"},
         {"eval_json", {"eval", truth, truth, "--relative", "0.0001"}, "--json", "out.json"},
-        {"eval_plot", {"eval", truth, truth, "--relative", "0.0001"}, "--plot", "out.svg"}};
+        {"eval_report", {"eval", truth, truth, "--relative", "0.0001"}, "--report", "out.html"}};
   }
 };
 

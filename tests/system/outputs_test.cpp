@@ -114,7 +114,7 @@ TEST_F(Outputs, ResultsThatAreReadStay) {
   };
   expect_kept_by_force(with({"--json", path("flown/trajectory.tum")}), {"--json"});
   expect_kept_by_force(
-      with({"--plot", path("flown/stats.svg"), "--json", path("flown/stats.json")}),
+      with({"--report", path("flown/stats.html"), "--json", path("flown/stats.json")}),
       {"--json", "is read"});
   fs::copy(folder_ / "flown/trajectory.tum", folder_ / "est.tum");
   expect_kept_by_force({"eval", path("est.tum"), truth, "--json", path("est.tum")}, {"est.tum"});

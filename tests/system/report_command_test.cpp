@@ -58,26 +58,14 @@ TEST_F(Report, RefusesBeforeAnythingIsWritten) {
   EXPECT_FALSE(fs::exists(path("x.html")));
 }
 
-TEST_F(Report, OfAnOlderFolderSaysWhatItLacks) {
+TEST_F(Report, RefusesAFolderThatLacksAColumn) {
   fs::copy(path("a"), path("old"));
   fs::remove(path("old/.leviosim-files"));
-  Json frames = csv_json("frames.csv", base::read_text_file(path("old/frames.csv")));
-  std::string csv =
-      "frame,t_ns,source,keyframe,arrival_ns,start_ns,end_ns,latency_ns,"
-      "parallel_cycles,single_cycles\n";
-  for (std::size_t i = 0; i < frames["frame"].size(); ++i) {
-    std::string line;
-    for (const char* column : {"frame", "t_ns", "source", "keyframe", "arrival_ns", "start_ns",
-                               "end_ns", "latency_ns", "parallel_cycles", "single_cycles"}) {
-      const Json& cell = frames[column][i];
-      line +=
-          (line.empty() ? "" : ",") + (cell.is_string() ? cell.get<std::string>() : cell.dump());
-    }
-    csv += line + '\n';
-  }
-  std::ofstream(path("old/frames.csv")) << csv;
-  fs::remove(path("old/errors.csv"));
-  expect_done({"report", path("old"), "-o", path("old.html")});
+  std::string frames = base::read_text_file(path("old/frames.csv"));
+  frames.replace(frames.find(",health,"), 8, ",other,");
+  std::ofstream(path("old/frames.csv")) << frames;
+  testing::expect_refused(program({"report", path("old"), "-o", path("old.html")}),
+                          {"old/frames.csv", "has no column health"});
 }
 
 TEST_F(Report, OfACheckHasItsLimits) {
@@ -236,6 +224,12 @@ TEST_F(InBrowser, APageOfARunIsDrawnWithoutErrorsRequestsOrOverflow) { expect_fi
 TEST_F(InBrowser, APageOfSeveralRunsIsToo) {
   expect_done({"report", path("a"), path(kEvilRun), "-o", path("both.html")});
   expect_fine("both.html");
+}
+
+TEST_F(InBrowser, APageOfAnEvaluationIsToo) {
+  const std::string truth = path("a/trajectory.tum");
+  expect_done({"eval", truth, truth, "--also", truth, "--report", path("errors.html")});
+  expect_fine("errors.html", 0);
 }
 
 /// Stages may be called as what every object of a script has.

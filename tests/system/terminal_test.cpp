@@ -109,8 +109,8 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
   expect_done({"replay", path("r" + out), "--out", path("p" + out)}, "p" + out);
   expect_done({"trace", "info", path("r" + out) + "/work.trace"}, "r" + out);
   const std::string est = path(out) + "/trajectory.tum";
-  expect_done({"eval", est, flight(), "--json", path("json" + kHostile + ".json"), "--plot",
-               path("svg" + kHostile + ".svg"), "--relative", "0.0001"},
+  expect_done({"eval", est, flight(), "--json", path("json" + kHostile + ".json"), "--report",
+               path("html" + kHostile + ".html"), "--relative", "0.0001"},
               "json" + kHostile + ".json");
   expect_done(
       {"ablate", "--data", "name=" + flight(), "--size", "32x24", "--seed", "1", "--relative",

@@ -6,7 +6,6 @@
 
 #include "sim/energy/model.h"
 #include "tests/support/run_program.h"
-#include "tests/tools/well_formed.h"
 #include "tools/app/study/tune/tuning.h"
 
 namespace leviosim::tools {
@@ -197,24 +196,6 @@ TEST(Tuning, SaysWhatItFound) {
   std::getline(lines, header);
   for (std::string line; std::getline(lines, line);)
     EXPECT_EQ(columns(line), columns(header)) << line;
-  const std::string picture = tune_plot(example.plan, example.points, all);
-  EXPECT_EQ(testing::xml_fault(picture), "");
-  for (const char* part : {"absolute trajectory error [m]", "mean power [mW]", "my flight"})
-    EXPECT_NE(picture.find(part), std::string::npos) << part;
-}
-
-/// A line from clock to clock would say more than one draw can.
-TEST(Tuning, OnlyPowerIsALineInThePicture) {
-  const Example example;
-  const std::string picture =
-      tune_plot(example.plan, example.points, choices(example.plan, example.points));
-  const auto count = [&](const std::string& part) {
-    std::size_t n = 0;
-    for (std::size_t at = 0; (at = picture.find(part, at)) != std::string::npos; ++at) ++n;
-    return n;
-  };
-  EXPECT_EQ(count("<polyline"), 2u);          // frame rates
-  EXPECT_EQ(count("fill-opacity"), 2u + 1u);  // bands, and the legend's
 }
 
 TEST(Tuning, TheCommandOfSeveralSeedsIsALoopOverThem) {
@@ -305,9 +286,8 @@ TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
   const auto line = manifest.at("chosen").get<std::string>();
   EXPECT_NE(first.out.find("next: " + line + '\n'), std::string::npos) << first.out;
   auto files = contents(folder_ / "out");
-  for (const char* name : {"runs.csv", "tune.svg", "manifest.json", "chosen/frames.csv"})
+  for (const char* name : {"runs.csv", "manifest.json", "chosen/frames.csv"})
     EXPECT_TRUE(files.count(name)) << name;
-  EXPECT_EQ(testing::xml_fault(files["tune.svg"]), "");
 
   // What is printed, pasted into a shell, runs the chosen point with each seed.
   fs::create_directory(folder_ / "bin");

@@ -33,16 +33,11 @@ TEST(Svg, EscapesText) {
 TEST(Svg, IsWellFormedWhateverItHolds) {
   Svg svg(100, 50, "<title> & more");
   svg.line({0, 0}, {1, 1}, {});
-  svg.polyline({{0, 0}, {5, 5}, {5.01, 5}, {9, 9}}, {"#ff0000", 2, "3 2"});
-  svg.begin_clip({1, 2, 3, 4});
-  svg.circle({5, 5}, 2, "#ffffff", {});
-  svg.end_group();
-  svg.polygon({{1, 1}, {2, 2}, {1, 3}}, "#00ff00", {});
-  svg.frame({1, 1, 8, 8}, {});
+  svg.rectangle({1, 1, 8, 8}, "#00ff00");
+  svg.rectangles({{1, 2, 3, 4}, {5, 6, 7, 8}}, "#ff0000");
   svg.text({3, -0.001}, "\"quoted\" <b>", {12, Anchor::end, "#000000", true, true});
   const std::string text = svg.str();
   EXPECT_EQ(xml_fault(text), "") << text;
-  EXPECT_NE(text.find("points=\"0.00,0.00 5.00,5.00 9.00,9.00\""), std::string::npos) << text;
   EXPECT_EQ(text.find("-0.00"), std::string::npos) << text;
 }
 
@@ -71,60 +66,6 @@ TEST(Ticks, AreLabelledWithTheDecimalsOfTheirStep) {
   EXPECT_EQ(tick_label(-0.0, 0.5), "0.0");
   EXPECT_EQ(tick_label(20, 5), "20");
   EXPECT_EQ(tick_label(-0.02, 0.01), "-0.02");
-}
-
-TEST(Axes, MapTheRangeToTheBoxWithYUpwards) {
-  const Axes axes({10, 20, 100, 50}, {0, 1}, {-1, 1});
-  EXPECT_DOUBLE_EQ(axes.at(0, -1).x, 10);
-  EXPECT_DOUBLE_EQ(axes.at(0, -1).y, 70);
-  EXPECT_DOUBLE_EQ(axes.at(1, 1).x, 110);
-  EXPECT_DOUBLE_EQ(axes.at(1, 1).y, 20);
-}
-
-TEST(Axes, LogarithmicOnesMapRatiosToDistances) {
-  const Axes axes({0, 0, 300, 100}, {1, 1000}, {0.1, 10}, Scale::logarithmic);
-  EXPECT_NEAR(axes.at(10, 1).x, 100, 1e-9);
-  EXPECT_NEAR(axes.at(100, 1).x, 200, 1e-9);
-  EXPECT_NEAR(axes.at(10, 1).y, 50, 1e-9);
-}
-
-TEST(Ticks, OfLogarithmicAxesAreRound) {
-  const std::vector<double> all = logarithmic_ticks({0.9, 60}, 10);
-  ASSERT_EQ(all.size(), 6u);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    EXPECT_NEAR(all[i], (std::vector<double>{1, 2, 5, 10, 20, 50})[i], 1e-12);
-  EXPECT_EQ(logarithmic_ticks({0.9, 6000}, 5).size(), 4u);  // powers only
-  EXPECT_GE(logarithmic_ticks({6.1, 6.4}, 6).size(), 2u);   // less than a step of 1, 2, 5
-  const Range wide = widened_logarithmically({1, 100}, 0.5);
-  EXPECT_NEAR(wide.low, 0.1, 1e-12);
-  EXPECT_NEAR(wide.high, 1000, 1e-9);
-}
-
-TEST(Axes, EqualAspectShowsCirclesAsCircles) {
-  const Box box{0, 0, 400, 200};
-  const auto [x, y] = equal_aspect(box, {0, 10}, {-1, 9});
-  EXPECT_DOUBLE_EQ(x.length() / box.width, y.length() / box.height);
-  EXPECT_LE(x.low, 0);
-  EXPECT_GE(x.high, 10);
-  EXPECT_DOUBLE_EQ(y.low, -1);
-  EXPECT_DOUBLE_EQ(y.high, 9);
-}
-
-TEST(Axes, ARangeWithoutLengthIsWidened) {
-  const Range range = widened({5, 5}, 0.1);
-  EXPECT_LT(range.low, 5);
-  EXPECT_GT(range.high, 5);
-  EXPECT_FALSE(round_ticks(range, 5).values.empty());
-}
-
-TEST(ColourScale, CoversItsRange) {
-  EXPECT_EQ(colour_index(0, 2), 0);
-  EXPECT_EQ(colour_index(2, 2), kColours - 1);
-  EXPECT_EQ(colour_index(1, 2), kColours / 2);
-  EXPECT_EQ(colour_index(3, 2), kColours - 1);
-  EXPECT_EQ(colour_index(0, 0), 0);
-  EXPECT_EQ(colour(0), "#203e8c");
-  EXPECT_EQ(colour(kColours - 1), "#be202e");
 }
 
 }  // namespace

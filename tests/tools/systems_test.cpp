@@ -85,7 +85,8 @@ TEST(SystemsReport, ThePageHasAPointForEachRateWithAPower) {
       if (table.at("system")[i] == system && table.at("by")[i] == by) return static_cast<int>(i);
     return -1;
   };
-  for (const char* system : {"Navion", "Gu et al."}) EXPECT_GE(spot(system, "published"), 0) << system;
+  for (const char* system : {"Navion", "Gu et al."})
+    EXPECT_GE(spot(system, "published"), 0) << system;
   EXPECT_GE(spot("LEVIO", "published, at most"), 0);
   const int here = spot("LEVIO", "predicted here");
   ASSERT_GE(here, 0);
@@ -96,7 +97,7 @@ TEST(SystemsReport, ThePageHasAPointForEachRateWithAPower) {
   EXPECT_TRUE(systems_page({}).at("study").at("table").empty());
 }
 
-TEST(OtherAccuracy, StandsBesideTheAblationOfTheSameSequences) {
+TEST(AccuracyComparison, StandsBesideTheAblationOfTheSameSequences) {
   BatchPlan plan;
   plan.sequences.resize(2);
   plan.sequences[0].name = "MH_01_easy";
@@ -106,25 +107,14 @@ TEST(OtherAccuracy, StandsBesideTheAblationOfTheSameSequences) {
   row.profile = "next";
   row.size = {160, 120};
   row.ate = spread_of({0.031, 0.5, 0.1});
-  const std::string table = accuracy_comparison(plan, {row}, paper_accuracy(), other_accuracy());
+  const std::string table = accuracy_comparison(plan, {row}, published_accuracy());
   for (const char* part : {"next, here", "160x120", "0.10", "VINS-Mono", "0.14", "0.20",
                            "ORB-SLAM3", "LEVIO", "0.96", "1.82"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in:\n" << table;
   EXPECT_EQ(table.find("mine"), std::string::npos);
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 2 + 1 + 2 + 6 + 1);
   plan.sequences.erase(plan.sequences.begin());
-  EXPECT_EQ(accuracy_comparison(plan, {row}, paper_accuracy(), other_accuracy()), "");
-}
-
-TEST(OtherAccuracy, ThePaperHasFiveSequencesOfEach) {
-  EXPECT_EQ(other_accuracy().size(), 30u);
-  expect_input_error(
-      [] {
-        parse_other_accuracy("o.csv",
-                             "sequence,estimator,loop_closure,width,height,value,unit,source\n"
-                             "a,b,maybe,1,1,1,m,us\n");
-      },
-      {"o.csv", "yes or no"});
+  EXPECT_EQ(accuracy_comparison(plan, {row}, published_accuracy()), "");
 }
 
 }  // namespace

@@ -61,10 +61,12 @@ TEST(InputDistributions, OfIterationsAreCountedInEachHypothesis) {
 
 TEST(InputDistributions, FaultsOfAPublishedFileNameTheLine) {
   const FrameLog log = testing::example_log();
-  expect_input_error([&] { input_distributions("a.csv", "keypoints of a fram,1,,,,\n", log); },
-                     {"a.csv", "line 1", "keypoints of a frame"});
-  expect_input_error([&] { input_distributions("a.csv", "keyframes,x,,,,\n", log); },
-                     {"a.csv", "line 1", "x"});
+  const auto refuse = [&](const std::string& row, std::initializer_list<std::string> parts) {
+    const std::string titles = "quantity,mean,p10,median,p90,max\n";
+    expect_input_error([&] { input_distributions("a.csv", titles + row, log); }, parts);
+  };
+  refuse("keypoints of a fram,1,,,,\n", {"a.csv", "line 2", "keypoints of a frame"});
+  refuse("keyframes,x,,,,\n", {"a.csv", "line 2", "x"});
 }
 
 }  // namespace

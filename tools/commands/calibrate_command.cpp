@@ -74,7 +74,7 @@ Command add_calibrate_command(CLI::App& app, const Words&) {
       *command,
       {"leviosim calibrate --data flight --constants isa.instruction_overhead --yaml fitted.yaml"});
   add_json_option(*command, options->run.json);
-  return {command, [=] { run(*options); }, {{"--out", "--yaml"}}};
+  return {command, [=] { run(*options); }};
 }
 
 }  // namespace leviosim::tools

@@ -5,15 +5,25 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
 #include <vector>
 
+#include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/printable_text.h"
-#include "tools/app/evaluation/evaluation.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/report/run_summary.h"
 #include "tools/app/report/text_table.h"
+#include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory_errors.h"
+#include "traces/trajectories/trajectory_file.h"
 
 namespace leviosim::tools {
 namespace {
@@ -21,6 +31,127 @@ namespace {
 using traces::Evaluation;
 using traces::RelativeErrors;
 using traces::TrajectoryFile;
+
+/// The length over which relative errors are given unless others are asked for. [m]
+constexpr double kDefaultLength = 40;
+
+struct EvalOptions {
+  std::string estimate;
+  std::string truth;
+  std::string align = "se3";
+  std::string max_dt = "10ms";
+  std::vector<std::string> also;  ///< further estimates
+  std::vector<std::string> relative;
+  std::string expected;
+  std::string format;
+  std::string times;
+  std::string json;
+  std::string report;
+  bool force = false;
+};
+
+struct EvalRequest {
+  traces::ReadOptions read;
+  traces::EvaluationOptions evaluation;  ///< stamps are those of the files
+  std::vector<double> lengths_m;         ///< rising, each once
+  std::optional<outputs::OutputFile> json;
+  std::optional<outputs::OutputFile> report;
+};
+
+/// @returns whether the text ended in it
+bool remove_suffix(std::string& text, std::string_view suffix) {
+  if (!text.ends_with(suffix)) return false;
+  text.resize(text.size() - suffix.size());
+  return true;
+}
+
+std::vector<double> parse_lengths(const std::vector<std::string>& words) {
+  std::vector<double> lengths;
+  for (const std::string& word : words) {
+    std::istringstream list(word + ',');  // "1,2" is two of them, and "1," one and a fault
+    for (std::string length; std::getline(list, length, ',');)
+      lengths.push_back(parse_positive("--relative", length));
+  }
+  if (lengths.empty()) lengths.push_back(kDefaultLength);
+  std::sort(lengths.begin(), lengths.end());
+  lengths.erase(std::unique(lengths.begin(), lengths.end()), lengths.end());
+  return lengths;
+}
+
+outputs::OutputRequest output(const EvalOptions& options, const char* option,
+                              const std::string& file) {
+  outputs::OutputRequest request{.option = option,
+                                 .path = file,
+                                 .replace = options.force,
+                                 .inputs = {options.estimate, options.truth, options.times}};
+  request.inputs.insert(request.inputs.end(), options.also.begin(), options.also.end());
+  return request;
+}
+
+/// Told from each other as files, not as names.
+void claim_outputs(const EvalOptions& options, EvalRequest& request) {
+  request.json = claimed_file(output(options, "--json", options.json));
+  request.report = claimed_file(output(options, "--report", options.report));
+  expect_different(request.report, "--report", request.json, "--json");
+}
+
+/// Nanoseconds of "10ms", "0.01s" or "10", which is milliseconds too; from 0 to an hour.
+/// @throws InputError for anything else
+std::int64_t parse_tolerance(const std::string& option, const std::string& text) {
+  constexpr double kMostNs = 3600e9;
+  std::string number = text;
+  double ns_per_unit = 1e6;
+  if (!remove_suffix(number, "ms") && remove_suffix(number, "s")) ns_per_unit = 1e9;
+  double value = 0;
+  if (!base::parse_number(number, value) || value < 0 || value * ns_per_unit > kMostNs)
+    throw InputError(fmt::format("{} '{}': expected a time such as 10ms or 0.01s, at most an hour",
+                                 option, text));
+  return std::llround(value * ns_per_unit);
+}
+
+void add_eval_options(CLI::App& command, EvalOptions& options) {
+  command.add_option("EST", options.estimate, "estimated trajectory: a file or a run folder");
+  command.add_option("GT", options.truth, "ground truth: a file or an ASL folder");
+  const TextOptions add{command};
+  add("--also", options.also, "EST",
+      "another estimate of the same flight, repeatable: a row for each, side by side");
+  add("--align", options.align, "KIND",
+      "what is aligned first: se3, sim3, posyaw (gravity is known, z up) or none [se3]");
+  add("--max-dt", options.max_dt, "TIME",
+      "to the nearest true sample of a matched pose: 10ms, 0.01s, or a number of ms [10ms]");
+  add("--relative", options.relative, "M",
+      "lengths of sub-trajectories in metres: 10,40; repeatable [40]");
+  add("--expected", options.expected, "N",
+      "completion is of N poses, e.g. the frames fed in [of the ground truth's duration]");
+  add("--format", options.format, "FORMAT", "of both files: tum, euroc or kitti [as they look]");
+  add("--times", options.times, "FILE", "time stamps of KITTI files, seconds, one a line");
+  command
+      .add_option("--json", options.json,
+                  "write the figures to a file; without one, at the end, print them as JSON")
+      ->type_name("FILE")
+      ->expected(0, 1);
+  add("--report", options.report, "FILE.html",
+      "page to write, for a browser: views from top and side, and errors over time");
+  command.add_flag("--force", options.force, "replace these files");
+}
+
+/// @throws InputError for anything that is not understood, missing, or cannot be written
+EvalRequest make_eval_request(const CLI::App& command, const EvalOptions& options) {
+  require(command, "EST", "an estimated trajectory: a TUM, EuRoC or KITTI file, or a run folder");
+  require(command, "GT", "the ground truth: a TUM, EuRoC or KITTI file, or an ASL folder");
+  EvalRequest request;
+  request.evaluation.alignment = traces::parse_alignment(options.align);
+  request.evaluation.max_gap_ns = parse_tolerance("--max-dt", options.max_dt);
+  if (command.count("--expected") > 0)
+    request.evaluation.expected_poses = static_cast<std::size_t>(
+        parse_whole("--expected", options.expected, 1, std::numeric_limits<std::int32_t>::max()));
+  request.lengths_m = parse_lengths(options.relative);
+  if (command.count("--format") > 0)
+    request.read.format = traces::parse_trajectory_format(options.format);
+  request.read.times = options.times;
+  claim_outputs(options, request);
+  return request;
+}
 
 struct Accuracy {
   Evaluation evaluation;
@@ -158,7 +289,7 @@ std::string conclusion(const std::vector<Evaluated>& all) {
 std::string after(const EvalOptions& options) {
   std::string also;
   for (const std::string& estimate : options.also) also += " --also " + estimate;
-  return printable(fmt::format("leviosim eval {} {}{} --plot errors.svg", options.estimate,
+  return printable(fmt::format("leviosim eval {} {}{} --report errors.html", options.estimate,
                                options.truth, also));
 }
 
@@ -171,6 +302,44 @@ std::string json_of(const std::vector<Evaluated>& all, const EvalRequest& reques
   for (const Evaluated& one : all)
     document["evaluations"].push_back(figures(one.pair, request, one.accuracy));
   return json_text(document, 1) + '\n';
+}
+
+/// What the page shows of an estimate, in the words of the page of a run.
+Json shown(const Evaluated& one) {
+  const Evaluation& e = one.accuracy.evaluation;
+  const bool timed = one.pair.estimate.stamps == traces::Stamps::time;
+  Json errors;
+  for (const traces::MatchedPose& pose : e.poses) {
+    const auto time = static_cast<double>(timed ? pose.t_ns - e.poses.front().t_ns : pose.t_ns);
+    errors["t_s"].push_back(timed ? time * 1e-9 : time);
+    errors["position_error_m"].push_back(translation_error(pose));
+    for (int axis = 0; axis < 3; ++axis) {
+      errors[fmt::format("estimate_{}_m", "xyz"[axis])].push_back(
+          pose.estimate.translation()[axis]);
+      errors[fmt::format("truth_{}_m", "xyz"[axis])].push_back(pose.truth.translation()[axis]);
+    }
+  }
+  std::string sentence = fmt::format("Absolute trajectory error {:.3f} m RMSE ({:.3f} m at worst)",
+                                     e.translation.rmse, e.translation.max);
+  if (const auto attitude = attitude_errors(e)) {
+    sentence += fmt::format(", tilt {:.2f}°, heading {:.2f}° RMSE", attitude->tilt_rmse_deg,
+                            attitude->heading_rmse_deg);
+    errors["tilt_error_deg"] = attitude->tilts_deg;
+    for (const double heading : attitude->headings_deg)
+      errors["heading_error_deg"].push_back(std::abs(heading));
+  }
+  return {{"name", printable(one.pair.estimate.file.string())},
+          {"sentence", std::move(sentence)},
+          {"protocol", e.protocol},
+          {"time", timed ? "s since the first pose" : "number of the pose"},
+          {"tables", {{"errors", std::move(errors)}}}};
+}
+
+Json page_of(const std::vector<Evaluated>& all) {
+  Json data =
+      report_json("Against " + printable(all.front().pair.truth.file.string()), Json::array());
+  for (const Evaluated& one : all) data["evaluations"].push_back(shown(one));
+  return data;
 }
 
 void run(const CLI::App& command, const EvalOptions& options) {
@@ -187,7 +356,7 @@ void run(const CLI::App& command, const EvalOptions& options) {
   const bool prints_json = command.count("--json") > 0 && !request.json;
   const Printout text = printout(prints_json, lines, [&] { return json_of(all, request); });
   publish({{request.json, json_of(all, request), "figures"},
-           {request.plot, trajectory_plot(all[0].pair, all[0].accuracy.evaluation), "plot"}},
+           {request.report, html_page(page_of(all)), "report"}},
           text);
 }
 
@@ -198,7 +367,7 @@ Command add_eval_command(CLI::App& app, const Words&) {
   const auto options = std::make_shared<EvalOptions>();
   add_eval_options(*command, *options);
   add_examples(*command,
-               {"leviosim eval recorded flight --relative 0.5 --plot errors.svg",
+               {"leviosim eval recorded flight --relative 0.5 --report errors.html",
                 "leviosim eval golden flight --align sim3 --relative 0.5 --also recorded"});
   return {command, [=] { run(*command, *options); }};
 }

@@ -12,7 +12,7 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/evaluation/images/image_statistics.h"
+#include "tools/app/images/image_statistics.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "traces/recordings/recording.h"

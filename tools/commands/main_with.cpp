@@ -104,19 +104,11 @@ int end_after_report(int status) {
   }
 }
 
-/// Of commands that find again what they finished.
-bool goes_on(const Words& words) {
-  constexpr std::array<std::string_view, 5> kCommands{"sweep", "ablate", "explore", "tune",
-                                                      "benchmark-flights"};
-  return !words.empty() &&
-         std::find(kCommands.begin(), kCommands.end(), words.front()) != kCommands.end();
-}
-
 /// Says what was kept, to whoever asked the program to stop.
-int end_interrupted(const Interrupted& stop, const Words& words) {
+int end_interrupted(const Interrupted& stop, bool goes_on) {
   if (memory_ended()) return fail_without_memory();
   if (stop.signal() == SIGINT || stop.signal() == SIGTERM)
-    print_error(goes_on(words)
+    print_error(goes_on
                     ? "interrupted: what was finished is kept; the same command goes on from there"
                     : "interrupted: nothing unfinished was kept; the same command begins anew");
   return kSignalled + stop.signal();
@@ -139,10 +131,12 @@ int run_program(const Words& typed) {
                "leviosim");
   app.footer("leviosim help COMMAND: its options, with examples");
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
+  std::vector<Command> commands;
   try {
 #define LEVIOSIM_ADD(name) add_##name##_command(app, words),
-    const int status = run_command_line(app, {LEVIOSIM_COMMANDS(LEVIOSIM_ADD)}, typed);
+    commands = {LEVIOSIM_COMMANDS(LEVIOSIM_ADD)};
 #undef LEVIOSIM_ADD
+    const int status = run_command_line(app, commands, typed);
     flush_results();
     if (!memory_ended()) throw_if_interrupted();
     return status;
@@ -151,7 +145,10 @@ int run_program(const Words& typed) {
   } catch (const EndsWith& end) {
     return end_after_report(end.status());
   } catch (const Interrupted& stop) {
-    return end_interrupted(stop, words);
+    return end_interrupted(stop,
+                           std::any_of(commands.begin(), commands.end(), [&](const Command& c) {
+                             return c.goes_on && app.got_subcommand(c.app);
+                           }));
   } catch (const std::bad_alloc&) {
     return fail_without_memory();
   } catch (const std::exception& error) {  // of a library or the system

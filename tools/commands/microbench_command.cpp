@@ -97,7 +97,7 @@ Command add_microbench_command(CLI::App& app, const Words&) {
   add_examples(*command,
                {"leviosim microbench", "leviosim microbench --platform gap8 --csv board.csv"});
   add_json_option(*command, options->json);
-  return {command, [=] { run(*options); }, {{"--out", "--csv"}}};
+  return {command, [=] { run(*options); }};
 }
 
 }  // namespace leviosim::tools

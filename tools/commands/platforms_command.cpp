@@ -439,7 +439,7 @@ Command add_platforms_command(CLI::App& app, const Words&) {
                 "leviosim platforms stages gap9 gap9-eigen --data flight",
                 "leviosim platforms systems --data flight --report systems.html"});
   add_json_option(*command, run_options.json);
-  return {command, [=] { run(*command, *options); }, {{"--out", "--csv"}}};
+  return {command, [=] { run(*command, *options); }};
 }
 
 }  // namespace leviosim::tools

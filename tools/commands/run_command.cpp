@@ -70,7 +70,7 @@ Command add_run_command(CLI::App& app, const Words& words) {
                 "leviosim run --platform gap9 --data flight --fps 10 --deadline drop --out loop",
                 "leviosim run --native --data flight --size 320x240 --out golden"});
   add_print_options(*command, *options);
-  return {command, [=, &words] { run(*command, *options, words); }, {{"--camera-fps", "--fps"}}};
+  return {command, [=, &words] { run(*command, *options, words); }};
 }
 
 }  // namespace leviosim::tools

@@ -133,7 +133,7 @@ Command add_synth_command(CLI::App& app, const Words&) {
   command->add_flag("--quiet", options->quiet, "no progress");
   add_examples(*command, {"leviosim synth --duration 6 --out flight",
                           "leviosim synth --motion flight --frames 0:20 --out rendered"});
-  return {command, [=] { run(*command, *options); }, {{"--overwrite", "--force"}}};
+  return {command, [=] { run(*command, *options); }};
 }
 
 }  // namespace leviosim::tools

@@ -4,11 +4,6 @@
 # No figure shows the host's times, the commit, or anything else that differs from run to run.
 
 # README.md
-figure tune
-needs data slow
-shows 'leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130:370:30 --fps 10,15,20 --seed 1,2,3 --out tuned'
-keeps tuned/tune.svg
-
 figure one-fpu
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'

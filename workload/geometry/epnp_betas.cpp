@@ -139,19 +139,12 @@ void refine_betas(const DistanceSystem<P>& system, typename P::template Span<typ
   }
 }
 
-template void fill_distance_system<work::Native>(const DistanceSystem<work::Native>&,
-                                                 MatrixView<work::Native>,
-                                                 MatrixView<work::Native>);
-template void fill_distance_system<work::Counting>(const DistanceSystem<work::Counting>&,
-                                                   MatrixView<work::Counting>,
-                                                   MatrixView<work::Counting>);
-template bool initial_betas<work::Native>(const DistanceSystem<work::Native>&, int,
-                                          work::NativeSpan<float>, work::Arena&);
-template bool initial_betas<work::Counting>(const DistanceSystem<work::Counting>&, int,
-                                            work::CountedSpan<work::F32>, work::Arena&);
-template void refine_betas<work::Native>(const DistanceSystem<work::Native>&,
-                                         work::NativeSpan<float>, int, work::Arena&);
-template void refine_betas<work::Counting>(const DistanceSystem<work::Counting>&,
-                                           work::CountedSpan<work::F32>, int, work::Arena&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                  \
+  template void fill_distance_system<P>(const DistanceSystem<P>&, MatrixView<P>, MatrixView<P>); \
+  template bool initial_betas<P>(const DistanceSystem<P>&, int, P::Span<P::F32>, work::Arena&);  \
+  template void refine_betas<P>(const DistanceSystem<P>&, P::Span<P::F32>, int, work::Arena&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -207,18 +207,13 @@ typename P::I32 score_essential(const Mat3<P>& E, const TwoViewMatches<P>& match
   return inliers;
 }
 
-template Mat3<work::Native> essential_from_sample(const TwoViewMatches<work::Native>&,
-                                                  work::Native::Span<const work::Native::U16>,
-                                                  const EightPointOptions&, work::Arena&);
-template Mat3<work::Counting> essential_from_sample(const TwoViewMatches<work::Counting>&,
-                                                    work::Counting::Span<const work::Counting::U16>,
-                                                    const EightPointOptions&, work::Arena&);
-template work::Native::I32 score_essential(const Mat3<work::Native>&,
-                                           const TwoViewMatches<work::Native>&, work::Native::F32,
-                                           work::Native::Span<work::Native::Byte>);
-template work::Counting::I32 score_essential(const Mat3<work::Counting>&,
-                                             const TwoViewMatches<work::Counting>&,
-                                             work::Counting::F32,
-                                             work::Counting::Span<work::Counting::Byte>);
+#define LEVIOSIM_INSTANTIATE(P)                                                           \
+  template Mat3<P> essential_from_sample(const TwoViewMatches<P>&, P::Span<const P::U16>, \
+                                         const EightPointOptions&, work::Arena&);         \
+  template P::I32 score_essential(const Mat3<P>&, const TwoViewMatches<P>&, P::F32,       \
+                                  P::Span<P::Byte>);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

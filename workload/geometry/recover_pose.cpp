@@ -97,19 +97,14 @@ TwoViewPose<P> recover_pose(work::Machine& machine, const TwoViewMatches<P>& mat
   return best;
 }
 
-template FourPoses<work::Native> decompose_essential(const Mat3<work::Native>&,
-                                                     const RecoverPoseOptions&);
-template FourPoses<work::Counting> decompose_essential(const Mat3<work::Counting>&,
-                                                       const RecoverPoseOptions&);
-template TwoViewPose<work::Native> recover_pose(work::Machine&, const TwoViewMatches<work::Native>&,
-                                                work::Native::Span<const work::Native::Byte>,
-                                                const Mat3<work::Native>&,
-                                                const RecoverPoseOptions&);
-template TwoViewPose<work::Counting> recover_pose(work::Machine&,
-                                                  const TwoViewMatches<work::Counting>&,
-                                                  work::Counting::Span<const work::Counting::Byte>,
-                                                  const Mat3<work::Counting>&,
-                                                  const RecoverPoseOptions&);
+#define LEVIOSIM_INSTANTIATE(P)                                                         \
+  template FourPoses<P> decompose_essential(const Mat3<P>&, const RecoverPoseOptions&); \
+  template TwoViewPose<P> recover_pose(work::Machine&, const TwoViewMatches<P>&,        \
+                                       P::Span<const P::Byte>, const Mat3<P>&,          \
+                                       const RecoverPoseOptions&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 namespace {
 
@@ -187,33 +182,17 @@ bool agrees_with_infinity(const Pose<P>& T_a_world, const Pose<P>& T_b_world, co
   return ray.z > F(0.0f) && error_sq_in_view<P>(ray, b, camera) < F(max_error_sq);
 }
 
-template Triangulated<work::Native> triangulate(const Pose<work::Native>&,
-                                                const Pose<work::Native>&,
-                                                const Vec2<work::Native>&,
-                                                const Vec2<work::Native>&, work::Arena&,
-                                                const TriangulationOptions&);
-template work::Native::F32 reprojection_error_sq(const Pose<work::Native>&,
-                                                 const Vec3<work::Native>&,
-                                                 const Vec2<work::Native>&, const PinholeCamera&);
-template bool agrees_with_view(const Pose<work::Native>&, const Vec3<work::Native>&,
-                               const Vec2<work::Native>&, const PinholeCamera&, float);
-template bool agrees_with_infinity(const Pose<work::Native>&, const Pose<work::Native>&,
-                                   const Vec2<work::Native>&, const Vec2<work::Native>&,
-                                   const PinholeCamera&, float);
-
-template Triangulated<work::Counting> triangulate(const Pose<work::Counting>&,
-                                                  const Pose<work::Counting>&,
-                                                  const Vec2<work::Counting>&,
-                                                  const Vec2<work::Counting>&, work::Arena&,
-                                                  const TriangulationOptions&);
-template work::Counting::F32 reprojection_error_sq(const Pose<work::Counting>&,
-                                                   const Vec3<work::Counting>&,
-                                                   const Vec2<work::Counting>&,
-                                                   const PinholeCamera&);
-template bool agrees_with_view(const Pose<work::Counting>&, const Vec3<work::Counting>&,
-                               const Vec2<work::Counting>&, const PinholeCamera&, float);
-template bool agrees_with_infinity(const Pose<work::Counting>&, const Pose<work::Counting>&,
-                                   const Vec2<work::Counting>&, const Vec2<work::Counting>&,
-                                   const PinholeCamera&, float);
+#define LEVIOSIM_INSTANTIATE(P)                                                                    \
+  template Triangulated<P> triangulate(const Pose<P>&, const Pose<P>&, const Vec2<P>&,             \
+                                       const Vec2<P>&, work::Arena&, const TriangulationOptions&); \
+  template P::F32 reprojection_error_sq(const Pose<P>&, const Vec3<P>&, const Vec2<P>&,            \
+                                        const PinholeCamera&);                                     \
+  template bool agrees_with_view(const Pose<P>&, const Vec3<P>&, const Vec2<P>&,                   \
+                                 const PinholeCamera&, float);                                     \
+  template bool agrees_with_infinity(const Pose<P>&, const Pose<P>&, const Vec2<P>&,               \
+                                     const Vec2<P>&, const PinholeCamera&, float);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

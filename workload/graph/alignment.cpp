@@ -367,17 +367,13 @@ AlignmentReport align_from_all(work::Machine& fc, Window<P>& window, AlignmentSt
   return report;
 }
 
-template AlignmentReport align_once(work::Machine&, Window<work::Native>&,
-                                    AlignmentState<work::Native>&, const OptimiserOptions&,
-                                    const AlignmentOptions&, bool);
-template AlignmentReport align_once(work::Machine&, Window<work::Counting>&,
-                                    AlignmentState<work::Counting>&, const OptimiserOptions&,
-                                    const AlignmentOptions&, bool);
-template AlignmentReport align_from_all(work::Machine&, Window<work::Native>&,
-                                        AlignmentState<work::Native>&, const OptimiserOptions&,
-                                        const AlignmentOptions&);
-template AlignmentReport align_from_all(work::Machine&, Window<work::Counting>&,
-                                        AlignmentState<work::Counting>&, const OptimiserOptions&,
-                                        const AlignmentOptions&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                \
+  template AlignmentReport align_once(work::Machine&, Window<P>&, AlignmentState<P>&,          \
+                                      const OptimiserOptions&, const AlignmentOptions&, bool); \
+  template AlignmentReport align_from_all(work::Machine&, Window<P>&, AlignmentState<P>&,      \
+                                          const OptimiserOptions&, const AlignmentOptions&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -135,15 +135,12 @@ void add_departing_visual_terms(const Window<P>& window, const PixelModel<P>& mo
   }
 }
 
-template void add_departing_visual_terms(const Window<work::Native>&,
-                                         const PixelModel<work::Native>&, int, bool,
-                                         const LandmarkRecords<work::Native>&,
-                                         const ProjectionScratch<work::Native>&,
-                                         const ReducedSystem<work::Native>&);
-template void add_departing_visual_terms(const Window<work::Counting>&,
-                                         const PixelModel<work::Counting>&, int, bool,
-                                         const LandmarkRecords<work::Counting>&,
-                                         const ProjectionScratch<work::Counting>&,
-                                         const ReducedSystem<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                    \
+  template void add_departing_visual_terms(const Window<P>&, const PixelModel<P>&, int, bool,      \
+                                           const LandmarkRecords<P>&, const ProjectionScratch<P>&, \
+                                           const ReducedSystem<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -149,27 +149,15 @@ typename P::F32 anchor_cost(const Window<P>& window, const WindowState<P>& state
                       with_velocity ? velocity_information<P>(window, options) : 0.0f);
 }
 
-template work::Native::F32 add_inertial_terms(const Window<work::Native>&,
-                                              const IntervalScratch<work::Native>&,
-                                              const ReducedSystem<work::Native>&);
-template work::Counting::F32 add_inertial_terms(const Window<work::Counting>&,
-                                                const IntervalScratch<work::Counting>&,
-                                                const ReducedSystem<work::Counting>&);
-template work::Native::F32 inertial_cost(const Window<work::Native>&,
-                                         const WindowState<work::Native>&,
-                                         const IntervalScratch<work::Native>&);
-template work::Counting::F32 inertial_cost(const Window<work::Counting>&,
-                                           const WindowState<work::Counting>&,
-                                           const IntervalScratch<work::Counting>&);
-template work::Native::F32 add_anchor(const Window<work::Native>&, const AnchorOptions&,
-                                      const ReducedSystem<work::Native>&);
-template work::Counting::F32 add_anchor(const Window<work::Counting>&, const AnchorOptions&,
-                                        const ReducedSystem<work::Counting>&);
-template work::Native::F32 anchor_cost(const Window<work::Native>&,
-                                       const WindowState<work::Native>&, const AnchorOptions&,
-                                       bool);
-template work::Counting::F32 anchor_cost(const Window<work::Counting>&,
-                                         const WindowState<work::Counting>&, const AnchorOptions&,
-                                         bool);
+#define LEVIOSIM_INSTANTIATE(P)                                                                \
+  template P::F32 add_inertial_terms(const Window<P>&, const IntervalScratch<P>&,              \
+                                     const ReducedSystem<P>&);                                 \
+  template P::F32 inertial_cost(const Window<P>&, const WindowState<P>&,                       \
+                                const IntervalScratch<P>&);                                    \
+  template P::F32 add_anchor(const Window<P>&, const AnchorOptions&, const ReducedSystem<P>&); \
+  template P::F32 anchor_cost(const Window<P>&, const WindowState<P>&, const AnchorOptions&, bool);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -118,29 +118,16 @@ typename P::F32 joint_inertial_cost(const Window<P>& window, const WindowState<P
   return cost;
 }
 
-template void linearise_interval(const Preintegration<work::Native>&,
-                                 const KeyframeState<work::Native>&,
-                                 const KeyframeState<work::Native>&, const ImuBias<work::Native>&,
-                                 const Vec3<work::Native>&, const Vec3<work::Native>&,
-                                 MatrixView<work::Native>);
-template work::Native::F32 add_joint_inertial_terms(const Window<work::Native>&, int, int,
-                                                    const JointScratch<work::Native>&,
-                                                    const ReducedSystem<work::Native>&);
-template work::Native::F32 joint_inertial_cost(const Window<work::Native>&,
-                                               const WindowState<work::Native>&,
-                                               const ImuBias<work::Native>&,
-                                               const JointScratch<work::Native>&);
-template void linearise_interval(const Preintegration<work::Counting>&,
-                                 const KeyframeState<work::Counting>&,
-                                 const KeyframeState<work::Counting>&,
-                                 const ImuBias<work::Counting>&, const Vec3<work::Counting>&,
-                                 const Vec3<work::Counting>&, MatrixView<work::Counting>);
-template work::Counting::F32 add_joint_inertial_terms(const Window<work::Counting>&, int, int,
-                                                      const JointScratch<work::Counting>&,
-                                                      const ReducedSystem<work::Counting>&);
-template work::Counting::F32 joint_inertial_cost(const Window<work::Counting>&,
-                                                 const WindowState<work::Counting>&,
-                                                 const ImuBias<work::Counting>&,
-                                                 const JointScratch<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                   \
+  template void linearise_interval(const Preintegration<P>&, const KeyframeState<P>&,             \
+                                   const KeyframeState<P>&, const ImuBias<P>&, const Vec3<P>&,    \
+                                   const Vec3<P>&, MatrixView<P>);                                \
+  template P::F32 add_joint_inertial_terms(const Window<P>&, int, int, const JointScratch<P>&,    \
+                                           const ReducedSystem<P>&);                              \
+  template P::F32 joint_inertial_cost(const Window<P>&, const WindowState<P>&, const ImuBias<P>&, \
+                                      const JointScratch<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -247,40 +247,19 @@ typename P::F32 gauge_cost(const WindowPrior<P>& prior, const WindowState<P>& st
   return GaugeError<P>(prior, state).cost(options);
 }
 
-template work::Native::F32 hold_gauge(const WindowPrior<work::Native>&,
-                                      const WindowState<work::Native>&, const PriorOptions&,
-                                      const ReducedSystem<work::Native>&);
-template work::Counting::F32 hold_gauge(const WindowPrior<work::Counting>&,
-                                        const WindowState<work::Counting>&, const PriorOptions&,
-                                        const ReducedSystem<work::Counting>&);
-template work::Native::F32 gauge_cost(const WindowPrior<work::Native>&,
-                                      const WindowState<work::Native>&, const PriorOptions&);
-template work::Counting::F32 gauge_cost(const WindowPrior<work::Counting>&,
-                                        const WindowState<work::Counting>&, const PriorOptions&);
-template struct WindowPrior<work::Native>;
-template struct WindowPrior<work::Counting>;
-template void start_prior(const Window<work::Native>&, const PriorOptions&,
-                          WindowPrior<work::Native>&);
-template void start_prior(const Window<work::Counting>&, const PriorOptions&,
-                          WindowPrior<work::Counting>&);
-template void marginalise(work::Arena&, const Window<work::Native>&, int,
-                          const ReprojectionOptions&, const PriorOptions&,
-                          WindowPrior<work::Native>&);
-template void marginalise(work::Arena&, const Window<work::Counting>&, int,
-                          const ReprojectionOptions&, const PriorOptions&,
-                          WindowPrior<work::Counting>&);
-template work::Native::F32 add_prior(const WindowPrior<work::Native>&, const Window<work::Native>&,
-                                     const ReducedSystem<work::Native>&);
-template work::Counting::F32 add_prior(const WindowPrior<work::Counting>&,
-                                       const Window<work::Counting>&,
-                                       const ReducedSystem<work::Counting>&);
-template work::Native::F32 prior_cost(const WindowPrior<work::Native>&,
-                                      const WindowState<work::Native>&,
-                                      const ImuBias<work::Native>&);
-template work::Counting::F32 prior_cost(const WindowPrior<work::Counting>&,
-                                        const WindowState<work::Counting>&,
-                                        const ImuBias<work::Counting>&);
-template void eliminate_first(const ReducedSystem<work::Native>&, int);
-template void eliminate_first(const ReducedSystem<work::Counting>&, int);
+#define LEVIOSIM_INSTANTIATE(P)                                                                  \
+  template P::F32 hold_gauge(const WindowPrior<P>&, const WindowState<P>&, const PriorOptions&,  \
+                             const ReducedSystem<P>&);                                           \
+  template P::F32 gauge_cost(const WindowPrior<P>&, const WindowState<P>&, const PriorOptions&); \
+  template struct WindowPrior<P>;                                                                \
+  template void start_prior(const Window<P>&, const PriorOptions&, WindowPrior<P>&);             \
+  template void marginalise(work::Arena&, const Window<P>&, int, const ReprojectionOptions&,     \
+                            const PriorOptions&, WindowPrior<P>&);                               \
+  template P::F32 add_prior(const WindowPrior<P>&, const Window<P>&, const ReducedSystem<P>&);   \
+  template P::F32 prior_cost(const WindowPrior<P>&, const WindowState<P>&, const ImuBias<P>&);   \
+  template void eliminate_first(const ReducedSystem<P>&, int);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -283,26 +283,15 @@ typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& tri
   return cost;
 }
 
-template VisualUse add_visual_terms(const Window<work::Native>&, const PixelModel<work::Native>&,
-                                    work::Native::F32, const LandmarkRecords<work::Native>&,
-                                    const EliminationScratch<work::Native>&,
-                                    const ReducedSystem<work::Native>&, work::Native::F32&);
-template VisualUse add_visual_terms(const Window<work::Counting>&,
-                                    const PixelModel<work::Counting>&, work::Counting::F32,
-                                    const LandmarkRecords<work::Counting>&,
-                                    const EliminationScratch<work::Counting>&,
-                                    const ReducedSystem<work::Counting>&, work::Counting::F32&);
-template void step_points(const Window<work::Native>&, const LandmarkRecords<work::Native>&,
-                          const ReducedSystem<work::Native>&,
-                          work::Native::Span<work::Native::F32>);
-template void step_points(const Window<work::Counting>&, const LandmarkRecords<work::Counting>&,
-                          const ReducedSystem<work::Counting>&,
-                          work::Counting::Span<work::Counting::F32>);
-template work::Native::F32 settle_points(const Window<work::Native>&,
-                                         const WindowState<work::Native>&,
-                                         const PixelModel<work::Native>&);
-template work::Counting::F32 settle_points(const Window<work::Counting>&,
-                                           const WindowState<work::Counting>&,
-                                           const PixelModel<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                   \
+  template VisualUse add_visual_terms(const Window<P>&, const PixelModel<P>&, P::F32,             \
+                                      const LandmarkRecords<P>&, const EliminationScratch<P>&,    \
+                                      const ReducedSystem<P>&, P::F32&);                          \
+  template void step_points(const Window<P>&, const LandmarkRecords<P>&, const ReducedSystem<P>&, \
+                            P::Span<P::F32>);                                                     \
+  template P::F32 settle_points(const Window<P>&, const WindowState<P>&, const PixelModel<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -222,20 +222,15 @@ void estimate_biases(Window<P>& window, const ImuNoise& noise, const BiasOptions
   window.bias_is_new = true;
 }
 
-template struct Window<work::Native>;
-template struct Window<work::Counting>;
-template void absorb_departed_intervals(const Window<work::Native>&, const PoseGraph<work::Native>&,
-                                        const ImuNoise&, const BiasOptions&);
-template void absorb_departed_intervals(const Window<work::Counting>&,
-                                        const PoseGraph<work::Counting>&, const ImuNoise&,
-                                        const BiasOptions&);
-template void take_snapshot(const PoseGraph<work::Native>&, const ImuNoise&, work::Arena&,
-                            Window<work::Native>&);
-template void take_snapshot(const PoseGraph<work::Counting>&, const ImuNoise&, work::Arena&,
-                            Window<work::Counting>&);
-template void publish(const Window<work::Native>&, const PoseGraph<work::Native>&);
-template void publish(const Window<work::Counting>&, const PoseGraph<work::Counting>&);
-template void estimate_biases(Window<work::Native>&, const ImuNoise&, const BiasOptions&);
-template void estimate_biases(Window<work::Counting>&, const ImuNoise&, const BiasOptions&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                   \
+  template struct Window<P>;                                                                      \
+  template void absorb_departed_intervals(const Window<P>&, const PoseGraph<P>&, const ImuNoise&, \
+                                          const BiasOptions&);                                    \
+  template void take_snapshot(const PoseGraph<P>&, const ImuNoise&, work::Arena&, Window<P>&);    \
+  template void publish(const Window<P>&, const PoseGraph<P>&);                                   \
+  template void estimate_biases(Window<P>&, const ImuNoise&, const BiasOptions&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -95,17 +95,13 @@ auto PlaceFeatures<P>::signature_of(typename P::I32 slot) const -> Span<typename
   return signatures.subspan(I32(slot * I32(kSignatureWords)), kSignatureWords);
 }
 
-template struct PlaceList<work::Native>;
-template struct PlaceList<work::Counting>;
-template struct PlaceFeatures<work::Native>;
-template struct PlaceFeatures<work::Counting>;
-template void copy_places_in(work::Machine&, const PlaceList<work::Native>&,
-                             PlaceList<work::Native>&);
-template void copy_places_in(work::Machine&, const PlaceList<work::Counting>&,
-                             PlaceList<work::Counting>&);
-template void copy_places_out(work::Machine&, const PlaceList<work::Native>&,
-                              PlaceList<work::Native>&);
-template void copy_places_out(work::Machine&, const PlaceList<work::Counting>&,
-                              PlaceList<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                     \
+  template struct PlaceList<P>;                                                     \
+  template struct PlaceFeatures<P>;                                                 \
+  template void copy_places_in(work::Machine&, const PlaceList<P>&, PlaceList<P>&); \
+  template void copy_places_out(work::Machine&, const PlaceList<P>&, PlaceList<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

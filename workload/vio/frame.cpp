@@ -55,17 +55,14 @@ void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport&
   static_cast<CameraPose&>(report) = plain(frame.T_world_camera);
 }
 
-template void take_image(const FrameInput&, FrontEndState<work::Native>&);
-template void take_image(const FrameInput&, FrontEndState<work::Counting>&);
-template void extract_frame(FrontEndState<work::Native>&, Frame<work::Native>&);
-template void extract_frame(FrontEndState<work::Counting>&, Frame<work::Counting>&);
-template void forget_landmarks(const Frame<work::Native>&);
-template void forget_landmarks(const Frame<work::Counting>&);
-template CameraPose plain(const Pose<work::Native>&);
-template CameraPose plain(const Pose<work::Counting>&);
-template void complete(const FrontEndState<work::Native>&, const Frame<work::Native>&,
-                       FrameReport&);
-template void complete(const FrontEndState<work::Counting>&, const Frame<work::Counting>&,
-                       FrameReport&);
+#define LEVIOSIM_INSTANTIATE(P)                                   \
+  template void take_image(const FrameInput&, FrontEndState<P>&); \
+  template void extract_frame(FrontEndState<P>&, Frame<P>&);      \
+  template void forget_landmarks(const Frame<P>&);                \
+  template CameraPose plain(const Pose<P>&);                      \
+  template void complete(const FrontEndState<P>&, const Frame<P>&, FrameReport&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

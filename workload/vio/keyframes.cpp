@@ -168,17 +168,14 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
   state.time_since_keyframe = 0;
 }
 
-template void insert_keyframe(FrontEndState<work::Native>&, Frame<work::Native>&, float);
-template void insert_keyframe(FrontEndState<work::Counting>&, Frame<work::Counting>&, float);
-template Vec3<work::Native> velocity_at(const FrontEndState<work::Native>&,
-                                        const Pose<work::Native>&, const PoseGraph<work::Native>&,
-                                        work::Native::Span<work::Native::F32>);
-template Vec3<work::Counting> velocity_at(const FrontEndState<work::Counting>&,
-                                          const Pose<work::Counting>&,
-                                          const PoseGraph<work::Counting>&,
-                                          work::Counting::Span<work::Counting::F32>);
-template void store_keyframe(FrontEndState<work::Native>&, const Frame<work::Native>&);
-template void store_keyframe(FrontEndState<work::Counting>&, const Frame<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                              \
+  template void insert_keyframe(FrontEndState<P>&, Frame<P>&, float);                        \
+  template Vec3<P> velocity_at(const FrontEndState<P>&, const Pose<P>&, const PoseGraph<P>&, \
+                               P::Span<P::F32>);                                             \
+  template void store_keyframe(FrontEndState<P>&, const Frame<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 template <class P>
 void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame) {
@@ -291,18 +288,14 @@ std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state, const
   return inverse * b;
 }
 
-template work::Native::F32 total_parallax(const FrontEndState<work::Native>&,
-                                          const InertialPart<work::Native>&,
-                                          const Frame<work::Native>&);
-template work::Counting::F32 total_parallax(const FrontEndState<work::Counting>&,
-                                            const InertialPart<work::Counting>&,
-                                            const Frame<work::Counting>&);
-template std::optional<Vec3<work::Native>> motion_over_distance(const FrontEndState<work::Native>&,
-                                                                const Frame<work::Native>&,
-                                                                const Mat3<work::Native>&, float);
-template std::optional<Vec3<work::Counting>> motion_over_distance(
-    const FrontEndState<work::Counting>&, const Frame<work::Counting>&, const Mat3<work::Counting>&,
-    float);
+#define LEVIOSIM_INSTANTIATE(P)                                                                  \
+  template P::F32 total_parallax(const FrontEndState<P>&, const InertialPart<P>&,                \
+                                 const Frame<P>&);                                               \
+  template std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>&, const Frame<P>&, \
+                                                       const Mat3<P>&, float);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 template <class P>
 void start_map(FrontEndState<P>& state, Frame<P>& frame) {

@@ -83,15 +83,12 @@ void refine_keypoints(work::Machine& machine, ConstImageView<P> image,
   });
 }
 
-template Vec2<work::Native> corner_offset(work::Native::Span<const work::Native::Byte>, int, int,
-                                          int, float);
-template Vec2<work::Counting> corner_offset(work::Counting::Span<const work::Counting::Byte>, int,
-                                            int, int, float);
-template void refine_keypoints(work::Machine&, ConstImageView<work::Native>,
-                               const ExtractorOptions&, work::Share,
-                               const FeatureList<work::Native>&);
-template void refine_keypoints(work::Machine&, ConstImageView<work::Counting>,
-                               const ExtractorOptions&, work::Share,
-                               const FeatureList<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                              \
+  template Vec2<P> corner_offset(P::Span<const P::Byte>, int, int, int, float);              \
+  template void refine_keypoints(work::Machine&, ConstImageView<P>, const ExtractorOptions&, \
+                                 work::Share, const FeatureList<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

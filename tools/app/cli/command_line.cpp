@@ -95,16 +95,6 @@ Words help_as_option(const Words& words, const std::vector<Command>& commands) {
   return {words[1], "--help"};
 }
 
-/// The words with options by their present names.
-Words in_present_spelling(Words words, const std::vector<Command>& commands) {
-  const Command* command = words.empty() ? nullptr : command_named(commands, words.front());
-  if (command == nullptr) return words;
-  for (std::string& word : words)
-    for (const auto& [old, now] : command->old_spellings)
-      if (word == old || word.rfind(old + '=', 0) == 0) word.replace(0, old.size(), now);
-  return words;
-}
-
 }  // namespace
 
 void TextOptions::operator()(const std::string& names, std::string& value, const std::string& type,
@@ -131,7 +121,7 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands, const 
     print_piece(ScreenPiece::Kind::document, manual(app, commands, typed[2]));
     return 0;
   }
-  const Words words = in_present_spelling(help_as_option(typed, commands), commands);
+  const Words words = help_as_option(typed, commands);
   // CLI11 would go on to a later word that is a command.
   if (!words.empty() && words.front().front() != '-' &&
       command_named(commands, words.front()) == nullptr)

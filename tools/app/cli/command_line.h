@@ -12,17 +12,11 @@ class App;
 
 namespace leviosim::tools {
 
-/// An option by the name that it had before. It works, but no help shows it.
-struct OldSpelling {
-  std::string old;  ///< "--camera-fps"
-  std::string now;  ///< "--fps"
-};
-
 /// A subcommand after its options have been declared.
 struct Command {
   CLI::App* app = nullptr;
   std::function<void()> run;  ///< with the options as parsed
-  std::vector<OldSpelling> old_spellings{};
+  bool goes_on = false;       ///< finds again what it finished before it was interrupted
 };
 
 /// Declares options that take text: names, where it goes, what stands for it in the help, help. Those

@@ -161,8 +161,7 @@ std::filesystem::path new_folder() {
 /// Work of closed loops cannot be recorded.
 bool is_recorded(const std::vector<std::string>& arguments) {
   return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) {
-    return word.starts_with("--fps") || word.starts_with("--camera-fps") ||
-           word.starts_with("--deadline") || word == "--native";
+    return word.starts_with("--fps") || word.starts_with("--deadline") || word == "--native";
   });
 }
 

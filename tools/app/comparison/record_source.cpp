@@ -135,11 +135,15 @@ class Table {
     reader_.next();  // the titles
   }
 
-  /// Absent if there is none of that title.
-  std::optional<std::size_t> column(std::string_view title) const {
-    const auto it = std::find(titles_.begin(), titles_.end(), title);
-    if (it == titles_.end()) return std::nullopt;
-    return static_cast<std::size_t>(it - titles_.begin());
+  bool has(std::string_view title) const {
+    return std::find(titles_.begin(), titles_.end(), title) != titles_.end();
+  }
+  /// @throws InputError if there is none of that title
+  std::size_t column(std::string_view title) const {
+    if (!has(title))
+      throw InputError(fmt::format("{}: has no column {}", reader_.file().string(), title));
+    return static_cast<std::size_t>(std::find(titles_.begin(), titles_.end(), title) -
+                                    titles_.begin());
   }
   const base::CsvRow* next() { return reader_.next(); }
 
@@ -148,22 +152,24 @@ class Table {
   base::CsvReader reader_;
 };
 
-/// The columns of frames.csv that are read.
+/// The columns of frames.csv that are read; native runs have no times.
 struct Columns {
+  struct Times {
+    std::size_t latency, start, end, parallel, single;
+  };
+
   explicit Columns(const Table& table)
       : t_ns(table.column("t_ns")),
         source(table.column("source")),
         restarts(table.column("map_restarts")),
-        health(table.column("health")),
-        latency(table.column("latency_ns")),
-        start(table.column("start_ns")),
-        end(table.column("end_ns")),
-        parallel(table.column("parallel_cycles")),
-        single(table.column("single_cycles")) {}
+        health(table.column("health")) {
+    if (table.has("latency_ns"))
+      times = {table.column("latency_ns"), table.column("start_ns"), table.column("end_ns"),
+               table.column("parallel_cycles"), table.column("single_cycles")};
+  }
 
-  bool are_timed() const { return latency && parallel && single; }
-
-  std::optional<std::size_t> t_ns, source, restarts, health, latency, start, end, parallel, single;
+  std::size_t t_ns, source, restarts, health;
+  std::optional<Times> times;
 };
 
 int whole(const base::CsvRow& row, std::size_t column) {
@@ -174,23 +180,18 @@ int whole(const base::CsvRow& row, std::size_t column) {
   return static_cast<int>(value);
 }
 
-RecordedFrame::Timing timing_of(const base::CsvRow& row, const Columns& at) {
-  RecordedFrame::Timing timing;
-  timing.latency_ns = timing.own_ns = row.nanoseconds(*at.latency);
-  if (at.start && at.end) timing.own_ns = row.nanoseconds(*at.end) - row.nanoseconds(*at.start);
-  timing.parallel_cycles = row.number(*at.parallel);
-  timing.single_cycles = row.number(*at.single);
-  return timing;
+RecordedFrame::Timing timing_of(const base::CsvRow& row, const Columns::Times& at) {
+  return {row.nanoseconds(at.latency), row.nanoseconds(at.end) - row.nanoseconds(at.start),
+          row.number(at.parallel), row.number(at.single)};
 }
 
 /// Of a frame that was not dropped.
 void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& frame) {
-  if (at.source)
-    for (const vio::PoseSourceInfo& info : vio::kPoseSources)
-      if (info.name == row.text(*at.source)) frame.source = info.source;
-  if (at.restarts) frame.map_restarts = whole(row, *at.restarts);
-  if (at.health) frame.health = whole(row, *at.health);
-  if (at.are_timed()) frame.timing = timing_of(row, at);
+  for (const vio::PoseSourceInfo& info : vio::kPoseSources)
+    if (info.name == row.text(at.source)) frame.source = info.source;
+  frame.map_restarts = whole(row, at.restarts);
+  frame.health = whole(row, at.health);
+  if (at.times) frame.timing = timing_of(row, *at.times);
 }
 
 }  // namespace
@@ -201,8 +202,8 @@ std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const 
   std::vector<RecordedFrame> frames;
   while (const base::CsvRow* row = table.next()) {
     RecordedFrame& frame = frames.emplace_back();
-    if (at.t_ns) frame.t_ns = row->nanoseconds(*at.t_ns);
-    frame.dropped = at.are_timed() && row->text(*at.latency).empty();
+    frame.t_ns = row->nanoseconds(at.t_ns);
+    frame.dropped = at.times && row->text(at.times->latency).empty();
     if (!frame.dropped) read_result(*row, at, frame);
   }
   return frames;
@@ -214,14 +215,11 @@ std::vector<PositionPair> read_positions(const std::filesystem::path& file,
   std::vector<std::size_t> columns;
   for (const char* of : {"estimate", "truth"})
     for (const char axis : {'x', 'y', 'z'})
-      if (const auto column = table.column(fmt::format("{}_{}_m", of, axis)))
-        columns.push_back(*column);
+      columns.push_back(table.column(fmt::format("{}_{}_m", of, axis)));
   std::vector<PositionPair> pairs;
-  constexpr std::size_t kCoordinates = 6;
-  if (columns.size() < kCoordinates) return pairs;
   while (const base::CsvRow* row = table.next()) {
     PositionPair& pair = pairs.emplace_back();
-    for (std::size_t i = 0; i < kCoordinates; ++i)
+    for (std::size_t i = 0; i < columns.size(); ++i)
       (i < 3 ? pair.first : pair.second)[static_cast<Eigen::Index>(i % 3)] =
           row->number(columns[i]);
   }

@@ -58,7 +58,7 @@ struct RunRecord : RunFigures {
 RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run,
                       std::vector<StageParts> cycles);
 
-/// The files of a run folder that records and reports are made of; older folders lack some.
+/// The files of a run folder that records and reports are made of; native runs lack some.
 /// @throws InputError if the folder is not that of a run
 RunFiles read_run_files(const std::filesystem::path& folder);
 

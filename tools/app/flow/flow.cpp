@@ -301,22 +301,19 @@ std::string_view name_of(FlowFigure figure) { return kNames[static_cast<std::siz
 std::vector<PublishedFlow> published_flow() {
   const std::vector<std::string> columns = {"platform", "figure", "cores", "clock_mhz",
                                             "rate",     "value",  "unit",  "source"};
-  base::CsvReader reader(fmt::format("tests/validation/{}.csv", kReferences),
-                         base::Separator::comma, columns, std::string(reference_text(kReferences)));
   std::vector<PublishedFlow> all;
-  while (const base::CsvRow* row = reader.next()) {
-    if (row->text(0) == columns[0]) continue;  // the header
-    PublishedFlow published;
-    published.platform = row->text(0);
-    published.figure = figure_named(*row);
-    published.cores = static_cast<int>(row->number(2));
-    published.clock_mhz = row->number(3);
-    if (!row->text(4).empty()) published.rate = row->number(4);
-    published.value = row->number(5);
-    published.unit = row->text(6);
-    published.source = row->text(7);
-    all.push_back(std::move(published));
-  }
+  for_each_row(fmt::format("{}.csv", kReferences), reference_text(kReferences), columns,
+               [&](const base::CsvRow& row) {
+                 PublishedFlow& published = all.emplace_back();
+                 published.platform = row.text(0);
+                 published.figure = figure_named(row);
+                 published.cores = static_cast<int>(row.number(2));
+                 published.clock_mhz = row.number(3);
+                 if (!row.text(4).empty()) published.rate = row.number(4);
+                 published.value = row.number(5);
+                 published.unit = row.text(6);
+                 published.source = row.text(7);
+               });
   return all;
 }
 

@@ -181,31 +181,26 @@ std::map<std::string, double> limits_of(const Budget& budget,
   return limits;
 }
 
-/// A cell of a CSV file, whatever is in it.
-std::string quoted(const std::string& text) {
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
-  return cell + '"';
-}
-
-/// A row a run; columns are named as the statistics are.
-std::string points_csv(const std::vector<const PastRun*>& runs,
-                       const std::vector<PageFigure>& figures) {
+/// The points of the page: a row a run; columns are named as the statistics are.
+void show_points(const std::vector<const PastRun*>& runs, const std::vector<PageFigure>& figures,
+                 StudyPage& page) {
   struct Row {
     std::size_t number;
     const PastRun& run;
   };
   using R = const Row&;
-  base::CsvTable<Row> table{{"run", [](R r) { return r.number; }},
-                            {"commit", [](R r) { return r.run.record.name; }},
-                            {"subject", [](R r) { return quoted(r.run.origin.subject); }},
-                            {"date", [](R r) { return date_text(r.run.origin.time_s); }},
-                            {"limits", [](R r) { return limits_text(r.run.limits); }}};
+  StudyTable<Row> table{
+      {{"run", "commits", "", true}, [](R r) { return r.number; }},
+      {{"commit", "commit", "", true}, [](R r) { return r.run.record.name; }},
+      {{"subject", "subject", "", true}, [](R r) { return r.run.origin.subject; }},
+      {{"date", "date", "", true}, [](R r) { return date_text(r.run.origin.time_s); }},
+      {{"limits", "limits", ""}, [](R r) { return limits_text(r.run.limits); }}};
   for (const PageFigure& q : figures)
-    table.add(q.statistic, [&q](R r) { return base::fixed(r.run.record.value(q.statistic), 6); });
+    table.add({q.statistic, q.title, q.unit, false, false, q.scale},
+              [&q](R r) { return base::fixed(r.run.record.value(q.statistic), 6); });
   std::vector<Row> rows;
   for (const PastRun* run : runs) rows.push_back({rows.size(), *run});
-  return table.text(rows);
+  table.show(page, rows);
 }
 
 /// Of each figure with steps, those runs of the page that made them.
@@ -341,19 +336,11 @@ Json history_page(const std::string& title, const std::vector<PastRun>& runs,
   add_boxes(page, found, runs);
   if (budget != nullptr)
     page.limits = limits_of(*budget, figures, runs.front().record, runs.back().record);
-  page.points = points_csv(shown, figures);
-  page.columns = {{"run", "commits", "", true},
-                  {"commit", "commit", "", true},
-                  {"subject", "subject", "", true},
-                  {"date", "date", "", true},
-                  {"limits", "limits", ""}};
+  show_points(shown, figures, page);
   page.curves = StudyCurves{"run", "", {}, "A point a run, in the order of their commits.", false};
   page.curves->names = "commit";
   page.curves->marks = marks_of(found, runs, shown);
-  for (const PageFigure& q : figures) {
-    page.columns.push_back({q.statistic, q.title, q.unit, false, false, q.scale});
-    page.curves->y.emplace_back(q.statistic);
-  }
+  for (const PageFigure& q : figures) page.curves->y.emplace_back(q.statistic);
   page.x = "run";
   page.y = kFrameCycles;
   Json data = study_report(page);

@@ -162,9 +162,9 @@ Json tables_of(const RunRecord& record, const RunFiles& files) {
                  {"memory", "owner", "what", "block", "copies", "bytes"});
   expect_columns(where(kEnergyFile), tables["energy"],
                  {"stage", "quantity", "domain", "value", "unit", "low", "high"});
-  expect_columns(
-      where(kErrorsFile), tables["errors"],
-      {"t_s", "position_error_m", "estimate_x_m", "estimate_y_m", "truth_x_m", "truth_y_m"});
+  expect_columns(where(kErrorsFile), tables["errors"],
+                 {"t_s", "position_error_m", "estimate_x_m", "estimate_y_m", "estimate_z_m",
+                  "truth_x_m", "truth_y_m", "truth_z_m"});
   return tables;
 }
 

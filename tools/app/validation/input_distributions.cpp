@@ -116,27 +116,25 @@ std::optional<Distribution> distribution_of(std::vector<double> samples) {
                       quantile(0.9), samples.back()};
 }
 
-std::vector<InputDistribution> input_distributions(const std::string& file, std::string text,
+std::vector<InputDistribution> input_distributions(const std::string& file, std::string_view text,
                                                    const FrameLog& log) {
   std::vector<std::string> columns{"quantity"};
   for (const std::string_view column : {"mean", "p10", "median", "p90", "max"})
     columns.emplace_back(column);
-  base::CsvReader reader(file, base::Separator::comma, columns, std::move(text));
   std::vector<InputDistribution> rows;
-  while (const base::CsvRow* row = reader.next()) {
-    if (row->text(0) == columns[0]) continue;  // the header
-    const Input& input = input_named(*row);
-    InputDistribution distribution{std::string(input.quantity), {}, simulated(input, log)};
+  for_each_row(file, text, columns, [&](const base::CsvRow& row) {
+    const Input& input = input_named(row);
+    InputDistribution& distribution = rows.emplace_back(
+        InputDistribution{std::string(input.quantity), {}, simulated(input, log)});
     for (std::size_t i = 0; i < kDistributionColumns.size(); ++i)
-      if (!row->text(i + 1).empty()) distribution.released[i] = row->number(i + 1);
-    rows.push_back(std::move(distribution));
-  }
+      if (!row.text(i + 1).empty()) distribution.released[i] = row.number(i + 1);
+  });
   return rows;
 }
 
 std::vector<InputDistribution> input_distributions(const FrameLog& log) {
   constexpr std::string_view kName = "released_inputs";
-  return input_distributions(fmt::format("{}.csv", kName), std::string(reference_text(kName)), log);
+  return input_distributions(fmt::format("{}.csv", kName), reference_text(kName), log);
 }
 
 }  // namespace leviosim::tools

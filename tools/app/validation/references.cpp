@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "sim/base/check.h"
-#include "sim/base/csv.h"
 #include "sim/base/error.h"
 
 namespace leviosim::tools {
@@ -178,6 +176,16 @@ std::string_view reference_text(std::string_view name) {
   for (const base::BuiltinFile& file : builtin_references())
     if (file.name == name) return file.text;
   check_failed(fmt::format("no reference file {}", name), SourceLine::current());
+}
+
+void for_each_row(const std::string& file, std::string_view text,
+                  const std::vector<std::string>& titles,
+                  const std::function<void(const base::CsvRow&)>& visit) {
+  base::CsvReader reader(file, base::Separator::comma, titles, std::string(text));
+  const base::CsvRow* row = reader.next();
+  for (std::size_t i = 0; row != nullptr && i < titles.size(); ++i)
+    if (row->text(i) != titles[i]) row->fail(i, fmt::format("expected the title {}", titles[i]));
+  while ((row = reader.next()) != nullptr) visit(*row);
 }
 
 std::string_view paper_references_text() { return reference_text("paper"); }

@@ -4,6 +4,7 @@
 // test that fails.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "sim/base/builtin_file.h"
+#include "sim/base/csv.h"
 
 namespace leviosim::tools {
 
@@ -76,5 +78,11 @@ std::span<const base::BuiltinFile> builtin_references();
 
 /// The text of published/NAME.csv, which must be there.
 std::string_view reference_text(std::string_view name);
+
+/// Calls `visit` for each row of such a file below its first, which must be these titles.
+/// @throws InputError with file, line and column, and what `visit` throws
+void for_each_row(const std::string& file, std::string_view text,
+                  const std::vector<std::string>& titles,
+                  const std::function<void(const base::CsvRow&)>& visit);
 
 }  // namespace leviosim::tools

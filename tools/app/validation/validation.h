@@ -38,7 +38,7 @@ struct InputDistribution {
 std::vector<InputDistribution> input_distributions(const FrameLog& log);
 /// Of a file of that kind. @throws InputError with file and line, and the nearest name of a
 /// quantity
-std::vector<InputDistribution> input_distributions(const std::string& file, std::string text,
+std::vector<InputDistribution> input_distributions(const std::string& file, std::string_view text,
                                                    const FrameLog& log);
 
 struct Comparison {

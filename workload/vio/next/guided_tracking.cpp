@@ -155,16 +155,12 @@ std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
   return pose ? pose : recovered;
 }
 
-template std::optional<Pose<work::Native>> track_landmarks(const FrontEndState<work::Native>&,
-                                                           const InertialPart<work::Native>&,
-                                                           const Pose<work::Native>&,
-                                                           TrackedFrame<work::Native>&,
-                                                           FrameReport&);
-template std::optional<Pose<work::Counting>> track_landmarks(const FrontEndState<work::Counting>&,
-                                                             const InertialPart<work::Counting>&,
-                                                             const Pose<work::Counting>&,
-                                                             TrackedFrame<work::Counting>&,
-                                                             FrameReport&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                    \
+  template std::optional<Pose<P>> track_landmarks(const FrontEndState<P>&, const InertialPart<P>&, \
+                                                  const Pose<P>&, TrackedFrame<P>&, FrameReport&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 namespace {
 

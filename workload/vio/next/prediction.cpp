@@ -97,18 +97,13 @@ bool agrees_with_gyro(const FrontEndState<P>& state, const InertialPart<P>& iner
   return bool(F(3.0f) - (R[0][0] + R[1][1] + R[2][2]) < F(limit * limit));
 }
 
-template bool map_is_plausible(const FrontEndState<work::Native>&, const Prediction<work::Native>&,
-                               bool);
-template bool map_is_plausible(const FrontEndState<work::Counting>&,
-                               const Prediction<work::Counting>&, bool);
-template bool pose_is_plausible(const FrontEndState<work::Native>&, const Prediction<work::Native>&,
-                                const Pose<work::Native>&, float);
-template bool pose_is_plausible(const FrontEndState<work::Counting>&,
-                                const Prediction<work::Counting>&, const Pose<work::Counting>&,
-                                float);
-template bool agrees_with_gyro(const FrontEndState<work::Native>&,
-                               const InertialPart<work::Native>&, const Mat3<work::Native>&);
-template bool agrees_with_gyro(const FrontEndState<work::Counting>&,
-                               const InertialPart<work::Counting>&, const Mat3<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                  \
+  template bool map_is_plausible(const FrontEndState<P>&, const Prediction<P>&, bool);           \
+  template bool pose_is_plausible(const FrontEndState<P>&, const Prediction<P>&, const Pose<P>&, \
+                                  float);                                                        \
+  template bool agrees_with_gyro(const FrontEndState<P>&, const InertialPart<P>&, const Mat3<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

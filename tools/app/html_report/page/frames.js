@@ -25,16 +25,14 @@ const kKindColours = {
 
 /**
  * Frames with parts in ms that add up to the latency.
- * @returns null without times; {frames: [{number, kind, keyframe, begin, latency, parts}], names,
- *          hasStages}
+ * @returns null without times; {frames: [{number, kind, keyframe, begin, latency, parts}], names}
  */
 function framesOf(run) {
   const table = run.tables.frames;
   if (!table.latency_ns) return null;
   const perMs = run.facts.cluster_clock / 1e3;
   const stages = run.stages.filter((stage) => table[`cycles_${stage.key}`]);
-  const names =
-      [kWaiting, ...(stages.length > 0 ? [...stages.map((s) => s.name), kOther] : ['front end'])];
+  const names = [kWaiting, ...stages.map((s) => s.name), kOther];
   const frames = table.frame.map((number, i) => {
     if (table.latency_ns[i] === null)
       return {
@@ -56,7 +54,7 @@ function framesOf(run) {
       parts: [waiting, ...cycles, rest]
     };
   });
-  return {frames, names, hasStages: stages.length > 0};
+  return {frames, names};
 }
 
 function partColour(name) {
@@ -268,13 +266,8 @@ function framesSection(run) {
     pickedFigure.retitle();
     pickedFigure.redraw();
   }
-  const note = data.hasStages ?
-      null :
-      element(
-          'p', {class: 'card soft'},
-          'frames.csv of this run has no cycles per stage: an older leviosim wrote it. Run it again to see the stages.');
   return section(
-      'frames', 'Frames', note, latencyFigure(run, data, pick),
+      'frames', 'Frames', latencyFigure(run, data, pick),
       element(
           'div', {class: 'pair'},
           ganttFigure(run, data, () => describe('Median', median), () => median),

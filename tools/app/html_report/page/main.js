@@ -41,6 +41,8 @@ function main() {
         'div', {class: 'card'},
         element('div', {class: 'controls'}, element('label', {}, 'Show the details of', select))));
   }
+  (data.evaluations || []).forEach((evaluation, i) => content.append(trajectorySection(
+      evaluation, `trajectory-${i + 1}`, evaluation.name)));
   if (data.study) content.append(...studySections(data.study, top));
   if (data.history) top.append(...historyCards(data.history));
   content.append(details);

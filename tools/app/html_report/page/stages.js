@@ -47,11 +47,10 @@ function groupCycles(run, row, parts, single, frames) {
 
 function breakdownFigure(run, rows) {
   const frames = processedFrames(run);
-  const hasSingle = Boolean(run.tables.stages.single_issue_cycles);
   const shown = rows.filter((row) => row.calls > 0);
   const bars = shown.flatMap(
       (row) => row.onController ? [{row, single: false, label: `${row.name} (controller)`}] : [
-        ...(hasSingle ? [{row, single: true, label: `${row.name}, 1 core`}] : []),
+        {row, single: true, label: `${row.name}, 1 core`},
         {row, single: false, label: `${row.name}, ${run.facts.cores} cores`}
       ]);
   const groups = kGroups.filter(
@@ -71,9 +70,8 @@ function breakdownFigure(run, rows) {
       element('option', {value: 'shares'}, 'shares of the stage'));
   const figure = chartFigure({
     title: 'Where the cycles of each stage go',
-    hint: hasSingle ?
-        'On one core and on all. Cycles of all cores are divided by the cores, so that a bar is as long as the stage takes.' :
-        'On all cores. This run folder has no breakdown on one core: an older leviosim wrote it.',
+    hint:
+        'On one core and on all. Cycles of all cores are divided by the cores, so that a bar is as long as the stage takes.',
     controls: element('div', {class: 'controls'}, element('label', {}, 'show', select)),
     height: (width) => 80 + rowsHeight(bars.map((bar) => bar.label), width, 23),
     config: () => ({

@@ -19,8 +19,10 @@ function rangeOf(values) {
       ([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
 }
 
-function pathFigure(errors) {
-  const points = (name) => errors[`${name}_x_m`].map((x, i) => ({x, y: errors[`${name}_y_m`][i]}));
+/** Upwards is the axis y, or z. */
+function pathFigure(errors, title, up) {
+  const points =
+      (name) => errors[`${name}_x_m`].map((x, i) => ({x, y: errors[`${name}_${up}_m`][i]}));
   const [truth, estimate] = [points('truth'), points('estimate')];
   const all = [...truth, ...estimate];
   const axes = (width, height) =>
@@ -37,9 +39,9 @@ function pathFigure(errors) {
     pointHoverRadius: 4
   });
   return chartFigure({
-    title: 'Trajectory from above',
-    hint:
-        'The estimate after alignment, x to the right, y upwards; metres are as long on both axes.',
+    title,
+    hint: `The estimate after alignment, x to the right, ${
+        up} upwards; metres are as long on both axes.`,
     height: (width) => Math.min(420, Math.max(260, 0.75 * width)),
     config: (width, height) => ({
       type: 'scatter',
@@ -57,7 +59,7 @@ function pathFigure(errors) {
           },
           y: {
             ...axes(width, height).y,
-            title: {display: true, text: 'y, m'},
+            title: {display: true, text: `${up}, m`},
             ticks: {callback: (v) => numberText(v, 3), includeBounds: false}
           }
         },
@@ -73,27 +75,26 @@ function pathFigure(errors) {
       },
     }),
     table: () => ({
-      columns: ['t, s', 'estimate x, m', 'estimate y, m', 'truth x, m', 'truth y, m'].map(
+      columns: ['t, s', 'estimate x, m', `estimate ${up}, m`, 'truth x, m', `truth ${up}, m`].map(
           (title) => ({title})),
       rows: errors.t_s.map(
-          (t, i) =>
-              [t, errors.estimate_x_m[i], errors.estimate_y_m[i], errors.truth_x_m[i],
-               errors.truth_y_m[i]]),
+          (t, i) => [t, estimate[i].x, estimate[i].y, truth[i].x, truth[i].y]),
     }),
   });
 }
 
-function errorFigure(errors) {
+function errorFigure(errors, name, time) {
   const colour = '#aa5588';
+  const [, what, unit] = /^(.*)_error_(.*)$/.exec(name);
   return chartFigure({
-    title: 'Position error over time',
+    title: `${capital(what)} error over time`,
     height: (width) => Math.min(420, Math.max(260, 0.75 * width)),
     config: () => ({
       type: 'scatter',
       data: {
         datasets: [{
-          label: 'position error',
-          data: errors.t_s.map((x, i) => ({x, y: errors.position_error_m[i]})),
+          label: `${what} error`,
+          data: errors.t_s.map((x, i) => ({x, y: errors[name][i]})),
           showLine: true,
           borderColor: colour,
           backgroundColor: colour,
@@ -105,32 +106,39 @@ function errorFigure(errors) {
       options: {
         interaction: {mode: 'nearest', axis: 'x', intersect: false},
         scales: {
-          x: {title: {display: true, text: 's since the first pose'}, grid: {display: false}},
-          y: {title: {display: true, text: 'm'}, beginAtZero: true}
+          x: {title: {display: true, text: time}, grid: {display: false}},
+          y: {title: {display: true, text: unit}, beginAtZero: true}
         },
         plugins: {
           tooltip: {
-            callbacks: {label: ({raw}) => ` ${numberText(raw.y, 3)} m at ${numberText(raw.x, 4)} s`}
+            callbacks: {label: ({raw}) => ` ${numberText(raw.y, 3)} ${unit} at ${numberText(raw.x, 4)}`}
           }
         },
       },
     }),
     table: () => ({
-      columns: [{title: 't, s'}, {title: 'position error, m'}],
-      rows: errors.t_s.map((t, i) => [t, errors.position_error_m[i]])
+      columns: [{title: time}, {title: `${what} error, ${unit}`}],
+      rows: errors.t_s.map((t, i) => [t, errors[name][i]])
     }),
   });
 }
 
-function trajectorySection(run) {
+/** Of a run, or of an evaluation, which has a sentence and errors of the attitude. */
+function trajectorySection(run, id = 'trajectory', title = 'Trajectory') {
   const {errors} = run.tables;
   if (!errors || errors.t_s.length === 0)
     return section(
-        'trajectory', 'Trajectory',
+        id, title,
         element(
             'p', {class: 'card soft'},
-            'No positions beside the truth: the data have none, the run is a replay, or an older leviosim wrote it.'));
+            'No positions beside the truth: the data have none, or the run is a replay.'));
   return section(
-      'trajectory', 'Trajectory', run.protocol ? element('p', {class: 'hint'}, run.protocol) : null,
-      element('div', {class: 'pair'}, pathFigure(errors), errorFigure(errors)));
+      id, title, run.sentence ? element('p', {}, run.sentence) : null,
+      run.protocol ? element('p', {class: 'hint'}, run.protocol) : null,
+      element(
+          'div', {class: 'pair'}, pathFigure(errors, 'Trajectory from above', 'y'),
+          pathFigure(errors, 'Trajectory from the side', 'z'),
+          ...['position_error_m', 'tilt_error_deg', 'heading_error_deg']
+              .filter((name) => errors[name])
+              .map((name) => errorFigure(errors, name, run.time || 's since the first pose'))));
 }

@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "sim/base/csv.h"
 #include "sim/base/printable_text.h"
-#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
@@ -21,13 +19,13 @@
 namespace leviosim::tools {
 namespace {
 
-using PaperFigure = PaperAccuracy::Figure;
+using PaperFigure = PublishedAccuracy::Figure;
 
-std::optional<AblationRow::Paper> paper_value(const std::vector<PaperAccuracy>& paper,
+std::optional<AblationRow::Paper> paper_value(const std::vector<PublishedAccuracy>& published,
                                               const AblationRow& row, PaperFigure figure) {
   std::optional<AblationRow::Paper> found;
-  for (const PaperAccuracy& p : paper) {
-    if (p.sequence != row.sequence || p.profile != row.profile || p.chosen_by != PaperFigure::ate ||
+  for (const PublishedAccuracy& p : published) {
+    if (p.sequence != row.sequence || p.estimator != row.profile || p.chosen_by != PaperFigure::ate ||
         p.figure != figure)
       continue;
     if (p.size == row.size) return AblationRow::Paper{p.value, p.size};
@@ -108,7 +106,7 @@ std::vector<Point> ablation_runs(const BatchPlan& plan) {
 
 std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
                                        const std::vector<RunOutcome>& outcomes,
-                                       const std::vector<PaperAccuracy>& paper) {
+                                       const std::vector<PublishedAccuracy>& published) {
   const std::vector<std::string> sequences = sequence_names(plan);
   const auto of_rows =
       by_row(runs, outcomes, sequences.size() * plan.sizes.size() * plan.profiles.size());
@@ -117,9 +115,9 @@ std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<
     for (const traces::ImageSize& size : plan.sizes)
       for (const std::string& profile : plan.profiles) {
         AblationRow row = row_of(sequence, size, profile, of_rows[rows.size()]);
-        row.paper_ate = paper_value(paper, row, PaperFigure::ate);
+        row.paper_ate = paper_value(published, row, PaperFigure::ate);
         if (plan.measure.length_m == kPaperLengthM)
-          row.paper_relative = paper_value(paper, row, PaperFigure::relative);
+          row.paper_relative = paper_value(published, row, PaperFigure::relative);
         rows.push_back(std::move(row));
       }
   if (sequences.size() < 2) return rows;
@@ -291,25 +289,23 @@ Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows) 
 }
 
 std::string accuracy_comparison(const BatchPlan& plan, const std::vector<AblationRow>& rows,
-                                const std::vector<PaperAccuracy>& paper,
-                                const std::vector<OtherAccuracy>& others) {
-  std::set<std::string> published;
-  for (const OtherAccuracy& other : others) published.insert(other.sequence);
+                                const std::vector<PublishedAccuracy>& published) {
   std::vector<std::string> sequences = sequence_names(plan);
-  std::erase_if(sequences, [&](const std::string& name) { return published.count(name) == 0; });
+  std::erase_if(sequences, [&](const std::string& name) {
+    return std::none_of(published.begin(), published.end(),
+                        [&](const PublishedAccuracy& p) { return p.sequence == name; });
+  });
   if (sequences.empty()) return {};
   std::vector<Estimator> table;
   for (const AblationRow& row : rows)
     if (!row.sequence.empty())
       row_for(table, {row.profile + ", here", size_text(row.size), "no"}).errors[row.sequence] =
           error_text(row.ate.median, 2);
-  for (const PaperAccuracy& p : paper)
-    if (p.profile == "levio" && p.figure == PaperAccuracy::Figure::ate &&
-        p.chosen_by == PaperAccuracy::Figure::ate)
-      row_for(table, {"LEVIO", size_text(p.size), "no"}).errors[p.sequence] = metres(p.value);
-  for (const OtherAccuracy& other : others)
-    row_for(table, {other.estimator, size_text(other.size), other.closes_loops ? "yes" : "no"})
-        .errors[other.sequence] = metres(other.ate_m);
+  for (const PublishedAccuracy& p : published)
+    if (p.is_ate() && (!p.chosen_by || p.estimator == "levio"))
+      row_for(table, {p.chosen_by ? "LEVIO" : p.estimator, size_text(p.size),
+                      p.closes_loops ? "yes" : "no"})
+          .errors[p.sequence] = metres(p.value);
   std::vector<TextTable::Column> columns{
       {"absolute [m]", TextTable::Align::Left}, {"images"}, {"loop closure"}};
   for (const std::string& sequence : sequences) columns.push_back({sequence});
@@ -326,104 +322,62 @@ std::string accuracy_comparison(const BatchPlan& plan, const std::vector<Ablatio
 
 namespace {
 
-using Figure = PaperAccuracy::Figure;
-
-constexpr std::string_view kHeader =
-    "sequence,profile,width,height,chosen_by,figure,value,unit,source";
-/// Columns of the table.
-struct PaperColumn {
-  enum Index : std::size_t {
-    kSequence,
-    kProfile,
-    kWidth,
-    kHeight,
-    kChosenBy,
-    kFigure,
-    kValue,
-    kUnit,
-    kSource
-  };
-};
-
-Figure figure_in(const base::CsvRow& row, PaperColumn::Index column) {
-  if (row.text(column) == "ate") return Figure::ate;
-  if (row.text(column) == "relative") return Figure::relative;
-  row.fail(column, "no figure; expected ate or relative");
-}
-
-PaperAccuracy paper_accuracy_from(const base::CsvRow& row) {
-  PaperAccuracy entry{std::string(row.text(PaperColumn::kSequence)),
-                      std::string(row.text(PaperColumn::kProfile)),
-                      {static_cast<int>(row.number(PaperColumn::kWidth)),
-                       static_cast<int>(row.number(PaperColumn::kHeight))},
-                      figure_in(row, PaperColumn::kChosenBy),
-                      figure_in(row, PaperColumn::kFigure),
-                      row.number(PaperColumn::kValue),
-                      std::string(row.text(PaperColumn::kSource))};
-  vio::profile_named(entry.profile, 1);
-  const std::string_view unit = entry.figure == Figure::ate ? "m" : "%";
-  if (row.text(PaperColumn::kUnit) != unit)
-    row.fail(PaperColumn::kUnit, fmt::format("not the unit of this figure; expected {}", unit));
-  if (entry.source.empty()) row.fail("has no source");
-  return entry;
-}
-
 const std::vector<std::string> kColumns{"sequence", "estimator", "loop_closure", "width",
-                                        "height",   "value",     "unit",         "source"};
+                                        "height",   "chosen_by", "figure",       "value",
+                                        "unit",     "source"};
 enum Column : std::size_t {
   kSequence,
   kEstimator,
   kLoopClosure,
   kWidth,
   kHeight,
+  kChosenBy,
+  kFigure,
   kValue,
   kUnit,
   kSource
 };
 
-OtherAccuracy accuracy_from(const base::CsvRow& row) {
-  const std::string loops(row.text(kLoopClosure));
+PaperFigure figure_in(const base::CsvRow& row, Column column) {
+  if (row.text(column) == "ate") return PaperFigure::ate;
+  if (row.text(column) == "relative") return PaperFigure::relative;
+  row.fail(column, "no figure; expected ate or relative");
+}
+
+PublishedAccuracy accuracy_from(const base::CsvRow& row) {
+  const std::string_view loops = row.text(kLoopClosure);
   if (loops != "yes" && loops != "no") row.fail(kLoopClosure, "expected yes or no");
-  if (row.text(kUnit) != "m") row.fail(kUnit, "expected m");
-  if (row.text(kSource).empty()) row.fail("has no source");
-  return {std::string(row.text(kSequence)),
-          std::string(row.text(kEstimator)),
-          loops == "yes",
-          {static_cast<int>(row.number(kWidth)), static_cast<int>(row.number(kHeight))},
-          row.number(kValue),
-          std::string(row.text(kSource))};
+  PublishedAccuracy entry{
+      std::string(row.text(kSequence)),
+      std::string(row.text(kEstimator)),
+      loops == "yes",
+      {static_cast<int>(row.number(kWidth)), static_cast<int>(row.number(kHeight))},
+      std::nullopt,
+      figure_in(row, kFigure),
+      row.number(kValue),
+      std::string(row.text(kSource))};
+  if (!row.text(kChosenBy).empty()) {
+    entry.chosen_by = figure_in(row, kChosenBy);
+    vio::profile_named(entry.estimator, 1);
+  }
+  const std::string_view unit = entry.figure == PaperFigure::ate ? "m" : "%";
+  if (row.text(kUnit) != unit)
+    row.fail(kUnit, fmt::format("not the unit of this figure; expected {}", unit));
+  if (entry.source.empty()) row.fail("has no source");
+  return entry;
 }
 
 }  // namespace
 
-std::vector<PaperAccuracy> parse_paper_accuracy(const std::string& file, std::string_view text) {
-  const std::vector<std::string> names = base::split(kHeader, ',');
-  base::CsvReader reader(file, base::Separator::comma, names, std::string(text));
-  const base::CsvRow* header = reader.next();
-  for (std::size_t i = 0; header != nullptr && i < names.size(); ++i)
-    if (header->text(i) != names[i]) header->fail(fmt::format("expected the header {}", kHeader));
-  std::vector<PaperAccuracy> entries;
-  while (const base::CsvRow* row = reader.next()) entries.push_back(paper_accuracy_from(*row));
+std::vector<PublishedAccuracy> parse_accuracy(const std::string& file, std::string_view text) {
+  std::vector<PublishedAccuracy> entries;
+  for_each_row(file, text, kColumns,
+               [&](const base::CsvRow& row) { entries.push_back(accuracy_from(row)); });
   return entries;
 }
 
-std::vector<PaperAccuracy> paper_accuracy() {
-  return parse_paper_accuracy("paper_accuracy.csv", reference_text("paper_accuracy"));
-}
-
-std::vector<OtherAccuracy> parse_other_accuracy(const std::string& file, std::string_view text) {
-  base::CsvReader reader(file, base::Separator::comma, kColumns, std::string(text));
-  const base::CsvRow* header = reader.next();
-  for (std::size_t i = 0; header != nullptr && i < kColumns.size(); ++i)
-    if (header->text(i) != kColumns[i])
-      header->fail(i, fmt::format("expected the title {}", kColumns[i]));
-  std::vector<OtherAccuracy> entries;
-  while (const base::CsvRow* row = reader.next()) entries.push_back(accuracy_from(*row));
-  return entries;
-}
-
-std::vector<OtherAccuracy> other_accuracy() {
-  return parse_other_accuracy("other_accuracy.csv", reference_text("other_accuracy"));
+std::vector<PublishedAccuracy> published_accuracy() {
+  return parse_accuracy("accuracy.csv", reference_text("accuracy"));
 }
 
 namespace {
@@ -440,13 +394,13 @@ void run(const CLI::App& command, const BatchWords& words, const Words& command_
   const BatchPlan plan = make_plan(command, words);
   const std::vector<Point> runs = ablation_runs(plan);
   const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
-  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, paper_accuracy());
+  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, published_accuracy());
   const Printout text = printout(
       words.json,
       [&] {
         return Printout({fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
                                      ablation_text(plan, rows)),
-                         accuracy_comparison(plan, rows, paper_accuracy(), other_accuracy())})
+                         accuracy_comparison(plan, rows, published_accuracy())})
             .ending(ablation_conclusion(rows), after_batch(plan));
       },
       [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
@@ -468,7 +422,7 @@ Command add_ablate_command(CLI::App& app, const Words& words) {
   add_examples(*command, {"leviosim ablate --data flight --profile levio,next --size "
                           "160x120,320x240 --seed 1 --relative 0.5 --out ablated"});
   add_json_option(*command, typed->json);
-  return {command, [=, &words] { run(*command, *typed, words); }};
+  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

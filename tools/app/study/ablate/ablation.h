@@ -14,46 +14,37 @@
 
 namespace leviosim::tools {
 
-// What the LEVIO paper says of accuracy: that of its golden model, and that of other estimators.
-// Both tables, of tools/app/validation/published, are part of the program.
+// What the LEVIO paper says of accuracy, of its golden model and of other estimators:
+// tools/app/validation/published/accuracy.csv, which is part of the program.
 
-/// A row of paper_accuracy.csv: sequence (EuRoC's name), profile, width, height, chosen_by (ate or
-/// relative), figure (ate or relative), value, unit, source.
-struct PaperAccuracy {
+/// A row of it: sequence (EuRoC's name), estimator, loop_closure (yes or no), width, height,
+/// chosen_by (ate or relative; empty for other estimators), figure (ate or relative), value, unit,
+/// source.
+struct PublishedAccuracy {
   enum class Figure { ate, relative };  ///< [m]; [%] over kPaperLengthM
 
   std::string sequence;
-  std::string profile;
+  std::string estimator;  ///< of the golden model: the profile
+  bool closes_loops = false;
   traces::ImageSize size;
-  Figure chosen_by;
-  Figure figure;
-  double value;
+  std::optional<Figure> chosen_by;  ///< of the golden model only
+  Figure figure = Figure::ate;
+  double value = 0;
   std::string source;
+
+  /// Whether it is an absolute error, with parameters chosen by that where any were.
+  bool is_ate() const {
+    return figure == Figure::ate && chosen_by.value_or(Figure::ate) == Figure::ate;
+  }
 };
 
 /// Of the paper's sub-trajectories.
 inline constexpr double kPaperLengthM = 40;
 
 /// @throws InputError with file and line
-std::vector<PaperAccuracy> parse_paper_accuracy(const std::string& file, std::string_view text);
+std::vector<PublishedAccuracy> parse_accuracy(const std::string& file, std::string_view text);
 
-std::vector<PaperAccuracy> paper_accuracy();
-
-/// A row of other_accuracy.csv: sequence (EuRoC's name), estimator, loop_closure (yes or no),
-/// width, height, value, unit (m), source.
-struct OtherAccuracy {
-  std::string sequence;
-  std::string estimator;
-  bool closes_loops = false;
-  traces::ImageSize size;
-  double ate_m = 0;
-  std::string source;
-};
-
-/// @throws InputError with file and line
-std::vector<OtherAccuracy> parse_other_accuracy(const std::string& file, std::string_view text);
-
-std::vector<OtherAccuracy> other_accuracy();
+std::vector<PublishedAccuracy> published_accuracy();
 
 // The rows of an ablation.
 
@@ -81,7 +72,7 @@ std::vector<Point> ablation_runs(const BatchPlan& plan);
 /// A row per sequence, size and profile, and with several sequences the means over them.
 std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
                                        const std::vector<RunOutcome>& outcomes,
-                                       const std::vector<PaperAccuracy>& paper);
+                                       const std::vector<PublishedAccuracy>& published);
 
 // The rows of an ablation as text, Markdown and JSON.
 
@@ -92,8 +83,7 @@ Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows);
 /// Absolute errors by sequence: those of the ablation, what the paper says of LEVIO, and others'.
 /// Empty if nothing was published of the ablation's sequences.
 std::string accuracy_comparison(const BatchPlan& plan, const std::vector<AblationRow>& rows,
-                                const std::vector<PaperAccuracy>& paper,
-                                const std::vector<OtherAccuracy>& others);
+                                const std::vector<PublishedAccuracy>& published);
 
 /// `leviosim ablate` (tools/commands/commands.h).
 Command add_ablate_command(CLI::App& app, const Words& words);

@@ -16,10 +16,11 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
-#include "traces/datasets/rng.h"
+#include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
 
@@ -62,8 +63,17 @@ std::size_t point_of_row(const BatchPlan& plan, std::size_t row) {
   return row / (plan.profiles.size() * sequence_names(plan).size());
 }
 
+/// The value of a dimension with this profile.
+std::string value_of(const Dimension& d, const vio::Profile& profile) {
+  return d.parameter->needs_imu && !profile.use_imu
+             ? std::string()
+             : vio::value_text(*d.parameter, d.parameter->get(profile));
+}
+
 /// By point, then profile. @param runs  exploration_runs()
-std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const ExplorationPoints& points,
+std::vector<ExploredPoint> explored_points(const BatchPlan& plan,
+                                           const std::vector<Dimension>& dimensions,
+                                           const ExplorationPoints& points,
                                            const std::vector<Point>& runs,
                                            const std::vector<RunOutcome>& outcomes) {
   using OfSequence = ExploredPoint::OfSequence;
@@ -73,7 +83,10 @@ std::vector<ExploredPoint> explored_points(const BatchPlan& plan, const Explorat
   std::vector<ExploredPoint> explored;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const std::string& profile : plan.profiles) {
-      ExploredPoint point{i, profile, effective(points[i], profile), {}, {}, {}};
+      ExploredPoint point{i, profile, effective(points[i], profile), {}, {}, {}, {}};
+      vio::Profile with = vio::profile_named(profile, 1);
+      vio::set_parameters(point.set, with);
+      for (const Dimension& d : dimensions) point.values.push_back(value_of(d, with));
       for (const std::string& name : names) {
         point.sequences.push_back({name, spread_of(values_of(*row, &RunOutcome::ate_m)),
                                    spread_of(values_of(*row, &RunOutcome::relative_percent))});
@@ -103,13 +116,6 @@ std::string set_text(const ExploredPoint& point) {
   for (const vio::Assignment& a : point.set)
     texts.push_back(a.text().substr(vio::kParameterPrefix.size()));
   return texts.empty() ? "as it is" : fmt::format("{}", fmt::join(texts, " "));
-}
-
-/// The value of a dimension with this profile.
-std::string value_of(const Dimension& d, const vio::Profile& profile) {
-  return d.parameter->needs_imu && !profile.use_imu
-             ? std::string()
-             : vio::value_text(*d.parameter, d.parameter->get(profile));
 }
 
 TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
@@ -172,44 +178,49 @@ std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint
   return best_table(plan, explored).markdown() + '\n' + note(plan);
 }
 
-}  // namespace
+/// A point over a sequence.
+struct PointRow {
+  const ExploredPoint& point;
+  const ExploredPoint::OfSequence& at;
+};
 
-std::string points_csv(const std::vector<Dimension>& dimensions,
-                       const std::vector<ExploredPoint>& explored) {
-  struct Row {
-    const ExploredPoint& point;
-    const ExploredPoint::OfSequence& at;
-    const vio::Profile& profile;
-  };
-  using R = const Row&;
-  base::CsvTable<Row> table{{"point", [](R r) { return r.point.point; }},
-                            {"profile", [](R r) { return r.point.profile; }}};
-  for (const Dimension& d : dimensions)
-    table.add(std::string(d.parameter->name), [&d](R r) { return value_of(d, r.profile); });
-  table.add("sequence", [](R r) { return r.at.sequence; });
-  table.add("runs", [](R r) { return r.at.ate.runs; });
-  table.add("failed", [](R r) { return r.at.ate.failed; });
-  const auto add_spread = [&](const std::string& name, const std::string& unit, auto figure) {
-    const auto add = [&](const char* part, auto of) {
-      table.add(name + part + unit, [=](R r) { return base::fixed(r.at.*figure.*of, 9); });
-    };
-    add("_median_", &Spread::median);
-    add("_least_", &Spread::low);
-    add("_greatest_", &Spread::high);
-  };
-  add_spread("ate", "m", &ExploredPoint::OfSequence::ate);
-  add_spread("relative", "percent", &ExploredPoint::OfSequence::relative);
-  std::string text = table.header();
-  for (const ExploredPoint& point : explored) {
-    vio::Profile profile = vio::profile_named(point.profile, 1);
-    vio::set_parameters(point.set, profile);
-    for (const ExploredPoint::OfSequence& at : point.sequences)
-      text += table.line({point, at, profile});
-  }
-  return text;
+std::vector<PointRow> point_rows(const std::vector<ExploredPoint>& explored) {
+  std::vector<PointRow> rows;
+  for (const ExploredPoint& point : explored)
+    for (const ExploredPoint::OfSequence& at : point.sequences) rows.push_back({point, at});
+  return rows;
 }
 
-namespace {
+StudyTable<PointRow> points_table(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
+  using R = const PointRow&;
+  StudyTable<PointRow> table{
+      {{"point", "point", "", true}, [](R r) { return r.point.point; }},
+      {{"profile", "profile", "", true}, [](R r) { return r.point.profile; }}};
+  for (std::size_t i = 0; i < dimensions.size(); ++i) {
+    const vio::Parameter& parameter = *dimensions[i].parameter;
+    table.add({std::string(parameter.name),
+               std::string(parameter.name.substr(vio::kParameterPrefix.size())),
+               std::string(parameter.unit), true},
+              [i](R r) { return r.point.values[i]; });
+  }
+  table.add({"sequence", "sequence", "", true}, [](R r) { return r.at.sequence; });
+  table.add({"runs"}, [](R r) { return r.at.ate.runs; });
+  table.add({"failed", "diverged runs"}, [](R r) { return r.at.ate.failed; });
+  const auto add_spread = [&](const std::string& name, const char* unit, const std::string& title,
+                              const char* shown_unit, auto figure) {
+    const auto add = [&](const char* part, const std::string& shown, auto of) {
+      table.add({name + part + unit, shown, shown_unit},
+                [=](R r) { return base::fixed(r.at.*figure.*of, 9); });
+    };
+    add("_median_", title, &Spread::median);
+    add("_least_", "", &Spread::low);
+    add("_greatest_", "", &Spread::high);
+  };
+  add_spread("ate", "m", "absolute error", "m", &ExploredPoint::OfSequence::ate);
+  add_spread("relative", "percent", fmt::format("relative error, {:g} m", plan.measure.length_m),
+             "%", &ExploredPoint::OfSequence::relative);
+  return table;
+}
 
 /// The data of a page, as the paper's figure has it: the absolute over the relative error of every
 /// point.
@@ -226,18 +237,7 @@ Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimen
       box.lines.push_back("best: " + set_text(*best));
   }
   page.summary = note(plan);
-  page.points = points_csv(dimensions, explored);
-  page.columns = {{"profile", "profile", "", true},
-                  {"sequence", "sequence", "", true},
-                  {"point", "point", "", true}};
-  for (const Dimension& d : dimensions)
-    page.columns.push_back({std::string(d.parameter->name),
-                            std::string(d.parameter->name.substr(vio::kParameterPrefix.size())),
-                            std::string(d.parameter->unit), true});
-  page.columns.push_back({"ate_median_m", "absolute error", "m"});
-  page.columns.push_back({"relative_median_percent",
-                          fmt::format("relative error, {:g} m", plan.measure.length_m), "%"});
-  page.columns.push_back({"failed", "diverged runs", ""});
+  points_table(plan, dimensions).show(page, point_rows(explored));
   page.x = "relative_median_percent";
   page.y = "ate_median_m";
   page.colour = "profile";
@@ -254,28 +254,12 @@ RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& di
   return columns;
 }
 
-using vio::Parameter;
-
-/// To three digits, so that a point can be typed again exactly.
-double to_three_digits(double value) {
-  double rounded = value;
-  check(base::parse_number(fmt::format("{:.3g}", value), rounded), "a formatted number");
-  return rounded;
-}
-
-double draw(const Dimension& dimension, std::uint64_t seed) {
-  traces::Rng rng(seed);
-  const auto [parameter, low, high] = dimension;
-  if (parameter->kind != Parameter::Kind::number)
-    return low + rng.below(static_cast<int>(high - low) + 1);
-  return std::clamp(to_three_digits(rng.log_uniform(low, high)), low, high);
-}
-
-/// From a quarter to four times the profile's.
+/// From a quarter to four times the profile's, which has three digits.
 Dimension around(const char* name, const vio::Profile& profile) {
-  const Parameter* const parameter = vio::find_parameter(name);
+  const vio::Parameter* const parameter = vio::find_parameter(name);
   check(parameter != nullptr, name);
-  const double value = to_three_digits(parameter->get(profile));
+  double value = 0;
+  check(base::parse_number(fmt::format("{:.3g}", parameter->get(profile)), value), name);
   return {parameter, std::max(parameter->low, value / 4), std::min(parameter->high, value * 4)};
 }
 
@@ -298,12 +282,12 @@ namespace {
 Dimension parse_dimension(const std::string& text) {
   const std::string where = "--vary " + text;
   const std::size_t equals = text.find('=');
-  const Parameter& parameter = workload_parameter(where, text.substr(0, equals));
+  const vio::Parameter& parameter = workload_parameter(where, text.substr(0, equals));
   if (parameter.is_of_another())
     throw InputError(where +
                      ": is no parameter of the odometry; expected one of leviosim workload "
                      "--profile levio");
-  if (parameter.kind == Parameter::Kind::toggle) {
+  if (parameter.kind == vio::Parameter::Kind::toggle) {
     if (equals != std::string::npos)
       throw InputError(fmt::format("{}: is off or on; expected no range", where));
     return {&parameter, 0, 1};
@@ -320,16 +304,26 @@ Dimension parse_dimension(const std::string& text) {
   return dimension;
 }
 
+Domain domain_of(const Dimension& d) {
+  using Kind = vio::Parameter::Kind;
+  if (d.parameter->kind == Kind::toggle) return {{"off", "on"}, {}};
+  const bool is_whole = d.parameter->kind == Kind::whole;
+  return {{}, Span{d.low, d.high, !is_whole, is_whole, 1, {}}};
+}
+
 }  // namespace
 
-std::vector<std::vector<vio::Assignment>> sample_points(const std::vector<Dimension>& dimensions,
-                                                        std::size_t count, std::uint64_t seed) {
-  std::vector<std::vector<vio::Assignment>> points(count);
-  for (std::size_t i = 1; i < count; ++i)
-    for (std::size_t d = 0; d < dimensions.size(); ++d)
+ExplorationPoints sample_points(const std::vector<Dimension>& dimensions, std::size_t count,
+                                std::uint64_t seed) {
+  ExplorationPoints points(count);
+  for (std::size_t d = 0; d < dimensions.size(); ++d) {
+    const vio::Parameter& parameter = *dimensions[d].parameter;
+    const Domain domain = domain_of(dimensions[d]);
+    const std::vector<double> draws = random_draws(count, d, seed);
+    for (std::size_t i = 1; i < count; ++i)
       points[i].push_back(
-          {dimensions[d].parameter,
-           draw(dimensions[d], traces::derive_seed(traces::derive_seed(seed, i), d))});
+          {&parameter, parse_workload_value("--vary", parameter, value_at(domain, draws[i]))});
+  }
   return points;
 }
 
@@ -403,7 +397,9 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   const auto points = sample_points(dimensions, count, seed);
   const std::vector<Point> runs = exploration_runs(plan, points);
   const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
-  const std::vector<ExploredPoint> explored = explored_points(plan, points, runs, outcomes);
+  const std::vector<ExploredPoint> explored =
+      explored_points(plan, dimensions, points, runs, outcomes);
+  const std::string csv = points_table(plan, dimensions).csv(point_rows(explored));
   const Printout text = printout(
       words.batch.json,
       [&] {
@@ -411,11 +407,11 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
                                     points.size(), runs.size(), best_text(plan, explored)))
             .ending(exploration_conclusion(plan, explored), after_batch(plan));
       },
-      [&] { return table_document("exploration", points_csv(dimensions, explored)); });
+      [&] { return table_document("exploration", csv); });
   publish(*plan.out, text, [&] {
     outputs::OutputFolder& out = *plan.out;
     out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
-    out.write("points.csv", points_csv(dimensions, explored));
+    out.write("points.csv", csv);
     out.write("best.md", best_markdown(plan, explored));
     out.write("manifest.json",
               json_text(manifest_of(plan, words, dimensions, command_line), 2) + '\n');
@@ -440,7 +436,7 @@ Command add_explore_command(CLI::App& app, const Words& words) {
   add_examples(*command,
                {"leviosim explore --data flight --profile levio --vary workload.window=6:12 "
                 "--points 3 --seed 1 --relative 0.5 --out explored"});
-  return {command, [=, &words] { run(*command, *typed, words); }};
+  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "tools/app/cli/command_line.h"
-#include "tools/app/html_report/page_json.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/engine.h"
 #include "workload/vio/parameters.h"
@@ -27,17 +26,21 @@ struct Dimension {
 /// range from a quarter to four times the profile levio's.
 std::vector<Dimension> paper_dimensions();
 
-/// Point 0 sets nothing: the profile as it is. The others set each dimension at random: whole
-/// numbers and toggles evenly, other numbers evenly over the orders of magnitude, to three digits.
-/// A point does not depend on how many there are.
-std::vector<std::vector<vio::Assignment>> sample_points(const std::vector<Dimension>& dimensions,
-                                                        std::size_t count, std::uint64_t seed);
+/// What each point sets.
+using ExplorationPoints = std::vector<std::vector<vio::Assignment>>;
+
+/// Point 0 sets nothing: the profile as it is. The others set each dimension at random, as random
+/// points of a sweep are (sweep/points.h): whole numbers and toggles evenly, other numbers evenly
+/// over the orders of magnitude, to four digits. A point does not depend on how many there are.
+ExplorationPoints sample_points(const std::vector<Dimension>& dimensions, std::size_t count,
+                                std::uint64_t seed);
 
 /// A point with one profile.
 struct ExploredPoint {
   std::size_t point = 0;
   std::string profile;
   std::vector<vio::Assignment> set;  ///< what has an effect on the profile
+  std::vector<std::string> values;   ///< of the dimensions; empty for those without effect
   struct OfSequence {
     std::string sequence;
     Spread ate;       ///< [m], over seeds and folders
@@ -52,16 +55,6 @@ struct ExploredPoint {
 /// What of a point has an effect on a profile: without IMU, the noise of the IMU has none.
 std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point,
                                        const std::string& profile);
-
-/// Points of parameters.
-using ExplorationPoints = std::vector<std::vector<vio::Assignment>>;
-
-// What an exploration found, as text, CSV and JSON.
-
-/// A row per point, profile and sequence, with the value of every dimension; empty where it has no
-/// effect on the profile.
-std::string points_csv(const std::vector<Dimension>& dimensions,
-                       const std::vector<ExploredPoint>& explored);
 
 /// `leviosim explore` (tools/commands/commands.h).
 Command add_explore_command(CLI::App& app, const Words& words);

@@ -492,7 +492,7 @@ Command add_benchmark_flights_command(CLI::App& app, const Words& words) {
                 "echo 'pieces: [20]' >>start.yaml", "echo 'every: 1' >>start.yaml",
                 "leviosim benchmark-flights ./start.yaml --motions . --profile levio,next "
                 "--seed 1 --out flown"});
-  return {command, [=, &words] { run(*command, *typed, words); }};
+  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

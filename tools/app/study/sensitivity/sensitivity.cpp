@@ -336,7 +336,7 @@ Command add_sensitivity_command(CLI::App& app, const Words&) {
   add_examples(*command,
                {"leviosim sensitivity --data flight --frames 0:20 --csv sensitivity.csv"});
   add_json_option(*command, options->json);
-  return {command, [=] { run(*options); }, {{"--out", "--csv"}}};
+  return {command, [=] { run(*options); }};
 }
 
 }  // namespace leviosim::tools

@@ -9,7 +9,6 @@
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "sim/base/printable_text.h"
-#include "sim/energy/area.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/figures.h"
@@ -18,7 +17,6 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
@@ -40,29 +38,6 @@ bool is_kept(const std::string& name) {
                       [&](const char* part) { return name.find(part) != std::string::npos; });
 }
 
-double l1_peak(const RunResult& run) {
-  Bytes peak;
-  for (const StageResult& stage : run.stages)
-    if (!stage.on_controller) peak = std::max(peak, stage.memory.parallel);
-  return static_cast<double>(peak.count());
-}
-
-void add_objectives(const RunResult& run, bool ate_holds, std::vector<Figure>& figures) {
-  const auto add = [&](std::size_t i, const char* description, double value) {
-    figures.push_back({kObjectives[i].figure, kObjectives[i].unit, description, value});
-  };
-  if (const std::optional<FrameTimes> times = frame_times(run))
-    add(0, "mean over all frames, each by itself", times->mean_ns.value * 1e-6);
-  if (const std::optional<RunEnergy> energy = energy_of(run))
-    if (const auto per_frame = energy->per_frame())
-      add(1, "per frame, idle time included", per_frame->value.count() * 1e3);
-  add(2, "highest of the cluster's stages", l1_peak(run));
-  if (run.ate && ate_holds) add(3, "RMSE of the trajectory", run.ate->translation.rmse);
-  if (sim::knows_area(run.chip))
-    if (const sim::AreaItem chip = sim::total_area(run.chip); chip.known)
-      add(4, "of the chip, without pads and analogue parts", chip.area.count() * 1e-6);
-}
-
 void add_comparison(const Replay& replay, std::vector<Figure>& figures) {
   const auto differs = [](const FrameComparison& f) { return !f.computes_the_same(); };
   const auto count = std::count_if(replay.frames.begin(), replay.frames.end(), differs);
@@ -75,58 +50,40 @@ void add_comparison(const Replay& replay, std::vector<Figure>& figures) {
       {"replay.first_differing_frame", "1", "first of them", static_cast<double>(first->frame)});
 }
 
+/// @param ate_holds  whether the algorithm computed what is on record
 void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& figures) {
-  const Json document = statistics(run);
-  for (const Json& entry : document.at("statistics")) {
-    std::string name = entry.at("name").get<std::string>();
-    if (!entry.at("value").is_number() || !is_kept(name)) continue;
-    if (!ate_holds && name.starts_with("accuracy.")) continue;
-    figures.push_back({std::move(name), entry.at("unit").get<std::string>(),
-                       entry.at("description").get<std::string>(),
-                       entry.at("value").get<double>()});
-  }
+  const RunFigures known = figures_of(run);
+  const auto is_of_accuracy = [](std::string_view name) { return name.starts_with("accuracy."); };
+  for (const Objective& o : kObjectives)
+    if (const auto value = known.value(o.statistic);
+        value && (ate_holds || !is_of_accuracy(o.statistic)))
+      figures.push_back({o.figure, o.unit, o.description, *value * o.factor});
+  for (const Statistic& s : known.statistics)
+    if (s.value && is_kept(s.name) && (ate_holds || !is_of_accuracy(s.name)))
+      figures.push_back({s.name, s.unit, s.description, *s.value});
 }
 
-/// What the record of a run has besides its statistics.
-void add_budget_figures(const RunResult& run, std::vector<Figure>& figures) {
-  const auto is_kept_already = [&](const std::string& name) {
-    return std::any_of(figures.begin(), figures.end(),
-                       [&](const Figure& figure) { return figure.name == name; });
-  };
-  for (const Statistic& s : figures_of(run).statistics) {
-    if (is_kept_already(s.name)) continue;
-    const bool known = s.name.starts_with("frame.") || s.name.ends_with(".operations") ||
-                       s.name == "memory.l1.peak" || s.name == "memory.l2.peak" ||
-                       s.name.starts_with("verdict.");
-    if (known && s.value) figures.push_back({s.name, s.unit, s.description, *s.value});
-  }
-}
-
-Outcome computed(const ResolvedPoint& point, bool for_budget) {
+Outcome computed(const ResolvedPoint& point) {
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
   Outcome outcome;
   if (point.trace == nullptr) {
-    const RunResult run = simulate(point.request, progress);
-    add_objectives(run, true, outcome.figures);
-    add_statistics(run, true, outcome.figures);
-    if (for_budget) add_budget_figures(run, outcome.figures);
+    add_statistics(simulate(point.request, progress), true, outcome.figures);
     return outcome;
   }
   const Replay replayed = replay(*point.trace, point.request, progress);
-  const bool same = std::all_of(replayed.frames.begin(), replayed.frames.end(),
-                                [](const FrameComparison& f) { return f.computes_the_same(); });
-  add_objectives(replayed.run, same, outcome.figures);
   add_comparison(replayed, outcome.figures);
-  add_statistics(replayed.run, same, outcome.figures);
-  if (for_budget) add_budget_figures(replayed.run, outcome.figures);
+  add_statistics(replayed.run,
+                 std::all_of(replayed.frames.begin(), replayed.frames.end(),
+                             [](const FrameComparison& f) { return f.computes_the_same(); }),
+                 outcome.figures);
   return outcome;
 }
 
 }  // namespace
 
-Outcome run_point(const ResolvedPoint& point, bool for_budget) {
+Outcome run_point(const ResolvedPoint& point) {
   try {
-    return computed(point, for_budget);
+    return computed(point);
   } catch (const InputError& error) {
     return {error.what(), {}};
   }
@@ -298,11 +255,6 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
       const SweepRow settings = points[i].settings;
       RunRecord record =
           point_record(resolve(plan, settings, inputs, plan.file), settings, number, *outcome);
-      if (!record.value("frame.latency.mean"))
-        throw InputError(fmt::format(
-            "sweep: point {} was finished without --budget and keeps too little for one; expected "
-            "another folder, or --force to begin anew",
-            number));
       if (i == 0) first = record;
       miss = first_miss(check_budget(record, budget, first ? &*first : nullptr));
     } else {

@@ -224,9 +224,6 @@ SweepPlan read_plan(const std::string& file, SweepInputs& inputs);
 /// The same from its text.
 SweepPlan parse_plan(const std::string& file, const std::string& text, SweepInputs& inputs);
 
-// A plan expanded: every point made ready to run, with all that can be said against it, each
-// different one once.
-
 // The points of a group of a plan, in an order that depends on nothing but the plan.
 
 /// A sweep has no more points than this.
@@ -294,22 +291,28 @@ Expansion expand(const SweepPlan& plan, SweepInputs& inputs);
 struct Objective {
   const char* figure;
   const char* unit;
-  const char* title;  ///< of a column
+  const char* description;
+  const char* statistic;  ///< that it is
+  double factor;          ///< from the statistic's unit
+  const char* title;      ///< of a column
   int decimals;
   double scale;  ///< for the column
 };
 inline constexpr std::array kObjectives{
-    Objective{"objective.frame_time", "ms", "frame ms", 3, 1},
-    Objective{"objective.energy", "mJ", "energy mJ", 4, 1},
-    Objective{"objective.l1_peak", "byte", "L1 peak kB", 1, 1e-3},
-    Objective{"objective.ate", "m", "ATE m", 4, 1},
-    Objective{"objective.area", "mm2", "area mm2", 3, 1}};
+    Objective{"objective.frame_time", "ms", "mean over all frames, each by itself",
+              "frame.time.mean", 1e-6, "frame ms", 3, 1},
+    Objective{"objective.energy", "mJ", "per frame, idle time included", "energy.frame", 1,
+              "energy mJ", 4, 1},
+    Objective{"objective.l1_peak", "byte", "highest of the cluster's stages", "memory.l1.peak", 1,
+              "L1 peak kB", 1, 1e-3},
+    Objective{"objective.ate", "m", "RMSE of the trajectory", "accuracy.ate.rmse", 1, "ATE m", 4,
+              1},
+    Objective{"objective.area", "mm2", "of the chip, without pads and analogue parts", "area.chip",
+              1, "area mm2", 3, 1}};
 
 /// Computes the point, or times its recorded work. A chip too small for the work is a failure.
-/// @param for_budget  keeps also what limits of budgets may be about besides: frame.*, the peaks of
-///                    L1 and L2, operations of stages
 /// @throws Interrupted
-Outcome run_point(const ResolvedPoint& point, bool for_budget = false);
+Outcome run_point(const ResolvedPoint& point);
 
 // A point of a finished sweep as a run that can be compared: "swept:3". A sweep keeps figures only,
 // not where cycles went, so the point is replayed or computed again, as the sweep's plan says.

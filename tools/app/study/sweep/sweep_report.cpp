@@ -10,7 +10,6 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/printable_text.h"
-#include "sim/base/sha256.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
@@ -300,16 +299,9 @@ std::string document(const outputs::OutputFile& csv) {
   return table_document("sweep", base::read_file(csv.shown_path(), base::InputKind::table));
 }
 
-/// Outcomes for budgets hold more, so that they have keys of their own in the cache.
-std::string budget_key(const std::string& key) {
-  base::Sha256 digest;
-  digest.add(key + " with the figures of budgets");
-  return digest.hex();
-}
-
 /// What of the points is neither in the file nor in the cache.
 Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, SweepStore& store,
-                 const RunnerOptions& options, bool for_budget) {
+                 const RunnerOptions& options) {
   const std::set<int> finished = store.finished();
   const std::vector<SweepPoint>& points = sweep.expansion.points;
   PointBatch batch{.keeps_failures = false};
@@ -318,13 +310,12 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
     if (finished.count(static_cast<int>(i) + 1) > 0) continue;
     throw_if_interrupted();
     open.push_back(i);
-    batch.keys.push_back(for_budget ? budget_key(points[i].key) : points[i].key);
+    batch.keys.push_back(points[i].key);
   }
   batch.before = chosen.size() - open.size();
   batch.compute = [&](std::size_t i) {
     return run_point(resolve(sweep.plan, points[open[i]].settings, sweep.inputs,
-                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)),
-                     for_budget);
+                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)));
   };
   batch.take = [&](std::size_t i, const Outcome& outcome) {
     store.put(static_cast<int>(open[i]) + 1, outcome);
@@ -407,8 +398,7 @@ void run_plan(const SweepWords& words) {
   const auto begin = std::chrono::steady_clock::now();
   SweepStore store(out.path(), plan.text, expansion.points);
   store.keep_place(words.plan);
-  const Tally tally =
-      run_points({plan, expansion, inputs}, chosen, store, options, budget.has_value());
+  const Tally tally = run_points({plan, expansion, inputs}, chosen, store, options);
   const std::optional<std::string> elsewhere = store.publish(out.csv());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -474,7 +464,7 @@ Command add_sweep_command(CLI::App& app, const Words&) {
                 "echo 'points: { grid: { platform.cluster.fpu.units: [1, 2, 4] } }' >>fpus.yaml",
                 "leviosim sweep fpus.yaml --list", "leviosim sweep fpus.yaml --out swept"});
   add_json_option(*command, words->json);
-  return {command, [=] { run(*command, *words); }};
+  return {.app = command, .run = [=] { run(*command, *words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

@@ -237,8 +237,6 @@ CREATE VIEW IF NOT EXISTS metrics AS
   SELECT point, name, value, unit, description FROM figure_values JOIN figures USING (figure);
 )";
 
-// What `leviosim sweep` prints when it is done.
-
 // The points of a sweep that no other is better than in every respect.
 
 /// Whether `a` is at least as good as `b` in every objective and better in one. Less is better, and
@@ -247,9 +245,6 @@ bool dominates(const SweepOutcome& a, const SweepOutcome& b);
 
 /// The outcomes that no other dominates, those that failed left out; by latency, then number.
 std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes);
-
-// A sweep as a page for a browser: all finished points to explore, and curves where one or two
-// parameters vary.
 
 // The points of a sweep held against a budget (tools/app/budget): every finished point must meet
 // every limit that is for it. Limits with a sign are relative to the first point of the plan.

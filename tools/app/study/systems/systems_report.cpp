@@ -159,25 +159,19 @@ Json systems_page(const std::vector<SystemRow>& rows) {
                      mw(power.low()), mw(power.high())});
   }
   using S = const Spot&;
-  const base::CsvTable<Spot> table{
-      {"system", [](S s) { return s.system; }},
-      {"by", [](S s) { return s.by; }},
-      {"rate", [](S s) { return base::fixed(s.rate, 6); }},
-      {"power", [](S s) { return base::fixed(s.power_mw, 6); }},
-      {"low", [](S s) { return base::fixed(s.low_mw, 6); }},
-      {"high", [](S s) { return base::fixed(s.high_mw, 6); }},
-      {"energy", [](S s) { return base::fixed(*s.power_mw / *s.rate, 6); }}};
+  const StudyTable<Spot> table{
+      {{"system", "system", "", true}, [](S s) { return s.system; }},
+      {{"by", "known from", "", true}, [](S s) { return s.by; }},
+      {{"rate", "frame rate", "frames/s", false, true}, [](S s) { return base::fixed(s.rate, 6); }},
+      {{"power", "power", "mW"}, [](S s) { return base::fixed(s.power_mw, 6); }},
+      {{"low", "power, low end", "mW"}, [](S s) { return base::fixed(s.low_mw, 6); }},
+      {{"high", "power, high end", "mW"}, [](S s) { return base::fixed(s.high_mw, 6); }},
+      {{"energy", "energy per frame", "mJ"},
+       [](S s) { return base::fixed(*s.power_mw / *s.rate, 6); }}};
   StudyPage page;
   page.title = "Power over frame rate of systems that estimate motion";
   page.summary = systems_conclusion(rows);
-  page.points = table.text(spots);
-  page.columns = {{"system", "system", "", true},
-                  {"by", "known from", "", true},
-                  {"rate", "frame rate", "frames/s", false, true},
-                  {"power", "power", "mW"},
-                  {"low", "power, low end", "mW"},
-                  {"high", "power, high end", "mW"},
-                  {"energy", "energy per frame", "mJ"}};
+  table.show(page, spots);
   page.x = "rate";
   page.y = "power";
   page.colour = "by";
@@ -302,13 +296,9 @@ std::optional<double> PublishedSystem::frame_mj() const {
 }
 
 std::vector<PublishedSystem> parse_systems(const std::string& file, std::string_view text) {
-  base::CsvReader reader(file, base::Separator::comma, kColumns, std::string(text));
-  const base::CsvRow* header = reader.next();
-  for (std::size_t i = 0; header != nullptr && i < kColumns.size(); ++i)
-    if (header->text(i) != kColumns[i])
-      header->fail(i, fmt::format("expected the title {}", kColumns[i]));
   std::vector<PublishedSystem> systems;
-  while (const base::CsvRow* row = reader.next()) systems.push_back(system_from(*row));
+  for_each_row(file, text, kColumns,
+               [&](const base::CsvRow& row) { systems.push_back(system_from(row)); });
   return systems;
 }
 

@@ -357,7 +357,6 @@ Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
 //
 //   manifest.json   what the batch was made from, and what was chosen
 //   runs.csv        a row per point and seed
-//   tune.svg        error, missed frames and power over the clock
 //   chosen/         the run folder of the lowest clock that is enough, with the first seed, run
 //   again
 
@@ -399,7 +398,6 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
                   const std::optional<ChosenRun>& again, const Words& command_line) {
   const std::vector<Choice> all = choices(plan, points);
   plan.out->write("runs.csv", tune_csv(plan, points));
-  plan.out->write("tune.svg", tune_plot(plan, points, all));
   if (again)
     write_run_folder(*plan.out, again->result,
                      manifest_of(plan, *chosen(all), *again, command_line),
@@ -468,7 +466,7 @@ Command add_tune_command(CLI::App& app, const Words& words) {
   add_json_option(*command, typed->run.json);
   add_examples(*command,
                {"leviosim tune --data flight --clock 240:370:130 --fps 10,20 --out tuned"});
-  return {command, [=, &words] { run(*command, *typed, words); }};
+  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
 }
 
 }  // namespace leviosim::tools

@@ -161,17 +161,6 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
 /// That of all, in a sentence.
 std::string tune_conclusion(const std::vector<Choice>& choices);
 
-// A tuning as a page for a browser: curves over the clock, and all runs to explore.
-
-// The picture of a tuning: error, missed frames and power over the clock, a colour per frame rate.
-
-/// A file of SVG. Errors, on a logarithmic axis, and missed frames are points: of every seed, and
-/// their medians; a cross is a median that diverged. Power is a line of medians in its band,
-/// interrupted where the chip has no energies. Dashed lines are the limits; rings are the lowest
-/// clocks that are enough.
-std::string tune_plot(const TunePlan& plan, const std::vector<TunePoint>& points,
-                      const std::vector<Choice>& choices);
-
 /// `leviosim tune` (tools/commands/commands.h).
 Command add_tune_command(CLI::App& app, const Words& words);
 

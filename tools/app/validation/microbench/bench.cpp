@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "sim/base/csv.h"
 #include "sim/base/interruption.h"
 #include "tools/app/run/range_bands.h"
+#include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
 namespace {
@@ -158,38 +158,34 @@ const std::vector<std::string> kGuardColumns = {"group", "name",  "cores",
 
 }  // namespace
 
-std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string text, int tier) {
-  base::CsvReader reader(file, base::Separator::comma, kColumns, std::move(text));
+std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string_view text,
+                                          int tier) {
   std::vector<MicrobenchRow> rows;
-  while (const base::CsvRow* row = reader.next()) {
-    if (row->text(0) == kColumns[0]) continue;  // the header
-    MicrobenchRow r;
-    r.group = row->text(0);
-    r.name = row->text(1);
-    r.cores = static_cast<int>(row->number(2));
-    r.unit = row->text(3);
-    r.reference = row->number(4);
-    r.reference_high = row->text(5).empty() ? r.reference : row->number(5);
-    r.tolerance = row->number(6);
-    r.source = row->text(7);
+  for_each_row(file, text, kColumns, [&](const base::CsvRow& row) {
+    MicrobenchRow& r = rows.emplace_back();
+    r.group = row.text(0);
+    r.name = row.text(1);
+    r.cores = static_cast<int>(row.number(2));
+    r.unit = row.text(3);
+    r.reference = row.number(4);
+    r.reference_high = row.text(5).empty() ? r.reference : row.number(5);
+    r.tolerance = row.number(6);
+    r.source = row.text(7);
     r.tier = tier;
-    rows.push_back(std::move(r));
-  }
+  });
   return rows;
 }
 
-void take_guards(const std::string& file, std::string text, std::vector<MicrobenchRow>& rows) {
-  base::CsvReader reader(file, base::Separator::comma, kGuardColumns, std::move(text));
-  while (const base::CsvRow* guard = reader.next()) {
-    if (guard->text(0) == kGuardColumns[0]) continue;  // the header
+void take_guards(const std::string& file, std::string_view text, std::vector<MicrobenchRow>& rows) {
+  for_each_row(file, text, kGuardColumns, [&](const base::CsvRow& guard) {
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const MicrobenchRow& r) {
-      return r.group == guard->text(0) && r.name.substr(0, r.name.find(',')) == guard->text(1) &&
-             r.cores == guard->number(2) && r.unit == guard->text(3);
+      return r.group == guard.text(0) && r.name.substr(0, r.name.find(',')) == guard.text(1) &&
+             r.cores == guard.number(2) && r.unit == guard.text(3);
     });
-    if (row == rows.end()) guard->fail(1, "no row of the comparison");
-    row->guard = guard->number(4);
-    if (!(*row->guard > row->tolerance)) guard->fail(4, "no more than the tolerance of the row");
-  }
+    if (row == rows.end()) guard.fail(1, "no row of the comparison");
+    row->guard = guard.number(4);
+    if (!(*row->guard > row->tolerance)) guard.fail(4, "no more than the tolerance of the row");
+  });
 }
 
 }  // namespace leviosim::tools

@@ -62,12 +62,12 @@ struct MicrobenchRow {
 /// The rows of a reference file, with nothing simulated yet: columns group, name, cores, unit,
 /// reference, reference_high (empty if the sources agree), tolerance (relative), source.
 /// @throws InputError with file, line and column
-std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string text, int tier);
+std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string_view text, int tier);
 
 /// Sets the guards of rows that a file names: columns group, name, cores, unit, guard (relative),
 /// reason. A row's name is what stands before its first comma.
 /// @throws InputError with file, line and column, also for a row that does not exist
-void take_guards(const std::string& file, std::string text, std::vector<MicrobenchRow>& rows);
+void take_guards(const std::string& file, std::string_view text, std::vector<MicrobenchRow>& rows);
 
 /// The chip without what compilers add, for streams in step.
 /// @param loads_used_at_once  share of loads whose result the next instruction uses

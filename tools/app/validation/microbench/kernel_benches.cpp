@@ -141,7 +141,7 @@ std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip,
 
 std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip) {
   return board_kernels(chip, reference_rows(fmt::format("{}.csv", kBoardReferences),
-                                            std::string(reference_text(kBoardReferences)), 2));
+                                            reference_text(kBoardReferences), 2));
 }
 
 std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
@@ -153,7 +153,7 @@ std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
       if (rows[i].cores == 1 && rows[j].cores > 1 && rows[i].group == rows[j].group &&
           rows[i].name == rows[j].name)
         rows.push_back(speed_up(rows[i], rows[j]));
-  take_guards(fmt::format("{}.csv", kBoardGuards), std::string(reference_text(kBoardGuards)), rows);
+  take_guards(fmt::format("{}.csv", kBoardGuards), reference_text(kBoardGuards), rows);
   return rows;
 }
 
@@ -276,11 +276,9 @@ std::uint32_t bytes_of(const sim::ChipConfig& chip, const OnePass& code) {
 
 std::vector<KernelJob> library_kernels(const sim::ChipConfig& chip) {
   std::vector<KernelJob> kernels;
-  std::vector<MicrobenchRow> rows =
-      reference_rows(fmt::format("{}.csv", kLibraryReferences),
-                     std::string(reference_text(kLibraryReferences)), 2);
-  take_guards(fmt::format("{}.csv", kLibraryGuards), std::string(reference_text(kLibraryGuards)),
-              rows);
+  std::vector<MicrobenchRow> rows = reference_rows(fmt::format("{}.csv", kLibraryReferences),
+                                                   reference_text(kLibraryReferences), 2);
+  take_guards(fmt::format("{}.csv", kLibraryGuards), reference_text(kLibraryGuards), rows);
   for (const MicrobenchRow& row : rows) {
     const LibraryKernel& kernel = library_kernel_of(row);
     work::CodeMap code;

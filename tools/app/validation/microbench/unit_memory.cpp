@@ -213,10 +213,10 @@ const UnitBench& bench_named(const std::string& name) {
 }  // namespace
 
 std::vector<MicrobenchRow> unit_rows(const sim::ChipConfig& chip) {
-  std::vector<MicrobenchRow> rows = reference_rows(fmt::format("{}.csv", kUnitReferences),
-                                                   std::string(reference_text(kUnitReferences)), 1);
+  std::vector<MicrobenchRow> rows =
+      reference_rows(fmt::format("{}.csv", kUnitReferences), reference_text(kUnitReferences), 1);
   for (MicrobenchRow& row : rows) row.simulated = bench_named(row.name).measure(chip, row.cores);
-  take_guards(fmt::format("{}.csv", kUnitGuards), std::string(reference_text(kUnitGuards)), rows);
+  take_guards(fmt::format("{}.csv", kUnitGuards), reference_text(kUnitGuards), rows);
   return rows;
 }
 

@@ -129,15 +129,12 @@ EpnpResult<P> estimate_pose_epnp(work::Machine& machine, const LandmarkMatches<P
   return {true, load_pose<P>(pose), work::value(best.inliers)};
 }
 
-template EpnpResult<work::Native> estimate_pose_epnp(work::Machine&,
-                                                     const LandmarkMatches<work::Native>&,
-                                                     const CameraConstants<work::Native>&,
-                                                     ShiftRegister<work::Native>&,
-                                                     const EpnpRansacOptions&);
-template EpnpResult<work::Counting> estimate_pose_epnp(work::Machine&,
-                                                       const LandmarkMatches<work::Counting>&,
-                                                       const CameraConstants<work::Counting>&,
-                                                       ShiftRegister<work::Counting>&,
-                                                       const EpnpRansacOptions&);
+#define LEVIOSIM_INSTANTIATE(P)                                                           \
+  template EpnpResult<P> estimate_pose_epnp(work::Machine&, const LandmarkMatches<P>&,    \
+                                            const CameraConstants<P>&, ShiftRegister<P>&, \
+                                            const EpnpRansacOptions&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio::levio

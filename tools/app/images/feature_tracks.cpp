@@ -1,4 +1,4 @@
-#include "tools/app/evaluation/images/feature_tracks.h"
+#include "tools/app/images/feature_tracks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/app/evaluation/images/image_statistics.h"
+#include "tools/app/images/image_statistics.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 #include "sim/base/csv_table.h"
 #include "sim/base/interruption.h"
-#include "tools/app/evaluation/images/feature_tracks.h"
+#include "tools/app/images/feature_tracks.h"
 #include "tools/app/report/text_table.h"
 #include "traces/datasets/image_preparation.h"
 #include "traces/trajectories/evaluation.h"
