@@ -29,7 +29,7 @@ void write_folder(outputs::OutputFolder& out, const Validation& validation, cons
             updated_references("paper.csv", paper_references_text(), values, kNotExamined));
 }
 
-void run(const RunOptions& given, const Words& words) {
+void validate(const RunOptions& given, const Words& words) {
   const RunOptions options = as_released(given);
   RunRequest request = make_chip_request(options);
   const std::vector<Reference> references = paper_references();
@@ -77,7 +77,7 @@ Command add_validate_command(CLI::App& app, const Words& words) {
                {"leviosim validate --data flight",
                 "leviosim validate --data flight -p isa.instruction_overhead=1.1 --out validated"});
   add_json_option(*command, options->json);
-  return {command, [=, &words] { run(*options, words); }};
+  return {command, [=, &words] { validate(*options, words); }};
 }
 
 }  // namespace leviosim::tools

@@ -18,7 +18,7 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr int kWidth = 80;
+constexpr int kCheckWidth = 80;
 constexpr int kIndent = 9;
 constexpr int kWidest = 44;  // limit in the table
 
@@ -31,7 +31,7 @@ std::string wrapped(const std::string& label, const std::string& raw) {
     items.push_back(words.substr(begin, end - begin));
     begin = end + 1;
   }
-  return std::string(kIndent, ' ') + wrap(items, " ", kIndent, kWidth) + '\n';
+  return std::string(kIndent, ' ') + wrap(items, " ", kIndent, kCheckWidth) + '\n';
 }
 
 /// How much of a limit is left: of the bound, positive where it is met.

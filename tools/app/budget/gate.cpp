@@ -20,7 +20,7 @@ namespace leviosim::tools {
 namespace {
 
 constexpr const char* kFormat = "leviosim baseline";
-constexpr double kLeastShare = 0.01;
+constexpr double kLeastStageShare = 0.01;
 
 /// The stage with the highest peak of L1; null if there is none.
 const StageName* fullest_stage(const RunRecord& run) {
@@ -82,7 +82,7 @@ std::string stage_lines(const StageName& name, const StageParts& stage) {
       "  {{\"name\": {}, \"key\": {}, \"controller\": {}, \"cycles\": {},", json_text(stage.stage),
       json_text(name.key), stage.on_controller, json_text(number_json(stage.cycles)));
   text += " \"parts\": {";
-  const StageParts kept = folded(stage, kLeastShare);
+  const StageParts kept = folded(stage, kLeastStageShare);
   std::vector<std::string> places;
   for (const CyclePart& part : kept.parts)
     if (std::find(places.begin(), places.end(), part.where) == places.end())

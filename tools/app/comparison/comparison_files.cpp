@@ -156,7 +156,7 @@ std::string described(std::string_view letter, const RunRecord& run, const RunRe
   return screen_line(text + ": " + printable(run.name));
 }
 
-std::string verdict_words(const RunRecord& run) {
+std::string verdicts_in_words(const RunRecord& run) {
   std::string words;
   for (const RunVerdict& verdict : verdicts(run).list)
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", verdict.about, verdict.word());
@@ -164,8 +164,8 @@ std::string verdict_words(const RunRecord& run) {
 }
 
 std::string verdict_line(const RunComparison& c) {
-  const std::string a = verdict_words(c.a);
-  const std::string b = verdict_words(c.b);
+  const std::string a = verdicts_in_words(c.a);
+  const std::string b = verdicts_in_words(c.b);
   if (a == b) return screen_line("verdicts: " + a);
   return screen_line("verdicts A: " + a) + screen_line("         B: " + b);
 }

@@ -141,7 +141,7 @@ std::vector<StageParts> parse_cycles(const std::filesystem::path& file, std::str
 namespace {
 
 /// Mechanisms that wait for the same, or stand in the same column of losses, are one cause.
-std::string words_of(std::string_view mechanism) {
+std::string name_of_mechanism(std::string_view mechanism) {
   const auto info_of = [](const auto& holds) {
     return std::find_if(sim::kMechanisms.begin(), sim::kMechanisms.end(), holds);
   };
@@ -234,7 +234,7 @@ class CauseSum {
       for (const std::string& kernel : before)
         if (after.count(kernel) == 0) return "no longer offloaded to " + kernel;
     }
-    return words_of(mechanism);
+    return name_of_mechanism(mechanism);
   }
 
   void add(const std::string& stage, const StageParts& in_a, const StageParts& in_b) {

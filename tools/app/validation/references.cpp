@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kFile = "paper.csv";
 constexpr std::string_view kHeader = "name,value,unit,tolerance,guard,status,source";
 constexpr std::string_view kMissed = "missed: ";
-constexpr std::size_t kColumns = 7;
+constexpr std::size_t kReferenceColumns = 7;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -39,8 +39,8 @@ class Row {
  public:
   Row(std::string where, std::vector<std::string_view> cells)
       : where_(std::move(where)), cells_(std::move(cells)) {
-    if (cells_.size() != kColumns)
-      fail(fmt::format("has {} columns; expected {}: {}", cells_.size(), kColumns, kHeader));
+    if (cells_.size() != kReferenceColumns)
+      fail(fmt::format("has {} columns; expected {}: {}", cells_.size(), kReferenceColumns, kHeader));
   }
 
   [[noreturn]] void fail(std::string_view message) const {

@@ -336,7 +336,7 @@ namespace {
 //   points.csv      a row per point, profile and sequence: medians and spread
 //   best.md         the points of least error
 
-constexpr std::int64_t kMostPoints = 1'000'000;
+constexpr std::int64_t kMostSampled = 1'000'000;
 
 struct ExploreWords {
   BatchWords batch;
@@ -388,7 +388,7 @@ Json manifest_of(const BatchPlan& plan, const ExploreWords& words,
 void run(const CLI::App& command, const ExploreWords& words, const Words& command_line) {
   const std::vector<Dimension> dimensions = dimensions_of(words);
   const auto count =
-      static_cast<std::size_t>(parse_whole("--points", words.points, 1, kMostPoints));
+      static_cast<std::size_t>(parse_whole("--points", words.points, 1, kMostSampled));
   const auto seed = static_cast<std::uint64_t>(
       parse_whole("--sample-seed", words.sample_seed, 0, std::numeric_limits<std::int64_t>::max()));
   std::optional<outputs::OutputFile> page = claimed_report(words.report, words.batch.force);

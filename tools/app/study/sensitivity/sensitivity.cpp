@@ -164,14 +164,14 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
 namespace {
 
 constexpr double kShown = 0.005;  ///< per cent; below, 0.00 would be printed
-constexpr int kWidth = 100;
+constexpr int kLineWidth = 100;
 
 struct TimeColumn {
   const char* title;
   const char* key;
   std::optional<double> MeanTimes::*of;
 };
-constexpr std::array kColumns{
+constexpr std::array kTimeColumns{
     TimeColumn{"frame", "frame", &MeanTimes::frame},
     TimeColumn{"EPnP", "epnp", &MeanTimes::epnp},
     TimeColumn{"8-point", "eight_point", &MeanTimes::eight_point},
@@ -193,7 +193,7 @@ std::string change_text(const Swing& swing, const MeanTimes& base,
 
 std::string list_line(const std::string& title, const std::vector<std::string>& names) {
   if (names.empty()) return {};
-  return title + "\n  " + wrap(names, ", ", 2, kWidth) + '\n';
+  return title + "\n  " + wrap(names, ", ", 2, kLineWidth) + '\n';
 }
 
 std::string bands_table(const Sensitivity& sensitivity) {
@@ -224,7 +224,7 @@ std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers) {
   std::vector<TextTable::Column> columns{
       {"number", kLeft}, {"confidence", kLeft, 2}, {"value"}, {"range", kLeft, 1}};
-  for (const TimeColumn& column : kColumns) columns.push_back({column.title});
+  for (const TimeColumn& column : kTimeColumns) columns.push_back({column.title});
   TextTable table(std::move(columns));
   std::vector<std::string> without_effect;
   for (const Swing& swing : sensitivity.swings) {
@@ -236,7 +236,7 @@ std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int 
     }
     std::vector<std::string> cells{p.path, p.confidence, fmt::format("{} {}", p.value, p.unit),
                                    fmt::format("{:g} … {:g}", p.range->low, p.range->high)};
-    for (const TimeColumn& column : kColumns)
+    for (const TimeColumn& column : kTimeColumns)
       cells.push_back(change_text(swing, sensitivity.base, column.of));
     table.add(std::move(cells));
   }
@@ -261,7 +261,7 @@ std::string sensitivity_csv(const Sensitivity& sensitivity) {
       {"value", [](S s) { return s.parameter.value; }},
       {"low", [](S s) { return fmt::format("{}", s.parameter.range->low); }},
       {"high", [](S s) { return fmt::format("{}", s.parameter.range->high); }}};
-  for (const TimeColumn& column : kColumns) {
+  for (const TimeColumn& column : kTimeColumns) {
     const auto of = column.of;
     const std::optional<double> base_ms = sensitivity.base.*of;
     const auto add = [&](const char* name, auto value) {

@@ -31,7 +31,7 @@ std::string number(const std::optional<double>& value, bool is_bound = false) {
 
 /// "30.2 (19.1–39.4)", in thousandths of the unit.
 template <class Unit>
-std::string banded(const std::optional<sim::Estimate<Unit>>& e) {
+std::string in_milli(const std::optional<sim::Estimate<Unit>>& e) {
   if (!e) return kNothing;
   const auto text = [](Unit value) { return digits(value.count() * kMilli); };
   return fmt::format("{} ({}–{})", text(e->value), text(e->low()), text(e->high()));
@@ -67,8 +67,8 @@ std::string systems_table(const std::vector<SystemRow>& rows) {
                                    number(p.frame_mj(), p.is_bound),
                                    model_of(row)};
     if (row.here)
-      cells.insert(cells.end(), {number(row.here->frames_per_s), banded(row.here->power),
-                                 banded(row.here->frame), number(row.here->most_frames_per_s)});
+      cells.insert(cells.end(), {number(row.here->frames_per_s), in_milli(row.here->power),
+                                 in_milli(row.here->frame), number(row.here->most_frames_per_s)});
     cells.resize(11);
     table.add(std::move(cells));
     sources += fmt::format("  {}: {}\n", p.name, p.source);
@@ -93,7 +93,7 @@ std::string systems_conclusion(const std::vector<SystemRow>& rows) {
   }
   std::string text = fmt::format("in short: {} of {} systems are modelled", modelled, rows.size());
   if (least != nullptr)
-    text += fmt::format("; {} takes {} mJ per frame", model_of(*least), banded(least->here->frame));
+    text += fmt::format("; {} takes {} mJ per frame", model_of(*least), in_milli(least->here->frame));
   return text;
 }
 
