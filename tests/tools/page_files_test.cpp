@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/paths.h"
+#include "tests/support/scratch.h"
 
 namespace leviosim::tests {
 namespace {
@@ -61,6 +62,24 @@ TEST(PageFiles, NamedInPagesExist) {
       }
   }
   EXPECT_GT(count, 300);
+  EXPECT_EQ(faults, "");
+}
+
+/// tests/mutants.txt: what a mutant replaces is in its file, and there once.
+TEST(PageFiles, MutantsChangeTheCodeOfNow) {
+  std::ifstream list(source_folder() / "tests/mutants.txt");
+  std::string file, faults;
+  int count = 0;
+  for (std::string line; std::getline(list, line);) {
+    if (line.starts_with("@ ")) file = line.substr(2);
+    if (!line.starts_with("- ")) continue;
+    ++count;
+    const std::string text = read_text(source_folder() / file), old = line.substr(2);
+    const std::size_t at = text.find(old);
+    if (at == std::string::npos || text.find(old, at + 1) != std::string::npos)
+      faults += file + ": expected once: " + old + '\n';
+  }
+  EXPECT_GT(count, 150);
   EXPECT_EQ(faults, "");
 }
 
