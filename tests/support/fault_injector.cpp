@@ -156,8 +156,8 @@ bool is_another() {
 }
 
 bool allocation_fails() {
-  const bool may = kind == kAllocation && (role == Role::serving || role == Role::copy) &&
-                   (*calls)[kKinds] == 0;
+  const bool may =
+      kind == kAllocation && (role == Role::serving || role == Role::copy) && (*calls)[kKinds] == 0;
   return may && is_another() && fails(kAllocation);
 }
 

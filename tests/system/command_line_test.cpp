@@ -321,8 +321,7 @@ TEST_F(CommandLine, DoctorSaysWhatIsThereAndWhatIsMissing) {
   ASSERT_EQ(document.status, 0) << document.err;
   std::map<std::string, nlohmann::json> findings;
   const nlohmann::json parsed = nlohmann::json::parse(document.out);
-  for (const nlohmann::json& finding : parsed["findings"])
-    findings[finding["what"]] = finding;
+  for (const nlohmann::json& finding : parsed["findings"]) findings[finding["what"]] = finding;
   EXPECT_EQ(findings["qemu-arm"]["found"], true);
   EXPECT_EQ(findings["qemu-arm"]["where"], (bin / "qemu-arm").string());
   EXPECT_EQ(findings["arm-none-eabi-g++"]["found"], false);

@@ -195,8 +195,8 @@ class InBrowser : public Report {
       for (const int width : kWidths) {
         ASSERT_TRUE(seen.pages.contains(std::to_string(width))) << page << ", " << width << " px";
         const Json& drawn = seen.pages[std::to_string(width)];
-        SCOPED_TRACE(fmt::format("{}, {} px, {}: {}", page, width, dark ? "dark" : "light",
-                                 drawn.dump()));
+        SCOPED_TRACE(
+            fmt::format("{}, {} px, {}: {}", page, width, dark ? "dark" : "light", drawn.dump()));
         expect_drawn(drawn, verdicts, dark);
         if (width > 1000) {
           EXPECT_EQ(drawn["cut"], false) << "a table that has to be scrolled";
@@ -236,14 +236,13 @@ TEST_F(InBrowser, APageOfAnEvaluationIsToo) {
 TEST_F(InBrowser, APageOfStagesWithNamesOfScriptsIsToo) {
   fs::copy(path("a"), path("names"));
   fs::remove(path("names/.leviosim-files"));
-  for (const char* name : {"frames.csv", "stages.csv", "cycles.csv", "memory.csv", "energy.csv",
-                           "stats.json"}) {
+  for (const char* name :
+       {"frames.csv", "stages.csv", "cycles.csv", "memory.csv", "energy.csv", "stats.json"}) {
     std::string text = base::read_text_file(path("names") + '/' + name);
-    for (const auto& [stage, other] : {std::pair{"feature extraction", "constructor"},
-                                       std::pair{"feature_extraction", "constructor"},
-                                       std::pair{"frame matching", "__proto__"},
-                                       std::pair{"frame_matching", "proto"},
-                                       std::pair{",cores,", ",__proto__,"}})
+    for (const auto& [stage, other] :
+         {std::pair{"feature extraction", "constructor"},
+          std::pair{"feature_extraction", "constructor"}, std::pair{"frame matching", "__proto__"},
+          std::pair{"frame_matching", "proto"}, std::pair{",cores,", ",__proto__,"}})
       for (std::size_t at = 0; (at = text.find(stage, at)) != std::string::npos;)
         text.replace(at, std::string(stage).size(), other);
     std::ofstream(path("names") + '/' + name) << text;
@@ -266,7 +265,7 @@ TEST_F(InBrowser, APageOfATuningIsToo) {
       program({"tune", "--data", path("flight"), "--clock", "200,370", "--fps", "10,20", "--seed",
                "1", "--quiet", "--cache", path("cache"), "--report", path("tune.html")});
   ASSERT_LE(tuned.status, 1) << tuned.err;  // 1: no clock meets the limits
-  expect_fine("tune.html", 2);  // a box for each frame rate
+  expect_fine("tune.html", 2);              // a box for each frame rate
 }
 
 TEST_F(InBrowser, APageOfASweepIsToo) {

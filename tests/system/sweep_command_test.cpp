@@ -350,7 +350,8 @@ TEST_F(SweepCommand, FrontsOf72ChipsHaveSixPointsAndMore) {
   EXPECT_GE(store.front().size(), 6u);
   EXPECT_LT(store.front().size(), 72u) << "a front of all says nothing";
   const auto of_front = store.front();
-  EXPECT_EQ(std::count(of_front.begin(), of_front.end(), 1), 1) << "the smallest has the least area";
+  EXPECT_EQ(std::count(of_front.begin(), of_front.end(), 1), 1)
+      << "the smallest has the least area";
 }
 
 TEST_F(SweepCommand, SlurmArraysMakeOneRun) {
@@ -366,8 +367,8 @@ TEST_F(SweepCommand, SlurmArraysMakeOneRun) {
   EXPECT_EQ(csv("slurm/all"), csv("whole"));
 }
 
-/// Of a plan's two shares, one after the other, the first is killed once 20 points are done, and its
-/// task queued again.
+/// Of a plan's two shares, one after the other, the first is killed once 20 points are done, and
+/// its task queued again.
 constexpr const char* kSlurmJob = R"sh(
 set -eu
 job=$(sbatch --parsable --array=1-2%1 --open-mode=append --output="$PWD/task-%a.txt" "$1" long.yaml queued)
@@ -391,9 +392,9 @@ TEST_F(SweepCommand, ATaskThatSlurmKillsAndQueuesAgainMakesTheSameRun) {
                                  "      platform.cluster.dma.bytes_per_cycle: [1, 2, 4, 8]\n");
   outputs::write_file_atomically(folder_ / "job.sh", kSlurmJob);
   fs::create_directory(folder_ / "slurm-node");
-  const int status = shell(fmt::format(
-      "timeout 600 '{}/tests/support/slurm.sh' slurm-node sh job.sh {}",
-      leviosim::tests::source_folder().string(), example("slurm_array.sh")));
+  const int status =
+      shell(fmt::format("timeout 600 '{}/tests/support/slurm.sh' slurm-node sh job.sh {}",
+                        leviosim::tests::source_folder().string(), example("slurm_array.sh")));
   const std::string said = base::read_text_file(folder_ / "shell.txt");
   if (status == 77) GTEST_SKIP() << said;
   ASSERT_EQ(status, 0) << said;
@@ -403,7 +404,8 @@ TEST_F(SweepCommand, ATaskThatSlurmKillsAndQueuesAgainMakesTheSameRun) {
   // Killed in the middle: of its 72 points, some were done before, the others are done now.
   const std::string task = base::read_text_file(folder_ / "task-1.txt");
   std::smatch counts;
-  ASSERT_TRUE(std::regex_search(task, counts, std::regex("(\\d+) computed .* (\\d+) done before"))) << task;
+  ASSERT_TRUE(std::regex_search(task, counts, std::regex("(\\d+) computed .* (\\d+) done before")))
+      << task;
   EXPECT_GT(std::stoi(counts[1]), 0) << task;
   EXPECT_GT(std::stoi(counts[2]), 0) << task;
 
@@ -413,7 +415,8 @@ TEST_F(SweepCommand, ATaskThatSlurmKillsAndQueuesAgainMakesTheSameRun) {
     EXPECT_EQ(result.status, 0) << result.err;
   };
   long_sweep({"--merge", path("queued/all"), path("queued/shard-1"), path("queued/shard-2")});
-  long_sweep({path("long.yaml"), "--out", path("undisturbed"), "--cache", path("cache-long"), "--quiet"});
+  long_sweep(
+      {path("long.yaml"), "--out", path("undisturbed"), "--cache", path("cache-long"), "--quiet"});
   EXPECT_EQ(csv("queued/all"), csv("undisturbed"));
 }
 

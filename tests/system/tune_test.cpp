@@ -144,9 +144,8 @@ TEST(Tuning, ChoosesTheLowestClockThatIsEnough) {
   EXPECT_EQ(chosen(choices(equal.plan, equal.points)), &equal.points[4]);
   equal.plan.ate_m = 0.05;
   EXPECT_EQ(chosen(choices(equal.plan, equal.points)), nullptr);
-  EXPECT_NE(
-      tune_conclusion(choices(equal.plan, equal.points)).find("no point meets the limits"),
-      std::string::npos);
+  EXPECT_NE(tune_conclusion(choices(equal.plan, equal.points)).find("no point meets the limits"),
+            std::string::npos);
 }
 
 TEST(Tuning, FiguresAreMediansOverTheSeeds) {
@@ -177,8 +176,8 @@ TEST(Tuning, SaysWhatItFound) {
             std::string::npos);
   example.points[2].outcomes[0].loop->camera.late = 5;
   const std::vector<Choice> all = choices(example.plan, example.points);
-  const std::string text = choice_text(example.plan, all) + tune_conclusion(all) + "\nnext: " +
-                           run_command_text(example.plan, *chosen(all)) + '\n';
+  const std::string text = choice_text(example.plan, all) + tune_conclusion(all) +
+                           "\nnext: " + run_command_text(example.plan, *chosen(all)) + '\n';
   for (const char* part :
        {"at most 5 % missed", "10 frames/s: 200 MHz, 0.65 V: 5.0 % missed, ATE 0.190 m, 12.5 mW",
         "the lowest of all: 200 MHz",

@@ -278,9 +278,8 @@ std::string conclusion(const std::vector<Evaluated>& all) {
         return a.accuracy.evaluation.translation.rmse < b.accuracy.evaluation.translation.rmse;
       });
   const Evaluation& e = best.accuracy.evaluation;
-  std::string text =
-      fmt::format("in short: {}: {:.3f} m RMSE", printable(best.pair.estimate.file.string()),
-                  e.translation.rmse);
+  std::string text = fmt::format("in short: {}: {:.3f} m RMSE",
+                                 printable(best.pair.estimate.file.string()), e.translation.rmse);
   if (e.path_length_m > 0)
     text += fmt::format(", {:.2f} % of the path", 100 * e.translation.rmse / e.path_length_m);
   return text;

@@ -27,7 +27,7 @@ struct FormatRow {
   std::string (*text)(const Trajectory& trajectory);
 };
 
-constexpr std::array<FormatRow, 3> kFormats{{
+constexpr std::array<FormatRow, 3> kTrajectoryFormats{{
     {TrajectoryFormat::tum, "tum", "TUM", base::Separator::blanks, 8, format_tum},
     {TrajectoryFormat::euroc, "euroc", "EuRoC", base::Separator::comma, 17, format_euroc},
     {TrajectoryFormat::kitti, "kitti", "KITTI", base::Separator::blanks, 12, format_kitti},
@@ -69,26 +69,25 @@ void check_stamps(const TrajectoryPair& pair) {
 }  // namespace
 
 std::string_view name_of(TrajectoryFormat format) {
-  return kFormats[static_cast<std::size_t>(format)].name;
+  return kTrajectoryFormats[static_cast<std::size_t>(format)].name;
 }
 
 TrajectoryFormat parse_trajectory_format(std::string_view name) {
-  for (const FormatRow& row : kFormats)
+  for (const FormatRow& row : kTrajectoryFormats)
     if (row.option == name) return row.format;
   throw InputError(fmt::format("format '{}': expected one of tum, euroc, kitti", name));
 }
 
 std::string trajectory_text(std::string_view format, const Trajectory& trajectory) {
   if (format == "jsonl") return format_json_lines(trajectory);
-  for (const FormatRow& row : kFormats)
+  for (const FormatRow& row : kTrajectoryFormats)
     if (row.option == format) return row.text(trajectory);
-  throw InputError(
-      fmt::format("format '{}': expected one of tum, euroc, kitti, jsonl", format));
+  throw InputError(fmt::format("format '{}': expected one of tum, euroc, kitti, jsonl", format));
 }
 
 TrajectoryFormat detect_format(const fs::path& file) {
   const base::FirstRow first = base::first_row(file);
-  for (const FormatRow& row : kFormats)
+  for (const FormatRow& row : kTrajectoryFormats)
     if (row.separator == first.separator && row.columns == first.columns) return row.format;
   constexpr std::size_t kPoseOnly = 8;  // as TUM-VI has them
   if (first.separator == base::Separator::comma && first.columns == kPoseOnly)

@@ -20,8 +20,8 @@ Vec3<P> point_of(const PnpInput<P>& matches, int i) {
 
 /// A row of the Jacobian times the root of its weight.
 template <class P>
-void add_row(const typename P::F32 (&row)[kPoseUnknowns], typename P::F32 error, typename P::F32 weight,
-             typename P::template Span<typename P::F32> sums) {
+void add_row(const typename P::F32 (&row)[kPoseUnknowns], typename P::F32 error,
+             typename P::F32 weight, typename P::template Span<typename P::F32> sums) {
   using F = typename P::F32;
   int at = 0;
   for (int r = 0; r < kPoseUnknowns; ++r) {

@@ -50,7 +50,9 @@ void add_joint_rows(MatrixView<P> rows, const ReducedSystem<P>& system, int keyf
   const typename P::Function function("add_joint_rows");
   const MatrixView<P> matrix = system.matrix();
   const int base = keyframe * system.per_keyframe();
-  const auto place = [&](int c) { return c < kGyroColumn ? base + c : system.shared() + c - kGyroColumn; };
+  const auto place = [&](int c) {
+    return c < kGyroColumn ? base + c : system.shared() + c - kGyroColumn;
+  };
   for (int i : P::range(0, kJointResidual)) {
     for (int j : P::range(0, i + 1)) {
       F sum = matrix(place(i), place(j));

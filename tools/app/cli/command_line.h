@@ -19,8 +19,8 @@ struct Command {
   bool goes_on = false;       ///< finds again what it finished before it was interrupted
 };
 
-/// Declares options that take text: names, where it goes, what stands for it in the help, help. Those
-/// of lists are repeatable. @param split  whether values of a list may be one word, "1,2,3"
+/// Declares options that take text: names, where it goes, what stands for it in the help, help.
+/// Those of lists are repeatable. @param split  whether values of a list may be one word, "1,2,3"
 struct TextOptions {
   CLI::App& command;
   std::string group{};  ///< heading in the help

@@ -17,7 +17,7 @@ constexpr std::string_view kMore = " …";
 /// What is left of a column of text that is cut.
 constexpr int kLeastText = 20;
 
-std::string blanks(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
+std::string spaces(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
 
 }  // namespace
 
@@ -37,7 +37,7 @@ std::string TextTable::line(const std::vector<std::string>& cells,
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (widths[c] == 0) continue;
     const std::string cell = shortened(cells[c], widths[c]);
-    const std::string padding = blanks(widths[c] - display_width(cell));
+    const std::string padding = spaces(widths[c] - display_width(cell));
     if (c > 0) text += kGap;
     text += columns_[c].align == Align::Left ? cell + padding : padding + cell;
   }

@@ -12,7 +12,7 @@
 namespace leviosim::tools {
 namespace {
 
-enum Kind : std::size_t { kEpnp = 0, kEightPoint = 2, kTracked = 4, kPredicted = 6, kOther = 8 };
+enum : std::size_t { kEpnp = 0, kEightPoint = 2, kTracked = 4, kPredicted = 6, kOther = 8 };
 
 /// By the means that found the pose; the number after it is that of the kind with keyframe.
 std::size_t scenario_of(const FrameResult& frame) {

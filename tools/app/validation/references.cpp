@@ -40,7 +40,8 @@ class Row {
   Row(std::string where, std::vector<std::string_view> cells)
       : where_(std::move(where)), cells_(std::move(cells)) {
     if (cells_.size() != kReferenceColumns)
-      fail(fmt::format("has {} columns; expected {}: {}", cells_.size(), kReferenceColumns, kHeader));
+      fail(fmt::format("has {} columns; expected {}: {}", cells_.size(), kReferenceColumns,
+                       kHeader));
   }
 
   [[noreturn]] void fail(std::string_view message) const {

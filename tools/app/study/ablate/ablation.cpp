@@ -25,8 +25,8 @@ std::optional<AblationRow::Paper> paper_value(const std::vector<PublishedAccurac
                                               const AblationRow& row, PaperFigure figure) {
   std::optional<AblationRow::Paper> found;
   for (const PublishedAccuracy& p : published) {
-    if (p.sequence != row.sequence || p.estimator != row.profile || p.chosen_by != PaperFigure::ate ||
-        p.figure != figure)
+    if (p.sequence != row.sequence || p.estimator != row.profile ||
+        p.chosen_by != PaperFigure::ate || p.figure != figure)
       continue;
     if (p.size == row.size) return AblationRow::Paper{p.value, p.size};
     if (!found || p.size.width > found->size.width) found = {p.value, p.size};

@@ -93,7 +93,8 @@ std::string systems_conclusion(const std::vector<SystemRow>& rows) {
   }
   std::string text = fmt::format("in short: {} of {} systems are modelled", modelled, rows.size());
   if (least != nullptr)
-    text += fmt::format("; {} takes {} mJ per frame", model_of(*least), in_milli(least->here->frame));
+    text +=
+        fmt::format("; {} takes {} mJ per frame", model_of(*least), in_milli(least->here->frame));
   return text;
 }
 

@@ -25,14 +25,14 @@ namespace {
 
 constexpr const char* kAsItIs = "as it is";
 
-struct Choice {
+struct SettingChoice {
   std::string path;
   std::vector<std::string> values;
 };
 
 /// "a=1,2,b=3": a is 1 or 2, b is 3.
-std::vector<Choice> choices_of(const std::string& text) {
-  std::vector<Choice> choices;
+std::vector<SettingChoice> choices_of(const std::string& text) {
+  std::vector<SettingChoice> choices;
   for (const std::string& item : base::split(text, ',')) {
     const std::size_t equals = item.find('=');
     if (equals == std::string::npos)
@@ -125,7 +125,7 @@ std::vector<Variant> WhatIf::variants(const std::string& change) {
   }
   std::vector<Variant> all{{prefix, chip}};
   if (!changes.empty())
-    for (const Choice& choice : choices_of(changes)) {
+    for (const SettingChoice& choice : choices_of(changes)) {
       const std::vector<Variant> before = std::exchange(all, {});
       for (const Variant& variant : before)
         for (const std::string& value : choice.values) {

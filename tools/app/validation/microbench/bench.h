@@ -37,7 +37,7 @@ struct MicrobenchRow {
   double reference_high = 0;  ///< the same as reference where they agree
   double simulated = 0;
   std::optional<Banded> band = std::nullopt;  ///< of what is simulated
-  double tolerance = 0.05;  ///< largest error that is accepted, relative
+  double tolerance = 0.05;                    ///< largest error that is accepted, relative
   /// Of a row that is known to miss it: the error that it may not exceed.
   std::optional<double> guard = std::nullopt;
   int tier = 1;  ///< 1: behaviour of a unit; 2: includes what a compiler does
@@ -49,9 +49,7 @@ struct MicrobenchRow {
     return (simulated - nearest) / nearest;
   }
   /// Whether the reference lies in the band, or some of its range does.
-  bool is_inside() const {
-    return band && band->low <= reference_high && reference <= band->high;
-  }
+  bool is_inside() const { return band && band->low <= reference_high && reference <= band->high; }
   bool met() const { return std::abs(error()) <= tolerance; }
   Verdict verdict() const { return judge(error(), tolerance, guard); }
 };
@@ -116,8 +114,8 @@ class Bench {
 double stream_cycles(const sim::ChipConfig& chip, int cores, int slots,
                      const std::function<void(work::Core&)>& body);
 
-// Kernels with published cycles: what each does is recorded once and timed on any chip, so also with
-// every uncertain number of a platform at both ends of its range.
+// Kernels with published cycles: what each does is recorded once and timed on any chip, so also
+// with every uncertain number of a platform at both ends of its range.
 
 struct KernelJob {
   MicrobenchRow row{};  ///< with nothing simulated yet
