@@ -113,8 +113,7 @@ class FaultInjection : public tests::ProgramSuite {
     const std::optional<FaultAnswer> answered = program.run(kind, number);
     EXPECT_TRUE(answered) << "the program answers no more";
     const FaultAnswer answer = answered.value_or(FaultAnswer());
-    const bool is_over = answer.calls < number;  // threads allocate now and then once less
-    EXPECT_EQ(answer.failed, number == 0 || is_over ? 0u : 1u);
+    EXPECT_EQ(answer.failed, number == 0 || answer.calls < number ? 0u : 1u);
     After after{.status = WIFEXITED(answer.wait_status) ? WEXITSTATUS(answer.wait_status)
                                                         : 128 + WTERMSIG(answer.wait_status),
                 .err = read_text(place / ".err"),
@@ -164,9 +163,11 @@ class FaultInjection : public tests::ProgramSuite {
     const FaultyProgram faulty(words, place.path());
     const Picture was = picture_of(before);
     const std::vector<std::uint64_t> numbers = chosen(whole.calls);
+    std::size_t tried = 0;
     for (const std::uint64_t number : numbers) {
       SCOPED_TRACE(fmt::format("{} {}: {} {} of {}", words[0], where, kind, number, whole.calls));
       const After ended = after(faulty, place.path(), kind, number);
+      if (ended.calls >= number) ++tried;
       expect_orderly(ended, was, whole.files);
       if (ended.files != was && ended.files != whole.files) {
         const FaultyProgram again(words, place.path());
@@ -175,8 +176,10 @@ class FaultInjection : public tests::ProgramSuite {
       }
       if (ended.files != was) fill(place.path(), before);
     }
+    // What threads allocate differs a little from start to start.
+    EXPECT_GE(tried + 1 + numbers.size() / 50, numbers.size());
     std::printf("[   FAULTS ] %s %s: %s: %ld of %ld\n", words[0].c_str(), where.c_str(),
-                kind.c_str(), static_cast<long>(numbers.size()), static_cast<long>(whole.calls));
+                kind.c_str(), static_cast<long>(tried), static_cast<long>(whole.calls));
     std::fflush(stdout);
   }
   /// Into a new place, and where results of before are replaced; files of others are in both.
