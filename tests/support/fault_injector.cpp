@@ -2,10 +2,11 @@
 // command makes, counted from where main() holds back signals. Commands are tried many thousands of
 // times, so the program is started once and asks for requests at its standard input, a socket. Each
 // is carried out by a copy of the process: made at the N-th call, or where the first file is opened
-// to be written or the first folder made, if that comes before. Until then a command changes
-// nothing.
+// to be written or the first folder made, if that comes before, or at once if nothing is to fail.
+// Until then a command changes nothing.
 //   request  KIND:N   KIND allocation, write, rename, open, mkdir or close; N from 1, and not below
-//                     that of the request before, or 0 for none. What is printed goes to .out, .err
+//                     that of the request before, or 0 for none, which comes first and tells which
+//                     allocations count. What is printed goes to .out, .err
 //   answer   FaultAnswer (tests/support/fault_injector.h)
 // What prints goes through stdio, whose writes are the C library's own and do not fail.
 #include "tests/support/fault_injector.h"
@@ -45,6 +46,18 @@ Calls* calls = &calls_before;  // in copies, a place that the process sees
 int kind = kKinds;             // of the request
 std::uint64_t number = 0;
 std::uint64_t changes = 0;  // of files, so far
+
+/// Which allocations of the command are tried. Walking over the callers of each takes longer than
+/// the command, so a copy without a fault learns it, and those after it only count.
+struct Learned {
+  std::atomic<bool> done;
+  bool tried[1 << 24];  // by how many allocations came before
+};
+Learned& learned() {
+  static void* const place = ::mmap(nullptr, sizeof(Learned), PROT_READ | PROT_WRITE,
+                                    MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return *static_cast<Learned*>(place);
+}
 
 template <class Function>
 Function next(Function, const char* name) {
@@ -90,6 +103,7 @@ bool carry_out() {
   static void* const place =
       ::mmap(nullptr, sizeof(Calls), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   role = Role::none;
+  Learned& allocations_tried = learned();  // there before the copy is
   auto& shared = *static_cast<Calls*>(place);
   for (int k = 0; k <= kKinds; ++k) shared[k] = calls_before[k].load();
   const pid_t copy = ::fork();
@@ -104,6 +118,7 @@ bool carry_out() {
   }
   FaultAnswer answer;
   ::waitpid(copy, &answer.wait_status, 0);
+  if (kind == kAllocation && number == 0) allocations_tried.done = true;
   answer.calls = shared[kind];
   answer.failed = shared[kKinds];
   ::send(STDIN_FILENO, &answer, sizeof(answer), 0);
@@ -140,19 +155,28 @@ _Unwind_Reason_Code mix_in(_Unwind_Context* caller, void* hash) {
   return _URC_NO_REASON;
 }
 
+std::atomic<std::uint64_t> allocations = 0;  // so far
+
 /// @returns whether no allocation before had the same callers and changes
-bool is_another() {
+bool is_new() {
   static std::uint64_t seen[1 << 20];  // by their hash, 0 for nothing
-  static thread_local bool inside = false;
-  if (inside) return false;
-  inside = true;
   std::uint64_t hash = changes + 1;
   _Unwind_Backtrace(mix_in, &hash);
-  inside = false;
   constexpr std::size_t kPlaces = std::size(seen);
   std::size_t at = hash % kPlaces;
   while (seen[at] != 0 && seen[at] != hash) at = (at + 1) % kPlaces;
   return std::exchange(seen[at], hash) == 0;
+}
+
+bool is_another() {
+  static thread_local bool inside = false;
+  if (inside) return false;
+  const std::uint64_t at = std::min(allocations++, std::uint64_t(std::size(learned().tried) - 1));
+  if (learned().done) return learned().tried[at];
+  inside = true;
+  const bool is = is_new();
+  inside = false;
+  return learned().tried[at] = is;
 }
 
 bool allocation_fails() {
@@ -177,6 +201,8 @@ int pthread_sigmask(int how, const sigset_t* set, sigset_t* old) {
   if (role == Role::starting) {
     receive();
     role = Role::serving;
+    while (role == Role::serving && number == 0)
+      if (carry_out()) break;
   }
   return result;
 }

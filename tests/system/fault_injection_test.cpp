@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <cinttypes>
+#include <cstdio>
 #include <cstdlib>
 #include <regex>
 
@@ -30,10 +32,16 @@ using Picture = std::map<std::string, std::string>;
 /// Sampled: every one is tried where there are few, else the first, the last and some between.
 constexpr std::uint64_t kSamples = 8;
 
+/// LEVIOSIM_ALL_FAULTS=K/M takes every M-th from the K-th on, for several processes at once.
 std::vector<std::uint64_t> chosen(std::uint64_t calls) {
   std::vector<std::uint64_t> numbers;
-  const bool all = std::getenv("LEVIOSIM_ALL_FAULTS") != nullptr;
-  const std::uint64_t tries = all ? calls : std::min(calls, kSamples);
+  if (const char* const all = std::getenv("LEVIOSIM_ALL_FAULTS")) {
+    std::uint64_t first = 1, step = 1;
+    std::sscanf(all, "%" SCNu64 "/%" SCNu64, &first, &step);
+    for (std::uint64_t number = first; number <= calls; number += step) numbers.push_back(number);
+    return numbers;
+  }
+  const std::uint64_t tries = std::min(calls, kSamples);
   for (std::uint64_t i = 0; i < tries; ++i)
     numbers.push_back(tries == 1 ? 1 : 1 + i * (calls - 1) / (tries - 1));
   return numbers;
@@ -156,11 +164,10 @@ class FaultInjection : public tests::ProgramSuite {
                       const std::string& where) {
     const Scratch place;
     fill(place.path(), before);
-    const FaultyProgram program(words, place.path());
-    const After whole = after(program, place.path(), kind, 0);
+    const FaultyProgram faulty(words, place.path());
+    const After whole = after(faulty, place.path(), kind, 0);
     ASSERT_EQ(whole.status, 0) << whole.err;
     fill(place.path(), before);
-    const FaultyProgram faulty(words, place.path());
     const Picture was = picture_of(before);
     const std::vector<std::uint64_t> numbers = chosen(whole.calls);
     std::size_t tried = 0;
@@ -171,15 +178,16 @@ class FaultInjection : public tests::ProgramSuite {
       expect_orderly(ended, was, whole.files);
       if (ended.files != was && ended.files != whole.files) {
         const FaultyProgram again(words, place.path());
-        const After last = after(again, place.path(), kind, 0);
+        const After last = after(again, place.path(), "none", 0);
         EXPECT_EQ(last.status, 0) << last.err;
       }
       if (ended.files != was) fill(place.path(), before);
     }
     // What threads allocate differs a little from start to start.
     EXPECT_GE(tried + 1 + numbers.size() / 50, numbers.size());
-    std::printf("[   FAULTS ] %s %s: %s: %ld of %ld\n", words[0].c_str(), where.c_str(),
-                kind.c_str(), static_cast<long>(tried), static_cast<long>(whole.calls));
+    std::printf("[   FAULTS ] %s %s: %s: %ld of %ld, %ld calls\n", words[0].c_str(), where.c_str(),
+                kind.c_str(), static_cast<long>(tried), static_cast<long>(numbers.size()),
+                static_cast<long>(whole.calls));
     std::fflush(stdout);
   }
   /// Into a new place, and where results of before are replaced; files of others are in both.
