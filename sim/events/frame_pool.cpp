@@ -3,6 +3,8 @@
 #include <new>
 #include <utility>
 
+#include "sim/base/thread_end.h"
+
 namespace leviosim::sim {
 namespace {
 
@@ -22,19 +24,16 @@ constexpr bool kRecycle = true;
 
 constinit thread_local PooledFrame::Lists PooledFrame::lists_;
 
-struct PooledFrame::ReturnAtThreadEnd {
-  ReturnAtThreadEnd() { lists_.largest = kLargest; }
-  ~ReturnAtThreadEnd() {
-    lists_.largest = 0;
-    lists_.ended = true;
-    for (FreeBlock*& list : lists_.heads)
-      while (list != nullptr) ::operator delete(std::exchange(list, list->next));
-  }
-};
+void PooledFrame::stop_recycling(void*) {
+  lists_.largest = 0;
+  lists_.ended = true;
+  for (FreeBlock*& list : lists_.heads)
+    while (list != nullptr) ::operator delete(std::exchange(list, list->next));
+}
 
 void PooledFrame::start_recycling() {
-  if (!kRecycle || lists_.ended) return;
-  [[maybe_unused]] static thread_local ReturnAtThreadEnd at_thread_end;
+  static const base::AtThreadEnd at_thread_end(&stop_recycling);
+  if (kRecycle && !lists_.ended && at_thread_end.set(&lists_)) lists_.largest = kLargest;
 }
 
 void* PooledFrame::allocate_slowly(std::size_t size) {

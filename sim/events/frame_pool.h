@@ -51,12 +51,12 @@ class PooledFrame {
     bool ended = false;
     std::array<FreeBlock*, kLargest / kGranule> heads{};
   };
-  struct ReturnAtThreadEnd;
 
   static std::size_t size_class(std::size_t size) { return (size - 1) / kGranule; }
   static void* allocate_slowly(std::size_t size);
   static void free_slowly(void* frame, std::size_t size) noexcept;
   static void start_recycling();
+  static void stop_recycling(void*);
 
   static constinit thread_local Lists lists_;
 };

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "sim/base/check.h"
+#include "sim/base/thread_end.h"
 
 namespace leviosim::work {
 namespace {
@@ -22,12 +24,16 @@ struct OffloadTally {
   bool any = false;
 };
 
-/// That of the host's thread, as the tally is. Made when it is needed, since what a module of Python
-/// holds for each thread has to fit into 1.5 kB that the C library leaves for all modules.
+/// That of the host's thread, as the tally is. Made when it is needed, since what a module of
+/// Python holds for each thread has to fit into 1.5 kB that the C library leaves for all modules.
 OffloadTally& of_this_thread() {
-  static thread_local std::unique_ptr<OffloadTally> held;
-  if (!held) held = std::make_unique<OffloadTally>();
-  return *held;
+  static constinit thread_local OffloadTally* held = nullptr;
+  if (held != nullptr) return *held;
+  static const base::AtThreadEnd at_thread_end(
+      [](void* ended) { delete static_cast<OffloadTally*>(ended); });
+  auto made = std::make_unique<OffloadTally>();
+  if (!at_thread_end.set(made.get())) throw std::bad_alloc();
+  return *(held = made.release());
 }
 
 }  // namespace

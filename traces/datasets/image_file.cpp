@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csetjmp>
+#include <cstdlib>
 #include <memory>
 #include <new>
 #include <string>
@@ -27,8 +28,8 @@ class PngCalls {
 
   /// @throws std::bad_alloc
   explicit PngCalls(Kind kind) : kind_(kind) {
-    const auto create = kind == Kind::Read ? png_create_read_struct : png_create_write_struct;
-    png_ = create(PNG_LIBPNG_VER_STRING, this, fail, ignore);
+    const auto create = kind == Kind::Read ? png_create_read_struct_2 : png_create_write_struct_2;
+    png_ = create(PNG_LIBPNG_VER_STRING, this, fail, ignore, this, allocate, release);
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) {
       destroy();
@@ -42,13 +43,16 @@ class PngCalls {
   png_structp png() const { return png_; }
   png_infop info() const { return info_; }
 
-  /// Whether `body` came to its end. An error of the library ends it where it is, so it must hold
-  /// no object that has a destructor.
+  /// Whether `body` came to its end; std::bad_alloc if memory was lacking. An error of the library
+  /// ends it where it is, so it must hold no object that has a destructor.
   template <class Body>
   bool succeed(const Body& body) {
-    if (setjmp(png_jmpbuf(png_)) != 0) return false;
-    body();
-    return true;
+    if (setjmp(png_jmpbuf(png_)) == 0) {
+      body();
+      return true;
+    }
+    if (out_of_memory_) throw std::bad_alloc();
+    return false;
   }
   /// Of the last error.
   const std::string& reason() const { return reason_; }
@@ -59,6 +63,12 @@ class PngCalls {
     png_longjmp(png, 1);
   }
   static void ignore(png_structp, png_const_charp) {}
+  static void* allocate(png_structp png, png_alloc_size_t size) {
+    void* const memory = std::malloc(size);
+    if (memory == nullptr) static_cast<PngCalls*>(png_get_mem_ptr(png))->out_of_memory_ = true;
+    return memory;
+  }
+  static void release(png_structp, void* memory) { std::free(memory); }
   void destroy() {
     if (kind_ == Kind::Read)
       png_destroy_read_struct(&png_, &info_, nullptr);
@@ -70,6 +80,7 @@ class PngCalls {
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   std::string reason_;
+  bool out_of_memory_ = false;
 };
 
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";

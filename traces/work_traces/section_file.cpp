@@ -3,14 +3,21 @@
 #include <fmt/core.h>
 #include <zlib.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include <memory>
+#include <new>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 
 namespace leviosim::traces {
 namespace {
+
+/// @param result  of a function of zstd
+void require_memory(std::size_t result) {
+  if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
+}
 
 constexpr std::size_t kMagicSize = 8;
 constexpr std::size_t kCoveredHead = kMagicSize + 4;
@@ -64,6 +71,7 @@ std::string packed_section(std::string_view content, int level) {
   std::string stored(ZSTD_compressBound(content.size()), '\0');
   const std::size_t size =
       ZSTD_compress(stored.data(), stored.size(), content.data(), content.size(), level);
+  require_memory(size);
   check(!ZSTD_isError(size), "zstd compresses");
   stored.resize(size);
   ByteWriter section;
@@ -118,6 +126,7 @@ std::string unpacked(const Section& section, const std::string& file, MemoryBudg
   std::string content(expected, '\0');
   const std::size_t size =
       ZSTD_decompress(content.data(), content.size(), section.stored.data(), section.stored.size());
+  require_memory(size);
   if (ZSTD_isError(size))
     fail(file, section.offset,
          fmt::format("the section is no zstd frame of {} bytes: {}", expected,
