@@ -30,8 +30,8 @@ constexpr PaintLimits kHallLimits{{0.005, 0.016}, {1, 4}};
 constexpr PaintLimits kWorkshopLimits{{0.002, 0.016}, {1, 2}};
 constexpr PaintLimits kSurroundLimits{{0.004, 0.1}, {0.2, 20}};
 
-/// Of the clearance: tables are nearer than walls.
-constexpr double kWorkshopShare = 0.3;
+/// Of the clearance: tables are nearer than walls, within reach of an arm.
+constexpr double kWorkshopShare = 0.08;
 
 const PaintLimits& limits_of(PlaceKind kind) {
   return kind == PlaceKind::hall       ? kHallLimits

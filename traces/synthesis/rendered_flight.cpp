@@ -25,10 +25,10 @@ namespace fs = std::filesystem;
 enum RenderedPart : std::uint64_t { kPlaceSeed, kLightSeed, kSimulatedImuSeed, kPictureSeed };
 
 // A small sensor and a wide lens, open in little light.
-constexpr double kWorkshopShotNoise = 4;  // at 128 [grey levels]
+constexpr double kWorkshopShotNoise = 8;  // at 128 [grey levels]
 constexpr double kWorkshopVignetting = 0.45;
 constexpr double kWorkshopSpotPx =
-    0.9;  // standard deviation of the lens's blur, also at silhouettes
+    1.5;  // standard deviation of the lens's blur, also at silhouettes
 
 /// Everything about the flight but its pictures.
 struct Plan {

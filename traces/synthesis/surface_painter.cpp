@@ -235,9 +235,9 @@ void paint_timber(Canvas& canvas, const SurfaceSpec& spec) {
     const double bend = 0.02 * noise(1, u / 0.35, grain.across(x, y) / 0.2);
     const double v = grain.across(x, y) + bend;
     const double streaks =
-        0.10 * noise(2, u / 0.5, v / 0.012) + 0.10 * noise(3, u / 0.7, v / 0.045);
+        0.25 * noise(2, u / 0.5, v / 0.012) + 0.25 * noise(3, u / 0.7, v / 0.045);
     const double stains =
-        0.12 * noise(4, u / 0.12, v / 0.05) + 0.08 * noise(5, u / 0.02, v / 0.005);
+        0.18 * noise(4, u / 0.12, v / 0.05) + 0.12 * noise(5, u / 0.02, v / 0.005);
     return static_cast<float>(spec.tone * (1 + streaks + stains));
   });
   Rng rng(derive_seed(spec.seed, 6));

@@ -49,7 +49,7 @@ class WorkshopBuilder : public LayoutBuilder {
 /// Pallets on stacks of dark cloth, and nets on some, all along the path and just below it.
 void WorkshopBuilder::add_tables() {
   constexpr double kStepM = 0.5;
-  constexpr int kTries = 60;
+  constexpr int kTries = 300;  // until hardly any more fit between those that are there
   Vector3d last = path_.front() - Vector3d(kStepM, 0, 0);
   for (const Vector3d& position : path_) {
     if ((position - last).norm() < kStepM) continue;
@@ -58,10 +58,10 @@ void WorkshopBuilder::add_tables() {
       const double angle = rng_.uniform(0, 6.283);
       const double away = rng_.uniform(0, 2.2);
       const double deeper = rng_.uniform();  // most of them as near as may be
-      const double below = clearance_m_ + 0.6 * deeper * deeper;
+      const double below = clearance_m_ + 0.2 * deeper * deeper;
       const Vector3d middle =
           position + Vector3d(away * std::cos(angle), away * std::sin(angle), -below);
-      const bool net = rng_.chance(0.25);
+      const bool net = rng_.chance(0.16);
       if (net)
         add(heap(middle, rng_.uniform(0.2, 0.5)));
       else
@@ -73,7 +73,7 @@ void WorkshopBuilder::add_tables() {
 /// Boards with gaps on three joists, on a block of dark cloth that reaches to the floor.
 /// @param middle  of its upper side
 Group WorkshopBuilder::pallet(const Vector3d& middle, bool turned) {
-  const double length = rng_.uniform(0.9, 1.3);
+  const double length = rng_.uniform(0.5, 1.8);
   const int boards = 4 + rng_.below(3);
   const double board = rng_.uniform(0.1, 0.18);
   const double gap = rng_.uniform(0.02, 0.07);
