@@ -9,7 +9,7 @@
 
 #include "tests/workload/math_fixture.h"
 #include "tests/workload/test_camera.h"
-#include "workload/vio/levio/geometry/epnp_ransac.h"
+#include "workload/geometry/epnp_ransac.h"
 
 namespace leviosim::vio::test {
 

@@ -1,6 +1,6 @@
 // EPnP of the released program: what it finds against known poses, and its work beside that of the
 // release. Facts: workload/PARAMETERS.md#epnp.
-#include "workload/vio/levio/geometry/epnp_ransac.h"
+#include "workload/geometry/epnp_ransac.h"
 
 #include <opencv2/calib3d.hpp>
 

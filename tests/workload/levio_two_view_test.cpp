@@ -9,9 +9,9 @@
 #include <opencv2/calib3d.hpp>
 
 #include "tests/support/dense_algebra.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
-#include "workload/vio/levio/geometry/pose_recovery.h"
+#include "workload/geometry/essential_ransac.h"
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/pose_recovery.h"
 
 namespace leviosim::vio::levio {
 namespace {

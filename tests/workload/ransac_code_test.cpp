@@ -16,8 +16,8 @@
 #include "sim/chip/chip.h"
 #include "tests/support/code_lines.h"
 #include "tests/workload/two_view_scene.h"
-#include "workload/vio/levio/geometry/epnp_ransac.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
+#include "workload/geometry/epnp_ransac.h"
+#include "workload/geometry/essential_ransac.h"
 
 namespace leviosim::vio::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "workload/vio/levio/geometry/sampling.h"
+#include "workload/geometry/sampling.h"
 
 #include <gtest/gtest.h>
 

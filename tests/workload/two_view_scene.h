@@ -10,7 +10,7 @@
 #include "sim/work/policy.h"
 #include "tests/workload/eigen_conversions.h"
 #include "tests/workload/test_camera.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
+#include "workload/geometry/essential_ransac.h"
 
 namespace leviosim::vio::test {
 

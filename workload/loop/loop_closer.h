@@ -14,10 +14,10 @@
 #include <array>
 #include <optional>
 
+#include "workload/geometry/sampling.h"
 #include "workload/loop/loop_graph.h"
 #include "workload/loop/place_search.h"
 #include "workload/loop/verification.h"
-#include "workload/vio/levio/geometry/sampling.h"
 
 namespace leviosim::vio {
 

@@ -7,10 +7,10 @@
 #pragma once
 
 #include "sim/work/machine.h"
+#include "workload/geometry/epnp_ransac.h"
+#include "workload/geometry/sampling.h"
 #include "workload/loop/options.h"
 #include "workload/loop/yaw_transform.h"
-#include "workload/vio/levio/geometry/epnp_ransac.h"
-#include "workload/vio/levio/geometry/sampling.h"
 
 namespace leviosim::vio {
 

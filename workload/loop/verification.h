@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "sim/work/machine.h"
+#include "workload/geometry/sampling.h"
 #include "workload/loop/options.h"
 #include "workload/loop/yaw_transform.h"
-#include "workload/vio/levio/geometry/sampling.h"
 #include "workload/vision/features.h"
 
 namespace leviosim::vio {

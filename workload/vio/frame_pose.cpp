@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "workload/vio/levio/geometry/epnp_ransac.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
-#include "workload/vio/levio/geometry/pose_recovery.h"
+#include "workload/geometry/epnp_ransac.h"
+#include "workload/geometry/essential_ransac.h"
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/pose_recovery.h"
 #include "workload/vio/levio/vision/matcher.h"
 #include "workload/vio/stages.h"
 

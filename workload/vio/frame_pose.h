@@ -6,9 +6,9 @@
 #include <functional>
 #include <optional>
 
+#include "workload/geometry/sampling.h"
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
-#include "workload/vio/levio/geometry/sampling.h"
 
 namespace leviosim::vio {
 

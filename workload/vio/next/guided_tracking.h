@@ -4,9 +4,9 @@
 
 #include <optional>
 
+#include "workload/geometry/sampling.h"
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
-#include "workload/vio/levio/geometry/sampling.h"
 #include "workload/vio/next/prediction.h"
 
 namespace leviosim::vio {

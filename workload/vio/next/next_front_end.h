@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "workload/geometry/sampling.h"
 #include "workload/vio/front_end_state.h"
 #include "workload/vio/inertial_part.h"
-#include "workload/vio/levio/geometry/sampling.h"
 #include "workload/vio/loop/loop_part.h"
 #include "workload/vio/next/prediction.h"
 

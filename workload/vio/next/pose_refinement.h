@@ -8,8 +8,8 @@
 #pragma once
 
 #include "sim/work/machine.h"
+#include "workload/geometry/epnp_ransac.h"
 #include "workload/math/vec.h"
-#include "workload/vio/levio/geometry/epnp_ransac.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::vio {

@@ -7,8 +7,8 @@
 #pragma once
 
 #include "sim/work/arena.h"
+#include "workload/geometry/camera_constants.h"
 #include "workload/math/matrix.h"
-#include "workload/vio/levio/geometry/camera_constants.h"
 
 namespace leviosim::vio::levio {
 

@@ -6,12 +6,12 @@
 // Left out: a case for singular matrices; see above.
 #pragma once
 
+#include "workload/geometry/library_trig.h"
+#include "workload/geometry/product.h"
 #include "workload/math/host_hints.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
 #include "workload/math/target_call.h"
-#include "workload/vio/levio/algebra/library_trig.h"
-#include "workload/vio/levio/algebra/product.h"
 
 namespace leviosim::vio::levio {
 

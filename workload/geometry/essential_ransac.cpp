@@ -1,8 +1,8 @@
-#include "workload/vio/levio/geometry/essential_ransac.h"
+#include "workload/geometry/essential_ransac.h"
 
 #include "sim/base/check.h"
-#include "workload/vio/levio/algebra/inverse_power.h"
-#include "workload/vio/levio/algebra/svd.h"
+#include "workload/geometry/inverse_power.h"
+#include "workload/geometry/svd.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -1,8 +1,8 @@
-#include "workload/vio/levio/geometry/epnp.h"
+#include "workload/geometry/epnp.h"
 
-#include "workload/vio/levio/algebra/svd.h"
-#include "workload/vio/levio/geometry/epnp_starts.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
+#include "workload/geometry/epnp_starts.h"
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/svd.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "sim/work/arena.h"
 #include "sim/work/machine.h"
+#include "workload/geometry/sampling.h"
 #include "workload/math/matrix.h"
 #include "workload/math/vec.h"
-#include "workload/vio/levio/geometry/sampling.h"
 
 namespace leviosim::vio::levio {
 
