@@ -28,8 +28,8 @@ void add_compiled_code(const CodeTable& table);
 /// kCompiledCode.
 const work::CodeMap& compiled_code();
 
-/// Bytes of code as compiled for that instruction set for each one of the table kCompiledCode: of
-/// the pieces that are in both.
+/// Bytes of code as compiled for that instruction set for each one of the table kCompiledCode, as
+/// tools/rv32/measure.sh measured them: of the pieces that are in both.
 double size_of_code(work::CompiledFor set);
 
 /// Of the table code/NAME.csv; what it executes is described at kCompiledCode.

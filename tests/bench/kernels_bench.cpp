@@ -6,16 +6,16 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "sim/work/machine.h"
 #include "tests/bench/cpu_time.h"
+#include "workload/geometry/epnp_ransac.h"
 #include "workload/geometry/essential_ransac.h"
-#include "workload/geometry/pnp_ransac.h"
-#include "workload/geometry/recover_pose.h"
+#include "workload/geometry/svd.h"
 #include "workload/inertial/preintegration.h"
-#include "workload/math/jacobi.h"
-#include "workload/math/solve.h"
+#include "workload/math/matrix.h"
 #include "workload/vio/levio/vision/matcher.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/matcher.h"
@@ -126,11 +126,12 @@ std::function<void()> epnp(Bench<P>& b) {
     pixels[2 * i] += F(kCamera.fx * x / z + kCamera.cx);
     pixels[2 * i + 1] += F(kCamera.fy * y / z + kCamera.cy);
   }
-  return [&b, points, pixels] {
+  const auto random = std::make_shared<levio::ShiftRegister<P>>(1u);
+  return [&b, points, pixels, random] {
     const work::Arena::Frame frame(b.machine.local());
     const auto stage = b.machine.stage("epnp");
-    benchmark::DoNotOptimize(
-        estimate_pose_epnp<P>(b.machine, {points, pixels, kMatches, kCamera}, {}));
+    benchmark::DoNotOptimize(levio::estimate_pose_epnp<P>(
+        b.machine, {points, pixels, kMatches}, levio::CameraConstants<P>(kCamera), *random, {}));
   };
 }
 
@@ -145,13 +146,16 @@ std::function<void()> eight_point(Bench<P>& b) {
     c[2 * i] += F(work::value(F(a[2 * i])) - 0.15f / depth);
     c[2 * i + 1] += F(a[2 * i + 1]);
   }
-  return [&b, a, c] {
+  const auto random = std::make_shared<levio::ShiftRegister<P>>(1u);
+  return [&b, a, c, random] {
     const work::Arena::Frame frame(b.machine.local());
+    const MatrixView<P> E = alloc_matrix<P>(b.machine.local(), "E", 3, 3);
     const auto mask = b.machine.local().template alloc<typename P::template Span<typename P::Byte>>(
         "mask", kMatches);
+    const F pixel = 0.7f / kCamera.fx;
     const auto stage = b.machine.stage("8-point");
-    benchmark::DoNotOptimize(
-        estimate_essential<P>(b.machine, {a, c, kMatches}, kCamera.fx, {}, mask));
+    benchmark::DoNotOptimize(levio::estimate_essential<P>(b.machine, {a, c, kMatches},
+                                                          pixel * pixel, *random, {}, E, mask));
   };
 }
 
@@ -163,8 +167,7 @@ std::function<void()> jacobi12(Bench<P>& b) {
     const auto A = alloc_matrix<P>(b.machine.local(), "A", 12, 12);
     const auto V = alloc_matrix<P>(b.machine.local(), "V", 12, 12);
     multiply_transposed<P>(A, MatrixView<P>(square, 12, 12), MatrixView<P>(square, 12, 12));
-    benchmark::DoNotOptimize(
-        jacobi_eigen_classical<P>(A, V, 120, 1e-8f, DiagonalPrecision::Double));
+    benchmark::DoNotOptimize(levio::jacobi_eigen<P>(A, V, 120, 1e-8f));
   };
 }
 

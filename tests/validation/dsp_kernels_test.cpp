@@ -17,7 +17,7 @@
 #include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/library_programs.h"
 #include "tools/app/validation/microbench/report.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
+#include "workload/geometry/essential_ransac.h"
 
 namespace leviosim::tools {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "tests/workload/math_fixture.h"
 #include "tests/workload/test_camera.h"
-#include "workload/geometry/pnp_ransac.h"
+#include "workload/geometry/epnp_ransac.h"
 
 namespace leviosim::vio::test {
 
@@ -89,11 +89,11 @@ inline Scene make_scene(Random& random, const SceneOptions& options) {
 
 /// The scene as the kernels read it. It must outlive the input.
 template <class P>
-PnpInput<P> input_of(const Scene& scene) {
+levio::LandmarkMatches<P> input_of(const Scene& scene) {
   using F = typename P::F32;
   const auto* points = reinterpret_cast<const F*>(scene.points.data());
   const auto* pixels = reinterpret_cast<const F*>(scene.pixels.data());
-  return {{points, 3 * scene.n}, {pixels, 2 * scene.n}, scene.n, kCamera};
+  return {{points, 3 * scene.n}, {pixels, 2 * scene.n}, scene.n};
 }
 
 struct PoseError {

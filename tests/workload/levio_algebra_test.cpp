@@ -3,9 +3,9 @@
 
 #include "tests/support/dense_algebra.h"
 #include "tests/workload/math_fixture.h"
-#include "workload/vio/levio/algebra/inverse_power.h"
-#include "workload/vio/levio/algebra/least_squares.h"
-#include "workload/vio/levio/algebra/svd.h"
+#include "workload/geometry/inverse_power.h"
+#include "workload/geometry/least_squares.h"
+#include "workload/geometry/svd.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -1,5 +1,5 @@
 // Trigonometry as C libraries compute it, against the host's in double precision.
-#include "workload/vio/levio/algebra/library_trig.h"
+#include "workload/geometry/library_trig.h"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
 #include "tests/support/dense_algebra.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
-#include "workload/vio/levio/geometry/pose_recovery.h"
+#include "workload/geometry/essential_ransac.h"
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/pose_recovery.h"
 
 namespace leviosim::vio::levio {
 namespace {
@@ -48,11 +51,13 @@ struct FoundEssential {
   EssentialResult<P> essential;
   Eigen::Matrix3d E;
   RecoveredPose<P> pose;
+  std::vector<int> mask;
   work::Job job;
 };
 
 template <class P>
-FoundEssential<P> estimate_essential_of(const TwoViewScene& scene, int cores = 8) {
+FoundEssential<P> estimate_essential_of(const TwoViewScene& scene, int cores = 8,
+                                        const EssentialRansacOptions& options = {}) {
   work::Machine machine({cores, "L1", Bytes(110000), 1, true});
   const test::MatchStorage<P> matches(scene);
   const Pixels<P> pixels(scene);
@@ -65,7 +70,8 @@ FoundEssential<P> estimate_essential_of(const TwoViewScene& scene, int cores = 8
     const auto mask = local.alloc<typename P::template Span<typename P::Byte>>("mask", scene.n);
     ShiftRegister<P> random(7);
     found.essential =
-        estimate_essential<P>(machine, matches.view(), kThreshold, random, {}, E, mask);
+        estimate_essential<P>(machine, matches.view(), kThreshold, random, options, E, mask);
+    for (int i = 0; i < scene.n; ++i) found.mask.push_back(static_cast<int>(mask.data()[i]));
     if (found.essential.ok)
       found.pose = recover_pose<P>(machine, E, pixels.view(), CameraConstants<P>(test::kCamera));
     for (int i = 0; i < 9; ++i)
@@ -146,6 +152,149 @@ TEST(LevioEightPoint, TriangulationFindsThePoint) {
     EXPECT_LT((test::to_eigen(point) - scene.points_a[i]).norm(), 0.02 * scene.points_a[i].norm());
     EXPECT_LT(reprojection_error_sq<work::Native>(T_b, point, b, camera), 0.05f);
   }
+}
+
+/// OpenCV's matrix of a scene whose matches are exact.
+Eigen::Matrix3d essential_of_opencv(const TwoViewScene& scene, std::vector<cv::Point2d>& a,
+                                    std::vector<cv::Point2d>& b) {
+  for (const auto& x : scene.seen_a) a.push_back({x.x(), x.y()});
+  for (const auto& x : scene.seen_b) b.push_back({x.x(), x.y()});
+  const cv::Mat found = cv::findEssentialMat(a, b, 1.0, {0, 0}, cv::RANSAC, 0.999, 1e-3);
+  Eigen::Matrix3d E;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) E(r, c) = found.at<double>(r, c);
+  return E;
+}
+
+TEST(LevioEightPoint, ExactMatchesGiveTheMatrixAndThePoseOfOpenCv) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const TwoViewScene scene = make_two_view_scene(seed, {.matches = 100});
+    const auto found = estimate_essential_of<work::Native>(scene);
+    ASSERT_TRUE(found.essential.ok && found.pose.ok);
+    EXPECT_EQ(found.essential.inliers, 100);
+    std::vector<cv::Point2d> a, b;
+    const Eigen::Matrix3d reference = essential_of_opencv(scene, a, b);
+    // Any hypothesis that fits all matches within 0.7 px may win, hence the distance.
+    EXPECT_LT(test::difference_up_to_scale(found.E, reference), 0.1);
+    cv::Matx33d E;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) E(r, c) = found.E(r, c);
+    cv::Mat R, t;
+    const int in_front = cv::recoverPose(E, a, b, R, t, 1.0, {0, 0});
+    // OpenCV drops points beyond 50 baselines.
+    EXPECT_GE(found.pose.in_front, in_front);
+    for (int r = 0; r < 3; ++r) {
+      EXPECT_NEAR(test::to_eigen(found.pose.T_b_a.t)(r), t.at<double>(r), 1e-2);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(test::to_eigen(found.pose.T_b_a.R)(r, c), R.at<double>(r, c), 1e-2);
+    }
+  }
+}
+
+TEST(LevioEightPoint, OutliersAreLeftOut) {
+  int kept_outliers = 0, outliers = 0, kept = 0, good = 0;
+  for (std::uint64_t seed = 100; seed < 105; ++seed) {
+    const TwoViewScene scene =
+        make_two_view_scene(seed, {.matches = 120, .outliers = 0.3, .rounded = true});
+    const auto found = estimate_essential_of<work::Native>(scene);
+    int marked = 0;
+    for (std::size_t i = 0; i < scene.outlier.size(); ++i) {
+      (scene.outlier[i] ? outliers : good) += 1;
+      (scene.outlier[i] ? kept_outliers : kept) += found.mask[i];
+      marked += found.mask[i];
+    }
+    EXPECT_EQ(marked, found.essential.inliers);
+  }
+  // A random match hits a band of ±0.7 px around an epipolar line in 120 rows now and then.
+  EXPECT_LT(kept_outliers, 0.1 * outliers);
+  EXPECT_GT(kept, 0.8 * good);
+}
+
+TEST(LevioEightPoint, MoreIterationsNeverFindFewerInliers) {
+  const TwoViewScene scene =
+      make_two_view_scene(5, {.matches = 100, .outliers = 0.4, .rounded = true});
+  int before = 0;
+  for (const int iterations : {8, 24, 96, 384}) {
+    const auto found = estimate_essential_of<work::Native>(scene, 8, {.iterations = iterations});
+    EXPECT_GE(found.essential.inliers, before);
+    before = found.essential.inliers;
+  }
+}
+
+/// Nothing is checked on the way, so no pose is what degenerate matches have to end with, or one
+/// that is a number.
+TEST(LevioEightPoint, DegenerateMatchesGiveNoPoseThatIsNoNumber) {
+  TwoViewScene same = make_two_view_scene(1, {.matches = 30});
+  for (auto& x : same.seen_a) x = same.seen_a[0];
+  for (auto& x : same.seen_b) x = same.seen_b[0];
+  TwoViewScene centre = same;
+  for (auto& x : centre.seen_a) x.setZero();
+  for (auto& x : centre.seen_b) x.setZero();
+  const TwoViewScene turned = make_two_view_scene(1, {.matches = 60, .baseline_m = {0, 0}});
+  for (const TwoViewScene& scene : {same, centre, turned}) {
+    const auto found = estimate_essential_of<work::Native>(scene);
+    if (!found.essential.ok || !found.pose.ok) continue;
+    EXPECT_TRUE(test::to_eigen(found.pose.T_b_a.R).allFinite());
+    EXPECT_TRUE(test::to_eigen(found.pose.T_b_a.t).allFinite());
+  }
+}
+
+/// The masks of 8 hypotheses make up most of what the cores share; see the paper's table of memory.
+TEST(LevioEightPoint, CoresNeedLittleMemory) {
+  const auto found = estimate_essential_of<work::Counting>(make_two_view_scene(5, {.matches = 360}),
+                                                           8, {.iterations = 64});
+  const work::MemoryPeak& memory = found.job.stages.at(0).memory;
+  EXPECT_GT(memory.single, Bytes(8 * 360));
+  EXPECT_LT((memory.parallel - memory.single).count() / 7, 1100);
+}
+
+TEST(LevioSampson, IsTheDistanceOfOpenCvOnAnyScale) {
+  const TwoViewScene scene =
+      make_two_view_scene(2, {.matches = 60, .outliers = 0.3, .rounded = true});
+  const Eigen::Matrix3d E = scene.essential();
+  cv::Matx33d F;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) F(r, c) = E(r, c);
+  for (std::size_t i = 0; i < scene.seen_a.size(); ++i) {
+    const Eigen::Vector2d a = scene.seen_a[i], b = scene.seen_b[i];
+    const auto error_of = [&](double scale) {
+      return sampson_error_sq<work::Native>(test::to_mat3<work::Native>(scale * E),
+                                            test::to_vec2<work::Native>(a),
+                                            test::to_vec2<work::Native>(b));
+    };
+    const double expected =
+        cv::sampsonDistance(cv::Vec3d(a.x(), a.y(), 1), cv::Vec3d(b.x(), b.y(), 1), F);
+    EXPECT_NEAR(std::sqrt(static_cast<double>(error_of(1))), std::sqrt(expected), 1e-6);
+    EXPECT_EQ(error_of(-4), error_of(1));
+  }
+}
+
+TEST(LevioSampson, MarksTheMatchesBelowTheThreshold) {
+  const TwoViewScene scene =
+      make_two_view_scene(8, {.matches = 90, .outliers = 0.4, .rounded = true});
+  const test::MatchStorage<work::Native> matches(scene);
+  work::Arena arena("L1", Bytes(4096));
+  const MatrixView<work::Native> E = alloc_matrix<work::Native>(arena, "E", 3, 3);
+  const Mat3<work::Native> exact = test::to_mat3<work::Native>(scene.essential());
+  for (int i = 0; i < 9; ++i) E(i / 3, i % 3) = exact.m[i / 3][i % 3];
+  const float threshold = (1.0f / test::kCamera.fx) * (1.0f / test::kCamera.fx);
+  std::vector<std::uint8_t> mask(90, 77);
+  int inliers = -1;
+  float error_sum = -1;
+  score_essential<work::Native>(E, matches.view(), threshold, {mask.data(), 90},
+                                {{&inliers, 1}, {&error_sum, 1}});
+  int expected = 0;
+  float expected_sum = 0;
+  for (int i = 0; i < 90; ++i) {
+    const float error =
+        sampson_error_sq<work::Native>(exact, matches.view().in_a(i), matches.view().in_b(i));
+    EXPECT_EQ(mask[static_cast<std::size_t>(i)], error < threshold ? 1 : 0);
+    if (error < threshold) ++expected, expected_sum += error;
+    // Rounding by half a pixel in each image stays below one pixel.
+    EXPECT_TRUE(error < threshold || scene.outlier[static_cast<std::size_t>(i)]);
+  }
+  EXPECT_EQ(inliers, expected);
+  EXPECT_EQ(error_sum, expected_sum);
 }
 
 /// Facts on the release: scratch is misaligned in 74 % of the calls on eight cores and in none on

@@ -7,8 +7,8 @@
 
 #include "tests/support/dense_algebra.h"
 #include "tests/workload/epnp_scene.h"
-#include "workload/geometry/pose_refinement.h"
 #include "workload/graph/marginalisation.h"
+#include "workload/vio/next/pose_refinement.h"
 #include "workload/vision/subpixel.h"
 
 namespace leviosim::vio::test {
@@ -59,7 +59,7 @@ RefinedPose<P> refine(const Scene& scene, int cores, std::vector<typename P::Byt
   options.steps = 8;
   options.rotation = options.position = 1.0f;
   marks->resize(static_cast<std::size_t>(scene.n));
-  return refine_pose<P>(machine, input_of<P>(scene), start, options,
+  return refine_pose<P>(machine, input_of<P>(scene), kCamera, start, options,
                         {marks->data(), static_cast<int>(marks->size())});
 }
 

@@ -16,10 +16,8 @@
 #include "sim/chip/chip.h"
 #include "tests/support/code_lines.h"
 #include "tests/workload/two_view_scene.h"
+#include "workload/geometry/epnp_ransac.h"
 #include "workload/geometry/essential_ransac.h"
-#include "workload/geometry/pnp_ransac.h"
-#include "workload/vio/levio/geometry/epnp_ransac.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
 
 namespace leviosim::vio::test {
 namespace {
@@ -104,7 +102,7 @@ struct LandmarkScene {
   Counted::Span<const Counted::F32> all_pixels() const { return {pixels.data(), 2 * scene.n}; }
 };
 
-Recording epnp_of_levio(int cores, const work::CodeMap& code) {
+Recording epnp(int cores, const work::CodeMap& code) {
   const LandmarkScene landmarks;
   levio::EpnpRansacOptions options;
   options.iterations = 16;
@@ -116,22 +114,11 @@ Recording epnp_of_levio(int cores, const work::CodeMap& code) {
   });
 }
 
-Recording epnp_of_next(int cores, const work::CodeMap& code) {
-  const LandmarkScene landmarks;
-  PnpOptions options;
-  options.iterations = 16;
-  return recorded(cores, code, [&](work::Machine& machine) {
-    estimate_pose_epnp<Counted>(
-        machine, {landmarks.all_points(), landmarks.all_pixels(), landmarks.scene.n, kCamera},
-        options);
-  });
-}
-
 TwoViewScene scene_of_two_views() {
   return make_two_view_scene(3, {.matches = 60, .outliers = 0.2, .rounded = true});
 }
 
-Recording eight_point_of_levio(int cores, const work::CodeMap& code) {
+Recording eight_point(int cores, const work::CodeMap& code) {
   const TwoViewScene scene = scene_of_two_views();
   const MatchStorage<Counted> matches(scene);
   constexpr float kThreshold = (0.7f / 114.66f) * (0.7f / 114.66f);
@@ -147,28 +134,13 @@ Recording eight_point_of_levio(int cores, const work::CodeMap& code) {
   });
 }
 
-Recording eight_point_of_next(int cores, const work::CodeMap& code) {
-  const TwoViewScene scene = scene_of_two_views();
-  const MatchStorage<Counted> matches(scene);
-  std::vector<Counted::Byte> mask(static_cast<std::size_t>(scene.n));
-  EssentialOptions options;
-  options.iterations = 80;
-  return recorded(cores, code, [&](work::Machine& machine) {
-    estimate_essential<Counted>(machine, matches.view(), kCamera.fx, options,
-                                {mask.data(), scene.n});
-  });
-}
-
 struct Program {
   const char* name;
   Recording (*record)(int cores, const work::CodeMap& code);
 
   Recording on(int cores) const { return record(cores, platform::compiled_code()); }
 };
-constexpr Program kPrograms[] = {{"EPnP of levio", epnp_of_levio},
-                                 {"8-point of levio", eight_point_of_levio},
-                                 {"EPnP of next", epnp_of_next},
-                                 {"8-point of next", eight_point_of_next}};
+constexpr Program kPrograms[] = {{"EPnP", epnp}, {"8-point", eight_point}};
 
 const sim::ChipConfig& gap9() {
   static const sim::ChipConfig chip = platform::load_platform("gap9");
@@ -254,8 +226,6 @@ Recording in_step(Recording recording) {
 
 void compare(const char* name, const Recording& recording, const Case& c) {
   const bool is_master = c.workers == sim::Cluster::kMasterAlone;
-  // With compressed libraries the master of `next`, with a cache of its own, waits 18 % longer than
-  // the model says; the others are within a tenth.
   const double kTolerance = is_master ? 0.2 : 0.1;
   const sim::InstructionCacheConfig& icache = gap9().cluster.icache;
   const Modelled model = modelled(recording, is_master ? c.workers : recording.cores);
@@ -315,7 +285,7 @@ double cycles(const Recording& recording) {
 }
 
 /// Of a hypothesis alone, without what the master does between the forks. Stepped caches say -5.0
-/// and +6.5 % for EPnP of levio on one worker, whose loop is a fifth larger than the common cache.
+/// and +6.5 % for EPnP on one worker, whose loop is a fifth larger than the common cache.
 TEST(RansacCode, AFewPerCentOfCodeChangeAFewPerCentOfCycles) {
   for (const Program& program : kPrograms)
     for (const int cores : {1, 8})

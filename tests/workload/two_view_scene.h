@@ -1,4 +1,4 @@
-// Synthetic pairs of views with known geometry for the tests of workload/geometry, and the way to
+// Synthetic pairs of views with known geometry for the tests of the kernels of two views, and the way to
 // hand them to kernels of either policy.
 #pragma once
 
@@ -121,7 +121,7 @@ class MatchStorage {
     for (const Eigen::Vector2d& x : scene.seen_a) append(a_, x);
     for (const Eigen::Vector2d& x : scene.seen_b) append(b_, x);
   }
-  TwoViewMatches<P> view() const { return {{a_.data(), 2 * n_}, {b_.data(), 2 * n_}, n_}; }
+  levio::TwoViewMatches<P> view() const { return {{a_.data(), 2 * n_}, {b_.data(), 2 * n_}, n_}; }
 
  private:
   static void append(std::vector<F>& to, const Eigen::Vector2d& x) {

@@ -45,8 +45,8 @@ class UprightScene {
 
   UprightInput<Native> input() {
     return {{Native::Span<const float>(points.data(), static_cast<int>(points.size())),
-             Native::Span<const float>(pixels.data(), static_cast<int>(pixels.size())), kPoints,
-             kCamera},
+             Native::Span<const float>(pixels.data(), static_cast<int>(pixels.size())), kPoints},
+            kCamera,
             R};
   }
 
@@ -88,7 +88,8 @@ TEST(UprightPose, IsFoundAmongWrongMatchesAndRefined) {
     UprightScene scene(seed, 2, 0.3);
     work::Machine machine({8, "L1", Bytes(1 << 17), 1, false});
     const auto stage = machine.stage("pose");
-    UprightPose<Native> found = find_upright_pose<Native>(machine, scene.input(), {}, 7);
+    levio::ShiftRegister<Native> random(7);
+    UprightPose<Native> found = find_upright_pose<Native>(machine, scene.input(), {}, random);
     EXPECT_GE(found.inliers, 20) << seed;
     ASSERT_TRUE(refine_upright_pose<Native>(machine.local(), scene.input(), {}, found.T));
     EXPECT_LT(distance(found.T, scene.T_true), 0.1) << seed;
@@ -107,7 +108,8 @@ TEST(UprightPose, DoesNotDependOnTheNumberOfCores) {
   for (const int cores : {1, 3, 8}) {
     work::Machine machine({cores, "L1", Bytes(1 << 17), 1, false});
     const auto stage = machine.stage("pose");
-    found.push_back(find_upright_pose<Native>(machine, scene.input(), {}, 7).T);
+    levio::ShiftRegister<Native> random(7);
+    found.push_back(find_upright_pose<Native>(machine, scene.input(), {}, random).T);
   }
   for (const YawTransform<Native>& T : found) {
     EXPECT_EQ(T.yaw, found[0].yaw);

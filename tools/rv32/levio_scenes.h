@@ -4,10 +4,10 @@
 #pragma once
 
 #include "tools/rv32/scene_data.h"
-#include "workload/vio/levio/geometry/epnp_ransac.h"
-#include "workload/vio/levio/geometry/essential_ransac.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
-#include "workload/vio/levio/geometry/pose_recovery.h"
+#include "workload/geometry/epnp_ransac.h"
+#include "workload/geometry/essential_ransac.h"
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/pose_recovery.h"
 #include "workload/vio/levio/optimiser/optimiser.h"
 #include "workload/vio/levio/vision/extractor.h"
 #include "workload/vio/levio/vision/matcher.h"

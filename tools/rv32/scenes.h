@@ -12,15 +12,12 @@
 #include "tools/rv32/inputs.h"
 #include "tools/rv32/levio_scenes.h"
 #include "tools/rv32/scene_data.h"
-#include "workload/geometry/essential_ransac.h"
-#include "workload/geometry/pnp_ransac.h"
-#include "workload/geometry/recover_pose.h"
 #include "workload/graph/optimiser.h"
 #include "workload/inertial/initialisation.h"
 #include "workload/math/inverse_power.h"
 #include "workload/math/solve.h"
-#include "workload/math/svd.h"
 #include "workload/vio/odometry/odometry.h"
+#include "workload/vio/triangulation.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/matcher.h"
 
@@ -134,38 +131,16 @@ class Scenes {
     vio::levio::match_two_way<P>(machine_, current, kCurrent, references, kReferences, {}, matches);
   }
 
+  /// What only `next` does with two views; the rest is in levio_scenes.h.
   void two_views() {
-    const Span<F> points = load<F>(inputs_.next()), pixels = load<F>(inputs_.next());
-    {
-      vio::PnpOptions options;
-      options.iterations = 32;
-      const auto stage = machine_.stage("EPnP");
-      const Function scene("scene: EPnP RANSAC");
-      vio::estimate_pose_epnp<P>(machine_, {points, pixels, points.size() / 3, camera()}, options);
-    }
+    inputs_.next(), inputs_.next();  // matches of landmarks and pixels
     const Span<F> a = load<F>(inputs_.next()), b = load<F>(inputs_.next());
-    const vio::TwoViewMatches<P> matches{a, b, a.size() / 2};
-    const Span<Byte> inliers = load<Byte>(inputs_.next());
-    const Inputs::Block E = inputs_.next(), pose = inputs_.next();
-    {
-      vio::EssentialOptions options;
-      options.iterations = 80;
-      const Span<Byte> mask = data_.alloc<Span<Byte>>("mask", matches.n);
-      const auto stage = machine_.stage("8-point");
-      const Function scene("scene: 8-point RANSAC");
-      vio::estimate_essential<P>(machine_, matches, camera().fx, options, mask);
-    }
-    vio::Mat3<P> essential, R;
+    const vio::levio::TwoViewMatches<P> matches{a, b, a.size() / 2};
+    inputs_.next(), inputs_.next();  // which of them are outliers, and the essential matrix
+    const Inputs::Block pose = inputs_.next();
+    vio::Mat3<P> R;
     vio::Vec3<P> t{F(pose.real(9)), F(pose.real(10)), F(pose.real(11))};
-    for (int i = 0; i < 9; ++i) {
-      essential.m[i / 3][i % 3] = F(E.real(i));
-      R.m[i / 3][i % 3] = F(pose.real(i));
-    }
-    {
-      const auto stage = machine_.stage("pose recovery");
-      const Function scene("scene: pose recovery");
-      vio::recover_pose<P>(machine_, matches, inliers, essential);
-    }
+    for (int i = 0; i < 9; ++i) R.m[i / 3][i % 3] = F(pose.real(i));
     const vio::Pose<P> first = vio::Pose<P>::identity(), second{R, t};
     const Function scene("scene: triangulation");
     for (int i = 0; i < opaque(40); ++i)
@@ -219,38 +194,14 @@ class Scenes {
   }
 
   void linear_algebra() {
-    using vio::DiagonalPrecision;
-    const auto V12 = matrix(12, 12), A12 = square(12);
-    {
-      const Function scene("scene: Jacobi 12x12");
-      vio::jacobi_eigen_classical<P>(A12, V12, opaque(120), F(1e-8f), DiagonalPrecision::Double);
-    }
-    const auto V3 = matrix(3, 3), A3 = square(3);
-    {
-      const Function scene("scene: Jacobi 3x3");
-      vio::jacobi_eigen_classical<P>(A3, V3, opaque(10), F(1e-8f), DiagonalPrecision::Double);
-    }
-    const auto A64 = matrix(6, 4);
-    const Span<F> b6 = noise(6, 1.0f), x4 = noise(4, 1.0f);
-    {
-      const Function scene("scene: QR 6x4");
-      vio::solve_qr<P>(A64, b6, x4);
-    }
     const auto A9 = matrix(9, 9), H9 = square(9);
     const Span<F> b9 = noise(9, 1.0f), x9 = noise(9, 1.0f);
     {
       const Function scene("scene: Gauss 9x9");
       vio::solve_gauss<P>(A9, b9, x9);
     }
-    {
-      const Function scene("scene: inverse power 9x9");
-      vio::smallest_eigenvector<P>(H9, x9, machine_.local(), opaque(15), F(1e-8f));
-    }
-    vio::Mat3<P> E, U, V;
-    vio::Vec3<P> s;
-    for (int i = 0; i < 9; ++i) E.m[i / 3][i % 3] = F(noise_.next());
-    const Function scene("scene: SVD 3x3");
-    vio::svd3<P>(E, U, s, V);
+    const Function scene("scene: inverse power 9x9");
+    vio::smallest_eigenvector<P>(H9, x9, machine_.local(), opaque(15), F(1e-8f));
   }
 
   /// Elementary functions, a hundred times each.
@@ -293,7 +244,7 @@ class Scenes {
   /// Everything together, with fewer hypotheses than in earnest: who calls what, and what comes
   /// after what.
   [[gnu::noinline]] void pipeline(vio::Profile profile) {
-    profile.pnp.iterations = 16;
+    profile.epnp.iterations = 16;
     profile.essential.iterations = 40;
     profile.keyframe_parallax = 0.02f;
     vio::Rig rig{camera(), kWidth, kHeight, {}};

@@ -1,46 +1,13 @@
 #include "workload/geometry/epnp.h"
 
-#include "workload/geometry/camera_matrix.h"
-#include "workload/geometry/epnp_betas.h"
-#include "workload/math/svd.h"
+#include "workload/geometry/epnp_starts.h"
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/svd.h"
 
-namespace leviosim::vio {
+namespace leviosim::vio::levio {
 namespace {
 
-/// A control axis shorter than this part of the longest is degenerate: the second one means that
-/// the sample is collinear.
-constexpr float kCollinear = 1e-3f;
-/// A third axis shorter than this part of the first is lengthened to it. The sample is then close
-/// to planar; the length of an axis is free, and its weights stay finite.
-constexpr float kShortestAxis = 0.02f;
-
 constexpr int kUnknowns = 3 * kControlPoints;
-
-/// The matches of one sample, side by side.
-template <class P>
-struct Sample {
-  MatrixView<P> points;  ///< s×3, world
-  MatrixView<P> pixels;  ///< s×2
-  int size() const { return points.rows(); }
-};
-
-template <class P>
-Sample<P> gather(const PnpInput<P>& input, typename P::template Span<const typename P::U16> indices,
-                 work::Arena& scratch) {
-  using F = typename P::F32;
-  using I32 = typename P::I32;
-  const int s = indices.size();
-  const Sample<P> sample{alloc_matrix<P>(scratch, "sample points", s, 3),
-                         alloc_matrix<P>(scratch, "sample pixels", s, 2)};
-  for (int i : P::range(0, s)) {
-    const I32 match = indices[i];
-    const I32 point = match * 3;
-    const I32 pixel = match * 2;
-    for (int c = 0; c < 3; ++c) sample.points(i, c) = F(input.points[point + c]);
-    for (int c = 0; c < 2; ++c) sample.pixels(i, c) = F(input.pixels[pixel + c]);
-  }
-  return sample;
-}
 
 template <class P>
 Vec3<P> row_of(MatrixView<P> a, int r) {
@@ -53,222 +20,288 @@ Vec3<P> centroid_of(MatrixView<P> points) {
   using F = typename P::F32;
   Vec3<P> sum{0.0f, 0.0f, 0.0f};
   for (int i : P::range(0, points.rows())) sum = sum + row_of<P>(points, i);
-  return sum * F(1.0f / static_cast<float>(points.rows()));
+  const F number = static_cast<float>(points.rows());
+  return {sum.x / number, sum.y / number, sum.z / number};
 }
 
-/// Covariance of the points about their centroid.
+/// to = points − centre, row by row.
 template <class P>
-void fill_covariance(MatrixView<P> covariance, MatrixView<P> points, const Vec3<P>& centroid) {
-  using F = typename P::F32;
-  Mat3<P> sum = Mat3<P>::zero();
+void subtract(MatrixView<P> to, MatrixView<P> points, const Vec3<P>& centre) {
   for (int i : P::range(0, points.rows())) {
-    const Vec3<P> d = row_of<P>(points, i) - centroid;
-    const F component[3] = {d.x, d.y, d.z};
-    for (int r = 0; r < 3; ++r)
-      for (int c = r; c < 3; ++c) sum.m[r][c] += component[r] * component[c];
+    const Vec3<P> d = row_of<P>(points, i) - centre;
+    to(i, 0) = d.x;
+    to(i, 1) = d.y;
+    to(i, 2) = d.z;
   }
-  const F scale = 1.0f / static_cast<float>(points.rows());
-  for (int r = 0; r < 3; ++r)
-    for (int c = r; c < 3; ++c) {
-      const F value = sum.m[r][c] * scale;
-      covariance(r, c) = value;
-      covariance(c, r) = value;
-    }
 }
 
-/// Chooses the control points (4×3): the centroid, and one step of the standard deviation along
-/// each principal axis; writes the weights of the points (s×4).
-/// @return false if the points are collinear
+/// The work memory of a hypothesis. It stays as a whole until the hypothesis is done.
 template <class P>
-bool choose_control_points(MatrixView<P> points, MatrixView<P> control, MatrixView<P> weights,
-                           const PnpOptions& options, work::Arena& scratch) {
+struct Workspace {
+  using Span = typename P::template Span<typename P::F32>;
+
+  explicit Workspace(work::Arena& a)
+      : differences(alloc_matrix<P>(a, "points about their centroid", kEpnpSample, 3)),
+        camera_differences(alloc_matrix<P>(a, "points in camera about theirs", kEpnpSample, 3)),
+        control(alloc_matrix<P>(a, "control points", kControlPoints, 3)),
+        weights(alloc_matrix<P>(a, "weights", kEpnpSample, kControlPoints)),
+        normal(alloc_matrix<P>(a, "MtM", kUnknowns, kUnknowns)),
+        square(alloc_matrix<P>(a, "square of MtM", kUnknowns, kUnknowns)),
+        vectors(alloc_matrix<P>(a, "eigenvectors", kUnknowns, kUnknowns)),
+        sorted(alloc_matrix<P>(a, "sorted eigenvectors", kUnknowns, kUnknowns)),
+        system{alloc_matrix<P>(a, "L", kDistances, kProducts),
+               a.alloc<Span>("distances", kDistances)},
+        betas(a.alloc<Span>("betas", kBetas)),
+        camera_control(alloc_matrix<P>(a, "control points in camera", kControlPoints, 3)),
+        camera_points(alloc_matrix<P>(a, "points in camera", kEpnpSample, 3)),
+        candidate(alloc_matrix<P>(a, "pose of a start", 4, 4)) {}
+
+  MatrixView<P> differences, camera_differences, control, weights, normal, square, vectors, sorted;
+  DistanceSystem<P> system;
+  Span betas;
+  MatrixView<P> camera_control, camera_points, candidate;
+};
+
+/// Control points: the centroid, and one standard deviation along each principal axis.
+template <class P>
+void choose_control_points(MatrixView<P> points, const Workspace<P>& work, work::Arena& scratch) {
   using F = typename P::F32;
-  const typename P::Function function("choose_control_points");
+  using Span = typename P::template Span<F>;
+  const typename P::Function function("levio_choose_control_points");
+  const work::Arena::Frame frame(scratch);
   const MatrixView<P> covariance = alloc_matrix<P>(scratch, "covariance", 3, 3);
   const MatrixView<P> axes = alloc_matrix<P>(scratch, "principal axes", 3, 3);
+  const MatrixView<P> right = alloc_matrix<P>(scratch, "right singular vectors", 3, 3);
+  const Span spread = scratch.alloc<Span>("singular values", 3);
   const Vec3<P> centroid = centroid_of<P>(points);
-  fill_covariance<P>(covariance, points, centroid);
-  jacobi_eigen_classical<P>(covariance, axes, options.jacobi_max_rotations,
-                            options.jacobi_tolerance, options.diagonal);
-  sort_eigen_descending<P>(covariance, axes);
-
-  const F longest = work::sqrt(work::max(F(covariance(0, 0)), F(0.0f)));
-  const F second = work::sqrt(work::max(F(covariance(1, 1)), F(0.0f)));
-  const F third = work::sqrt(work::max(F(covariance(2, 2)), F(0.0f)));
-  if (!(second > kCollinear * longest)) return false;
-  const F lengths[3] = {longest, second, work::max(third, F(kShortestAxis * longest))};
+  subtract<P>(work.differences, points, centroid);
+  product<P>(covariance, transposed<P>(work.differences), plain<P>(work.differences));
+  svd<P>(covariance, axes, spread, right, scratch);
 
   const F origin[3] = {centroid.x, centroid.y, centroid.z};
-  for (int c = 0; c < 3; ++c) control(0, c) = origin[c];
-  for (int i : P::range(0, points.rows())) weights(i, 0) = 1.0f;
-  for (int j = 0; j < 3; ++j) {
-    const Vec3<P> axis{F(axes(0, j)), F(axes(1, j)), F(axes(2, j))};
-    const Vec3<P> tip = centroid + axis * lengths[j];
-    control(j + 1, 0) = tip.x;
-    control(j + 1, 1) = tip.y;
-    control(j + 1, 2) = tip.z;
-    const F inverse = F(1.0f) / lengths[j];
-    for (int i : P::range(0, points.rows())) {
-      const F weight = dot(axis, row_of<P>(points, i) - centroid) * inverse;
-      weights(i, j + 1) = weight;
-      weights(i, 0) -= weight;
-    }
+  const F number = static_cast<float>(points.rows());
+  for (int c = 0; c < 3; ++c) work.control(0, c) = origin[c];
+  for (int j : P::range(0, 3)) {
+    const F length = work::sqrt(F(F(spread[j]) / number));
+    for (int c = 0; c < 3; ++c) work.control(j + 1, c) = origin[c] + length * axes(c, j);
   }
-  return true;
 }
 
-/// M (2s×12): two equations per match that are linear in the control points in the camera frame.
+/// Inverse by cofactors, each divided by the determinant.
 template <class P>
-void fill_measurements(MatrixView<P> m, const Sample<P>& sample, MatrixView<P> weights,
-                       const PinholeCamera& camera) {
+void invert3(MatrixView<P> inverse, MatrixView<P> a) {
   using F = typename P::F32;
-  const typename P::Function function("fill_measurements");
-  for (int i : P::range(0, sample.size())) {
-    const F du = camera.cx - F(sample.pixels(i, 0));
-    const F dv = camera.cy - F(sample.pixels(i, 1));
+  const typename P::Function function("levio_invert3");
+  const Vec3<P> r0 = row_of<P>(a, 0), r1 = row_of<P>(a, 1), r2 = row_of<P>(a, 2);
+  const Vec3<P> columns[3] = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};
+  const F determinant = dot(r0, columns[0]);
+  for (int c = 0; c < 3; ++c) {
+    inverse(0, c) = columns[c].x / determinant;
+    inverse(1, c) = columns[c].y / determinant;
+    inverse(2, c) = columns[c].z / determinant;
+  }
+}
+
+/// Weights of the control points whose sums are the points of the sample.
+template <class P>
+void find_weights(const Workspace<P>& work, work::Arena& scratch) {
+  using F = typename P::F32;
+  const typename P::Function function("levio_find_weights");
+  const work::Arena::Frame frame(scratch);
+  const MatrixView<P> axes = alloc_matrix<P>(scratch, "control axes", 3, 3);
+  const MatrixView<P> inverse = alloc_matrix<P>(scratch, "inverse of the axes", 3, 3);
+  const MatrixView<P> parts = alloc_matrix<P>(scratch, "weights of the axes", 3, kEpnpSample);
+  for (int j : P::range(0, 3))
+    for (int c = 0; c < 3; ++c) axes(c, j) = work.control(j + 1, c) - work.control(0, c);
+  invert3<P>(inverse, axes);
+  product<P>(parts, plain<P>(inverse), transposed<P>(work.differences));
+  for (int i : P::range(0, kEpnpSample)) {
+    F rest = 1.0f;
+    for (int j = 0; j < 3; ++j) {
+      const F weight = parts(j, i);
+      work.weights(i, j + 1) = weight;
+      rest -= weight;
+    }
+    work.weights(i, 0) = rest;
+  }
+}
+
+/// MᵀM, the two rows of M of each point added one point after the other: 144 elements are read and
+/// written for each.
+template <class P>
+void accumulate_normal_matrix(const EpnpSample<P>& sample, const CameraConstants<P>& camera,
+                              const Workspace<P>& work) {
+  using F = typename P::F32;
+  const typename P::Function function("levio_accumulate_normal_matrix");
+  typename P::template Array<F, kUnknowns> row_u, row_v;
+  fill<P>(work.normal, 0.0f);
+  for (int i : P::range(0, kEpnpSample)) {
+    const F u = sample.pixels(i, 0), v = sample.pixels(i, 1);
     for (int j : P::range(0, kControlPoints)) {
-      const F weight = weights(i, j);
-      m(2 * i, 3 * j) = weight * camera.fx;
-      m(2 * i, 3 * j + 1) = 0.0f;
-      m(2 * i, 3 * j + 2) = weight * du;
-      m(2 * i + 1, 3 * j) = 0.0f;
-      m(2 * i + 1, 3 * j + 1) = weight * camera.fy;
-      m(2 * i + 1, 3 * j + 2) = weight * dv;
+      const F weight = work.weights(i, j);
+      row_u[3 * j] = weight * camera.fx();
+      row_u[3 * j + 1] = 0.0f;
+      row_u[3 * j + 2] = weight * F(camera.cx() - u);
+      row_v[3 * j] = 0.0f;
+      row_v[3 * j + 1] = weight * camera.fy();
+      row_v[3 * j + 2] = weight * F(camera.cy() - v);
+    }
+    for (int r : P::range(0, kUnknowns)) {
+      const F ur = row_u[r], vr = row_v[r];
+      for (int c : P::range(0, kUnknowns)) {
+        F sum = work.normal(r, c);
+        sum += ur * row_u[c];
+        sum += vr * row_v[c];
+        work.normal(r, c) = sum;
+      }
     }
   }
 }
 
-/// The four eigenvectors of (MᵀM)² with the smallest eigenvalues, smallest first, as columns
-/// (12×4).
+/// The eigenvectors of (MᵀM)², scaled to a Frobenius norm of 1, as rows; the smallest
+/// eigenvalue's first.
 template <class P>
-void find_null_vectors(MatrixView<P> null_vectors, MatrixView<P> m, const PnpOptions& options,
-                       work::Arena& scratch) {
+void find_null_vectors(const Workspace<P>& work, work::Arena& scratch) {
   using F = typename P::F32;
-  const typename P::Function function("find_null_vectors");
+  using I32 = typename P::I32;
+  using Indices = typename P::template Span<typename P::U16>;
+  using Span = typename P::template Span<F>;
+  const typename P::Function function("levio_find_null_vectors");
   const work::Arena::Frame frame(scratch);
-  const MatrixView<P> matrix = alloc_matrix<P>(scratch, "null space matrix", kUnknowns, kUnknowns);
-  const MatrixView<P> vectors = alloc_matrix<P>(scratch, "eigenvectors", kUnknowns, kUnknowns);
-  if (options.square_normal_matrix) {
-    const MatrixView<P> normal = alloc_matrix<P>(scratch, "MtM", kUnknowns, kUnknowns);
-    multiply_transposed<P>(normal, m, m);
-    normalised_square<P>(matrix, normal);
-  } else {
-    normalised_square<P>(matrix, m);
+  const Span values = scratch.alloc<Span>("eigenvalues", kUnknowns);
+  const Indices order = scratch.alloc<Indices>("order of eigenvalues", kUnknowns);
+  product<P>(work.square, plain<P>(work.normal), plain<P>(work.normal));
+  F squares = 0.0f;
+  for (int i : P::range(0, kUnknowns * kUnknowns)) {
+    const F x = work.square.data()[i];
+    squares += x * x;
   }
-  jacobi_eigen_classical<P>(matrix, vectors, options.jacobi_max_rotations, options.jacobi_tolerance,
-                            options.diagonal);
-  sort_eigen_descending<P>(matrix, vectors);
-  for (int r : P::range(0, kUnknowns))
-    for (int k : P::range(0, kBetas)) null_vectors(r, k) = F(vectors(r, kUnknowns - 1 - k));
+  const F scale = F(1.0f) / work::sqrt(squares);
+  for (int i : P::range(0, kUnknowns * kUnknowns)) work.square.data()[i] *= scale;
+  jacobi_eigen<P>(work.square, work.vectors, kMostEpnpRotations, F(kEpnpTolerance));
+  for (int i : P::range(0, kUnknowns)) values[i] = F(work.square(i, i));
+  sort_descending<P>(values, order);
+  for (int i : P::range(0, kUnknowns)) {
+    const MatrixView<P> column = work.vectors.from_column(I32(order[kUnknowns - 1 - i]));
+    for (int k : P::range(0, kUnknowns)) work.sorted(i, k) = F(column(k, 0));
+  }
 }
 
-/// The points of the sample in the camera frame (s×3), in front of the camera.
+/// Control points and points of the sample in the camera frame, the first point in front of it:
+/// both signs of β give the same distances.
 template <class P>
-void place_points(MatrixView<P> camera_points, MatrixView<P> null_vectors, MatrixView<P> weights,
-                  typename P::template Span<typename P::F32> betas, work::Arena& scratch) {
+void place_points(const Workspace<P>& work) {
   using F = typename P::F32;
-  const typename P::Function function("place_points");
-  const work::Arena::Frame frame(scratch);
-  const MatrixView<P> control =
-      alloc_matrix<P>(scratch, "control points in camera", kControlPoints, 3);
-  // The first control point is the centroid: it tells the side of the camera. Both signs of β give
-  // the same distances.
-  F centroid_z = 0.0f;
-  for (int k : P::range(0, kBetas)) centroid_z += betas[k] * null_vectors(2, k);
-  F sign = 1.0f;
-  if (centroid_z < 0.0f) sign = -1.0f;
+  const typename P::Function function("levio_place_points");
   for (int j : P::range(0, kUnknowns)) {
     F sum = 0.0f;
-    for (int k : P::range(0, kBetas)) sum += betas[k] * null_vectors(j, k);
-    control.data()[j] = sum * sign;
+    for (int k : P::range(0, kBetas)) sum += work.betas[k] * work.sorted(k, j);
+    work.camera_control.data()[j] = sum;
   }
-  multiply<P>(camera_points, weights, control);
+  product<P>(work.camera_points, plain<P>(work.weights), plain<P>(work.camera_control));
+  if (F(work.camera_points(0, 2)) < 0.0f) {
+    for (int j : P::range(0, kUnknowns)) work.camera_control.data()[j] *= F(-1.0f);
+    for (int j : P::range(0, 3 * kEpnpSample)) work.camera_points.data()[j] *= F(-1.0f);
+  }
 }
 
-/// The rotation and translation that bring the world points closest to the camera points.
+/// The pose that brings the points of the sample closest to those in the camera frame.
 template <class P>
-Pose<P> align(MatrixView<P> world_points, MatrixView<P> camera_points, const PnpOptions& options) {
+void align(MatrixView<P> points, const Workspace<P>& work, work::Arena& scratch) {
   using F = typename P::F32;
-  const typename P::Function function("align");
-  const Vec3<P> world = centroid_of<P>(world_points);
-  const Vec3<P> camera = centroid_of<P>(camera_points);
-  Mat3<P> correlation = Mat3<P>::zero();
-  for (int i : P::range(0, world_points.rows())) {
-    const Vec3<P> w = row_of<P>(world_points, i) - world;
-    const Vec3<P> c = row_of<P>(camera_points, i) - camera;
-    const F cs[3] = {c.x, c.y, c.z};
-    const F ws[3] = {w.x, w.y, w.z};
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) correlation.m[a][b] += cs[a] * ws[b];
+  using Span = typename P::template Span<F>;
+  const typename P::Function function("levio_align");
+  const work::Arena::Frame frame(scratch);
+  const MatrixView<P> correlation = alloc_matrix<P>(scratch, "correlation", 3, 3);
+  const MatrixView<P> u = alloc_matrix<P>(scratch, "U", 3, 3);
+  const MatrixView<P> v = alloc_matrix<P>(scratch, "V", 3, 3);
+  const MatrixView<P> rotation = alloc_matrix<P>(scratch, "rotation", 3, 3);
+  const Span s = scratch.alloc<Span>("singular values", 3);
+  const Vec3<P> world = centroid_of<P>(points);
+  const Vec3<P> camera = centroid_of<P>(work.camera_points);
+  subtract<P>(work.differences, points, world);
+  subtract<P>(work.camera_differences, work.camera_points, camera);
+  product<P>(correlation, transposed<P>(work.camera_differences), plain<P>(work.differences));
+  svd<P>(correlation, u, s, v, scratch);
+  product<P>(rotation, plain<P>(u), transposed<P>(v));
+  Mat3<P> R{};
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) R.m[r][c] = F(rotation(r, c));
+  if (determinant(R) < 0.0f) {
+    for (int r : P::range(0, 3)) u(r, 2) *= F(-1.0f);
+    product<P>(rotation, plain<P>(u), transposed<P>(v));
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) R.m[r][c] = F(rotation(r, c));
   }
-  Mat3<P> u, v;
-  Vec3<P> s;
-  svd3<P>(correlation, u, s, v, kSvd3Rotations, kSvdTolerance, options.diagonal);
-  const F handedness = determinant(u) * determinant(v);
-  if (handedness < 0.0f)
-    for (int r = 0; r < 3; ++r) u.m[r][2] = -u.m[r][2];
-  const Mat3<P> R = u * transpose(v);
-  return {R, camera - R * world};
+  store_pose<P>(work.candidate, {R, camera - R * world});
 }
 
+/// Of the points of the sample; a division and a root each.
 template <class P>
-typename P::F32 mean_reprojection_error(const Pose<P>& T_camera_world, const Sample<P>& sample,
-                                        const PinholeCamera& camera) {
+typename P::F32 mean_error(MatrixView<P> T_camera_world, const EpnpSample<P>& sample,
+                           const CameraConstants<P>& camera) {
   using F = typename P::F32;
-  const typename P::Function function("mean_reprojection_error");
-  const CameraMatrix<P> K = CameraMatrix<P>::of(camera);
+  const typename P::Function function("levio_mean_error");
+  const Pose<P> T = load_pose<P>(T_camera_world);
   F sum = 0.0f;
-  for (int i : P::range(0, sample.size())) {
-    const Vec3<P> x = T_camera_world * row_of<P>(sample.points, i);
-    const Vec2<P> d = reprojection_difference<P>(K, x, sample.pixels(i, 0), sample.pixels(i, 1));
-    sum += work::sqrt(d.x * d.x + d.y * d.y);
+  for (int i : P::range(0, kEpnpSample)) {
+    const Vec3<P> x = T * row_of<P>(sample.points, i);
+    const F inverse = F(1.0f) / x.z;
+    const F du = camera.fx() * x.x * inverse + camera.cx() - sample.pixels(i, 0);
+    const F dv = camera.fy() * x.y * inverse + camera.cy() - sample.pixels(i, 1);
+    sum += work::sqrt(F(du * du + dv * dv));
+    sum += depth_penalty<P>(x.z);
   }
-  return sum * F(1.0f / static_cast<float>(sample.size()));
+  return sum / F(static_cast<float>(kEpnpSample));
+}
+
+/// Makes the rotation of a pose orthonormal.
+template <class P>
+void orthonormalise_rotation(MatrixView<P> pose, work::Arena& scratch) {
+  using F = typename P::F32;
+  const work::Arena::Frame frame(scratch);
+  const MatrixView<P> R = alloc_matrix<P>(scratch, "rotation", 3, 3);
+  for (int r : P::range(0, 3))
+    for (int c : P::range(0, 3)) R(r, c) = F(pose(r, c));
+  orthonormalise_columns<P>(R);
+  for (int r : P::range(0, 3))
+    for (int c : P::range(0, 3)) pose(r, c) = F(R(r, c));
 }
 
 }  // namespace
 
 template <class P>
-EpnpSolution<P> solve_epnp(const PnpInput<P>& input,
-                           typename P::template Span<const typename P::U16> indices,
-                           const PnpOptions& options, work::Arena& scratch) {
+typename P::F32 solve_epnp(const EpnpSample<P>& sample, const CameraConstants<P>& camera,
+                           MatrixView<P> T_camera_world, work::Arena& scratch) {
   using F = typename P::F32;
-  using Span = typename P::template Span<F>;
-  const typename P::Function function("solve_epnp");
+  const typename P::Function function("levio_solve_epnp");
   const work::Arena::Frame frame(scratch);
-  const Sample<P> sample = gather<P>(input, indices, scratch);
-  const int s = sample.size();
-  const MatrixView<P> control = alloc_matrix<P>(scratch, "control points", kControlPoints, 3);
-  const MatrixView<P> weights = alloc_matrix<P>(scratch, "weights", s, kControlPoints);
-  const MatrixView<P> m = alloc_matrix<P>(scratch, "M", 2 * s, kUnknowns);
-  const MatrixView<P> null_vectors = alloc_matrix<P>(scratch, "null vectors", kUnknowns, kBetas);
-  const DistanceSystem<P> system{alloc_matrix<P>(scratch, "L", kDistances, kProducts),
-                                 scratch.alloc<Span>("distances", kDistances)};
-  const Span betas = scratch.alloc<Span>("betas", kBetas);
-  const MatrixView<P> camera_points = alloc_matrix<P>(scratch, "points in camera", s, 3);
-
-  EpnpSolution<P> best;
-  best.mean_error_px = 1e9f;
-  if (!choose_control_points<P>(sample.points, control, weights, options, scratch)) return best;
-  fill_measurements<P>(m, sample, weights, input.camera);
-  find_null_vectors<P>(null_vectors, m, options, scratch);
-  fill_distance_system<P>(system, null_vectors, control);
-  for (int hypothesis : P::range(0, kBetaHypotheses)) {
-    if (!initial_betas<P>(system, hypothesis, betas, scratch)) continue;
-    refine_betas<P>(system, betas, options.gauss_newton_steps, scratch);
-    place_points<P>(camera_points, null_vectors, weights, betas, scratch);
-    const Pose<P> pose = align<P>(sample.points, camera_points, options);
-    const F error = mean_reprojection_error<P>(pose, sample, input.camera);
-    if (error < best.mean_error_px) best = {true, pose, error};  // never with NaN
+  const Workspace<P> work(scratch);
+  choose_control_points<P>(sample.points, work, scratch);
+  find_weights<P>(work, scratch);
+  accumulate_normal_matrix<P>(sample, camera, work);
+  find_null_vectors<P>(work, scratch);
+  fill_distance_system<P>(work.system, work.sorted, work.control);
+  F best = 0.0f;
+  for (int start : P::range(0, kStarts)) {
+    start_betas<P>(work.system, start, work.betas, scratch);
+    refine_betas<P>(work.system, work.betas, scratch);
+    place_points<P>(work);
+    align<P>(sample.points, work, scratch);
+    const F error = mean_error<P>(work.candidate, sample, camera);
+    if (start > 0 && !(error < best)) continue;
+    best = error;
+    copy<P>(T_camera_world, work.candidate);
   }
+  orthonormalise_rotation<P>(T_camera_world, scratch);
   return best;
 }
 
-template EpnpSolution<work::Native> solve_epnp<work::Native>(const PnpInput<work::Native>&,
-                                                             work::NativeSpan<const std::uint16_t>,
-                                                             const PnpOptions&, work::Arena&);
-template EpnpSolution<work::Counting> solve_epnp<work::Counting>(
-    const PnpInput<work::Counting>&, work::CountedSpan<const std::uint16_t>, const PnpOptions&,
-    work::Arena&);
+template work::Native::F32 solve_epnp(const EpnpSample<work::Native>&,
+                                      const CameraConstants<work::Native>&,
+                                      MatrixView<work::Native>, work::Arena&);
+template work::Counting::F32 solve_epnp(const EpnpSample<work::Counting>&,
+                                        const CameraConstants<work::Counting>&,
+                                        MatrixView<work::Counting>, work::Arena&);
 
-}  // namespace leviosim::vio
+}  // namespace leviosim::vio::levio

@@ -1,219 +1,227 @@
 #include "workload/geometry/essential_ransac.h"
 
-#include <algorithm>
-
 #include "sim/base/check.h"
-#include "workload/geometry/random.h"
-#include "workload/math/inverse_power.h"
-#include "workload/math/matrix.h"
-#include "workload/math/svd.h"
+#include "workload/geometry/inverse_power.h"
+#include "workload/geometry/svd.h"
 
-namespace leviosim::vio {
+namespace leviosim::vio::levio {
 namespace {
 
-/// What the master and the team exchange in one batch: element h (row h) belongs to hypothesis h.
+/// What master and team exchange in a batch: element or row h belongs to hypothesis h.
 template <class P>
-struct Batch {
+struct EssentialBatch {
   template <class T>
   using Span = typename P::template Span<T>;
   using Byte = typename P::Byte;
+  using F = typename P::F32;
+  using I32 = typename P::I32;
   using U16 = typename P::U16;
 
-  Batch(work::Arena& arena, int size, int sample_size, int matches)
-      : samples(arena.alloc<Span<U16>>("8-point samples", size * sample_size)),
-        essentials(arena.alloc<Span<typename P::F32>>("8-point hypotheses", size * 9)),
-        inliers(arena.alloc<Span<typename P::I32>>("8-point inlier counts", size)),
-        masks(arena.alloc<Span<Byte>>("8-point inlier masks", size * matches)),
-        sample_size_(sample_size),
+  EssentialBatch(work::Arena& a, int size, int matches)
+      : indices(a.alloc<Span<U16>>("8-point samples", kEssentialSample * size)),
+        essentials(alloc_matrix<P>(a, "8-point hypotheses", size, 9)),
+        inliers(a.alloc<Span<I32>>("8-point inlier counts", size)),
+        error_sums(a.alloc<Span<F>>("8-point error sums", size)),
+        masks(a.alloc<Span<Byte>>("8-point inlier masks", size * matches)),
         matches_(matches) {}
 
-  Span<U16> sample(int h) const { return samples.subspan(h * sample_size_, sample_size_); }
+  int size() const { return inliers.size(); }
+  Span<U16> sample(int h) const { return indices.subspan(h * kEssentialSample, kEssentialSample); }
+  MatrixView<P> essential(int h) const { return {essentials.row(h), 3, 3}; }
+  EssentialScore<P> score(int h) const { return {inliers.subspan(h, 1), error_sums.subspan(h, 1)}; }
   Span<Byte> mask(int h) const { return masks.subspan(h * matches_, matches_); }
-  Mat3<P> essential(int h) const {
-    const auto e = essentials.subspan(h * 9, 9);
-    return {{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, {e[6], e[7], e[8]}}};
-  }
-  void store_essential(int h, const Mat3<P>& E) const {
-    const auto e = essentials.subspan(h * 9, 9);
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) e[3 * r + c] = E.m[r][c];
-  }
 
-  Span<U16> samples;
-  Span<typename P::F32> essentials;
-  Span<typename P::I32> inliers;
+  Span<U16> indices;
+  MatrixView<P> essentials;
+  Span<I32> inliers;
+  Span<F> error_sums;
   Span<Byte> masks;
 
  private:
-  int sample_size_;
   int matches_;
 };
 
 template <class P>
-void fork_hypotheses(work::Machine& machine, const TwoViewMatches<P>& matches,
-                     const EssentialOptions& options, const Batch<P>& batch, int size) {
-  machine.fork("8-point hypotheses", [&](work::Core& core) {
-    const auto [begin, end] = core.share(size);
-    for (int h : P::range(begin, end))
-      batch.store_essential(
-          h, essential_from_sample<P>(matches, batch.sample(h), options.solver, core.scratch));
-  });
+struct BestEssential {
+  typename P::I32 inliers = 0;
+  typename P::F32 mean_error = 1e30f;
+};
+
+/// More inliers, or as many with a smaller mean error. Without an inlier the mean is no number.
+template <class P>
+bool improves(typename P::I32 inliers, typename P::F32 mean_error, const BestEssential<P>& best) {
+  if (inliers > best.inliers) return true;
+  if (inliers < best.inliers) return false;
+  return static_cast<bool>(mean_error < best.mean_error);
 }
 
 template <class P>
-void fork_scoring(work::Machine& machine, const TwoViewMatches<P>& matches,
-                  typename P::F32 threshold, const Batch<P>& batch, int size) {
-  machine.fork("8-point scoring", [&](work::Core& core) {
-    const auto [begin, end] = core.share(size);
-    for (int h : P::range(begin, end))
-      batch.inliers[h] = score_essential<P>(batch.essential(h), matches, threshold, batch.mask(h));
-  });
+void keep_best(const EssentialBatch<P>& batch, MatrixView<P> essential,
+               typename P::template Span<typename P::Byte> inlier_mask, BestEssential<P>& best) {
+  using F = typename P::F32;
+  using I32 = typename P::I32;
+  for (int h : P::range(0, batch.size())) {
+    const I32 inliers = batch.inliers[h];
+    const F mean_error = F(batch.error_sums[h]) / work::to_f32(inliers);
+    if (!improves<P>(inliers, mean_error, best)) continue;
+    best = {inliers, mean_error};
+    copy<P>(essential, batch.essential(h));
+    const auto mask = batch.mask(h);
+    for (int m : P::range(0, mask.size()))
+      inlier_mask[m] = work::narrow<typename P::Byte>(I32(mask[m]));
+  }
 }
 
 }  // namespace
 
 template <class P>
 EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatches<P>& matches,
-                                      float fx, const EssentialOptions& options,
+                                      typename P::F32 threshold, ShiftRegister<P>& random,
+                                      const EssentialRansacOptions& options,
+                                      MatrixView<P> essential,
                                       typename P::template Span<typename P::Byte> inlier_mask) {
-  using F = typename P::F32;
-  using I32 = typename P::I32;
-  check(options.sample >= 8 && options.batch >= 1, "8-point RANSAC: sample or batch too small");
-  check(matches.n <= 65536, "8-point RANSAC: match indices have 16 bits");
-  const typename P::Function function("estimate_essential");
-  for (int i : P::range(0, matches.n)) inlier_mask[i] = work::narrow<typename P::Byte>(I32(0));
-  EssentialResult<P> best{false, Mat3<P>::zero(), 0};
-  if (matches.n < options.sample) return best;
-
+  using Indices = typename P::template Span<typename P::U16>;
+  const typename P::Function function("levio_estimate_essential");
+  check(matches.n >= kEssentialSample && matches.n <= 65535,
+        "the 8-point algorithm draws samples of 8 of its matches");
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
-  const auto indices =
-      local.alloc<typename P::template Span<typename P::U16>>("8-point indices", matches.n);
-  const Batch<P> batch(local, options.batch, options.sample, matches.n);
-  const F pixel = F(options.inlier_px) / F(fx);
-  const F threshold = pixel * pixel;
-  Lfsr32<P> random(options.seed);
-  number_consecutively<P>(indices);
-  I32 most_inliers = options.sample - 1;  // a sample that its own matches do not fit is no result
-
-  const int batches = (options.iterations + options.batch - 1) / options.batch;
-  for (int i : P::range(0, batches)) {
-    const int size = std::min(options.batch, options.iterations - i * options.batch);
-    for (int h : P::range(0, size))
-      draw_sample<P>(random, indices, matches.n, options.sample, batch.sample(h));
-    fork_hypotheses<P>(machine, matches, options, batch, size);
-    fork_scoring<P>(machine, matches, threshold, batch, size);
-    for (int h : P::range(0, size)) {
-      const I32 inliers = batch.inliers[h];
-      if (inliers > most_inliers) {
-        most_inliers = inliers;
-        best = {true, batch.essential(h), work::value(inliers)};
-        const auto mask = batch.mask(h);
-        for (int m : P::range(0, matches.n))
-          inlier_mask[m] = work::narrow<typename P::Byte>(I32(mask[m]));
-      }
-    }
+  const Indices numbers = local.alloc<Indices>("8-point indices", matches.n);
+  const EssentialBatch<P> batch(local, options.batch, matches.n);
+  number_consecutively<P>(numbers);
+  BestEssential<P> best;
+  for ([[maybe_unused]] int i : P::range(0, options.iterations / options.batch)) {
+    for (int h : P::range(0, options.batch))
+      draw_sample<P>(random, numbers, kEssentialSample, batch.sample(h));
+    machine.fork_aligned_on_one_core("8-point hypotheses", [&](work::Core& core) {
+      const auto [begin, end] = core.share(options.batch);
+      for (int h : P::range(begin, end))
+        essential_from_sample<P>(matches, batch.sample(h), batch.essential(h), core.scratch);
+    });
+    machine.fork_aligned_on_one_core("8-point scoring", [&](work::Core& core) {
+      const auto [begin, end] = core.share(options.batch);
+      for (int h : P::range(begin, end))
+        score_essential<P>(batch.essential(h), matches, threshold, batch.mask(h), batch.score(h));
+    });
+    keep_best<P>(batch, essential, inlier_mask, best);
   }
-  return best;
+  const int inliers = work::value(best.inliers);
+  return {inliers > 0, inliers};
 }
 
-template EssentialResult<work::Native> estimate_essential(work::Machine&,
-                                                          const TwoViewMatches<work::Native>&,
-                                                          float, const EssentialOptions&,
-                                                          work::Native::Span<work::Native::Byte>);
-template EssentialResult<work::Counting> estimate_essential(
-    work::Machine&, const TwoViewMatches<work::Counting>&, float, const EssentialOptions&,
-    work::Counting::Span<work::Counting::Byte>);
+#define LEVIOSIM_INSTANTIATE(P)                                                                    \
+  template EssentialResult<P> estimate_essential(work::Machine&, const TwoViewMatches<P>&, P::F32, \
+                                                 ShiftRegister<P>&, const EssentialRansacOptions&, \
+                                                 MatrixView<P>, P::Span<P::Byte>);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 namespace {
 
-/// One equation of x_bᵀ E x_a = 0 per match of the sample, in the unknowns of E row by row.
+constexpr int kElements = 9;  ///< of an essential matrix, row by row
+
+/// HᵀH, the rows of H added one match after the other: 81 elements are read and written for each.
 template <class P>
-void write_epipolar_constraints(MatrixView<P> H, const TwoViewMatches<P>& matches,
-                                typename P::template Span<const typename P::U16> sample) {
+void accumulate_normal_matrix(const TwoViewMatches<P>& matches,
+                              typename P::template Span<const typename P::U16> sample,
+                              MatrixView<P> normal) {
   using F = typename P::F32;
   using I32 = typename P::I32;
-  for (int i : P::range(0, H.rows())) {
-    const I32 match = sample[i];
-    const I32 x = match << 1;
+  const typename P::Function function("levio_accumulate_epipolar_matrix");
+  typename P::template Array<F, kElements> row;
+  fill<P>(normal, 0.0f);
+  for (int i : P::range(0, sample.size())) {
+    const I32 x = I32(sample[i]) << 1;
     const I32 y = x + I32(1);
     const F ax = matches.a[x], ay = matches.a[y];
     const F bx = matches.b[x], by = matches.b[y];
-    const auto h = H.row(i);
-    h[0] = bx * ax;
-    h[1] = bx * ay;
-    h[2] = bx;
-    h[3] = by * ax;
-    h[4] = by * ay;
-    h[5] = by;
-    h[6] = ax;
-    h[7] = ay;
-    h[8] = 1.0f;
+    row[0] = bx * ax;
+    row[1] = bx * ay;
+    row[2] = bx;
+    row[3] = by * ax;
+    row[4] = by * ay;
+    row[5] = by;
+    row[6] = ax;
+    row[7] = ay;
+    row[8] = 1.0f;
+    for (int r : P::range(0, kElements)) {
+      const F factor = row[r];
+      for (int c : P::range(0, kElements)) normal(r, c) += factor * row[c];
+    }
   }
 }
 
-/// U diag(s₁, s₂, 0) Vᵀ of the singular value decomposition of E.
+/// U diag(σ, σ, 0) Vᵀ, σ the mean of the two largest singular values, by two products.
 template <class P>
-Mat3<P> nearest_of_rank_2(const Mat3<P>& E, const EightPointOptions& options) {
+void make_essential(MatrixView<P> result, MatrixView<P> matrix, work::Arena& scratch) {
   using F = typename P::F32;
-  Mat3<P> U, V;
-  Vec3<P> s;
-  svd3<P>(E, U, s, V, options.max_svd_rotations, F(kSvdTolerance), options.svd_precision);
-  Mat3<P> result;
-  for (int r = 0; r < 3; ++r) {
-    const F u0 = U.m[r][0] * s.x;
-    const F u1 = U.m[r][1] * s.y;
-    for (int c = 0; c < 3; ++c) result.m[r][c] = u0 * V.m[c][0] + u1 * V.m[c][1];
-  }
-  return result;
+  using Span = typename P::template Span<F>;
+  const typename P::Function function("levio_make_essential");
+  const work::Arena::Frame frame(scratch);
+  const MatrixView<P> u = alloc_matrix<P>(scratch, "U", 3, 3);
+  const MatrixView<P> v = alloc_matrix<P>(scratch, "V", 3, 3);
+  const MatrixView<P> middle = alloc_matrix<P>(scratch, "equal singular values", 3, 3);
+  const MatrixView<P> left = alloc_matrix<P>(scratch, "U times singular values", 3, 3);
+  const Span s = scratch.alloc<Span>("singular values", 3);
+  svd<P>(matrix, u, s, v, scratch);
+  const F mean = F(F(s[0]) + F(s[1])) * F(0.5f);
+  fill<P>(middle, 0.0f);
+  middle(0, 0) = mean;
+  middle(1, 1) = mean;
+  product<P>(left, plain<P>(u), plain<P>(middle));
+  product<P>(result, plain<P>(left), transposed<P>(v));
 }
 
 }  // namespace
 
 template <class P>
-Mat3<P> essential_from_sample(const TwoViewMatches<P>& matches,
-                              typename P::template Span<const typename P::U16> sample,
-                              const EightPointOptions& options, work::Arena& scratch) {
-  using F = typename P::F32;
-  const typename P::Function function("essential_from_sample");
+int essential_from_sample(const TwoViewMatches<P>& matches,
+                          typename P::template Span<const typename P::U16> sample,
+                          MatrixView<P> essential, work::Arena& scratch) {
+  const typename P::Function function("levio_essential_from_sample");
   const work::Arena::Frame frame(scratch);
-  const MatrixView<P> HtH = alloc_matrix<P>(scratch, "8-point HᵀH", 9, 9);
-  {
-    const work::Arena::Frame constraints(scratch);
-    const MatrixView<P> H = alloc_matrix<P>(scratch, "8-point H", sample.size(), 9);
-    write_epipolar_constraints<P>(H, matches, sample);
-    multiply_transposed<P>(HtH, H, H);
-  }
-  const auto e = scratch.alloc<typename P::template Span<F>>("8-point E", 9);
-  smallest_eigenvector<P>(HtH, e, scratch, options.max_power_steps, F(options.power_tolerance));
-  const Mat3<P> E = {{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, {e[6], e[7], e[8]}}};
-  return nearest_of_rank_2<P>(E, options);
+  const MatrixView<P> normal = alloc_matrix<P>(scratch, "8-point HtH", kElements, kElements);
+  const MatrixView<P> fitted = alloc_matrix<P>(scratch, "8-point null vector", 3, 3);
+  accumulate_normal_matrix<P>(matches, sample, normal);
+  const int steps = smallest_eigenvector<P>(normal, fitted.data());
+  make_essential<P>(essential, fitted, scratch);
+  return steps;
 }
 
 template <class P>
-typename P::I32 score_essential(const Mat3<P>& E, const TwoViewMatches<P>& matches,
-                                typename P::F32 threshold,
-                                typename P::template Span<typename P::Byte> inlier_mask) {
+void score_essential(MatrixView<P> essential, const TwoViewMatches<P>& matches,
+                     typename P::F32 threshold,
+                     typename P::template Span<typename P::Byte> inlier_mask,
+                     const EssentialScore<P>& score) {
+  using F = typename P::F32;
   using I32 = typename P::I32;
-  const typename P::Function function("score_essential");
-  const TwoViewMatches<P> views = matches;
-  I32 inliers = 0;
-  for (int i : P::range(0, views.n)) {
+  const typename P::Function function("levio_score_essential");
+  score.inliers[0] = 0;
+  score.error_sum[0] = 0.0f;
+  for (int i : P::range(0, matches.n)) {
+    // The byte that is written may lie in E for all that the compiler knows, so E is read anew.
+    Mat3<P> E;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) E.m[r][c] = F(essential(r, c));
+    const F error = sampson_error_sq<P>(E, matches.in_a(i), matches.in_b(i));
     I32 inlier = 0;
-    if (sampson_error_sq<P>(E, views.in_a(i), views.in_b(i)) < threshold) inlier = 1;
-    inliers += inlier;
+    if (error < threshold) {
+      inlier = 1;
+      score.inliers[0] += I32(1);
+      score.error_sum[0] += error;
+    }
     inlier_mask[i] = work::narrow<typename P::Byte>(inlier);
   }
-  return inliers;
 }
 
-#define LEVIOSIM_INSTANTIATE(P)                                                           \
-  template Mat3<P> essential_from_sample(const TwoViewMatches<P>&, P::Span<const P::U16>, \
-                                         const EightPointOptions&, work::Arena&);         \
-  template P::I32 score_essential(const Mat3<P>&, const TwoViewMatches<P>&, P::F32,       \
-                                  P::Span<P::Byte>);
+#define LEVIOSIM_INSTANTIATE(P)                                                                    \
+  template int essential_from_sample(const TwoViewMatches<P>&, P::Span<const P::U16>,              \
+                                     MatrixView<P>, work::Arena&);                                 \
+  template void score_essential(MatrixView<P>, const TwoViewMatches<P>&, P::F32, P::Span<P::Byte>, \
+                                const EssentialScore<P>&);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)
 #undef LEVIOSIM_INSTANTIATE
 
-}  // namespace leviosim::vio
+}  // namespace leviosim::vio::levio

@@ -201,7 +201,7 @@ auto LoopCloser<P>::recognise_at(const PlaceList<P>& places, int place, const Lo
   }
   const Pose<P>& now = view.T_odometry_camera;
   const std::optional<Recognised<P>> seen =
-      recognise<P>(machine_, stored, view.features, now.R, camera_, options_.verification, seed_++);
+      recognise<P>(machine_, stored, view.features, now.R, camera_, options_.verification, random_);
   if (!seen) return std::nullopt;
   Hypothesis found;
   found.place_travelled = places.travelled[place];

@@ -14,6 +14,7 @@
 #include <array>
 #include <optional>
 
+#include "workload/geometry/sampling.h"
 #include "workload/loop/loop_graph.h"
 #include "workload/loop/place_search.h"
 #include "workload/loop/verification.h"
@@ -110,8 +111,8 @@ class LoopCloser {
   std::optional<Pose<P>> last_view_;  ///< T_odometry_camera
   // Of the views that were recognised last.
   std::array<Hypothesis, kRecent> recent_{};
-  int recent_count_ = 0;    ///< ever; the newest is at (recent_count_ − 1) mod kRecent
-  std::uint32_t seed_ = 1;  ///< of RANSAC
+  int recent_count_ = 0;  ///< ever; the newest is at (recent_count_ − 1) mod kRecent
+  levio::ShiftRegister<P> random_{0x2545f491u};  ///< of RANSAC
   // Of the correction.
   int steps_left_ = 0;
   bool closed_ = false;

@@ -1,6 +1,5 @@
 #include "workload/loop/upright_pose.h"
 
-#include "workload/geometry/random.h"
 #include "workload/inertial/record.h"
 #include "workload/math/solve.h"
 
@@ -20,7 +19,7 @@ Vec3<P> ray_of(const UprightInput<P>& input, typename P::I32 i) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const auto pixel = input.matches.pixels.subspan(I32(i * I32(2)), 2);
-  const PinholeCamera& c = input.matches.camera;
+  const PinholeCamera& c = input.camera;
   const Vec3<P> ray{(F(pixel[0]) - F(c.cx)) * F(1 / c.fx), (F(pixel[1]) - F(c.cy)) * F(1 / c.fy),
                     1.0f};
   return transpose(input.R_camera_upright) * ray;
@@ -37,7 +36,7 @@ struct Reprojection {
 template <class P>
 Reprojection<P> reproject(const UprightInput<P>& input, const Vec3<P>& x, int i) {
   using F = typename P::F32;
-  const PinholeCamera& c = input.matches.camera;
+  const PinholeCamera& c = input.camera;
   const F inverse = F(1.0f) / x.z;
   return {x, inverse, F(c.fx) * (x.x * inverse) + F(c.cx) - F(input.matches.pixels[2 * i]),
           F(c.fy) * (x.y * inverse) + F(c.cy) - F(input.matches.pixels[2 * i + 1])};
@@ -119,7 +118,7 @@ void add_match(const UprightInput<P>& input, const SinCos<P>& yaw, const YawTran
   // d(u)/dx = fx/z (1, 0, −x/z) in the camera, turned into the upright axes.
   const Mat3<P>& R = input.R_camera_upright;
   const F inverse = r.inverse_depth;
-  const PinholeCamera& c = input.matches.camera;
+  const PinholeCamera& c = input.camera;
   const Vec3<P> of_u = (R.row(0) - R.row(2) * (x.x * inverse)) * (F(c.fx) * inverse);
   const Vec3<P> of_v = (R.row(1) - R.row(2) * (x.y * inverse)) * (F(c.fy) * inverse);
   add_row<P>({of_u.y * lever.x - of_u.x * lever.y, of_u.x, of_u.y, of_u.z}, r.du, weight, H, b);
@@ -178,7 +177,7 @@ PairSolution<P> solve_pair(const UprightInput<P>& input, typename P::I32 first,
 
 template <class P>
 UprightPose<P> find_upright_pose(work::Machine& machine, const UprightInput<P>& input,
-                                 const UprightOptions& options, std::uint32_t seed) {
+                                 const UprightOptions& options, levio::ShiftRegister<P>& random) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   using U16 = typename P::U16;
@@ -194,10 +193,9 @@ UprightPose<P> find_upright_pose(work::Machine& machine, const UprightInput<P>& 
       local.alloc<Floats>("poses by cores", kUnknowns * machine.cores()),
       local.alloc<typename P::template Span<I32>>("inliers by cores", machine.cores()),
       local.alloc<Floats>("errors by cores", machine.cores())};
-  number_consecutively<P>(numbers);
-  Lfsr32<P> random(seed);
+  levio::number_consecutively<P>(numbers);
   for (int k : P::range(0, options.iterations))
-    draw_sample<P>(random, numbers, input.matches.n, 2, pairs.subspan(2 * k, 2));
+    levio::draw_sample<P>(random, numbers, 2, pairs.subspan(2 * k, 2));
   machine.fork("solve pairs", [&](work::Core& core) {
     Score<P> most;
     YawTransform<P> of_most = YawTransform<P>::identity();
@@ -270,7 +268,7 @@ int mark_inliers(const UprightInput<P>& input, const YawTransform<P>& T, float i
   template Pose<P> upright_camera_pose(const Mat3<P>&, const YawTransform<P>&);                  \
   template PairSolution<P> solve_pair(const UprightInput<P>&, P::I32, P::I32);                   \
   template UprightPose<P> find_upright_pose(work::Machine&, const UprightInput<P>&,              \
-                                            const UprightOptions&, std::uint32_t);               \
+                                            const UprightOptions&, levio::ShiftRegister<P>&);    \
   template bool refine_upright_pose(work::Arena&, const UprightInput<P>&, const UprightOptions&, \
                                     YawTransform<P>&);                                           \
   template int mark_inliers(const UprightInput<P>&, const YawTransform<P>&, float, float,        \

@@ -7,7 +7,8 @@
 #pragma once
 
 #include "sim/work/machine.h"
-#include "workload/geometry/epnp.h"
+#include "workload/geometry/epnp_ransac.h"
+#include "workload/geometry/sampling.h"
 #include "workload/loop/options.h"
 #include "workload/loop/yaw_transform.h"
 
@@ -15,7 +16,8 @@ namespace leviosim::vio {
 
 template <class P>
 struct UprightInput {
-  PnpInput<P> matches;       ///< its points in the axes of the origin
+  levio::LandmarkMatches<P> matches;  ///< its points in the axes of the origin
+  PinholeCamera camera;
   Mat3<P> R_camera_upright;  ///< of the view
 };
 
@@ -42,7 +44,7 @@ struct UprightPose {
 };
 template <class P>
 UprightPose<P> find_upright_pose(work::Machine& machine, const UprightInput<P>& input,
-                                 const UprightOptions& options, std::uint32_t seed);
+                                 const UprightOptions& options, levio::ShiftRegister<P>& random);
 
 /// On the calling core.
 /// @return false if the normal equations could not be solved

@@ -11,8 +11,9 @@ constexpr int kColumns = 4, kRows = 3;  ///< cells of the image
 
 /// Points of a place and the pixels that they match.
 template <class P>
-PnpInput<P> gather(work::Arena& local, const StoredView<P>& place, const FeatureList<P>& features,
-                   const MatchList<P>& matches, const LoopCamera& camera) {
+levio::LandmarkMatches<P> gather(work::Arena& local, const StoredView<P>& place,
+                                 const FeatureList<P>& features, const MatchList<P>& matches,
+                                 const LoopCamera& camera) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   using Floats = typename P::template Span<F>;
@@ -26,7 +27,7 @@ PnpInput<P> gather(work::Arena& local, const StoredView<P>& place, const Feature
     pixels[2 * i] = work::to_f32(I32(features.x[feature])) * unit;
     pixels[2 * i + 1] = work::to_f32(I32(features.y[feature])) * unit;
   }
-  return {points, pixels, matches.count, camera.camera};
+  return {points, pixels, matches.count};
 }
 
 /// The pose that descriptors alone lead to.
@@ -34,14 +35,16 @@ template <class P>
 std::optional<YawTransform<P>> first_pose(work::Machine& machine, const StoredView<P>& place,
                                           const FeatureList<P>& features,
                                           const Mat3<P>& R_camera_upright, const LoopCamera& camera,
-                                          const VerificationOptions& options, std::uint32_t seed) {
+                                          const VerificationOptions& options,
+                                          levio::ShiftRegister<P>& random) {
   work::Arena& local = machine.local();
   const work::Arena::Frame memory(local);
   MatchList<P> matches = alloc_matches<P>(local, place.count);
   match_place<P>(machine, features, place.descriptors, place.count, options, matches);
   if (matches.count < options.min_matches) return std::nullopt;
-  const UprightInput<P> input{gather(local, place, features, matches, camera), R_camera_upright};
-  UprightPose<P> found = find_upright_pose<P>(machine, input, options.pose, seed);
+  const UprightInput<P> input{gather(local, place, features, matches, camera), camera.camera,
+                              R_camera_upright};
+  UprightPose<P> found = find_upright_pose<P>(machine, input, options.pose, random);
   if (found.inliers < options.min_pair_inliers) return std::nullopt;
   if (!refine_upright_pose<P>(local, input, options.pose, found.T)) return std::nullopt;
   return found.T;
@@ -103,8 +106,9 @@ void count_expected(const StoredView<P>& place, const Pose<P>& T_camera_place,
 }
 
 template <class P>
-void count_seen(const PnpInput<P>& matches, typename P::template Span<typename P::Byte> inliers,
-                const LoopCamera& camera, Coverage<P>& coverage) {
+void count_seen(const levio::LandmarkMatches<P>& matches,
+                typename P::template Span<typename P::Byte> inliers, const LoopCamera& camera,
+                Coverage<P>& coverage) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   using U32 = typename P::U32;
@@ -141,17 +145,18 @@ template <class P>
 std::optional<Recognised<P>> recognise(work::Machine& machine, const StoredView<P>& place,
                                        const FeatureList<P>& features,
                                        const Mat3<P>& R_odometry_camera, const LoopCamera& camera,
-                                       const VerificationOptions& options, std::uint32_t seed) {
+                                       const VerificationOptions& options,
+                                       levio::ShiftRegister<P>& random) {
   work::Arena& local = machine.local();
   const work::Arena::Frame memory(local);
   const Mat3<P> R = transpose(R_odometry_camera);
   const std::optional<YawTransform<P>> first =
-      first_pose(machine, place, features, R, camera, options, seed);
+      first_pose(machine, place, features, R, camera, options, random);
   if (!first) return std::nullopt;
   const MatchList<P> matches =
       search_around(machine, place, features, camera, upright_camera_pose<P>(R, *first), options);
   if (matches.count < options.min_inliers) return std::nullopt;
-  const UprightInput<P> input{gather(local, place, features, matches, camera), R};
+  const UprightInput<P> input{gather(local, place, features, matches, camera), camera.camera, R};
   YawTransform<P> T = *first;
   if (!refine_upright_pose<P>(local, input, options.pose, T)) return std::nullopt;
   const auto inliers =
@@ -172,11 +177,12 @@ std::optional<Recognised<P>> recognise(work::Machine& machine, const StoredView<
   return Recognised<P>{T, agreeing};
 }
 
-template std::optional<Recognised<work::Native>> recognise(
-    work::Machine&, const StoredView<work::Native>&, const FeatureList<work::Native>&,
-    const Mat3<work::Native>&, const LoopCamera&, const VerificationOptions&, std::uint32_t);
-template std::optional<Recognised<work::Counting>> recognise(
-    work::Machine&, const StoredView<work::Counting>&, const FeatureList<work::Counting>&,
-    const Mat3<work::Counting>&, const LoopCamera&, const VerificationOptions&, std::uint32_t);
+#define LEVIOSIM_INSTANTIATE(P)                                                    \
+  template std::optional<Recognised<P>> recognise(                                 \
+      work::Machine&, const StoredView<P>&, const FeatureList<P>&, const Mat3<P>&, \
+      const LoopCamera&, const VerificationOptions&, levio::ShiftRegister<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "sim/work/machine.h"
+#include "workload/geometry/sampling.h"
 #include "workload/loop/options.h"
 #include "workload/loop/yaw_transform.h"
 #include "workload/vision/features.h"
@@ -44,6 +45,7 @@ template <class P>
 std::optional<Recognised<P>> recognise(work::Machine& machine, const StoredView<P>& place,
                                        const FeatureList<P>& features,
                                        const Mat3<P>& R_odometry_camera, const LoopCamera& camera,
-                                       const VerificationOptions& options, std::uint32_t seed);
+                                       const VerificationOptions& options,
+                                       levio::ShiftRegister<P>& random);
 
 }  // namespace leviosim::vio

@@ -65,18 +65,6 @@ void copy(MatrixView<P> to, ConstMatrixView<P> from) {
   for (int i : P::range(0, to.rows() * to.cols())) to.data()[i] = from.data()[i];
 }
 
-/// c = a b. c must not overlap a or b.
-template <class P>
-void multiply(MatrixView<P> c, ConstMatrixView<P> a, ConstMatrixView<P> b) {
-  const typename P::Function function("multiply");
-  for (int i : P::range(0, a.rows()))
-    for (int j : P::range(0, b.cols())) {
-      typename P::F32 sum = 0.0f;
-      for (int k : P::range(0, a.cols())) sum += a(i, k) * b(k, j);
-      c(i, j) = sum;
-    }
-}
-
 /// c = aᵀ b. c must not overlap a or b.
 template <class P>
 void multiply_transposed(MatrixView<P> c, ConstMatrixView<P> a, ConstMatrixView<P> b) {

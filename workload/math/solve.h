@@ -1,4 +1,4 @@
-// Systems of linear equations in memory: Gaussian elimination, Householder least squares, Cholesky.
+// Systems of linear equations in memory: Gaussian elimination, Cholesky.
 // All work in place; the sizes are those of the views.
 //
 // Left out: blocking and iterative refinement; systems have at most some tens of unknowns.
@@ -92,49 +92,6 @@ bool solve_gauss(MatrixView<P> a, typename P::template Span<typename P::F32> b,
       for (int c : P::range(k + 1, n)) a(r, c) -= factor * a(k, c);
       b[r] -= factor * bk;
     }
-  }
-  solve::back_substitute<P>(a, b, x);
-  return true;
-}
-
-/// Least squares min |A x − b| by Householder reflections.
-/// @param a  m×n with m ≥ n, destroyed
-/// @param b  m, destroyed
-/// @return false if a column depends exactly on the ones before it; x is then undefined
-template <class P>
-bool solve_qr(MatrixView<P> a, typename P::template Span<typename P::F32> b,
-              typename P::template Span<typename P::F32> x) {
-  using F = typename P::F32;
-  const typename P::Function function("solve_qr");
-  const int m = a.rows(), n = a.cols();
-  const typename P::OffloadRegion kernel(solve_of_size(n),
-                                         factor_items(m, n) + substitution_items(m, n));
-  for (int k : P::range(0, n)) {
-    F length2 = 0.0f;
-    for (int r : P::range(k, m)) {
-      const F v = a(r, k);
-      length2 += v * v;
-    }
-    if (!(length2 > 0.0f)) return false;
-    const F akk = a(k, k);
-    F diagonal = work::sqrt(length2);
-    if (akk > 0.0f) diagonal = -diagonal;
-    // Reflector I − τ v vᵀ with v = column − diagonal e_k, left in the column below and on the
-    // diagonal while it is applied.
-    const F head = akk - diagonal;
-    const F tau = F(-1.0f) / (diagonal * head);
-    a(k, k) = head;
-    for (int c : P::range(k + 1, n)) {
-      F projection = 0.0f;
-      for (int r : P::range(k, m)) projection += a(r, k) * a(r, c);
-      projection *= tau;
-      for (int r : P::range(k, m)) a(r, c) -= projection * a(r, k);
-    }
-    F projection = 0.0f;
-    for (int r : P::range(k, m)) projection += a(r, k) * b[r];
-    projection *= tau;
-    for (int r : P::range(k, m)) b[r] -= projection * a(r, k);
-    a(k, k) = diagonal;
   }
   solve::back_substitute<P>(a, b, x);
   return true;

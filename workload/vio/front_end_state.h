@@ -2,20 +2,24 @@
 // and change it. Its data persist in L2; L1 is a scratchpad that is empty between frames.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "sim/work/machine.h"
-#include "workload/geometry/camera_matrix.h"
 #include "workload/graph/pose_graph.h"
 #include "workload/inertial/initialisation.h"
 #include "workload/inertial/preintegration.h"
+#include "workload/math/vec.h"
 #include "workload/vio/profile.h"
 #include "workload/vio/records.h"
 #include "workload/vision/features.h"
 
 namespace leviosim::vio {
 
-// The camera for coordinates of features, which are whole numbers of 1/subpixel_steps px.
+// The camera for coordinates of features, which are whole numbers of 1/subpixel_steps px. Its
+// inverse is a 3×3 constant of the program, which lies in L2 and is multiplied as a whole; the
+// cluster reads its nine elements from there each time (PARAMETERS.md#memory). A controller has it
+// in its own memory.
 
 template <class P>
 class FeatureCamera {
@@ -25,14 +29,23 @@ class FeatureCamera {
 
   /// @param camera  in px
   /// @param steps   per px
-  FeatureCamera(const PinholeCamera& camera, int steps)
-      : inverse_(CameraMatrix<P>::inverse_of(finer(camera, static_cast<float>(steps)))),
-        steps_(steps) {}
+  FeatureCamera(const PinholeCamera& camera, int steps) : steps_(steps) {
+    const auto per_px = static_cast<float>(steps);
+    const PinholeCamera c{per_px * camera.fx, per_px * camera.fy, per_px * camera.cx,
+                          per_px * camera.cy};
+    const float inverse[] = {1.0f / c.fx,  0.0f, -c.cx / c.fx, 0.0f, 1.0f / c.fy,
+                             -c.cy / c.fy, 0.0f, 0.0f,         1.0f};
+    for (std::size_t i = 0; i < inverse_.size(); ++i) inverse_[i] = F(inverse[i]);
+  }
 
   /// Image coordinates at depth 1.
   Vec2<P> normalised(I32 u, I32 v) const {
-    const Vec3<P> x = inverse_ * Vec3<P>{work::to_f32(u), work::to_f32(v), 1.0f};
-    return {x.x, x.y};
+    const typename P::template L2Span<const F> k(inverse_.data(), 9);
+    const Vec3<P> x{work::to_f32(u), work::to_f32(v), 1.0f};
+    const Vec3<P> ray{F(k[0]) * x.x + F(k[1]) * x.y + F(k[2]) * x.z,
+                      F(k[3]) * x.x + F(k[4]) * x.y + F(k[5]) * x.z,
+                      F(k[6]) * x.x + F(k[7]) * x.y + F(k[8]) * x.z};
+    return {ray.x, ray.y};
   }
 
   /// One coordinate in px.
@@ -42,11 +55,7 @@ class FeatureCamera {
   }
 
  private:
-  static PinholeCamera finer(const PinholeCamera& c, float steps) {
-    return {steps * c.fx, steps * c.fy, steps * c.cx, steps * c.cy};
-  }
-
-  CameraMatrix<P> inverse_;
+  std::array<F, 9> inverse_;
   int steps_;
 };
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <utility>
 
-#include "workload/geometry/recover_pose.h"
 #include "workload/math/solve.h"
 #include "workload/vio/stages.h"
+#include "workload/vio/triangulation.h"
 
 namespace leviosim::vio {
 namespace {

@@ -52,7 +52,8 @@ typename P::F32 total_parallax(const FrontEndState<P>& state, const InertialPart
 
 /// How far the camera has moved since the last keyframe, over the distance of what it sees: the
 /// translation that explains the parallax best if all is equally far. Nothing is known of it with
-/// fewer than min_frame_matches, or half of all, that have moved by less than `most`. Works inside a stage.
+/// fewer than min_frame_matches, or half of all, that have moved by less than `most`. Works inside
+/// a stage.
 /// @param R_camera_keyframe  the rotation since then
 /// @param most               in normalised coordinates; a match that moved farther is a wrong one
 template <class P>

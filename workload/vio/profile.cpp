@@ -104,9 +104,7 @@ Profile profile_named(std::string_view name, std::uint32_t seed) {
   Profile profile;
   profile.name = name;
   profile.optimiser.anchor = levio_anchor();
-  // Different streams for the two estimators; an odd factor keeps different seeds apart.
-  profile.pnp.seed = seed * 0x9e3779b1u + 1;
-  profile.essential.seed = seed * 0x85ebca6bu + 2;
+  profile.sampling_seed = seed * 0x9e3779b1u + 1;  // an odd factor keeps different seeds apart
   if (!is_other) it->adjust(profile);
   return profile;
 }

@@ -7,9 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "workload/geometry/epnp_ransac.h"
 #include "workload/geometry/essential_ransac.h"
-#include "workload/geometry/pnp_ransac.h"
-#include "workload/geometry/pose_refinement.h"
 #include "workload/graph/alignment.h"
 #include "workload/graph/optimiser.h"
 #include "workload/inertial/bias_estimation.h"
@@ -22,6 +21,20 @@
 #include "workload/vision/patch_alignment.h"
 
 namespace leviosim::vio {
+
+/// How `next` refines a pose to the landmarks that it finds (next/pose_refinement.h). Chosen on the
+/// rendered EuRoC flights (ACCURACY.md).
+struct RefinementOptions {
+  int steps = 4;
+  float sigma_px = 1.0f;
+  float huber_px = 1.0f;    ///< errors count linearly from here on
+  float inlier_px = 3.0f;   ///< of a match that agrees
+  float min_share = 0.6f;   ///< of the matches that must agree; of wrong ones found within 8 px, a
+                            ///< seventh does by chance
+  float rotation = 0.02f;   ///< standard deviation of the prior, each axis, rad
+  float position = 0.05f;   ///< likewise, m
+  float min_depth = 0.05f;  ///< of a landmark in view, m
+};
 
 /// What `next` does when landmarks get few or are lost (next/). Chosen on the rendered EuRoC
 /// flights (ACCURACY.md).
@@ -53,7 +66,7 @@ struct RestOptions {
   /// While there are no landmarks: of the motion since the keyframe, over the distance of what is
   /// seen. Below it the camera has not moved, whatever the IMU says.
   float image_motion = 0.006f;
-  float image_time = 1;       ///< for which the images must show it to say that it rests [s]
+  float image_time = 1;  ///< for which the images must show it to say that it rests [s]
   /// Of the gyro, over the last second: beyond it the vehicle turns, and an image that does not is
   /// frozen, or shows what moves with the camera. With rotors that idle recorded flights have up to
   /// 0.04, in the air 0.11 and more; rad/s.
@@ -69,9 +82,9 @@ struct HealthOptions {
   float mean_square = 4;
   float accel_bias = 5;        ///< in standard deviations of the prior
   float lost_accel_bias = 10;  ///< likewise; the poses are of no use
-  float memory_s = 1;          ///< for which an inconsistent window counts, and tracking is averaged
-  float tracked = 0.7f;        ///< share of the matches that agree
-  float drift = 0.1f;          ///< share of the path
+  float memory_s = 1;    ///< for which an inconsistent window counts, and tracking is averaged
+  float tracked = 0.7f;  ///< share of the matches that agree
+  float drift = 0.1f;    ///< share of the path
   // Of a pose that the IMU alone moves on: what velocity and tilt, with the bias, are wrong by.
   float blind_velocity = 0.05f;      ///< m/s
   float blind_acceleration = 0.05f;  ///< m/s²
@@ -84,8 +97,10 @@ struct Profile {
   MatcherOptions matcher;
 
   // Pose of a frame (paper III.B.3–4).
-  PnpOptions pnp;
-  EssentialOptions essential;
+  levio::EpnpRansacOptions epnp;
+  levio::EssentialRansacOptions essential;
+  float essential_inlier_px = 0.7f;   ///< Sampson error of an inlier of the 8-point algorithm
+  std::uint32_t sampling_seed = 1;    ///< of the one register that samples are drawn with
   int min_world_matches = 25;         ///< for EPnP, before and after the age filter
   int min_frame_matches = 10;         ///< for the 8-point algorithm
   int min_epnp_inliers = 15;          ///< as many; with fewer the pose is predicted instead

@@ -103,7 +103,7 @@ const std::array kUnits{
          {}},
     Unit{"epnp_ransac", "RANSAC iteration",
          [](const RunResult&, const vio::Profile& p, const StageSum& s) {
-           return static_cast<double>(s.frames * p.pnp.iterations);
+           return static_cast<double>(s.frames * p.epnp.iterations);
          },
          64.0},
     Unit{"eight_point_ransac", "RANSAC iteration",
@@ -199,7 +199,7 @@ std::vector<InputFigure> inputs_of(const RunResult& run, const FrameLog& log,
        {},
        kNotPrinted},
       {"RANSAC iterations, EPnP", "epnp_iterations", "1",
-       static_cast<double>(profile.pnp.iterations), 64, kRelease},
+       static_cast<double>(profile.epnp.iterations), 64, kRelease},
       {"RANSAC iterations, 8-point", "eight_point_iterations", "1",
        static_cast<double>(profile.essential.iterations), 640, kRelease},
       {"IMU samples of a frame", "imu_samples", "1",

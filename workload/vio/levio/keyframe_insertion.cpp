@@ -1,8 +1,8 @@
 #include "workload/vio/levio/keyframe_insertion.h"
 
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/pose_recovery.h"
 #include "workload/vio/keyframes.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
-#include "workload/vio/levio/geometry/pose_recovery.h"
 #include "workload/vio/levio/vision/matcher.h"
 #include "workload/vio/stages.h"
 

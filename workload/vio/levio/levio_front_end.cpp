@@ -1,7 +1,7 @@
 #include "workload/vio/levio/levio_front_end.h"
 
+#include "workload/vio/frame_pose.h"
 #include "workload/vio/keyframes.h"
-#include "workload/vio/levio/frame_pose.h"
 #include "workload/vio/levio/keyframe_insertion.h"
 #include "workload/vio/levio/vision/extractor.h"
 #include "workload/vio/stages.h"
@@ -13,7 +13,7 @@ LevioFrontEnd<P>::LevioFrontEnd(const Profile& profile, const Rig& rig, work::Ma
                                 work::Arena& keyframe_memory, const PoseGraph<P>& graph)
     : state_(profile, rig, cluster, keyframe_memory, graph),
       inertial_(state_),
-      random_(profile.pnp.seed) {}
+      random_(profile.sampling_seed) {}
 
 template <class P>
 FrameReport LevioFrontEnd<P>::process(const FrameInput& input) {
@@ -55,11 +55,11 @@ void LevioFrontEnd<P>::extract(Frame<P>& frame) {
 template <class P>
 void LevioFrontEnd<P>::locate(Frame<P>& frame, FrameReport& report) {
   const std::optional<Pose<P>> pose =
-      levio::pose_from_landmarks(state_, inertial_, random_, frame, report);
+      pose_from_landmarks(state_, inertial_, random_, frame, report);
   alloc_keyframe_matches(state_, frame);
   const work::Arena::Frame descriptors(state_.machine.local());
   levio::match_keyframe(state_, frame);
-  frame.T_world_camera = pose ? *pose : levio::pose_from_keyframe(state_, random_, frame, report);
+  frame.T_world_camera = pose ? *pose : pose_from_keyframe(state_, random_, frame, {}, report);
 }
 
 /// It has moved far enough, or can hardly be matched with the last one any more.

@@ -2,10 +2,10 @@
 // with the landmarks, or else from those with the last keyframe.
 #pragma once
 
+#include "workload/geometry/sampling.h"
 #include "workload/vio/frame.h"
 #include "workload/vio/front_end_state.h"
 #include "workload/vio/inertial_part.h"
-#include "workload/vio/levio/geometry/sampling.h"
 
 namespace leviosim::vio {
 

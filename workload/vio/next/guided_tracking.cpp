@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "workload/geometry/pose_refinement.h"
 #include "workload/vio/frame_pose.h"
+#include "workload/vio/next/pose_refinement.h"
 #include "workload/vio/stages.h"
 #include "workload/vision/guided_matcher.h"
 #include "workload/vision/patch_alignment.h"
@@ -53,10 +53,11 @@ void match_around(const FrontEndState<P>& state, const FeatureList<P>& features,
 
 /// What the refinement of a pose takes, in L1.
 template <class P>
-PnpInput<P> gather_matches(const FrontEndState<P>& state, const FeatureList<P>& features,
-                           const FoundLandmarks<P>& found,
-                           typename P::template Span<typename P::F32> points,
-                           typename P::template Span<typename P::F32> pixels) {
+levio::LandmarkMatches<P> gather_matches(const FrontEndState<P>& state,
+                                         const FeatureList<P>& features,
+                                         const FoundLandmarks<P>& found,
+                                         typename P::template Span<typename P::F32> points,
+                                         typename P::template Span<typename P::F32> pixels) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const MatchList<P>& matches = found.matches;
@@ -70,7 +71,7 @@ PnpInput<P> gather_matches(const FrontEndState<P>& state, const FeatureList<P>& 
       pixels[2 * i + 1] = state.camera.pixel(features.y[feature]);
     }
   });
-  return {points, pixels, matches.count, state.rig.camera};
+  return {points, pixels, matches.count};
 }
 
 /// Features know the landmarks of the matches that agree with the pose, and no others.
@@ -112,13 +113,13 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
   const auto pixels = local.alloc<Floats>("matched pixels", 2 * matches);
   const auto inliers =
       local.alloc<typename P::template Span<typename P::Byte>>("inlier mask", matches);
-  const PnpInput<P> input = gather_matches(state, features, found, points, pixels);
+  const levio::LandmarkMatches<P> input = gather_matches(state, features, found, points, pixels);
   RefinementOptions options = profile.refinement;
   options.rotation = search.rotation;
   options.position = search.position;
   options.min_depth = profile.optimiser.visual.min_depth;
   const RefinedPose<P> refined =
-      refine_pose<P>(state.machine, input, T_camera_world, options, inliers);
+      refine_pose<P>(state.machine, input, state.rig.camera, T_camera_world, options, inliers);
   report.inliers = refined.inliers;
   const float agreeing = options.min_share * static_cast<float>(matches);
   if (!refined.ok || refined.inliers < profile.min_epnp_inliers ||
@@ -133,7 +134,8 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
 
 template <class P>
 std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
-                                       const InertialPart<P>& inertial, const Pose<P>& T_predicted,
+                                       const InertialPart<P>& inertial,
+                                       levio::ShiftRegister<P>& random, const Pose<P>& T_predicted,
                                        TrackedFrame<P>& frame, FrameReport& report) {
   if (work::value(state.graph.landmark_count()) == 0) return std::nullopt;
   const RefinementOptions& refinement = state.profile.refinement;
@@ -147,7 +149,8 @@ std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
   // Lost: look for all landmarks in all of the image, then again around where EPnP puts them, which
   // is no prediction.
   forget_landmarks<P>(frame);
-  const std::optional<Pose<P>> recovered = pose_from_landmarks<P>(state, inertial, frame, report);
+  const std::optional<Pose<P>> recovered =
+      pose_from_landmarks<P>(state, inertial, random, frame, report);
   if (!recovered || report.source != PoseSource::Epnp) return recovered;
   const LandmarkSearch around{near.radius_px, recovery.recovered_rotation,
                               recovery.recovered_position};
@@ -157,7 +160,8 @@ std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
 
 #define LEVIOSIM_INSTANTIATE(P)                                                                    \
   template std::optional<Pose<P>> track_landmarks(const FrontEndState<P>&, const InertialPart<P>&, \
-                                                  const Pose<P>&, TrackedFrame<P>&, FrameReport&);
+                                                  levio::ShiftRegister<P>&, const Pose<P>&,        \
+                                                  TrackedFrame<P>&, FrameReport&);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)
 #undef LEVIOSIM_INSTANTIATE

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "workload/geometry/sampling.h"
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
 #include "workload/vio/next/prediction.h"
@@ -16,7 +17,8 @@ namespace leviosim::vio {
 /// @return T_world_camera, if enough landmarks agree with one
 template <class P>
 std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
-                                       const InertialPart<P>& inertial, const Pose<P>& T_predicted,
+                                       const InertialPart<P>& inertial,
+                                       levio::ShiftRegister<P>& random, const Pose<P>& T_predicted,
                                        TrackedFrame<P>& frame, FrameReport& report);
 
 // Features placed between pixels: those that match the last keyframe's are moved to where the

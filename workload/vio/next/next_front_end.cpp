@@ -19,6 +19,7 @@ NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Mach
       map_(map),
       inertial_(state_),
       prediction_(state_, inertial_, map_, keyframe_memory),
+      random_(profile.sampling_seed),
       path_(state_, inertial_, keyframe_memory, profile.initial_frames) {
   if (profile.loop.enabled) loop_.emplace(state_, loop_memory);
 }
@@ -177,11 +178,12 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
     T_predicted = prediction_.of(frame);
   }
   align_features<P>(state_, frame, T_predicted);
-  std::optional<Pose<P>> pose = track_landmarks(state_, inertial_, T_predicted, frame, report);
+  std::optional<Pose<P>> pose =
+      track_landmarks(state_, inertial_, random_, T_predicted, frame, report);
   if (!pose) pose = pose_by_prediction(frame, report);
   if (!pose) {
     const auto by_gyro = [&](const Mat3<P>& R) { return agrees_with_gyro(state_, inertial_, R); };
-    pose = pose_from_keyframe<P>(state_, frame, by_gyro, report);
+    pose = pose_from_keyframe<P>(state_, random_, frame, by_gyro, report);
   }
   if (!pose_is_plausible(state_, prediction_, *pose, frame.dt)) {
     report.source = PoseSource::Kept;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "workload/geometry/sampling.h"
 #include "workload/vio/front_end_state.h"
 #include "workload/vio/inertial_part.h"
 #include "workload/vio/loop/loop_part.h"
@@ -78,6 +79,7 @@ class NextFrontEnd : public FrontEnd<P> {
   MapStatus& map_;
   InertialPart<P> inertial_;
   Prediction<P> prediction_;
+  levio::ShiftRegister<P> random_;   ///< of both estimators
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
   InitialPath<P> path_;              ///< while the map waits for its alignment
   typename P::U32 sum_;              ///< over the features of the frame before

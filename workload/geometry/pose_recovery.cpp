@@ -1,10 +1,10 @@
-#include "workload/vio/levio/geometry/pose_recovery.h"
+#include "workload/geometry/pose_recovery.h"
 
 #include <algorithm>
 
-#include "workload/vio/levio/algebra/inverse_power.h"
-#include "workload/vio/levio/algebra/svd.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
+#include "workload/geometry/inverse_power.h"
+#include "workload/geometry/pose_matrix.h"
+#include "workload/geometry/svd.h"
 
 namespace leviosim::vio::levio {
 namespace {

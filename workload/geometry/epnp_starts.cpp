@@ -1,9 +1,9 @@
-#include "workload/vio/levio/geometry/epnp_starts.h"
+#include "workload/geometry/epnp_starts.h"
 
 #include <array>
 
+#include "workload/geometry/least_squares.h"
 #include "workload/math/vec.h"
-#include "workload/vio/levio/algebra/least_squares.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -1,9 +1,8 @@
-#include "workload/geometry/random.h"
+#include "workload/geometry/sampling.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_set>
@@ -11,61 +10,26 @@
 
 #include "sim/work/counts.h"
 
-namespace leviosim::vio {
+namespace leviosim::vio::levio {
 namespace {
 
 using work::Counting;
 using work::Native;
 
-/// One step of the register as a matrix over GF(2): column i is the successor of the state 1 << i.
-using BitMatrix = std::array<std::uint32_t, 32>;
-
-BitMatrix step_matrix() {
-  BitMatrix m;
-  for (std::uint32_t i = 0; i < 32; ++i) m[i] = Lfsr32<Native>(1u << i).next();
-  return m;
-}
-std::uint32_t product(const BitMatrix& m, std::uint32_t x) {
-  std::uint32_t y = 0;
-  for (std::size_t i = 0; i < 32; ++i)
-    if (x >> i & 1u) y ^= m[i];
-  return y;
-}
-BitMatrix power(BitMatrix base, std::uint32_t exponent) {
-  BitMatrix result;
-  for (std::size_t i = 0; i < 32; ++i) result[i] = 1u << i;
-  for (; exponent != 0; exponent >>= 1) {
-    if (exponent & 1u)
-      for (std::uint32_t& column : result) column = product(base, column);
-    BitMatrix square;
-    for (std::size_t i = 0; i < 32; ++i) square[i] = product(base, base[i]);
-    base = square;
-  }
-  return result;
-}
-
-TEST(Lfsr32, VisitsEveryNonZeroStateBeforeItRepeats) {
-  // The period divides 2^32 - 1 = 3·5·17·257·65537, and no proper divisor of it.
-  const BitMatrix step = step_matrix();
-  const BitMatrix identity = power(step, 0);
-  EXPECT_EQ(power(step, 0xffffffffu), identity);
-  for (std::uint32_t prime : {3u, 5u, 17u, 257u, 65537u})
-    EXPECT_NE(power(step, 0xffffffffu / prime), identity) << "period divides by " << prime;
-}
-
-TEST(Lfsr32, StepsAreLinearSoThatTheMatrixDescribesThem) {
-  const BitMatrix step = step_matrix();
-  Lfsr32<Native> random(0x12345678u);
-  std::uint32_t state = 0x12345678u;
+TEST(ShiftRegister, IsThatOfTheRelease) {
+  ShiftRegister<Native> random(0x80000056u);  // ones at three of the taps and above
+  std::uint32_t state = 0x80000056u;
   for (int i = 0; i < 1000; ++i) {
-    state = product(step, state);
+    std::uint32_t bit = 0;
+    for (const int tap : {31, 6, 4, 2, 1, 0}) bit ^= state >> tap & 1u;
+    state = state >> 1 | bit << 31;
     ASSERT_EQ(random.next(), state);
   }
 }
 
-TEST(Lfsr32, NumbersAreDistinctAndNeverZero) {
-  for (std::uint32_t seed : {0u, 1u, 0xffffffffu}) {
-    Lfsr32<Native> random(seed);
+TEST(ShiftRegister, NumbersAreDistinctAndNeverZero) {
+  for (std::uint32_t seed : {0u, 1u, 0x2545f491u, 0x9e3779b2u}) {
+    ShiftRegister<Native> random(seed);
     std::unordered_set<std::uint32_t> seen;
     for (int i = 0; i < 100000; ++i) {
       const std::uint32_t x = random.next();
@@ -85,9 +49,9 @@ double chi_square_sigmas(const std::vector<int>& histogram) {
   return (chi - (bins - 1)) / std::sqrt(2 * (bins - 1));
 }
 
-TEST(Lfsr32, BelowIsUniform) {
+TEST(ShiftRegister, BelowIsUniform) {
   for (int n : {7, 64, 101, 360, 704}) {
-    Lfsr32<Native> random(1234u + static_cast<std::uint32_t>(n));
+    ShiftRegister<Native> random(1234u + static_cast<std::uint32_t>(n));
     std::vector<int> histogram(static_cast<std::size_t>(n));
     for (int i = 0; i < 500 * n; ++i) {
       const int x = random.below(n);
@@ -106,12 +70,11 @@ struct Sampler {
   }
   Native::Span<std::uint16_t> indices() { return {table.data(), static_cast<int>(table.size())}; }
   const std::vector<std::uint16_t>& draw(int k) {
-    draw_sample<Native>(random, indices(), indices().size(), k,
-                        Native::Span<std::uint16_t>(sample.data(), k));
+    draw_sample<Native>(random, indices(), k, Native::Span<std::uint16_t>(sample.data(), k));
     return sample;
   }
   std::vector<std::uint16_t> table, sample;
-  Lfsr32<Native> random;
+  ShiftRegister<Native> random;
 };
 
 TEST(DrawSample, IndicesAreDistinctAndTheTableStaysAPermutation) {
@@ -154,16 +117,16 @@ TEST(DrawSample, CountingDrawsTheSameAndCountsTheWork) {
   Sampler native(kN, 5);
   std::vector<std::uint16_t> table(kN), sample(kSize);
   const Counting::Span<std::uint16_t> indices(table.data(), kN);
-  Lfsr32<Counting> random(5);
+  ShiftRegister<Counting> random(5);
   number_consecutively<Counting>(indices);
   work::take_tally();
   for (int i = 0; i < kDraws; ++i) {
-    draw_sample<Counting>(random, indices, kN, kSize,
+    draw_sample<Counting>(random, indices, kSize,
                           Counting::Span<std::uint16_t>(sample.data(), kSize));
     ASSERT_EQ(native.draw(kSize), sample);
   }
   const work::Counts counts = work::take_tally();
-  EXPECT_EQ(counts[work::Op::IntDiv], kDraws * kSize);
+  EXPECT_EQ(counts[work::Op::IntDiv], 2 * kDraws * kSize);
   EXPECT_EQ(counts[work::Op::LoadIndexed], kDraws * kSize);
   EXPECT_EQ(counts[work::Op::StoreIndexed], kDraws * kSize);
   EXPECT_EQ(counts[work::Op::StoreStream], 2 * kDraws * kSize);
@@ -171,4 +134,4 @@ TEST(DrawSample, CountingDrawsTheSameAndCountsTheWork) {
 }
 
 }  // namespace
-}  // namespace leviosim::vio
+}  // namespace leviosim::vio::levio

@@ -1,7 +1,7 @@
-#include "workload/vio/levio/geometry/epnp_ransac.h"
+#include "workload/geometry/epnp_ransac.h"
 
 #include "sim/base/check.h"
-#include "workload/vio/levio/geometry/pose_matrix.h"
+#include "workload/geometry/pose_matrix.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -2,8 +2,8 @@
 // (PARAMETERS.md#memory): what the released program does wherever a point changes frames.
 #pragma once
 
+#include "workload/geometry/product.h"
 #include "workload/math/vec.h"
-#include "workload/vio/levio/algebra/product.h"
 
 namespace leviosim::vio::levio {
 

@@ -6,10 +6,12 @@
 // Left out: a case for singular matrices; see above.
 #pragma once
 
-#include "workload/math/jacobi.h"
+#include "workload/geometry/library_trig.h"
+#include "workload/geometry/product.h"
+#include "workload/math/host_hints.h"
+#include "workload/math/kernel_kinds.h"
+#include "workload/math/matrix.h"
 #include "workload/math/target_call.h"
-#include "workload/vio/levio/algebra/library_trig.h"
-#include "workload/vio/levio/algebra/product.h"
 
 namespace leviosim::vio::levio {
 
@@ -23,12 +25,18 @@ namespace leviosim::vio::levio {
 
 namespace jacobi {
 
+template <class P>
+struct Element {
+  typename P::F32 magnitude;
+  typename P::I32 row, column;
+};
+
 /// The largest |a(i, j)| above the diagonal, beginning with a(0, 1).
 template <class P>
-LEVIOSIM_HOST_INLINE vio::jacobi::Element<P> largest_off_diagonal(MatrixView<P> a) {
+LEVIOSIM_HOST_INLINE Element<P> largest_off_diagonal(MatrixView<P> a) {
   using F = typename P::F32;
   const int n = a.rows();
-  vio::jacobi::Element<P> largest{work::abs(F(a(0, 1))), 0, 1};
+  Element<P> largest{work::abs(F(a(0, 1))), 0, 1};
   for (int i : P::byte_range(0, n - 1))
     for (int j : P::byte_range(i + 1, n)) {
       const F magnitude = work::abs(F(a(i, j)));
@@ -70,6 +78,35 @@ Diagonal<P> rotated_diagonal(typename P::F32 c, typename P::F32 s, typename P::F
   return {new_pp, new_qq};
 }
 
+/// (x, y) ← (c x − s y, s x + c y) for the elements of two rows.
+template <class P>
+LEVIOSIM_HOST_INLINE void rotate_rows(typename P::template Span<typename P::F32> x_row,
+                                      typename P::template Span<typename P::F32> y_row,
+                                      typename P::F32 c, typename P::F32 s) {
+  using F = typename P::F32;
+  for (int k : P::range(0, x_row.size())) {
+    const F x = x_row[k];
+    const F y = y_row[k];
+    x_row[k] = c * x - s * y;
+    y_row[k] = s * x + c * y;
+  }
+}
+
+/// Rotates columns p and q of a.
+template <class P>
+LEVIOSIM_HOST_INLINE void rotate_columns(MatrixView<P> a, typename P::I32 p, typename P::I32 q,
+                                         typename P::F32 c, typename P::F32 s) {
+  using F = typename P::F32;
+  const MatrixView<P> x_column = a.from_column(p);
+  const MatrixView<P> y_column = a.from_column(q);
+  for (int k : P::range(0, a.rows())) {
+    const F x = x_column(k, 0);
+    const F y = y_column(k, 0);
+    x_column(k, 0) = c * x - s * y;
+    y_column(k, 0) = s * x + c * y;
+  }
+}
+
 /// Annihilates a(p, q) by a rotation of rows and columns, and turns the columns of v with it.
 template <class P>
 LEVIOSIM_HOST_INLINE void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I32 p,
@@ -82,17 +119,23 @@ LEVIOSIM_HOST_INLINE void rotate(MatrixView<P> a, MatrixView<P> v, typename P::I
   const F angle = 0.5f * library_atan2<P>(2.0f * apq, aqq - app);
   const F c = library_cos<P>(angle);
   const F s = library_sin<P>(angle);
-  vio::jacobi::rotate_rows<P>(row_p, row_q, c, s);
-  vio::jacobi::rotate_columns<P>(a, p, q, c, s);
+  rotate_rows<P>(row_p, row_q, c, s);
+  rotate_columns<P>(a, p, q, c, s);
   const Diagonal<P> diagonal = rotated_diagonal<P>(c, s, app, apq, aqq);
   row_p[p] = diagonal.pp;
   row_q[q] = diagonal.qq;
   row_p[q] = 0.0f;
   row_q[p] = 0.0f;
-  vio::jacobi::rotate_columns<P>(v, p, q, c, s);
+  rotate_columns<P>(v, p, q, c, s);
 }
 
 }  // namespace jacobi
+
+template <class P>
+void set_identity(MatrixView<P> a) {
+  for (int i : P::range(0, a.rows()))
+    for (int j : P::range(0, a.cols())) a(i, j) = i == j ? 1.0f : 0.0f;
+}
 
 /// A = V diag(λ) Vᵀ. Stops when the largest off-diagonal element is below `tolerance` (absolute)
 /// or after `max_rotations`. Eigenvalues are not sorted.
@@ -108,7 +151,7 @@ LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL int jacobi_eigen(MatrixView<P> a, Matr
   set_identity<P>(v);
   int rotations = 0;
   for (int step : P::range(0, max_rotations)) {
-    const vio::jacobi::Element<P> largest = jacobi::largest_off_diagonal<P>(a);
+    const jacobi::Element<P> largest = jacobi::largest_off_diagonal<P>(a);
     if (largest.magnitude < tolerance) break;
     jacobi::rotate<P>(a, v, largest.row, largest.column);
     rotations = step + 1;

@@ -1,4 +1,4 @@
-#include "workload/geometry/pose_refinement.h"
+#include "workload/vio/next/pose_refinement.h"
 
 #include "workload/inertial/record.h"
 #include "workload/math/solve.h"
@@ -7,13 +7,15 @@
 namespace leviosim::vio {
 namespace {
 
+using levio::LandmarkMatches;
+
 constexpr int kPoseUnknowns = 6;
 /// Lower triangle of H row by row, then b.
 constexpr int kRightHandSide = 21;
 constexpr int kSums = 27;
 
 template <class P>
-Vec3<P> point_of(const PnpInput<P>& matches, int i) {
+Vec3<P> point_of(const LandmarkMatches<P>& matches, int i) {
   using F = typename P::F32;
   return {F(matches.points[3 * i]), F(matches.points[3 * i + 1]), F(matches.points[3 * i + 2])};
 }
@@ -32,17 +34,18 @@ void add_row(const typename P::F32 (&row)[kPoseUnknowns], typename P::F32 error,
 }
 
 template <class P>
-void add_match(const PnpInput<P>& matches, const Pose<P>& T, const RefinementOptions& options,
-               int i, typename P::template Span<typename P::F32> sums) {
+void add_match(const LandmarkMatches<P>& matches, const PinholeCamera& camera, const Pose<P>& T,
+               const RefinementOptions& options, int i,
+               typename P::template Span<typename P::F32> sums) {
   using F = typename P::F32;
   const typename P::Code code("refine_pose_add_match");
   const Vec3<P> x = T * point_of<P>(matches, i);
   if (!(x.z > F(options.min_depth))) return;
   const F inverse = F(1.0f) / x.z;
   const F a = x.x * inverse, b = x.y * inverse;
-  const F fx = matches.camera.fx, fy = matches.camera.fy;
-  const F du = fx * a + F(matches.camera.cx) - F(matches.pixels[2 * i]);
-  const F dv = fy * b + F(matches.camera.cy) - F(matches.pixels[2 * i + 1]);
+  const F fx = camera.fx, fy = camera.fy;
+  const F du = fx * a + F(camera.cx) - F(matches.pixels[2 * i]);
+  const F dv = fy * b + F(camera.cy) - F(matches.pixels[2 * i + 1]);
   const F error_sq = du * du + dv * dv;
   F weight = 1.0f / (options.sigma_px * options.sigma_px);
   if (error_sq > F(options.huber_px * options.huber_px))
@@ -91,8 +94,8 @@ void gather(MatrixView<P> partial, MatrixView<P> H, typename P::template Span<ty
 }
 
 template <class P>
-typename P::I32 mark_inliers(const PnpInput<P>& matches, const Pose<P>& T,
-                             const RefinementOptions& options, work::Share share,
+typename P::I32 mark_inliers(const LandmarkMatches<P>& matches, const PinholeCamera& camera,
+                             const Pose<P>& T, const RefinementOptions& options, work::Share share,
                              typename P::template Span<typename P::Byte> inliers) {
   using F = typename P::F32;
   using I32 = typename P::I32;
@@ -101,10 +104,8 @@ typename P::I32 mark_inliers(const PnpInput<P>& matches, const Pose<P>& T,
   for (int i : P::range(share.begin, share.end)) {
     const Vec3<P> x = T * point_of<P>(matches, i);
     const F inverse = F(1.0f) / x.z;
-    const F du =
-        F(matches.camera.fx) * (x.x * inverse) + F(matches.camera.cx) - F(matches.pixels[2 * i]);
-    const F dv = F(matches.camera.fy) * (x.y * inverse) + F(matches.camera.cy) -
-                 F(matches.pixels[2 * i + 1]);
+    const F du = F(camera.fx) * (x.x * inverse) + F(camera.cx) - F(matches.pixels[2 * i]);
+    const F dv = F(camera.fy) * (x.y * inverse) + F(camera.cy) - F(matches.pixels[2 * i + 1]);
     const F error_sq = du * du + dv * dv;
     const bool agrees = x.z > F(options.min_depth) && error_sq < F(limit);
     inliers[i] = work::narrow<typename P::Byte>(I32(agrees ? 1 : 0));
@@ -116,8 +117,9 @@ typename P::I32 mark_inliers(const PnpInput<P>& matches, const Pose<P>& T,
 }  // namespace
 
 template <class P>
-RefinedPose<P> refine_pose(work::Machine& machine, const PnpInput<P>& matches,
-                           const Pose<P>& T_predicted, const RefinementOptions& options,
+RefinedPose<P> refine_pose(work::Machine& machine, const LandmarkMatches<P>& matches,
+                           const PinholeCamera& camera, const Pose<P>& T_predicted,
+                           const RefinementOptions& options,
                            typename P::template Span<typename P::Byte> inliers) {
   using I32 = typename P::I32;
   using Floats = typename P::template Span<typename P::F32>;
@@ -139,7 +141,7 @@ RefinedPose<P> refine_pose(work::Machine& machine, const PnpInput<P>& matches,
         const Floats sums = partial.row(part);
         for (int i : P::range(0, kSums)) sums[i] = 0.0f;
         const auto [begin, end] = work::share_of(matches.n, part, kParts);
-        for (int i : P::range(begin, end)) add_match<P>(matches, T, options, i, sums);
+        for (int i : P::range(begin, end)) add_match<P>(matches, camera, T, options, i, sums);
       }
     });
     gather<P>(partial, H, b);
@@ -150,19 +152,19 @@ RefinedPose<P> refine_pose(work::Machine& machine, const PnpInput<P>& matches,
     T = {turn * T.R, turn * T.t + load_vec3<P>(b, 3)};
   }
   machine.fork("inliers", [&](work::Core& core) {
-    numbers[core.id] = mark_inliers<P>(matches, T, options, core.share(matches.n), inliers);
+    numbers[core.id] = mark_inliers<P>(matches, camera, T, options, core.share(matches.n), inliers);
   });
   I32 number = 0;
   for (int id : P::range(0, machine.cores())) number += I32(numbers[id]);
   return {true, T, work::value(number)};
 }
 
-template RefinedPose<work::Native> refine_pose(work::Machine&, const PnpInput<work::Native>&,
-                                               const Pose<work::Native>&, const RefinementOptions&,
-                                               work::Native::Span<work::Native::Byte>);
-template RefinedPose<work::Counting> refine_pose(work::Machine&, const PnpInput<work::Counting>&,
-                                                 const Pose<work::Counting>&,
-                                                 const RefinementOptions&,
-                                                 work::Counting::Span<work::Counting::Byte>);
+#define LEVIOSIM_INSTANTIATE(P)                                                  \
+  template RefinedPose<P> refine_pose(work::Machine&, const LandmarkMatches<P>&, \
+                                      const PinholeCamera&, const Pose<P>&,      \
+                                      const RefinementOptions&, P::Span<P::Byte>);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

@@ -7,8 +7,8 @@
 #pragma once
 
 #include "sim/work/machine.h"
-#include "workload/vio/levio/geometry/epnp.h"
-#include "workload/vio/levio/geometry/sampling.h"
+#include "workload/geometry/epnp.h"
+#include "workload/geometry/sampling.h"
 
 namespace leviosim::vio::levio {
 

@@ -8,8 +8,8 @@
 
 #include "sim/work/arena.h"
 #include "sim/work/machine.h"
+#include "workload/geometry/camera_constants.h"
 #include "workload/math/matrix.h"
-#include "workload/vio/levio/geometry/camera_constants.h"
 
 namespace leviosim::vio::levio {
 
