@@ -3,10 +3,8 @@
 #include "tools/app/run/run_folder.h"
 
 #include "tests/fuzz/fuzz_target.h"
-#include "tools/app/comparison/cycle_parts.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/page_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

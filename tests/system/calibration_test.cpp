@@ -8,7 +8,6 @@
 
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/validation/calibration/least_squares.h"
 
 namespace leviosim::tools {
 namespace {

@@ -12,7 +12,6 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/live_source.h"
 #include "tools/app/run/run_folder.h"

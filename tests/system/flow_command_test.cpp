@@ -5,7 +5,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tools/app/flow/flow.h"
-#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

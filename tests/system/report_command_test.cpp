@@ -9,7 +9,7 @@
 #include "sim/base/csv.h"
 #include "tests/support/program_suite.h"
 #include "tools/app/comparison/run_record.h"
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/html_report/page.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/example_run.h"
-#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/run/run_folder.h"
 

@@ -1,5 +1,5 @@
 // Energy of a run: every joule once, per frame, over time, at other points, and in the files.
-#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
 
 #include <gtest/gtest.h>
 

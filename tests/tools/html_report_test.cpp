@@ -5,7 +5,6 @@
 #include "tests/tools/example_run.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/verdict.h"
 

@@ -1,5 +1,5 @@
 // The fit of constants between bounds, where the best lies at a bound.
-#include "tools/app/validation/calibration/least_squares.h"
+#include "tools/app/validation/calibration/calibration.h"
 
 #include <gtest/gtest.h>
 

@@ -61,16 +61,21 @@ TEST(Screen, DocumentsAndCommandsAreWhole) {
   const std::string document = rows("row", 100);
   EXPECT_EQ(shown({{Kind::document, document}}, 24), document);
   EXPECT_EQ(shown({{Kind::details, document}}, 0), document);
-  const std::string text = shown(
-      {{Kind::commands, "::error\n"}, {Kind::next, "next: a\n"}, {Kind::kept, "kept\n"},
-       {Kind::next, "next: b\n"}},
-      24);
+  const std::string text = shown({{Kind::commands, "::error\n"},
+                                  {Kind::next, "next: a\n"},
+                                  {Kind::kept, "kept\n"},
+                                  {Kind::next, "next: b\n"}},
+                                 24);
   EXPECT_EQ(text, "kept\nnext: b\n::error\n");
 }
 
+TEST(Markup, IsEscapedInElementsAndAttributes) {
+  EXPECT_EQ(escape_markup("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
+  EXPECT_EQ(escape_markup("10.5° – 🛸\t\n"), "10.5° – 🛸\t\n");
+}
+
 TEST(Screen, WideLinesAreBrokenBetweenWords) {
-  EXPECT_EQ(shown({{Kind::details, "  aaa bbb ccc ddd\n"}}, 24, 11),
-            "  aaa bbb\n    ccc ddd\n");
+  EXPECT_EQ(shown({{Kind::details, "  aaa bbb ccc ddd\n"}}, 24, 11), "  aaa bbb\n    ccc ddd\n");
   EXPECT_EQ(shown({{Kind::kept, "results: /a/long/path\n"}}, 24, 11), "results: /a/long/path\n");
 }
 

@@ -314,6 +314,66 @@ TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
   EXPECT_GT(area_of(svg, "#be202e"), 0);
 }
 
+TEST(XmlFault, IsSeen) {
+  const auto fault = [](const std::string& body) {
+    return testing::xml_fault("<?xml version=\"1.0\"?>\n" + body);
+  };
+  EXPECT_EQ(fault("<a x=\"1\"><b/>&amp;</a>"), "");
+  for (const char* broken : {"<a>", "<a></b>", "<a/><a/>", "<a>&</a>", "<a>&nbsp;</a>", "<a x=1/>",
+                             "<a x=\"1\" x=\"2\"/>", "<a/>text", "<a>\x01</a>", ""})
+    EXPECT_NE(fault(broken), "") << broken;
+}
+
+/// Of one frame without work, whose deadline is so far away.
+std::string empty_picture(const std::string& profile, double period_ms) {
+  TimelineEvents events{.timebase = sim::Timebase({}), .range = {}, .frames = {}, .iterations = {}};
+  events.frames.emplace_back();
+  RunResult run;
+  run.profile = profile;
+  run.frame_period_ns = std::llround(period_ms * 1e6);
+  return timeline_picture(events, run);
+}
+
+TEST(TimelinePicture, IsWellFormedWhateverItsNamesHold) {
+  const std::string svg =
+      empty_picture("\"quoted\" 'q' <b> & \x01\xff\xc0\x80 10.5° – 🛸", 50);
+  EXPECT_EQ(testing::xml_fault(svg), "") << svg;
+  EXPECT_NE(
+      svg.find(
+          "&quot;quoted&quot; &#39;q&#39; &lt;b&gt; &amp; \\x01\\xff\\xc0\\x80 10.5° – 🛸"),
+      std::string::npos)
+      << svg;
+  EXPECT_EQ(svg.find("-0.00"), std::string::npos) << svg;
+}
+
+TEST(TimelinePicture, TicksAreRoundAndHaveTheDecimalsOfTheirStep) {
+  const std::regex label(R"re(font-size="11.00" text-anchor="middle"[^>]*>([0-9.]+)<)re");
+  for (const double period : {1e-4, 0.07, 1.0, 3.3, 12.0, 50.0, 99.9, 120.0, 4.4e5, 1e7}) {
+    const std::string svg = empty_picture("levio", period);
+    std::vector<std::string> labels;
+    for (std::sregex_iterator i(svg.begin(), svg.end(), label), end; i != end; ++i)
+      labels.push_back((*i)[1]);
+    ASSERT_GE(labels.size(), 4u) << period;
+    EXPECT_LE(labels.size(), 12u) << period;
+    const double step = std::stod(labels[1]);
+    const double power = std::pow(10, std::floor(std::log10(step) + 1e-9));
+    const double mantissa = std::round(step / power * 1e6) / 1e6;
+    EXPECT_TRUE(mantissa == 1 || mantissa == 2 || mantissa == 5) << step;
+    EXPECT_LT(std::stod(labels.back()), 1.01 * period * (1 + 1e-9)) << period;
+    EXPECT_GT(std::stod(labels.back()) + step, 1.01 * period) << period;
+    const std::size_t dot = labels[1].find('.');
+    if (dot != std::string::npos) {
+      EXPECT_NE(labels[1].back(), '0') << labels[1];
+    }
+    for (std::size_t k = 0; k < labels.size(); ++k) {
+      EXPECT_NEAR(std::stod(labels[k]), static_cast<double>(k) * step, 1e-6 * step);
+      EXPECT_EQ(labels[k].size() - std::min(labels[k].size(), labels[k].find('.')),
+                labels[1].size() - std::min(labels[1].size(), dot))
+          << labels[k];
+    }
+  }
+}
+
 TEST(Timeline, ARangeTakesItsFramesOnly) {
   const Shown some = shown(2, kMostBytesOfFrame, 8, {.frames = 9, .iteration = 5'000}, {},
                            traces::FrameRange{3, 5});

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform_models/loader/loader.h"
-#include "tools/app/validation/microbench/kernel_benches.h"
+#include "tools/app/validation/microbench/bench.h"
 
 namespace leviosim::tools {
 namespace {

@@ -14,9 +14,7 @@
 #include "tests/validation/int8_product.h"
 #include "tests/validation/int8_product_code.h"
 #include "tools/app/validation/microbench/bench.h"
-#include "tools/app/validation/microbench/kernel_benches.h"
 #include "tools/app/validation/microbench/library_programs.h"
-#include "tools/app/validation/microbench/report.h"
 #include "workload/geometry/essential_ransac.h"
 
 namespace leviosim::tools {

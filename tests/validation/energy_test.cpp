@@ -11,7 +11,7 @@
 #include "sim/chip/chip.h"
 #include "sim/energy/model.h"
 #include "tests/validation/energy_reference.h"
-#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/run/simulate.h"
 #include "traces/synthesis/synthetic.h"
 

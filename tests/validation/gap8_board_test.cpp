@@ -8,8 +8,6 @@
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
 #include "tools/app/validation/microbench/bench.h"
-#include "tools/app/validation/microbench/kernel_benches.h"
-#include "tools/app/validation/microbench/report.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,5 +1,4 @@
 // From frames to the figures that are compared: which frames an average is over, and how.
-#include "tools/app/validation/quantities.h"
 
 #include <gtest/gtest.h>
 

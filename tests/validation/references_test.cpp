@@ -35,21 +35,21 @@ TEST(ValidationReferences, RefusesFaultsWithFileAndLine) {
   const auto refuse = [](const std::string& row, std::initializer_list<std::string> parts) {
     expect_input_error([&] { one("# a comment\n" + row); }, parts);
   };
-  refuse("a,1,x,1,,met\n", {"f.csv:3", "6 columns", "expected 7"});
+  refuse("a,1,x,1,,met\n", {"f.csv line 3", "6 columns", "instead of 7"});
   refuse("a,1,x,1,,met,s,t\n", {"8 columns"});
-  refuse("a,one,x,1,,met,s\n", {"f.csv:3", "value 'one'", "expected a number"});
+  refuse("a,one,x,1,,met,s\n", {"f.csv line 3", "value", "'one'", "not a finite number"});
   refuse("a,1,x,-1,,met,s\n", {"tolerance", "0 or more"});
   refuse("a,1,,1,,met,s\n", {"unit"});
   refuse("a,1,x,1,,met,\n", {"source"});
   refuse("a,0,x,1 %,,met,s\n", {"value 0"});
   refuse("a,1,x,1,2,met,s\n", {"met", "no guard"});
-  refuse("a,1,x,1,2,missed,s\n", {"status 'missed'", "missed: REASON"});
+  refuse("a,1,x,1,2,missed,s\n", {"status", "'missed'", "missed: REASON"});
   refuse("a,1,x,1,,missed: why,s\n", {"guard"});
   refuse("a,1,x,1,1,missed: why,s\n", {"guard", "more than the tolerance"});
   refuse("a,1,x,1,2 %,missed: why,s\n", {"both"});
-  refuse("a,1,x,1,,met,s\na,1,x,1,,met,s\n", {"f.csv:4", "'a' is there twice"});
-  expect_input_error([] { parse_references("f.csv", "name,value\n"); }, {"f.csv:1", "header"});
-  expect_input_error([] { parse_references("f.csv", ""); }, {"f.csv", "header"});
+  refuse("a,1,x,1,,met,s\na,1,x,1,,met,s\n", {"f.csv line 4", "'a' is there twice"});
+  expect_input_error([] { parse_references("f.csv", "name,value\n"); }, {"f.csv line 1", "2 columns"});
+  expect_input_error([] { parse_references("f.csv", ""); }, {"f.csv", "titles"});
 }
 
 TEST(ValidationReferences, ErrorsAreRelativeAbsoluteOrOfALimit) {

@@ -13,7 +13,6 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"

@@ -237,38 +237,33 @@ Evaluated evaluated(const std::string& estimate, const EvalOptions& options, Eva
 
 /// A row for each estimate, in the order in which they were named.
 std::string side_by_side(const std::vector<Evaluated>& all) {
-  std::vector<TextTable::Column> columns{{"estimate", TextTable::Align::Left},
-                                         {"ATE m"},
-                                         {"median"},
-                                         {"worst"},
-                                         {"tilt °"},
-                                         {"heading °"},
-                                         {"scale"},
-                                         {"poses"},
-                                         {"complete %"}};
-  for (const RelativeErrors& errors : all.front().accuracy.relative)
-    columns.push_back({fmt::format("drift over {:g} m %", errors.length_m)});
-  TextTable table(columns);
-  for (const auto& [pair, accuracy] : all) {
-    const Evaluation& e = accuracy.evaluation;
-    const std::optional<traces::AttitudeErrors> attitude = attitude_errors(e);
-    const auto degrees = [&](double traces::AttitudeErrors::*error) {
-      return attitude ? fmt::format("{:.2f}", *attitude.*error) : "–";
+  using E = const Evaluated&;
+  const auto fixed = [](auto of, int decimals) {
+    return [=](E e) { return figure_text(of(e.accuracy.evaluation), decimals); };
+  };
+  const auto degrees = [](double traces::AttitudeErrors::*error) {
+    return [error](E e) {
+      const std::optional<traces::AttitudeErrors> found = attitude_errors(e.accuracy.evaluation);
+      return figure_text(found ? std::optional(*found.*error) : std::nullopt, 2);
     };
-    std::vector<std::string> cells{printable(pair.estimate.file.string()),
-                                   fmt::format("{:.4f}", e.translation.rmse),
-                                   fmt::format("{:.4f}", e.translation.median),
-                                   fmt::format("{:.4f}", e.translation.max),
-                                   degrees(&traces::AttitudeErrors::tilt_rmse_deg),
-                                   degrees(&traces::AttitudeErrors::heading_rmse_deg),
-                                   fmt::format("{:.4f}", e.alignment.scale),
-                                   fmt::format("{}", e.matched),
-                                   fmt::format("{:.1f}", 100 * e.completion)};
-    for (const RelativeErrors& errors : accuracy.relative)
-      cells.push_back(errors.count > 0 ? fmt::format("{:.3f}", errors.translation.mean) : "–");
-    table.add(std::move(cells));
-  }
-  return table.str();
+  };
+  TableOf<Evaluated> table{
+      {{"estimate", kLeft}, [](E e) { return printable(e.pair.estimate.file.string()); }},
+      {{"ATE m"}, fixed([](const Evaluation& e) { return e.translation.rmse; }, 4)},
+      {{"median"}, fixed([](const Evaluation& e) { return e.translation.median; }, 4)},
+      {{"worst"}, fixed([](const Evaluation& e) { return e.translation.max; }, 4)},
+      {{"tilt °"}, degrees(&traces::AttitudeErrors::tilt_rmse_deg)},
+      {{"heading °"}, degrees(&traces::AttitudeErrors::heading_rmse_deg)},
+      {{"scale"}, fixed([](const Evaluation& e) { return e.alignment.scale; }, 4)},
+      {{"poses"}, [](E e) { return e.accuracy.evaluation.matched; }},
+      {{"complete %"}, fixed([](const Evaluation& e) { return 100 * e.completion; }, 1)}};
+  const std::vector<RelativeErrors>& lengths = all.front().accuracy.relative;
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    table.add({fmt::format("drift over {:g} m %", lengths[i].length_m)}, [i](E e) {
+      const RelativeErrors& errors = e.accuracy.relative[i];
+      return errors.count > 0 ? figure_text(errors.translation.mean, 3) : kNothing;
+    });
+  return table.with(all).str();
 }
 
 /// The least error, with the share of the path that it is.

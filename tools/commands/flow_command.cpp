@@ -1,7 +1,6 @@
 // `leviosim flow`: the optical flow of PX4FLOW on a chip.
 #include "tools/commands/commands.h"
 
-#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>

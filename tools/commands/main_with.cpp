@@ -10,9 +10,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <exception>
-#include <filesystem>
 #include <new>
-#include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,6 @@
 // leviosim microbench: small programs on a chip beside what is known of the real one.
 #include "tools/commands/commands.h"
 
-#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -12,9 +11,7 @@
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/validation/microbench/kernel_benches.h"
-#include "tools/app/validation/microbench/report.h"
-#include "tools/app/validation/microbench/unit_benches.h"
+#include "tools/app/validation/microbench/bench.h"
 
 namespace leviosim::tools {
 namespace {

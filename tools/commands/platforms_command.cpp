@@ -145,11 +145,7 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
   request.data = data_folder(run, style);
   ProgressLine line(style);
-  FeasibilityStudy study(request, [&](const Progress& p) {
-    throw_if_interrupted();
-    line.show(p.done, p.total,
-              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
-  });
+  FeasibilityStudy study(request, shown_on(line));
   return study.on(points, {.noun = "chip", .threads = jobs, .progress = style});
 }
 
@@ -226,13 +222,7 @@ void systems(const PlatformsOptions& options) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
   request.data = data_folder(run, style);
   ProgressLine line(style);
-  const std::vector<SystemRow> rows =
-      predict_systems(published_systems(), request, [&](const Progress& p) {
-        throw_if_interrupted();
-        line.show(p.done, p.total, [&] {
-          return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds());
-        });
-      });
+  const std::vector<SystemRow> rows = predict_systems(published_systems(), request, shown_on(line));
   line.clear();
   publish({{csv, systems_csv(rows), "table"},
            {page, page ? html_page(systems_page(rows)) : std::string(), "report"}},

@@ -11,12 +11,12 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/run/trace_source.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/run/trace_source.h"
 #include "tools/app/timeline/requested_timeline.h"
 
 namespace leviosim::tools {
@@ -45,11 +45,7 @@ std::filesystem::path trace_file(const std::string& name) {
 Replay with_progress(const traces::WorkTrace& trace, const RunRequest& request,
                      ProgressLine::Style style) {
   ProgressLine line(style);
-  return replay(trace, request, [&](const Progress& p) {
-    throw_if_interrupted();
-    line.show(p.done, p.total,
-              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
-  });
+  return replay(trace, request, shown_on(line));
 }
 
 void run(const CLI::App& command, ReplayOptions options, const Words& words) {

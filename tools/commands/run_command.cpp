@@ -7,7 +7,7 @@
 
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"

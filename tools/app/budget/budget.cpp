@@ -13,18 +13,16 @@
 #include <ctime>
 
 #include "platform_models/loader/schema.h"
-#include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/nearest.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/result/verdict.h"
+#include "tools/app/run/yaml_map.h"
 
 namespace leviosim::tools {
 namespace {
 
 using platform::Place;
-using platform::YamlEntry;
 using platform::YamlNode;
 
 class BudgetReader {
@@ -32,66 +30,29 @@ class BudgetReader {
   explicit BudgetReader(const std::string& file) { budget_.file = file; }
 
   Budget read(const std::string& text) {
-    bool any = false;
-    for (const YamlEntry& entry : entries(platform::parse_yaml(budget_.file, text), "")) {
-      if (entry.key == "accepted") {
-        for (const YamlNode& node : items(entry, "")) read_accepted(node);
-        continue;
-      }
-      if (entry.key != "budgets") unknown(entry, "", {"budgets", "accepted"});
-      any = true;
-      for (const YamlNode& node : items(entry, "")) read_section(node);
-    }
-    if (!any || budget_.sections.empty())
+    const YamlMap root(platform::parse_yaml(budget_.file, text), budget_.file, "");
+    root.check_keys({"budgets", "accepted"});
+    for (const YamlNode& node : root.items("accepted")) read_accepted(node);
+    for (const YamlNode& node : root.items("budgets")) read_section(node);
+    if (budget_.sections.empty())
       throw InputError(
           fmt::format("{}: has no budgets; expected a list of them under 'budgets'", budget_.file));
     return std::move(budget_);
   }
 
  private:
-  std::vector<YamlEntry> entries(const YamlNode& node, const std::string& path) const {
-    return platform::entries_of(node, budget_.file, path);
-  }
-  Place place(const YamlEntry& entry, const std::string& path) const {
-    return platform::place_of(budget_.file, entry.line, platform::joined(path, entry.key));
-  }
-  [[noreturn]] void unknown(const YamlEntry& entry, const std::string& path,
-                            const std::vector<std::string>& known) const {
-    place(entry, path)
-        .fail(fmt::format("unknown key{}; expected {}", base::did_you_mean(entry.key, known),
-                          fmt::join(known, ", ")));
-  }
-  std::vector<YamlNode> items(const YamlEntry& entry, const std::string& path) const {
-    if (!entry.value.is_sequence())
-      place(entry, path)
-          .fail(fmt::format("is {}; expected a list", platform::kind_of(entry.value)));
-    return entry.value.items();
-  }
-  std::string text(const YamlEntry& entry, const std::string& path) const {
-    return platform::scalar(entry.value, place(entry, path));
-  }
-
   void read_section(const YamlNode& node) {
     BudgetSection section;
     std::string reason;
     std::string owner;
-    for (const YamlEntry& entry : entries(node, "budgets")) {
-      if (entry.key == "name")
-        section.name = text(entry, "budgets");
-      else if (entry.key == "platform")
-        section.platform = text(entry, "budgets");
-      else if (entry.key == "profile")
-        section.profile = text(entry, "budgets");
-      else if (entry.key == "reason")
-        reason = text(entry, "budgets");
-      else if (entry.key == "owner")
-        owner = text(entry, "budgets");
-      else if (entry.key == "limits")
-        for (const YamlNode& limit : items(entry, "budgets"))
-          section.limits.push_back(read_limit(limit));
-      else
-        unknown(entry, "budgets", {"name", "platform", "profile", "reason", "owner", "limits"});
-    }
+    const YamlMap map(node, budget_.file, "budgets");
+    map.check_keys({"name", "platform", "profile", "reason", "owner", "limits"});
+    map.read("name", section.name);
+    map.read("platform", section.platform);
+    map.read("profile", section.profile);
+    map.read("reason", reason);
+    map.read("owner", owner);
+    for (const YamlNode& limit : map.items("limits")) section.limits.push_back(read_limit(limit));
     if (section.limits.empty())
       platform::place_of(budget_.file, node.line(), "budgets")
           .fail("has no limits; expected 'limits' with at least one");
@@ -105,16 +66,13 @@ class BudgetReader {
 
   void read_accepted(const YamlNode& node) {
     AcceptedMiss& miss = budget_.accepted.emplace_back();
-    for (const YamlEntry& entry : entries(node, "accepted"))
-      if (entry.key == "limit")
-        miss.limit = text(entry, "accepted");
-      else if (entry.key == "reason")
-        miss.reason = text(entry, "accepted");
-      else if (entry.key == "until")
-        miss.until = parse_day(fmt::format("{}:{}: until", budget_.file, entry.line),
-                               text(entry, "accepted"));
-      else
-        unknown(entry, "accepted", {"limit", "reason", "until"});
+    const YamlMap map(node, budget_.file, "accepted");
+    map.check_keys({"limit", "reason", "until"});
+    map.read("limit", miss.limit);
+    map.read("reason", miss.reason);
+    if (const YamlMap::Entry* until = map.find("until"))
+      miss.until =
+          parse_day(fmt::format("{}:{}: until", budget_.file, until->line), map.text(*until));
     if (miss.limit.empty() || miss.reason.empty() || miss.until.empty())
       platform::place_of(budget_.file, node.line(), "accepted")
           .fail("expected limit, reason and until");
@@ -127,31 +85,19 @@ class BudgetReader {
     if (node.is_scalar()) {
       limit = parse_limit(node.scalar(), here);
     } else {
-      std::string stage;
+      const YamlMap map(node, budget_.file, "limits");
+      map.check_keys({"limit", "stage", "level", "reason", "owner"});
+      const YamlMap::Entry* text = map.find("limit");
+      if (text == nullptr) here.fail("has no 'limit'");
+      limit = parse_limit(map.text(*text), map.place(*text));
+      map.read("stage", limit.stage);
+      map.read("reason", limit.reason);
+      map.read("owner", limit.owner);
       std::string level = "fail";
-      std::string reason;
-      std::string owner;
-      for (const YamlEntry& entry : entries(node, "limits")) {
-        if (entry.key == "limit")
-          limit = parse_limit(text(entry, "limits"), place(entry, "limits"));
-        else if (entry.key == "stage")
-          stage = text(entry, "limits");
-        else if (entry.key == "level")
-          level = text(entry, "limits");
-        else if (entry.key == "reason")
-          reason = text(entry, "limits");
-        else if (entry.key == "owner")
-          owner = text(entry, "limits");
-        else
-          unknown(entry, "limits", {"limit", "stage", "level", "reason", "owner"});
-      }
-      if (limit.text.empty()) here.fail("has no 'limit'");
+      map.read("level", level);
       if (level != "fail" && level != "warn")
         here.fail(fmt::format("level '{}': expected fail or warn", level));
       limit.warns = level == "warn";
-      limit.stage = stage;
-      limit.reason = reason;
-      limit.owner = owner;
     }
     limit.file = budget_.file;
     limit.line = node.line();
@@ -161,6 +107,58 @@ class BudgetReader {
 
   Budget budget_;
 };
+
+constexpr std::string_view kAccepted = "accepted:\n";
+
+/// What leaves most of the room of a limit unused: the largest value for "<=", else the least.
+std::optional<double> needed(const Limit& limit, const RunRecord& run) {
+  std::optional<double> most;
+  for (const FigureOf& figure : figures_of(limit, run)) {
+    const auto value = figure.statistic->value;
+    if (value && (!most || (limit.bound.at_most ? *value > *most : *value < *most))) most = value;
+  }
+  return most;
+}
+
+/// Four digits, never to the wrong side of the value.
+std::string rounded_to_side(double value, bool up) {
+  if (value == 0) return "0";
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 3);
+  const double steps = value / unit;
+  const double whole = up ? std::ceil(steps - 1e-9) : std::floor(steps + 1e-9);
+  return fmt::format("{:.10g}", whole * unit);
+}
+
+/// The limit's text with another number.
+std::string with_number(const Limit& limit, const std::string& number) {
+  const std::string unit = limit.bound.unit.empty() ? "" : " " + limit.bound.unit;
+  return fmt::format("{} {} {}{}", limit.figure, limit.bound.at_most ? "<=" : ">=", number, unit);
+}
+
+struct FirstLimit {
+  const char* figure;
+  const char* statistic;
+  double scale;  ///< from the statistic's unit
+  const char* unit;
+  int decimals;
+};
+constexpr std::array kFirstLimits{
+    FirstLimit{"frame time p99", "frame.time.p99", 1e-6, "ms", 2},
+    FirstLimit{"missed", "frame.missed_share", 100, "%", 2},
+    FirstLimit{"frame cycles", "frame.cycles.parallel.mean", 1e-3, "kcycles", 1},
+    FirstLimit{"L1 peak", "memory.l1.peak", 1e-3, "kB", 1},
+    FirstLimit{"L2 peak", "memory.l2.peak", 1e-3, "kB", 1},
+    FirstLimit{"energy per frame", "energy.frame", 1, "mJ", 4},
+    FirstLimit{"ATE", "accuracy.ate.rmse", 1, "m", 4},
+};
+
+/// Not below the value, though it is rounded.
+std::string rounded_up(double value, int decimals) {
+  const double scale = std::pow(10, decimals);
+  // A share of what is exact as written must not grow by a digit; no negative zero.
+  const double digits = std::max(0.0, std::ceil(value * scale - 1e-6));
+  return fmt::format("{:.{}f}", digits / scale, decimals);
+}
 
 }  // namespace
 
@@ -249,37 +247,6 @@ bool matches(const std::string& pattern, const std::string& text) {
   return p == pattern.size();
 }
 
-namespace {
-
-constexpr std::string_view kAccepted = "accepted:\n";
-
-/// What leaves most of the room of a limit unused: the largest value for "<=", else the least.
-std::optional<double> needed(const Limit& limit, const RunRecord& run) {
-  std::optional<double> most;
-  for (const FigureOf& figure : figures_of(limit, run)) {
-    const auto value = figure.statistic->value;
-    if (value && (!most || (limit.bound.at_most ? *value > *most : *value < *most))) most = value;
-  }
-  return most;
-}
-
-/// Four digits, never to the wrong side of the value.
-std::string rounded_to_side(double value, bool up) {
-  if (value == 0) return "0";
-  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 3);
-  const double steps = value / unit;
-  const double whole = up ? std::ceil(steps - 1e-9) : std::floor(steps + 1e-9);
-  return fmt::format("{:.10g}", whole * unit);
-}
-
-/// The limit's text with another number.
-std::string with_number(const Limit& limit, const std::string& number) {
-  const std::string unit = limit.bound.unit.empty() ? "" : " " + limit.bound.unit;
-  return fmt::format("{} {} {}{}", limit.figure, limit.bound.at_most ? "<=" : ">=", number, unit);
-}
-
-}  // namespace
-
 std::string tightened(const Budget& budget, const std::string& text, const RunRecord& run,
                       double slack) {
   std::string edited = text;
@@ -337,35 +304,6 @@ std::string with_accepted(const std::string& text, const CheckResult& result,
   if (at == std::string::npos) return edited + std::string(kAccepted) + entries;
   return edited.insert(at + 1 + kAccepted.size(), entries);
 }
-
-namespace {
-
-struct FirstLimit {
-  const char* figure;
-  const char* statistic;
-  double scale;  ///< from the statistic's unit
-  const char* unit;
-  int decimals;
-};
-constexpr std::array kFirstLimits{
-    FirstLimit{"frame time p99", "frame.time.p99", 1e-6, "ms", 2},
-    FirstLimit{"missed", "frame.missed_share", 100, "%", 2},
-    FirstLimit{"frame cycles", "frame.cycles.parallel.mean", 1e-3, "kcycles", 1},
-    FirstLimit{"L1 peak", "memory.l1.peak", 1e-3, "kB", 1},
-    FirstLimit{"L2 peak", "memory.l2.peak", 1e-3, "kB", 1},
-    FirstLimit{"energy per frame", "energy.frame", 1, "mJ", 4},
-    FirstLimit{"ATE", "accuracy.ate.rmse", 1, "m", 4},
-};
-
-/// Not below the value, though it is rounded.
-std::string rounded_up(double value, int decimals) {
-  const double scale = std::pow(10, decimals);
-  // A share of what is exact as written must not grow by a digit; no negative zero.
-  const double digits = std::max(0.0, std::ceil(value * scale - 1e-6));
-  return fmt::format("{:.{}f}", digits / scale, decimals);
-}
-
-}  // namespace
 
 std::string first_budget(const RunRecord& run, double margin) {
   const double factor = 1 + margin / 100;

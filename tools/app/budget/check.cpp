@@ -7,7 +7,6 @@
 
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
-#include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/result/verdict.h"
@@ -95,91 +94,6 @@ void add_bad_verdicts(CheckResult& result, const RunRecord& run, const Budget& b
     result.findings.push_back(std::move(finding));
   }
 }
-
-}  // namespace
-
-std::string Finding::title() const {
-  const std::string end = since.empty() ? std::string() : " since " + since;
-  if (!limit->stage.empty()) return stage + ": " + limit->text + end;
-  if (limit->figure.find('*') == std::string::npos) return limit->text + end;
-  return statistic + limit->text.substr(limit->figure.size()) + end;
-}
-
-bool Finding::was_over() const {
-  if (met || !before || !value || !bound) return false;
-  const auto over = [&](double v) { return limit->bound.at_most ? v > *bound : v < *bound; };
-  return over(*before) && (limit->bound.at_most ? *value <= *before : *value >= *before);
-}
-
-std::optional<double> Finding::better() const {
-  if (!met || !value || !baseline || *baseline == 0 || !is_percent_of_baseline(limit->bound))
-    return std::nullopt;
-  const double side = limit->bound.at_most ? 1 : -1;
-  const double percent = side * 100 * (*baseline - *value) / std::abs(*baseline);
-  const double allowed = std::max(side * limit->bound.number, 0.0);
-  return percent > allowed + kRounding ? std::optional(percent) : std::nullopt;
-}
-
-std::string Finding::excess() const {
-  if (!value) return "the run has no such value";
-  const std::string found = figure_text(*value, unit, limit->bound);
-  if (!bound) return found + ", but the baseline has no value of it";
-  const double over = *value - *bound;
-  const std::string limit_text = figure_text(*bound, unit, limit->bound);
-  const char* side = over > 0 ? "above" : over < 0 ? "below" : "at";
-  std::string text = over == 0     ? fmt::format("{}, at the limit", found)
-                     : *bound == 0 ? fmt::format("{}, {} {}", found, side, limit_text)
-                                   : fmt::format("{}, {:.2f} % {} {}", found,
-                                                 100 * std::abs(over / *bound), side, limit_text);
-  if (baseline && *baseline != 0)
-    text +=
-        fmt::format("; {:+.2f} % of {} {}", 100 * (*value - *baseline) / *baseline,
-                    since.empty() ? "the baseline's" : since + "'s", figure_text(*baseline, unit));
-  if (!accepted.empty()) text += "; " + accepted;
-  return was_over() ? text + "; was over before this change" : text;
-}
-
-std::size_t CheckResult::missed() const {
-  return static_cast<std::size_t>(
-      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.fails(); }));
-}
-
-std::size_t CheckResult::warned() const {
-  return static_cast<std::size_t>(std::count_if(
-      findings.begin(), findings.end(), [](const Finding& f) { return !f.met && !f.fails(); }));
-}
-
-std::size_t CheckResult::better() const {
-  return static_cast<std::size_t>(
-      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.better(); }));
-}
-
-CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline) {
-  CheckResult result{run.name, budget.file, baseline == nullptr ? "" : baseline->name, {}};
-  for (const BudgetSection* section : sections_for(budget, run))
-    for (const Limit& limit : section->limits) {
-      const std::vector<FigureOf> figures = figures_held(limit, run, baseline);
-      if (figures.empty()) result.not_measured.push_back(limit.text);
-      for (const FigureOf& figure : figures) {
-        Finding finding = hold(limit, figure, baseline);
-        if (figures.size() > 1 && is_idle(finding)) continue;
-        finding.section = section;
-        result.findings.push_back(std::move(finding));
-      }
-    }
-  if (result.findings.empty())
-    throw InputError(fmt::format("{}: {} measures nothing of what it limits", budget.file,
-                                 run.facts.measured ? run.name : baseline->name));
-  add_bad_verdicts(result, run, budget);
-  for (Finding& finding : result.findings)
-    for (const AcceptedMiss& miss : budget.accepted)
-      if (!finding.met && finding.title() == miss.limit && today() <= miss.until)
-        finding.accepted = fmt::format("accepted until {}: {}", miss.until, miss.reason);
-  if (result.missed() + result.warned() > 0) explain(result, run, baseline);
-  return result;
-}
-
-namespace {
 
 constexpr std::size_t kMostReasons = 3;
 
@@ -360,6 +274,87 @@ class Explainer {
 };
 
 }  // namespace
+
+std::string Finding::title() const {
+  const std::string end = since.empty() ? std::string() : " since " + since;
+  if (!limit->stage.empty()) return stage + ": " + limit->text + end;
+  if (limit->figure.find('*') == std::string::npos) return limit->text + end;
+  return statistic + limit->text.substr(limit->figure.size()) + end;
+}
+
+bool Finding::was_over() const {
+  if (met || !before || !value || !bound) return false;
+  const auto over = [&](double v) { return limit->bound.at_most ? v > *bound : v < *bound; };
+  return over(*before) && (limit->bound.at_most ? *value <= *before : *value >= *before);
+}
+
+std::optional<double> Finding::better() const {
+  if (!met || !value || !baseline || *baseline == 0 || !is_percent_of_baseline(limit->bound))
+    return std::nullopt;
+  const double side = limit->bound.at_most ? 1 : -1;
+  const double percent = side * 100 * (*baseline - *value) / std::abs(*baseline);
+  const double allowed = std::max(side * limit->bound.number, 0.0);
+  return percent > allowed + kRounding ? std::optional(percent) : std::nullopt;
+}
+
+std::string Finding::excess() const {
+  if (!value) return "the run has no such value";
+  const std::string found = figure_text(*value, unit, limit->bound);
+  if (!bound) return found + ", but the baseline has no value of it";
+  const double over = *value - *bound;
+  const std::string limit_text = figure_text(*bound, unit, limit->bound);
+  const char* side = over > 0 ? "above" : over < 0 ? "below" : "at";
+  std::string text = over == 0     ? fmt::format("{}, at the limit", found)
+                     : *bound == 0 ? fmt::format("{}, {} {}", found, side, limit_text)
+                                   : fmt::format("{}, {:.2f} % {} {}", found,
+                                                 100 * std::abs(over / *bound), side, limit_text);
+  if (baseline && *baseline != 0)
+    text +=
+        fmt::format("; {:+.2f} % of {} {}", 100 * (*value - *baseline) / *baseline,
+                    since.empty() ? "the baseline's" : since + "'s", figure_text(*baseline, unit));
+  if (!accepted.empty()) text += "; " + accepted;
+  return was_over() ? text + "; was over before this change" : text;
+}
+
+std::size_t CheckResult::missed() const {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.fails(); }));
+}
+
+std::size_t CheckResult::warned() const {
+  return static_cast<std::size_t>(std::count_if(
+      findings.begin(), findings.end(), [](const Finding& f) { return !f.met && !f.fails(); }));
+}
+
+std::size_t CheckResult::better() const {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.better(); }));
+}
+
+CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline) {
+  CheckResult result{run.name, budget.file, baseline == nullptr ? "" : baseline->name, {}};
+  for (const BudgetSection* section : sections_for(budget, run))
+    for (const Limit& limit : section->limits) {
+      const std::vector<FigureOf> figures = figures_held(limit, run, baseline);
+      if (figures.empty()) result.not_measured.push_back(limit.text);
+      for (const FigureOf& figure : figures) {
+        Finding finding = hold(limit, figure, baseline);
+        if (figures.size() > 1 && is_idle(finding)) continue;
+        finding.section = section;
+        result.findings.push_back(std::move(finding));
+      }
+    }
+  if (result.findings.empty())
+    throw InputError(fmt::format("{}: {} measures nothing of what it limits", budget.file,
+                                 run.facts.measured ? run.name : baseline->name));
+  add_bad_verdicts(result, run, budget);
+  for (Finding& finding : result.findings)
+    for (const AcceptedMiss& miss : budget.accepted)
+      if (!finding.met && finding.title() == miss.limit && today() <= miss.until)
+        finding.accepted = fmt::format("accepted until {}: {}", miss.until, miss.reason);
+  if (result.missed() + result.warned() > 0) explain(result, run, baseline);
+  return result;
+}
 
 void explain(CheckResult& result, const RunRecord& run, const RunRecord* baseline) {
   const Explainer explainer(run, baseline);

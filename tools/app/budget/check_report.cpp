@@ -24,14 +24,8 @@ constexpr int kWidest = 44;  // limit in the table
 
 std::string wrapped(const std::string& label, const std::string& raw) {
   if (raw.empty()) return {};
-  const std::string words = printable(raw);
-  std::vector<std::string> items{label};
-  for (std::size_t begin = 0; begin <= words.size();) {
-    const std::size_t end = std::min(words.find(' ', begin), words.size());
-    items.push_back(words.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return std::string(kIndent, ' ') + wrap(items, " ", kIndent, kCheckWidth) + '\n';
+  return std::string(kIndent, ' ') +
+         wrap_words(label + ' ' + printable(raw), kIndent, kCheckWidth) + '\n';
 }
 
 /// How much of a limit is left: of the bound, positive where it is met.
@@ -119,86 +113,7 @@ std::string verdict_of(const CheckResult& result) {
   return missed->why.empty() ? text : text + "; " + missed->why.front();
 }
 
-}  // namespace
-
-Printout check_printout(const CheckResult& result, std::vector<std::string> next) {
-  if (result.missed() == 0 && result.better() > 0 && result.is_kept)
-    next = {fmt::format("leviosim budget record {} --budget {} >BASELINE, which is stale",
-                        printable(result.run), printable(result.budget))};
-  else if (result.missed() == 0)
-    next = {fmt::format("leviosim history add {} --budget {}", printable(result.run),
-                        printable(result.budget))};
-  return Printout({table_of(result), misses_of(result)})
-      .ending(verdict_of(result), std::move(next));
-}
-
-Json check_json(const CheckResult& result) {
-  Json json;
-  json["format"] = "leviosim check";
-  json["version"] = 1;
-  json["run"] = result.run;
-  json["budget"] = result.budget;
-  if (!result.baseline.empty()) json["baseline"] = result.baseline;
-  json["limits"] = result.findings.size();
-  json["not_met"] = result.missed();
-  json["warnings"] = result.warned();
-  json["better"] = result.better();
-  if (!result.not_measured.empty()) json["not_measured"] = result.not_measured;
-  json["findings"] = Json::array();
-  for (const Finding& f : result.findings) {
-    Json& entry = json["findings"].emplace_back(Json::object());
-    entry["section"] = f.section->name;
-    entry["limit"] = f.limit->text;
-    entry["line"] = f.limit->line;
-    entry["statistic"] = f.statistic;
-    if (!f.stage.empty()) entry["stage"] = f.stage;
-    entry["unit"] = f.unit;
-    entry["value"] = value_of(f.value);
-    entry["bound"] = value_of(f.bound);
-    if (f.baseline) entry["baseline"] = *f.baseline;
-    if (!f.since.empty()) entry["since"] = f.since;
-    if (!f.met) entry["level"] = f.fails() ? "fail" : "warn";
-    if (f.better()) entry["better_percent"] = *f.better();
-    if (f.was_over()) entry["was_over_before"] = true;
-    const auto shown = [&](const std::optional<double>& v) {
-      return v ? Json(figure_text(*v, f.unit, f.limit->bound)) : Json(nullptr);
-    };
-    entry["shown"] = {{"value", shown(f.value)}, {"bound", shown(f.bound)}};
-    entry["met"] = f.met;
-    if (!f.limit->reason.empty()) entry["reason"] = f.limit->reason;
-    if (!f.limit->owner.empty()) entry["owner"] = f.limit->owner;
-    if (f.met) continue;
-    entry["excess"] = f.excess();
-    entry["where"] = f.where;
-    entry["why"] = f.why;
-  }
-  return json;
-}
-
-namespace {
-
-/// Text for an attribute or an element. Control characters, which XML has no form for, are escaped
-/// as everywhere (printable()).
-std::string xml(const std::string& raw) {
-  std::string text;
-  for (const char c : printable(raw)) switch (c) {
-      case '&':
-        text += "&amp;";
-        break;
-      case '<':
-        text += "&lt;";
-        break;
-      case '>':
-        text += "&gt;";
-        break;
-      case '"':
-        text += "&quot;";
-        break;
-      default:
-        text += c;
-    }
-  return text;
-}
+std::string xml(const std::string& raw) { return escape_markup(printable(raw)); }
 
 std::string test_case(const Finding& f) {
   const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"",
@@ -262,6 +177,60 @@ std::string message(const Finding& f) {
 }
 
 }  // namespace
+
+Printout check_printout(const CheckResult& result, std::vector<std::string> next) {
+  if (result.missed() == 0 && result.better() > 0 && result.is_kept)
+    next = {fmt::format("leviosim budget record {} --budget {} >BASELINE, which is stale",
+                        printable(result.run), printable(result.budget))};
+  else if (result.missed() == 0)
+    next = {fmt::format("leviosim history add {} --budget {}", printable(result.run),
+                        printable(result.budget))};
+  return Printout({table_of(result), misses_of(result)})
+      .ending(verdict_of(result), std::move(next));
+}
+
+Json check_json(const CheckResult& result) {
+  Json json;
+  json["format"] = "leviosim check";
+  json["version"] = 1;
+  json["run"] = result.run;
+  json["budget"] = result.budget;
+  if (!result.baseline.empty()) json["baseline"] = result.baseline;
+  json["limits"] = result.findings.size();
+  json["not_met"] = result.missed();
+  json["warnings"] = result.warned();
+  json["better"] = result.better();
+  if (!result.not_measured.empty()) json["not_measured"] = result.not_measured;
+  json["findings"] = Json::array();
+  for (const Finding& f : result.findings) {
+    Json& entry = json["findings"].emplace_back(Json::object());
+    entry["section"] = f.section->name;
+    entry["limit"] = f.limit->text;
+    entry["line"] = f.limit->line;
+    entry["statistic"] = f.statistic;
+    if (!f.stage.empty()) entry["stage"] = f.stage;
+    entry["unit"] = f.unit;
+    entry["value"] = value_of(f.value);
+    entry["bound"] = value_of(f.bound);
+    if (f.baseline) entry["baseline"] = *f.baseline;
+    if (!f.since.empty()) entry["since"] = f.since;
+    if (!f.met) entry["level"] = f.fails() ? "fail" : "warn";
+    if (f.better()) entry["better_percent"] = *f.better();
+    if (f.was_over()) entry["was_over_before"] = true;
+    const auto shown = [&](const std::optional<double>& v) {
+      return v ? Json(figure_text(*v, f.unit, f.limit->bound)) : Json(nullptr);
+    };
+    entry["shown"] = {{"value", shown(f.value)}, {"bound", shown(f.bound)}};
+    entry["met"] = f.met;
+    if (!f.limit->reason.empty()) entry["reason"] = f.limit->reason;
+    if (!f.limit->owner.empty()) entry["owner"] = f.limit->owner;
+    if (f.met) continue;
+    entry["excess"] = f.excess();
+    entry["where"] = f.where;
+    entry["why"] = f.why;
+  }
+  return json;
+}
 
 std::string junit_xml(const CheckResult& result) {
   std::string suites;

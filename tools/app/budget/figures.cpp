@@ -10,7 +10,6 @@
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
-#include "tools/app/budget/budget.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {

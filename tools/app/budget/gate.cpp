@@ -9,31 +9,15 @@
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "tools/app/budget/budget.h"
-#include "tools/app/budget/check.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
 
 namespace leviosim::tools {
 namespace {
 
 constexpr const char* kFormat = "leviosim baseline";
 constexpr double kLeastStageShare = 0.01;
-
-/// The stage with the highest peak of L1; null if there is none.
-const StageName* fullest_stage(const RunRecord& run) {
-  const StageName* fullest = nullptr;
-  double most = 0;
-  for (const StageName& stage : run.stages) {
-    const auto peak = run.value(fmt::format("stages.{}.memory.parallel", stage.key));
-    if (stage.on_controller || !peak || *peak <= most) continue;
-    fullest = &stage;
-    most = *peak;
-  }
-  return fullest;
-}
 
 std::set<std::string> names_in_baseline(const RunRecord& run, const Budget* budget) {
   std::set<std::string> names{"frames.count", "run.frame_period", "run.cluster_clock",
@@ -52,7 +36,7 @@ std::set<std::string> names_in_baseline(const RunRecord& run, const Budget* budg
   const std::string blocks =
       fullest == nullptr ? "" : fmt::format("stages.{}.memory.block.", fullest->key);
   for (const Statistic& s : run.statistics) {
-    if (!blocks.empty() && s.name.rfind(blocks, 0) == 0) names.insert(s.name);
+    if (!blocks.empty() && s.name.starts_with(blocks)) names.insert(s.name);
     if (matches("memory.l2.*.bytes", s.name)) names.insert(s.name);
   }
   return names;
@@ -143,8 +127,8 @@ StageName name_of(const StageParts& parts, const RunRecord& run) {
 }
 
 bool is_of(const StageName& stage, const std::string& statistic) {
-  return statistic.rfind("stages." + stage.key + '.', 0) == 0 ||
-         statistic.rfind("energy." + stage.key + '.', 0) == 0;
+  return statistic.starts_with("stages." + stage.key + '.') ||
+         statistic.starts_with("energy." + stage.key + '.');
 }
 
 bool is_of_a_stage(const std::string& statistic, const RunRecord& run) {
@@ -160,6 +144,9 @@ RunRecord record_of_baseline(const std::string& name, const Json& document) {
   for (const Json& stage : document.at("stages")) add_baseline_stage(stage, run);
   return run;
 }
+
+/// Baselines are JSON, traces begin with letters.
+bool is_baseline(const std::string& name) { return base::is_file(name) && name.ends_with(".json"); }
 
 }  // namespace
 
@@ -231,16 +218,6 @@ RunRecord parse_baseline(const std::string& name, const std::string& text) {
   throw InputError(fmt::format(
       "{}: no baseline of version 1; expected what 'leviosim budget record' prints", name));
 }
-
-namespace {
-
-/// Baselines are JSON, traces begin with letters.
-bool is_baseline(const std::string& name) {
-  if (!base::is_file(name) || name.size() < 5) return false;
-  return name.substr(name.size() - 5) == ".json";
-}
-
-}  // namespace
 
 RunRecord read_run_or_baseline(const std::string& name, const RecordOptions& chip) {
   if (is_baseline(name))

@@ -95,97 +95,6 @@ Words help_as_option(const Words& words, const std::vector<Command>& commands) {
   return {words[1], "--help"};
 }
 
-}  // namespace
-
-void TextOptions::operator()(const std::string& names, std::string& value, const std::string& type,
-                             const std::string& help) const {
-  CLI::Option* option = command.add_option(names, value, help)->type_name(type);
-  if (!group.empty()) option->group(group);
-}
-
-void TextOptions::operator()(const std::string& names, std::vector<std::string>& values,
-                             const std::string& type, const std::string& help, bool split) const {
-  CLI::Option* option =
-      command.add_option(names, values, help)->type_name(type)->take_all()->allow_extra_args(false);
-  if (!group.empty()) option->group(group);
-  if (split) option->delimiter(',');
-}
-
-void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
-  command.footer(fmt::format("Examples:\n  {}", fmt::join(lines, "\n  ")));
-}
-
-int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& typed) {
-  refuse_empty_values(typed);
-  if (typed.size() == 3 && typed[0] == kHelp && typed[1] == "--as") {
-    print_piece(ScreenPiece::Kind::document, manual(app, commands, typed[2]));
-    return 0;
-  }
-  const Words words = help_as_option(typed, commands);
-  // CLI11 would go on to a later word that is a command.
-  if (!words.empty() && words.front().front() != '-' &&
-      command_named(commands, words.front()) == nullptr)
-    fail_unknown_command(commands, words.front());
-  // Unknown words are collected instead of refused, so that they can be answered with a suggestion.
-  app.allow_extras();
-  // One command: after it, a folder may be called "run".
-  app.require_subcommand(0, 1);
-  for (const Command& command : commands) {
-    command.app->allow_extras();
-    if (command.app->get_option_no_throw("--all") == nullptr)
-      command.app->add_flag_function(
-          "--all", [](std::int64_t) {}, "print all lines, instead of a screen of them");
-  }
-  try {
-    app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front
-  } catch (const CLI::Success& help_or_version) {
-    std::ostringstream text;
-    const int status = app.exit(help_or_version, text, text);
-    print_piece(ScreenPiece::Kind::document, text.str());
-    return status;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
-  }
-  for (const Command& command : commands) {
-    if (!app.got_subcommand(command.app)) continue;
-    Words unknown = command.app->remaining();
-    std::erase(unknown, "--");  // what stands behind it was taken
-    if (!unknown.empty())
-      fail_unknown(command.app->get_name() + ": ", first_fault(unknown), options_of(*command.app));
-    if (command.app->count("--all") > 0) show_all_results();
-    fit_tables();
-    command.run();
-    return 0;
-  }
-  fail_without_command(commands, app.remaining(), app);
-}
-
-std::int64_t parse_whole(const std::string& option, const std::string& text, std::int64_t min,
-                         std::int64_t max, std::string_view about_max) {
-  std::int64_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || value < min || value > max)
-    throw InputError(fmt::format("{} '{}': expected a whole number from {} to {}{}", option, text,
-                                 min, max, about_max));
-  return value;
-}
-
-double parse_positive(const std::string& option, const std::string& text) {
-  double value = 0;
-  if (!base::parse_number(text, value) || !(value > 0))
-    throw InputError(fmt::format("{} '{}': expected a number above 0", option, text));
-  return value;
-}
-
-void require(const CLI::App& command, const std::string& option, const std::string& expected) {
-  if (command.count(option) == 0)
-    throw InputError(
-        fmt::format("{}: {} is missing; expected {}", command.get_name(), option, expected));
-}
-
-namespace {
-
 /// An option of a command, or of the program.
 struct Entry {
   std::vector<std::string> names;  ///< "-p", "--set"; of what has none, "RUN"
@@ -343,6 +252,93 @@ constexpr std::array kFormats{Format{"man", man_page}, Format{"bash", bash_compl
                               Format{"zsh", zsh_completion}, Format{"fish", fish_completion}};
 
 }  // namespace
+
+void TextOptions::operator()(const std::string& names, std::string& value, const std::string& type,
+                             const std::string& help) const {
+  CLI::Option* option = command.add_option(names, value, help)->type_name(type);
+  if (!group.empty()) option->group(group);
+}
+
+void TextOptions::operator()(const std::string& names, std::vector<std::string>& values,
+                             const std::string& type, const std::string& help, bool split) const {
+  CLI::Option* option =
+      command.add_option(names, values, help)->type_name(type)->take_all()->allow_extra_args(false);
+  if (!group.empty()) option->group(group);
+  if (split) option->delimiter(',');
+}
+
+void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
+  command.footer(fmt::format("Examples:\n  {}", fmt::join(lines, "\n  ")));
+}
+
+int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& typed) {
+  refuse_empty_values(typed);
+  if (typed.size() == 3 && typed[0] == kHelp && typed[1] == "--as") {
+    print_piece(ScreenPiece::Kind::document, manual(app, commands, typed[2]));
+    return 0;
+  }
+  const Words words = help_as_option(typed, commands);
+  // CLI11 would go on to a later word that is a command.
+  if (!words.empty() && words.front().front() != '-' &&
+      command_named(commands, words.front()) == nullptr)
+    fail_unknown_command(commands, words.front());
+  // Unknown words are collected instead of refused, so that they can be answered with a suggestion.
+  app.allow_extras();
+  // One command: after it, a folder may be called "run".
+  app.require_subcommand(0, 1);
+  for (const Command& command : commands) {
+    command.app->allow_extras();
+    if (command.app->get_option_no_throw("--all") == nullptr)
+      command.app->add_flag_function(
+          "--all", [](std::int64_t) {}, "print all lines, instead of a screen of them");
+  }
+  try {
+    app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front
+  } catch (const CLI::Success& help_or_version) {
+    std::ostringstream text;
+    const int status = app.exit(help_or_version, text, text);
+    print_piece(ScreenPiece::Kind::document, text.str());
+    return status;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what());
+  }
+  for (const Command& command : commands) {
+    if (!app.got_subcommand(command.app)) continue;
+    Words unknown = command.app->remaining();
+    std::erase(unknown, "--");  // what stands behind it was taken
+    if (!unknown.empty())
+      fail_unknown(command.app->get_name() + ": ", first_fault(unknown), options_of(*command.app));
+    if (command.app->count("--all") > 0) show_all_results();
+    fit_tables();
+    command.run();
+    return 0;
+  }
+  fail_without_command(commands, app.remaining(), app);
+}
+
+std::int64_t parse_whole(const std::string& option, const std::string& text, std::int64_t min,
+                         std::int64_t max, std::string_view about_max) {
+  std::int64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || value < min || value > max)
+    throw InputError(fmt::format("{} '{}': expected a whole number from {} to {}{}", option, text,
+                                 min, max, about_max));
+  return value;
+}
+
+double parse_positive(const std::string& option, const std::string& text) {
+  double value = 0;
+  if (!base::parse_number(text, value) || !(value > 0))
+    throw InputError(fmt::format("{} '{}': expected a number above 0", option, text));
+  return value;
+}
+
+void require(const CLI::App& command, const std::string& option, const std::string& expected) {
+  if (command.count(option) == 0)
+    throw InputError(
+        fmt::format("{}: {} is missing; expected {}", command.get_name(), option, expected));
+}
 
 std::string manual(const CLI::App& app, const std::vector<Command>& commands,
                    const std::string& format) {

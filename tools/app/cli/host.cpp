@@ -1,7 +1,6 @@
 #include "tools/app/cli/host.h"
 
 #include <fcntl.h>
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/stat.h>
@@ -10,12 +9,10 @@
 
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <system_error>
 
 #include "sim/base/error.h"
-#include "sim/base/interruption.h"
 #include "sim/outputs/file_system.h"
 #include "tools/app/cli/terminal.h"
 
@@ -28,20 +25,6 @@ bool stays_ignored(int signal) {
   struct sigaction action = {};
   return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
-
-}  // namespace
-
-DeferredInterrupts::DeferredInterrupts() {
-  sigset_t held;
-  sigemptyset(&held);
-  for (const int signal : interrupting_signals())
-    if (!stays_ignored(signal)) sigaddset(&held, signal);
-  pthread_sigmask(SIG_BLOCK, &held, &before_);
-}
-
-DeferredInterrupts::~DeferredInterrupts() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
-namespace {
 
 /// A child that was started, with the signals that a new process has.
 pid_t started(std::vector<std::string> words, posix_spawn_file_actions_t* files) {
@@ -72,7 +55,43 @@ int status_of(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+namespace fs = std::filesystem;
+
+constexpr const char* kWayOut = "set XDG_CACHE_HOME to a folder of yours";
+
+/// Where others can make folders, too: one that nobody else can read or write.
+fs::path private_folder(const fs::path& folder) {
+  if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+    throw InputError(fmt::format("{}: cannot be created: {}; {}", folder.string(),
+                                 outputs::reason(errno), kWayOut));
+  const std::optional<struct stat> status = outputs::status_of(folder);
+  if (!status || !S_ISDIR(status->st_mode) || status->st_uid != ::geteuid() ||
+      (status->st_mode & 077) != 0)
+    throw InputError(fmt::format(
+        "{}: is not a folder that only you can use, and there is no other place for the cache; {}",
+        folder.string(), kWayOut));
+  return folder;
+}
+
+/// It may be a link, as people move their caches to other disks.
+fs::path users_folder(const fs::path& folder) {
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) == 0 && status.st_uid != ::geteuid())
+    throw InputError(fmt::format("{}: belongs to another user; {}", folder.string(), kWayOut));
+  return folder;
+}
+
 }  // namespace
+
+DeferredInterrupts::DeferredInterrupts() {
+  sigset_t held;
+  sigemptyset(&held);
+  for (const int signal : interrupting_signals())
+    if (!stays_ignored(signal)) sigaddset(&held, signal);
+  pthread_sigmask(SIG_BLOCK, &held, &before_);
+}
+
+DeferredInterrupts::~DeferredInterrupts() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 int run_child(const std::vector<std::string>& words, bool quiet) {
   posix_spawn_file_actions_t files;
@@ -111,36 +130,6 @@ std::string output_of(const std::vector<std::string>& words) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kWayOut = "set XDG_CACHE_HOME to a folder of yours";
-
-/// Where others can make folders, too: one that nobody else can read or write.
-fs::path private_folder(const fs::path& folder) {
-  if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
-    throw InputError(fmt::format("{}: cannot be created: {}; {}", folder.string(),
-                                 outputs::reason(errno), kWayOut));
-  const std::optional<struct stat> status = outputs::status_of(folder);
-  if (!status || !S_ISDIR(status->st_mode) || status->st_uid != ::geteuid() ||
-      (status->st_mode & 077) != 0)
-    throw InputError(fmt::format(
-        "{}: is not a folder that only you can use, and there is no other place for the cache; {}",
-        folder.string(), kWayOut));
-  return folder;
-}
-
-/// It may be a link, as people move their caches to other disks.
-fs::path users_folder(const fs::path& folder) {
-  struct stat status {};
-  if (::stat(folder.c_str(), &status) == 0 && status.st_uid != ::geteuid())
-    throw InputError(fmt::format("{}: belongs to another user; {}", folder.string(), kWayOut));
-  return folder;
-}
-
-}  // namespace
 
 fs::path cache_folder() {
   if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/')

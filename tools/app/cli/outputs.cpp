@@ -1,6 +1,5 @@
 #include "tools/app/cli/outputs.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>

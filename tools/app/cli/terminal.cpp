@@ -1,6 +1,5 @@
 #include "tools/app/cli/terminal.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -19,6 +18,7 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 
 namespace leviosim::tools {
 namespace {
@@ -101,6 +101,65 @@ Results& results() {
   return all;
 }
 
+using Kind = ScreenPiece::Kind;
+
+/// What is left of details while there is room: their heading, a line, and how many more there are.
+constexpr int kFewest = 3;
+
+int default_width = kAnyWidth;
+
+int lines_of(std::string_view text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+void keep_lines(std::string& text, int lines) {
+  const int left_out = lines_of(text) - (lines - 1);
+  std::size_t end = 0;
+  for (int line = 0; line < lines - 1; ++line) end = text.find('\n', end) + 1;
+  text.resize(end);
+  text += fmt::format("… {} more lines: --all shows them\n", left_out);
+}
+
+std::string blanks(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
+
+/// Lines that are too wide, broken between words; what follows is two columns further in.
+std::string within(std::string_view text, int columns) {
+  constexpr int kFurther = 2;
+  constexpr std::size_t kLabelAndPath = 2;  // such a line is left to be copied
+  std::string lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+    const std::vector<std::string> words = base::split(line.substr(indent), ' ');
+    if (display_width(line) <= columns || words.size() <= kLabelAndPath)
+      lines += line;
+    else
+      lines += blanks(static_cast<int>(indent)) +
+               wrap(words, " ", static_cast<int>(indent) + kFurther, columns);
+    lines += '\n';
+    begin = end + 1;
+  }
+  return lines;
+}
+
+/// Commands of CI last, and before them what to do next.
+std::vector<ScreenPiece> in_order(std::vector<ScreenPiece> pieces) {
+  const auto is = [](Kind kind) {
+    return [kind](const ScreenPiece& piece) { return piece.kind == kind; };
+  };
+  const auto last_next = std::find_if(pieces.rbegin(), pieces.rend(), is(Kind::next));
+  std::vector<ScreenPiece> ordered;
+  for (const ScreenPiece& piece : pieces)
+    if (piece.kind != Kind::next && piece.kind != Kind::commands) ordered.push_back(piece);
+  if (last_next != pieces.rend()) ordered.push_back(*last_next);
+  std::copy_if(pieces.begin(), pieces.end(), std::back_inserter(ordered), is(Kind::commands));
+  return ordered;
+}
+
+constexpr std::chrono::milliseconds kBetweenRewrites{100};
+constexpr const char* kErase = "\r\x1b[K";
+
 }  // namespace
 
 void print_piece(ScreenPiece::Kind kind, std::string text) {
@@ -146,76 +205,6 @@ void flush_results() {
 void print_error(std::string_view message) {
   std::fputs(fmt::format("leviosim: {}\n", printable(message)).c_str(), stderr);
 }
-
-namespace {
-
-using Kind = ScreenPiece::Kind;
-
-/// What is left of details while there is room: their heading, a line, and how many more there are.
-constexpr int kFewest = 3;
-
-int default_width = kAnyWidth;
-
-int lines_of(std::string_view text) {
-  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-}
-
-void keep_lines(std::string& text, int lines) {
-  const int left_out = lines_of(text) - (lines - 1);
-  std::size_t end = 0;
-  for (int line = 0; line < lines - 1; ++line) end = text.find('\n', end) + 1;
-  text.resize(end);
-  text += fmt::format("… {} more lines: --all shows them\n", left_out);
-}
-
-std::string blanks(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
-
-std::vector<std::string> words_of(std::string_view line) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(' ', begin), line.size());
-    words.emplace_back(line.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return words;
-}
-
-/// Lines that are too wide, broken between words; what follows is two columns further in.
-std::string within(std::string_view text, int columns) {
-  constexpr int kFurther = 2;
-  constexpr std::size_t kLabelAndPath = 2;  // such a line is left to be copied
-  std::string lines;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
-    const std::vector<std::string> words = words_of(line.substr(indent));
-    if (display_width(line) <= columns || words.size() <= kLabelAndPath)
-      lines += line;
-    else
-      lines += blanks(static_cast<int>(indent)) +
-               wrap(words, " ", static_cast<int>(indent) + kFurther, columns);
-    lines += '\n';
-    begin = end + 1;
-  }
-  return lines;
-}
-
-/// Commands of CI last, and before them what to do next.
-std::vector<ScreenPiece> in_order(std::vector<ScreenPiece> pieces) {
-  const auto is = [](Kind kind) {
-    return [kind](const ScreenPiece& piece) { return piece.kind == kind; };
-  };
-  const auto last_next = std::find_if(pieces.rbegin(), pieces.rend(), is(Kind::next));
-  std::vector<ScreenPiece> ordered;
-  for (const ScreenPiece& piece : pieces)
-    if (piece.kind != Kind::next && piece.kind != Kind::commands) ordered.push_back(piece);
-  if (last_next != pieces.rend()) ordered.push_back(*last_next);
-  std::copy_if(pieces.begin(), pieces.end(), std::back_inserter(ordered), is(Kind::commands));
-  return ordered;
-}
-
-}  // namespace
 
 std::vector<ScreenPiece> on_screen(std::vector<ScreenPiece> pieces, int lines, int columns) {
   pieces = in_order(std::move(pieces));
@@ -286,12 +275,21 @@ std::string wrap(const std::vector<std::string>& items, std::string_view separat
   return text;
 }
 
-namespace {
+std::string wrap_words(std::string_view text, int indent, int width) {
+  return wrap(base::split(text, ' '), " ", indent, width);
+}
 
-constexpr std::chrono::milliseconds kBetweenRewrites{100};
-constexpr const char* kErase = "\r\x1b[K";
-
-}  // namespace
+std::string escape_markup(std::string_view text) {
+  constexpr std::array<std::pair<char, std::string_view>, 5> kNames{
+      {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
+  std::string escaped;
+  for (const char c : text) {
+    const auto name =
+        std::find_if(kNames.begin(), kNames.end(), [c](const auto& n) { return n.first == c; });
+    escaped += name == kNames.end() ? std::string(1, c) : std::string(name->second);
+  }
+  return escaped;
+}
 
 ProgressLine::Style ProgressLine::style_of_stderr(bool quiet) {
   if (quiet) return Style::None;

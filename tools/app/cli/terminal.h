@@ -61,6 +61,13 @@ std::string shortened(const std::string& text, int width);
 std::string wrap(const std::vector<std::string>& items, std::string_view separator, int indent,
                  int width);
 
+/// The same of a text, which is broken between its words.
+std::string wrap_words(std::string_view text, int indent, int width);
+
+/// Text that may stand in an element or an attribute of HTML, XML or SVG. XML has no form for
+/// control characters, so text from outside is made printable() first.
+std::string escape_markup(std::string_view text);
+
 /// For stdout, once the command ends.
 void print_piece(ScreenPiece::Kind kind, std::string text);
 

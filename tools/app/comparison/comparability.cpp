@@ -11,6 +11,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/run/run_folder.h"
@@ -83,20 +84,33 @@ void note_measured(std::vector<std::string>& notes, const RunRecord& measured,
                                   base::did_you_mean(stage.name, known)));
 }
 
+constexpr const char* kFrameCycles = "frame.cycles.parallel.mean";
+
+std::filesystem::path new_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "leviosim-programs-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw InputError(fmt::format("{}: cannot be made", name));
+  return name;
+}
+
+/// Work of closed loops cannot be recorded.
+bool is_recorded(const std::vector<std::string>& arguments) {
+  return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) {
+    return word.starts_with("--fps") || word.starts_with("--deadline") || word == "--native";
+  });
+}
+
 }  // namespace
 
 Allowed parse_allowed(const std::string& text) {
   std::vector<std::string> known{"chip", "data"};
   for (const Condition& condition : kConditions) known.emplace_back(condition.key);
   Allowed allowed;
-  for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string word = text.substr(begin, end - begin);
+  if (text.empty()) return allowed;
+  for (const std::string& word : base::split(text, ',')) {
     if (std::find(known.begin(), known.end(), word) == known.end())
       throw InputError(fmt::format("--allow '{}': expected {}{}", word, fmt::join(known, ", "),
                                    base::did_you_mean(word, known)));
     allowed.insert(word);
-    begin = end + 1;
   }
   return allowed;
 }
@@ -147,25 +161,6 @@ void check_same_chip(const RunRecord& a, const RunRecord& b, const Allowed& allo
   if (chip(a).empty() || chip(b).empty() || chip(a) == chip(b) || allowed.count("chip") > 0) return;
   refuse(a, b, {fmt::format("other chip ({} and {})", chip(a), chip(b))}, {"chip"});
 }
-
-namespace {
-
-constexpr const char* kFrameCycles = "frame.cycles.parallel.mean";
-
-std::filesystem::path new_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "leviosim-programs-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) throw InputError(fmt::format("{}: cannot be made", name));
-  return name;
-}
-
-/// Work of closed loops cannot be recorded.
-bool is_recorded(const std::vector<std::string>& arguments) {
-  return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) {
-    return word.starts_with("--fps") || word.starts_with("--deadline") || word == "--native";
-  });
-}
-
-}  // namespace
 
 TwoPrograms::TwoPrograms(const std::vector<std::string>& programs,
                          const std::vector<std::string>& arguments) {

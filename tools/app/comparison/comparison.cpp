@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/energy/domain.h"
-#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -28,11 +27,6 @@ constexpr std::array kFigures{
     QuantityOfRuns{"energy.mean_power", "mean power", "mW", 1},
     QuantityOfRuns{"accuracy.ate.rmse", "ATE (RMSE)", "m", 1},
 };
-
-std::optional<double> scaled(std::optional<double> value, double scale) {
-  if (value) *value *= scale;
-  return value;
-}
 
 class Comparer {
  public:
@@ -231,53 +225,6 @@ void collect_leaves(const ComparedQuantity& q, const std::string& prefix,
   }
 }
 
-}  // namespace
-
-std::span<const QuantityOfRuns> quantities_of_runs() { return kFigures; }
-
-std::optional<double> ComparedQuantity::difference() const {
-  if (!a || !b) return std::nullopt;
-  return *b - *a;
-}
-
-std::optional<double> ComparedQuantity::percent() const {
-  if (!a || !b || *a == 0) return std::nullopt;
-  return 100 * (*b - *a) / *a;
-}
-
-Causes& Causes::operator+=(const Causes& o) {
-  work += o.work;
-  cost += o.cost;
-  contention += o.contention;
-  return *this;
-}
-
-bool RunComparison::same_work() const {
-  return std::all_of(stages.begin(), stages.end(),
-                     [](const StageComparison& s) { return s.same_work; });
-}
-
-RunComparison compare_runs(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes) {
-  const Comparer comparer(a, b);
-  RunComparison c{a, b, std::move(notes), comparer.figures(), {}, {}, comparer.blocks(), {}, {}};
-  for (const StageName& name : comparer.stages()) c.stages.push_back(comparer.stage(name));
-  c.frame = comparer.frame(c.stages);
-  c.energy_by_stage = comparer.energy(false);
-  c.energy_by_domain = comparer.energy(true);
-  return c;
-}
-
-std::vector<Leaf> leaves_by_difference(const ComparedQuantity& whole) {
-  std::vector<Leaf> leaves;
-  collect_leaves(whole, "", leaves);
-  std::stable_sort(leaves.begin(), leaves.end(), [](const Leaf& x, const Leaf& y) {
-    return std::abs(x.difference) > std::abs(y.difference);
-  });
-  return leaves;
-}
-
-namespace {
-
 constexpr const char* kUnit = "cycles";
 
 /// What is below a thousandth of a cycle in every row of a file is no rest.
@@ -362,6 +309,49 @@ Causes causes_of(double count_a, double cycles_a, double count_b, double cycles_
 }
 
 }  // namespace
+
+std::span<const QuantityOfRuns> quantities_of_runs() { return kFigures; }
+
+std::optional<double> ComparedQuantity::difference() const {
+  if (!a || !b) return std::nullopt;
+  return *b - *a;
+}
+
+std::optional<double> ComparedQuantity::percent() const {
+  if (!a || !b || *a == 0) return std::nullopt;
+  return 100 * (*b - *a) / *a;
+}
+
+Causes& Causes::operator+=(const Causes& o) {
+  work += o.work;
+  cost += o.cost;
+  contention += o.contention;
+  return *this;
+}
+
+bool RunComparison::same_work() const {
+  return std::all_of(stages.begin(), stages.end(),
+                     [](const StageComparison& s) { return s.same_work; });
+}
+
+RunComparison compare_runs(const RunRecord& a, const RunRecord& b, std::vector<std::string> notes) {
+  const Comparer comparer(a, b);
+  RunComparison c{a, b, std::move(notes), comparer.figures(), {}, {}, comparer.blocks(), {}, {}};
+  for (const StageName& name : comparer.stages()) c.stages.push_back(comparer.stage(name));
+  c.frame = comparer.frame(c.stages);
+  c.energy_by_stage = comparer.energy(false);
+  c.energy_by_domain = comparer.energy(true);
+  return c;
+}
+
+std::vector<Leaf> leaves_by_difference(const ComparedQuantity& whole) {
+  std::vector<Leaf> leaves;
+  collect_leaves(whole, "", leaves);
+  std::stable_sort(leaves.begin(), leaves.end(), [](const Leaf& x, const Leaf& y) {
+    return std::abs(x.difference) > std::abs(y.difference);
+  });
+  return leaves;
+}
 
 ComparedQuantity split_by_mechanism(const StageParts* a, const StageParts* b, double frames_a,
                                     double frames_b) {

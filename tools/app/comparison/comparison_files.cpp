@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/csv_table.h"
 #include "sim/base/printable_text.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/verdict.h"
 
@@ -51,22 +52,14 @@ Json stage_json(const StageComparison& s) {
   return json;
 }
 
-std::string cell(const std::string& raw) {
-  const std::string text = printable(raw);
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 class CsvRows {
  public:
   void add(const std::string& subject, const std::string& quantity, const ComparedQuantity& q,
            const std::string& part = {}, const std::string& subpart = {}) {
     const auto number = [](std::optional<double> v) { return v ? fmt::format("{}", *v) : ""; };
-    text_ +=
-        fmt::format("{},{},{},{},{},{},{},{}\n", cell(subject), cell(quantity), cell(part),
-                    cell(subpart), cell(q.unit), number(q.a), number(q.b), number(q.difference()));
+    text_ += base::csv_line({printable(subject), printable(quantity), printable(part),
+                             printable(subpart), printable(q.unit), number(q.a), number(q.b),
+                             number(q.difference())});
     for (const ComparedQuantity& below : q.parts)
       add(subject, quantity, below, part.empty() ? below.name : part,
           part.empty() ? "" : below.name);
@@ -77,57 +70,7 @@ class CsvRows {
   std::string text_ = "subject,quantity,part,subpart,unit,a,b,difference\n";
 };
 
-}  // namespace
-
-Json comparison_json(const RunComparison& c) {
-  Json json;
-  json["format"] = "leviosim comparison";
-  json["version"] = 1;
-  for (const auto& [key, run] : {std::pair{"a", &c.a}, {"b", &c.b}}) {
-    json[key]["name"] = run->name;
-    json[key]["facts"] = facts_json(run->facts);
-  }
-  json["notes"] = c.notes;
-  json["same_work"] = c.same_work();
-  json["figures"] = list_json(c.figures);
-  if (c.a.facts.measured || c.b.facts.measured)
-    for (const ModelError& e : model_errors(c))
-      json["model_errors"].push_back({{"stage", e.stage},
-                                      {"measured", value_of(e.measured)},
-                                      {"model", value_of(e.model)},
-                                      {"percent", value_of(e.percent)}});
-  json["stages"] = Json::array();
-  for (const StageComparison& s : c.stages) json["stages"].push_back(stage_json(s));
-  json["frame"] = quantity_json(c.frame);
-  json["blocks"] = list_json(c.blocks);
-  json["energy_by_stage"] = quantity_json(c.energy_by_stage);
-  json["energy_by_domain"] = quantity_json(c.energy_by_domain);
-  return json;
-}
-
-std::string comparison_csv(const RunComparison& c) {
-  CsvRows rows;
-  for (const ComparedQuantity& q : c.figures) rows.add("run", q.name, q);
-  for (const StageComparison& s : c.stages) {
-    for (const ComparedQuantity* q : {&s.calls, &s.operations, &s.single, &s.parallel, &s.share})
-      rows.add(s.stage.name, q->name, *q);
-    if (!s.mechanisms) continue;
-    rows.add(s.stage.name, "cycles of a frame by mechanism", *s.mechanisms);
-    rows.add(s.stage.name, "cycles of a frame by fork", *s.forks);
-    for (const auto& [name, cycles] : {std::pair{"work", s.causes.work},
-                                       {"cost", s.causes.cost},
-                                       {"contention", s.causes.contention}})
-      rows.add(s.stage.name, "cycles of a frame by cause", {name, "cycles", 0.0, cycles}, name);
-  }
-  for (const ComparedQuantity& q : c.blocks) rows.add("memory", q.name, q);
-  rows.add("energy", "by stage", c.energy_by_stage);
-  rows.add("energy", "by domain", c.energy_by_domain);
-  return rows.take();
-}
-
 // What fits on a screen of a comparison: figures of the run, the stages that differ most, and why.
-
-namespace {
 
 constexpr std::size_t kMostFigures = 6;
 constexpr std::size_t kMostStages = 4;
@@ -240,6 +183,52 @@ std::string conclusion(const RunComparison& c) {
 }
 
 }  // namespace
+
+Json comparison_json(const RunComparison& c) {
+  Json json;
+  json["format"] = "leviosim comparison";
+  json["version"] = 1;
+  for (const auto& [key, run] : {std::pair{"a", &c.a}, {"b", &c.b}}) {
+    json[key]["name"] = run->name;
+    json[key]["facts"] = facts_json(run->facts);
+  }
+  json["notes"] = c.notes;
+  json["same_work"] = c.same_work();
+  json["figures"] = list_json(c.figures);
+  if (c.a.facts.measured || c.b.facts.measured)
+    for (const ModelError& e : model_errors(c))
+      json["model_errors"].push_back({{"stage", e.stage},
+                                      {"measured", value_of(e.measured)},
+                                      {"model", value_of(e.model)},
+                                      {"percent", value_of(e.percent)}});
+  json["stages"] = Json::array();
+  for (const StageComparison& s : c.stages) json["stages"].push_back(stage_json(s));
+  json["frame"] = quantity_json(c.frame);
+  json["blocks"] = list_json(c.blocks);
+  json["energy_by_stage"] = quantity_json(c.energy_by_stage);
+  json["energy_by_domain"] = quantity_json(c.energy_by_domain);
+  return json;
+}
+
+std::string comparison_csv(const RunComparison& c) {
+  CsvRows rows;
+  for (const ComparedQuantity& q : c.figures) rows.add("run", q.name, q);
+  for (const StageComparison& s : c.stages) {
+    for (const ComparedQuantity* q : {&s.calls, &s.operations, &s.single, &s.parallel, &s.share})
+      rows.add(s.stage.name, q->name, *q);
+    if (!s.mechanisms) continue;
+    rows.add(s.stage.name, "cycles of a frame by mechanism", *s.mechanisms);
+    rows.add(s.stage.name, "cycles of a frame by fork", *s.forks);
+    for (const auto& [name, cycles] : {std::pair{"work", s.causes.work},
+                                       {"cost", s.causes.cost},
+                                       {"contention", s.causes.contention}})
+      rows.add(s.stage.name, "cycles of a frame by cause", {name, "cycles", 0.0, cycles}, name);
+  }
+  for (const ComparedQuantity& q : c.blocks) rows.add("memory", q.name, q);
+  rows.add("energy", "by stage", c.energy_by_stage);
+  rows.add("energy", "by domain", c.energy_by_domain);
+  return rows.take();
+}
 
 std::string comparison_summary(const RunComparison& c) {
   if (c.a.facts.measured || c.b.facts.measured) return measured_report(c, false);

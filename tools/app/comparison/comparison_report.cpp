@@ -86,13 +86,7 @@ class Writer {
     return text;
   }
   void line(const std::string& words) {
-    std::vector<std::string> items;
-    for (std::size_t begin = 0; begin <= words.size();) {
-      const std::size_t end = std::min(words.find(' ', begin), words.size());
-      items.push_back(words.substr(begin, end - begin));
-      begin = end + 1;
-    }
-    text_ += (markdown_ ? "- " : "") + wrap(items, " ", markdown_ ? 2 : 3, kWidth) + '\n';
+    text_ += (markdown_ ? "- " : "") + wrap_words(words, markdown_ ? 2 : 3, kWidth) + '\n';
   }
 
   std::string described(const RunRecord& run) const {

@@ -9,10 +9,10 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "tools/app/cli/host.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/run/run_session.h"
 #include "tools/app/run/trace_source.h"
 #include "tools/app/run/workload.h"
 
@@ -32,87 +32,6 @@ RunRequest request_for(const traces::WorkTrace& trace, const RecordOptions& opti
                                         : cores_of(options, request.platform.config.cluster);
   return request;
 }
-
-}  // namespace
-
-void add_record_options(CLI::App& command, RecordOptions& options) {
-  add_chip_options(command, options, ", on which traces are replayed [that of the recording]");
-  add_memory_option(command, options.memory);
-  command.add_flag("--quiet", options.quiet, "no progress");
-}
-
-std::string trace_of(const std::string& name) {
-  const std::filesystem::path path(name);
-  if (base::is_file(path)) return name;
-  return base::is_folder(path) && base::exists(path / kWorkTraceFile)
-             ? (path / kWorkTraceFile).string()
-             : std::string();
-}
-
-RunRecord computed_record(const std::string& name, RunRequest request, const Manifest& manifest,
-                          const Compute& compute, bool quiet, RunFiles* files) {
-  ProgressLine line(ProgressLine::style_of_stderr(quiet));
-  const RunResult run = compute(request, [&](const Progress& p) {
-    throw_if_interrupted();
-    line.show(p.done, p.total,
-              [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
-  });
-  if (files != nullptr) {
-    *files = run_files(run, manifest, platform::to_yaml(request.platform));
-    (*files)[kCyclesFile] = cycles_csv(cycle_parts(run));
-  }
-  return make_record(name, manifest, run, cycle_parts(run));
-}
-
-Manifest manifest_of_recording(const traces::WorkTrace& trace) {
-  Manifest manifest;
-  manifest.seed = trace.info().seed;
-  manifest.data = trace.info().data;
-  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
-  manifest.recording = recording_json(trace, "");  // which names the digests of the data
-  return manifest;
-}
-
-RunRecord replay_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
-  const traces::WorkTrace trace(name, trace_memory(options.memory));
-  Manifest manifest = manifest_of_recording(trace);
-  manifest.platform = options.platform.empty() ? trace.info().platform : options.platform;
-  manifest.overrides = options.overrides;
-  return computed_record(
-      name, request_for(trace, options), manifest,
-      [&](const RunRequest& request, const ProgressCallback& progress) {
-        return replay(trace, request, progress).run;
-      },
-      options.quiet, files);
-}
-
-RunRecord read_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
-  const std::filesystem::path path(name);
-  if (!base::exists(path))
-    throw InputError(
-        fmt::format("{}: does not exist; expected a run folder or a work trace", name));
-  if (is_measured(name)) {
-    if (options.names_chip())
-      throw InputError(
-          fmt::format("{}: was measured on a chip; leave out --platform, -p and --cores", name));
-    return read_measured(name);
-  }
-  if (base::is_folder(path) && !options.names_chip()) {
-    RunFiles read = read_run_files(path);
-    RunRecord record = record_of_files(name, read);
-    if (files != nullptr) *files = std::move(read);
-    return record;
-  }
-  const std::string trace = trace_of(name);
-  if (trace.empty())
-    throw InputError(
-        fmt::format("{}: holds no {}, so it cannot be replayed on another chip; expected the "
-                    "folder of a run with --record, or leave out --platform, -p and --cores",
-                    name, kWorkTraceFile));
-  return replay_record(trace, options, files);
-}
-
-namespace {
 
 std::vector<std::string> titles_of(const std::string& csv) {
   std::vector<std::string> titles(1);
@@ -195,6 +114,79 @@ void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& fram
 }
 
 }  // namespace
+
+void add_record_options(CLI::App& command, RecordOptions& options) {
+  add_chip_options(command, options, ", on which traces are replayed [that of the recording]");
+  add_memory_option(command, options.memory);
+  command.add_flag("--quiet", options.quiet, "no progress");
+}
+
+std::string trace_of(const std::string& name) {
+  const std::filesystem::path path(name);
+  if (base::is_file(path)) return name;
+  return base::is_folder(path) && base::exists(path / kWorkTraceFile)
+             ? (path / kWorkTraceFile).string()
+             : std::string();
+}
+
+RunRecord computed_record(const std::string& name, RunRequest request, const Manifest& manifest,
+                          const Compute& compute, bool quiet, RunFiles* files) {
+  ProgressLine line(ProgressLine::style_of_stderr(quiet));
+  const RunResult run = compute(request, shown_on(line));
+  if (files != nullptr) {
+    *files = run_files(run, manifest, platform::to_yaml(request.platform));
+    (*files)[kCyclesFile] = cycles_csv(cycle_parts(run));
+  }
+  return make_record(name, manifest, run, cycle_parts(run));
+}
+
+Manifest manifest_of_recording(const traces::WorkTrace& trace) {
+  Manifest manifest;
+  manifest.seed = trace.info().seed;
+  manifest.data = trace.info().data;
+  manifest.first_frame = static_cast<std::size_t>(trace.info().first_frame);
+  manifest.recording = recording_json(trace, "");  // which names the digests of the data
+  return manifest;
+}
+
+RunRecord replay_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
+  const traces::WorkTrace trace(name, trace_memory(options.memory));
+  Manifest manifest = manifest_of_recording(trace);
+  manifest.platform = options.platform.empty() ? trace.info().platform : options.platform;
+  manifest.overrides = options.overrides;
+  return computed_record(
+      name, request_for(trace, options), manifest,
+      [&](const RunRequest& request, const ProgressCallback& progress) {
+        return replay(trace, request, progress).run;
+      },
+      options.quiet, files);
+}
+
+RunRecord read_record(const std::string& name, const RecordOptions& options, RunFiles* files) {
+  const std::filesystem::path path(name);
+  if (!base::exists(path))
+    throw InputError(
+        fmt::format("{}: does not exist; expected a run folder or a work trace", name));
+  if (is_measured(name)) {
+    if (options.names_chip())
+      throw InputError(
+          fmt::format("{}: was measured on a chip; leave out --platform, -p and --cores", name));
+    return read_measured(name);
+  }
+  if (base::is_folder(path) && !options.names_chip()) {
+    RunFiles read = read_run_files(path);
+    RunRecord record = record_of_files(name, read);
+    if (files != nullptr) *files = std::move(read);
+    return record;
+  }
+  const std::string trace = trace_of(name);
+  if (trace.empty())
+    throw InputError(
+        fmt::format("{}: holds no {}, so it cannot be replayed on another chip; expected the "
+                    "folder of a run with --record, or leave out --platform, -p and --cores",
+                    name, kWorkTraceFile));
+  return replay_record(trace, options, files);
+}
 
 std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const std::string& csv) {
   Table table(file, csv);

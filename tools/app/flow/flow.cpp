@@ -13,7 +13,6 @@
 #include "sim/energy/model.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/validation/references.h"
 #include "traces/datasets/imu_batches.h"
@@ -34,6 +33,49 @@ work::MachineConfig cluster_machine(const RunRequest& request) {
           .alignment = 4,
           .record = true,
           .code = &platform::compiled_code()};
+}
+
+constexpr int kBinnedRows = 120;
+
+int binning_for(int height) { return std::max(1, (height + kBinnedRows / 2) / kBinnedRows); }
+
+constexpr double kPixel = 1 << 8;
+
+std::vector<PublishedFlow> published_of(const FlowRun& flow) {
+  std::vector<PublishedFlow> rows = published_flow();
+  std::erase_if(rows, [&](const PublishedFlow& row) { return row.platform != flow.platform; });
+  return rows;
+}
+
+std::string figure_text(const PublishedFlow& row) {
+  std::string text(name_of(row.figure));
+  if (row.rate) text += fmt::format(" at {:g} frames/s", *row.rate);
+  return text;
+}
+
+double rate_of(const FlowRun& flow) {
+  return flow.rate.value_or(1e9 / static_cast<double>(flow.run.frame_period_ns));
+}
+
+constexpr std::string_view kReferences = "px4flow";
+constexpr std::array<std::string_view, 3> kNames = {"frames per second", "speed-up", "power"};
+
+FlowFigure figure_named(const base::CsvRow& row) {
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (row.text(1) == kNames[i]) return static_cast<FlowFigure>(i);
+  row.fail(1, "unknown: expected 'frames per second', 'speed-up' or 'power'");
+}
+
+std::optional<double> power_mw(const PublishedFlow& published, const RunResult& run) {
+  if (!sim::knows_energy(run.chip)) return std::nullopt;
+  const double ratio = published.clock_mhz * 1e6 / static_cast<double>(run.cluster_clock.count());
+  const Hertz faster = std::max(run.cluster_clock, run.controller_clock);
+  const Hertz clock(std::llround(static_cast<double>(faster.count()) * ratio));
+  const auto voltage = sim::lowest_voltage(run.chip.supply, clock);
+  if (!voltage || !published.rate) return std::nullopt;
+  const auto energy = energy_at(at_rate(run, *published.rate), {*voltage, clock});
+  if (!energy || !energy->mean_power()) return std::nullopt;
+  return energy->mean_power()->value.count() * 1e3;
 }
 
 }  // namespace
@@ -96,14 +138,6 @@ void FlowSource::describe(RunResult& result) const {
   result.trajectory.clear();  // there are no poses
 }
 
-namespace {
-
-constexpr int kBinnedRows = 120;
-
-int binning_for(int height) { return std::max(1, (height + kBinnedRows / 2) / kBinnedRows); }
-
-}  // namespace
-
 BinnedFrames::BinnedFrames(const traces::Dataset& data, int side)
     : source_(data, {data.camera.width, data.camera.height}),
       side_(side),
@@ -142,28 +176,6 @@ std::vector<std::uint8_t> binned_window(const traces::GrayImage& image, int binn
     }
   return window;
 }
-
-namespace {
-
-constexpr double kPixel = 1 << 8;
-
-std::vector<PublishedFlow> published_of(const FlowRun& flow) {
-  std::vector<PublishedFlow> rows = published_flow();
-  std::erase_if(rows, [&](const PublishedFlow& row) { return row.platform != flow.platform; });
-  return rows;
-}
-
-std::string figure_text(const PublishedFlow& row) {
-  std::string text(name_of(row.figure));
-  if (row.rate) text += fmt::format(" at {:g} frames/s", *row.rate);
-  return text;
-}
-
-double rate_of(const FlowRun& flow) {
-  return flow.rate.value_or(1e9 / static_cast<double>(flow.run.frame_period_ns));
-}
-
-}  // namespace
 
 std::string frame_rate_table(const FlowRun& flow) {
   const std::optional<FlowCycles> cycles = flow_cycles(flow.run);
@@ -270,31 +282,6 @@ std::string published_csv(const FlowRun& flow) {
   }
   return text;
 }
-
-namespace {
-
-constexpr std::string_view kReferences = "px4flow";
-constexpr std::array<std::string_view, 3> kNames = {"frames per second", "speed-up", "power"};
-
-FlowFigure figure_named(const base::CsvRow& row) {
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (row.text(1) == kNames[i]) return static_cast<FlowFigure>(i);
-  row.fail(1, "unknown: expected 'frames per second', 'speed-up' or 'power'");
-}
-
-std::optional<double> power_mw(const PublishedFlow& published, const RunResult& run) {
-  if (!sim::knows_energy(run.chip)) return std::nullopt;
-  const double ratio = published.clock_mhz * 1e6 / static_cast<double>(run.cluster_clock.count());
-  const Hertz faster = std::max(run.cluster_clock, run.controller_clock);
-  const Hertz clock(std::llround(static_cast<double>(faster.count()) * ratio));
-  const auto voltage = sim::lowest_voltage(run.chip.supply, clock);
-  if (!voltage || !published.rate) return std::nullopt;
-  const auto energy = energy_at(at_rate(run, *published.rate), {*voltage, clock});
-  if (!energy || !energy->mean_power()) return std::nullopt;
-  return energy->mean_power()->value.count() * 1e3;
-}
-
-}  // namespace
 
 std::string_view name_of(FlowFigure figure) { return kNames[static_cast<std::size_t>(figure)]; }
 

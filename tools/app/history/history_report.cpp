@@ -15,7 +15,7 @@
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
@@ -261,35 +261,32 @@ std::string date_text(std::int64_t time_s) {
 
 Printout history_printout(const std::vector<PastRun>& runs, const Budget* budget,
                           std::vector<std::string> next) {
-  TextTable table({{"commit", kLeft},
-                   {"date", kLeft, 1},
-                   {"kcycles of a frame"},
-                   {"change"},
-                   {"p99 ms", kRight, 2},
-                   {"mJ", kRight, 2},
-                   {"ATE m", kRight, 3},
-                   {"limits", kLeft, 1},
-                   {"subject", kLeft}});
-  for (std::size_t i = runs.size(); i > 0; --i) {
-    const PastRun& run = runs[i - 1];
-    const auto value = [&](const char* statistic, double scale) {
-      auto v = run.record.value(statistic);
-      if (v) *v *= scale;
-      return v;
-    };
-    table.add(
-        {run.record.name, date_text(run.origin.time_s), figure_text(value(kFrameCycles, 1e-3), 1),
-         i > 1 ? change_text(runs[i - 2].record.value(kFrameCycles), run.record.value(kFrameCycles))
-               : kNothing,
-         figure_text(value("frame.latency.p99", 1e-6), 2), figure_text(value("energy.frame", 1), 3),
-         figure_text(value("accuracy.ate.rmse", 1), 3), limits_text(run.limits),
-         run.origin.subject});
-  }
+  using R = const PastRun* const&;
+  const auto figure = [](const char* statistic, double scale, int decimals) {
+    return [=](R r) { return figure_text(scaled(r->record.value(statistic), scale), decimals); };
+  };
+  const TableOf<const PastRun*> table{
+      {{"commit", kLeft}, [](R r) { return r->record.name; }},
+      {{"date", kLeft, 1}, [](R r) { return date_text(r->origin.time_s); }},
+      {{"kcycles of a frame"}, figure(kFrameCycles, 1e-3, 1)},
+      {{"change"},
+       [&](R r) {
+         if (r == &runs.front()) return std::string(kNothing);
+         return change_text((r - 1)->record.value(kFrameCycles), r->record.value(kFrameCycles));
+       }},
+      {{"p99 ms", kRight, 2}, figure("frame.latency.p99", 1e-6, 2)},
+      {{"mJ", kRight, 2}, figure("energy.frame", 1, 3)},
+      {{"ATE m", kRight, 3}, figure("accuracy.ate.rmse", 1, 3)},
+      {{"limits", kLeft, 1}, [](R r) { return limits_text(r->limits); }},
+      {{"subject", kLeft}, [](R r) { return r->origin.subject; }}};
+  std::vector<const PastRun*> newest_first;
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) newest_first.push_back(&*run);
   const RunFacts& facts = runs.back().record.facts;
   const std::string head =
       fmt::format("{} on {}, {} cores, {} frames; the newest run first\n", printable(facts.profile),
                   printable(facts.platform), facts.cores, facts.frames);
-  return Printout({head + table.str(), budget == nullptr ? "" : trend_lines(runs, *budget)})
+  return Printout({head + table.with(newest_first).str(),
+                   budget == nullptr ? "" : trend_lines(runs, *budget)})
       .ending(conclusion_of(runs), std::move(next));
 }
 

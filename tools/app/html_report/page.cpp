@@ -10,7 +10,7 @@
 #include "tools/app/budget/check.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/comparison.h"
+#include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
 namespace {
@@ -35,17 +35,11 @@ std::string scripts() {
 
 /// What the template has in place of a field such as "{{title}}".
 std::string content(std::string_view field, const Json& data) {
-  if (field == "title") return html_escaped(data.at("title").get<std::string>());
+  if (field == "title") return escape_markup(data.at("title").get<std::string>());
   if (field == "data") return script_json(data);
   if (field == "scripts") return scripts();
-  if (field == "licence") return html_escaped(std::string(part("copyright")));
+  if (field == "licence") return escape_markup(part("copyright"));
   return std::string(part(field));
-}
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos;
-       at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
 }
 
 }  // namespace
@@ -73,19 +67,10 @@ std::string html_page(const Json& data) {
   return page;
 }
 
-std::string html_escaped(const std::string& text) {
-  std::string escaped = text;
-  replace_all(escaped, "&", "&amp;");
-  replace_all(escaped, "<", "&lt;");
-  replace_all(escaped, ">", "&gt;");
-  replace_all(escaped, "\"", "&quot;");
-  replace_all(escaped, "'", "&#39;");
-  return escaped;
-}
-
 std::string script_json(const Json& json) {
-  std::string text = json_text(json);
-  replace_all(text, "<", "\\u003c");
+  std::string text;
+  for (const char c : json_text(json))
+    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
   return text;
 }
 

@@ -4,17 +4,23 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/base/builtin_file.h"
+#include "sim/base/csv_table.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/run/run_folder.h"
 
 namespace CLI {
 class App;
@@ -22,15 +28,131 @@ class App;
 
 namespace leviosim::tools {
 
+// A run as data of a report: verdict, key figures, facts, and the tables of its folder that charts
+// are drawn from. Everything is taken from the files of a run folder, whether they have been
+// written or not; what host and time they were made on is left out.
+
+/// @param record  of the files
+/// @throws InputError for files that do not hold what leviosim writes
+Json run_json(const RunRecord& record, const RunFiles& files);
+
+// A study of many points as data of a report: the points as a table of what was set and what came
+// out of it, curves over one of the settings, and the axes that the scatter begins with.
+
+struct StudyColumn {
+  std::string name;        ///< in the table of points
+  std::string title = {};  ///< empty: not on the page
+  std::string unit = {};
+  bool is_setup = false;  ///< what was set; else what came out of it
+  bool more_is_better = false;
+  double scale = 1;  ///< from the table to the unit
+};
+
+/// Figures over a setting, a line for each value of another.
+struct StudyCurves {
+  std::string x;
+  std::string series;  ///< empty: one line
+  std::vector<std::string> y;
+  std::string hint = {};   ///< in place of one about medians
+  bool from_zero = true;   ///< where the axes of the figures begin
+  std::string names = {};  ///< column that names the values 0, 1, … of x; empty: they are numbers
+  std::map<std::string, std::vector<std::size_t>> marks = {};  ///< of a figure, points to look at
+};
+
+/// A bar for each row.
+struct StudyBars {
+  std::string of;  ///< names the rows
+  std::vector<std::string> figures;
+};
+
+/// What a study found: a box with a mark, as the verdict of a run has.
+struct StudyBox {
+  std::optional<bool> good;
+  std::string mark;
+  std::string sentence;
+  std::vector<std::string> lines;
+};
+
+struct StudyPage {
+  std::string title;
+  std::vector<StudyBox> boxes = {};
+  std::string summary;                              ///< lines below the boxes
+  std::vector<std::vector<std::string>> best = {};  ///< a table: titles, then rows; may be empty
+  std::string points;                               ///< CSV, a row per point
+  std::vector<StudyColumn> columns;                 ///< those that the table lacks are left out
+  std::optional<StudyCurves> curves = {};
+  std::optional<StudyBars> bars = {};
+  std::map<std::string, double> limits = {};  ///< column → what it should not exceed
+  std::string x;                              ///< of the scatter
+  std::string y;
+  std::string colour;  ///< setting that colours the points; may be empty
+};
+
+/// A table of a study, each column described once: for the CSV file and for the page.
+template <class Record>
+class StudyTable {
+ public:
+  using Of = std::function<base::Cell(const Record&)>;
+  struct Column {
+    StudyColumn shown;
+    Of of;
+  };
+
+  StudyTable() = default;
+  StudyTable(std::initializer_list<Column> columns) {
+    for (const Column& column : columns) add(column.shown, column.of);
+  }
+  void add(const StudyColumn& shown, Of of) {
+    csv_.add(shown.name, std::move(of));
+    if (!shown.title.empty()) shown_.push_back(shown);
+  }
+  std::string csv(const std::vector<Record>& rows) const { return csv_.text(rows); }
+  void show(StudyPage& page, const std::vector<Record>& rows) const {
+    page.points = csv(rows);
+    page.columns = shown_;
+  }
+
+ private:
+  base::CsvTable<Record> csv_;
+  std::vector<StudyColumn> shown_;
+};
+
+/// The data of a page: report_json() without runs.
+Json study_report(const StudyPage& page);
+
+// The few figures of a run that anybody asks for first, and where its slowest frame spends its
+// time. Verdicts are those of result/verdict.h.
+
+/// A stage in the frame that took longest.
+struct WorstFrame {
+  int frame = 0;
+  double latency_ns = 0;
+  std::string stage;  ///< that took most of it; empty if not known
+  double stage_ns = 0;
+};
+
+/// Where it spends its time; empty if that is not known.
+std::string reason_of(const WorstFrame& worst);
+
+/// A figure of the first screen, as text.
+struct KeyFigure {
+  std::string title;
+  std::string value;
+  std::string unit;
+  std::string note;
+  std::optional<double> share = {};  ///< of what there is: of the deadline, of a memory
+};
+
+/// Those that the run has.
+/// @param protocol  of its accuracy; without one, the error is left out
+std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol);
+
 /// The data of a report: {"format", "version", "title", "runs": [run_json()…]} and, where there are
 /// some, "comparisons", "check", "study".
 Json report_json(const std::string& title, Json runs);
 
 /// The file. @param data  of report_json()
 std::string html_page(const Json& data);
-
-/// Text that may stand in an element or an attribute.
-std::string html_escaped(const std::string& text);
 
 /// JSON that may stand in a <script>: no text of it can end the element.
 std::string script_json(const Json& json);

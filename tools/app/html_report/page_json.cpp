@@ -1,4 +1,4 @@
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/html_report/page.h"
 
 #include <fmt/format.h>
 
@@ -7,16 +7,11 @@
 #include <vector>
 
 #include "sim/base/error.h"
-#include "tools/app/html_report/page.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
-
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 /// Stamps since the first, in seconds: those of data sets are too large for numbers of scripts.
 void use_seconds(Json& table) {
@@ -36,7 +31,7 @@ Json table_of(const RunRecord& record, const RunFiles& files, const char* name) 
   if (file == files.end()) return nullptr;
   const std::string where = record.name + '/' + name;
   Json table = csv_json(where, file->second,
-                        [](const std::string& column) { return !ends_with(column, "_ops"); });
+                        [](const std::string& column) { return !column.ends_with("_ops"); });
   try {
     use_seconds(table);
   } catch (const nlohmann::json::exception&) {
@@ -168,29 +163,7 @@ Json tables_of(const RunRecord& record, const RunFiles& files) {
   return tables;
 }
 
-}  // namespace
-
-Json run_json(const RunRecord& record, const RunFiles& files) {
-  const Json manifest = Json::parse(files.at("manifest.json"));
-  const std::string protocol = protocol_of(Json::parse(files.at("stats.json")));
-  Json json;
-  json["name"] = record.name;
-  json["facts"] = facts_of(record, manifest);
-  json["tables"] = tables_of(record, files);
-  json["stages"] = stages_of(record, json["tables"]["stages"]);
-  const std::optional<WorstFrame> worst =
-      worst_frame(record, json["tables"]["frames"], json["stages"]);
-  json["verdict"] = verdict_json(verdicts(record));
-  json["verdict"]["why"] = worst ? reason_of(*worst) : "";
-  json["figures"] = key_figures_json(record, protocol);
-  json["protocol"] = protocol;
-  if (!json["tables"]["stages"].is_null()) json["breakdown"] = account_of(json["tables"]["stages"]);
-  return json;
-}
-
-namespace {
-
-Json scaled(Json cells, double scale) {
+Json scaled_cells(Json cells, double scale) {
   if (scale != 1)
     for (Json& cell : cells)
       if (cell.is_number()) cell = cell.get<double>() * scale;
@@ -200,54 +173,6 @@ Json scaled(Json cells, double scale) {
 bool is_empty(const Json& cells) {
   return std::all_of(cells.begin(), cells.end(), [](const Json& cell) { return cell.is_null(); });
 }
-
-}  // namespace
-
-Json study_report(const StudyPage& page) {
-  Json data = report_json(page.title, Json::array());
-  Json& study = data["study"];
-  study["summary"] = page.summary;
-  study["boxes"] = Json::array();
-  for (const StudyBox& box : page.boxes)
-    study["boxes"].push_back({{"good", box.good ? Json(*box.good) : Json(nullptr)},
-                              {"mark", box.mark},
-                              {"sentence", box.sentence},
-                              {"lines", box.lines}});
-  study["best"] = page.best;
-  const Json table = csv_json("points", page.points);
-  study["columns"] = Json::array();
-  study["table"] = Json::object();
-  for (const StudyColumn& column : page.columns) {
-    if (!table.contains(column.name) || is_empty(table.at(column.name))) continue;
-    study["columns"].push_back({{"name", column.name},
-                                {"title", column.title},
-                                {"unit", column.unit},
-                                {"kind", column.is_setup ? "setup" : "figure"},
-                                {"more", column.more_is_better}});
-    study["table"][column.name] = scaled(table.at(column.name), column.scale);
-  }
-  const auto known = [&](const std::string& name) { return study["table"].contains(name); };
-  const auto axis = [&](const std::string& wanted, std::size_t other) {
-    if (known(wanted) || study["columns"].empty()) return Json(wanted);
-    return study["columns"][std::min(other, study["columns"].size() - 1)]["name"];
-  };
-  study["axes"] = Json::array({axis(page.x, 0), axis(page.y, 1)});
-  study["colour"] = known(page.colour) ? page.colour : "";
-  study["limits"] = page.limits;
-  if (page.curves && known(page.curves->x) &&
-      (page.curves->series.empty() || known(page.curves->series)))
-    study["curves"] = {{"x", page.curves->x},
-                       {"series", page.curves->series},
-                       {"y", page.curves->y},
-                       {"hint", page.curves->hint},
-                       {"fromZero", page.curves->from_zero},
-                       {"names", page.curves->names},
-                       {"marks", page.curves->marks}};
-  if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
-  return data;
-}
-
-namespace {
 
 std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
 
@@ -270,19 +195,6 @@ std::vector<MemoryUse> memories(const RunRecord& run) {
     if (used && size && *size > 0) list.push_back({name, *used, *size});
   }
   return list;
-}
-
-/// The stage of the cluster with the highest peak.
-std::string owner_of_l1(const RunRecord& run) {
-  std::string owner;
-  double most = 0;
-  for (const StageName& stage : run.stages) {
-    const auto peak = run.value(fmt::format("stages.{}.memory.parallel", stage.key));
-    if (stage.on_controller || !peak || *peak <= most) continue;
-    most = *peak;
-    owner = stage.name;
-  }
-  return owner;
 }
 
 /// "; between 48.1 and 62.0 ms"; empty without a band.
@@ -322,11 +234,11 @@ void add_speedup(std::vector<KeyFigure>& list, const RunRecord& run) {
 
 void add_memory(std::vector<KeyFigure>& list, const RunRecord& run) {
   for (const MemoryUse& memory : memories(run)) {
-    const std::string owner = memory.name == std::string("L1") ? owner_of_l1(run) : "";
+    const StageName* owner = memory.name == std::string("L1") ? fullest_stage(run) : nullptr;
     list.push_back({fmt::format("{} peak", memory.name), fmt::format("{:.1f}", memory.used * 1e-3),
                     "kB",
                     fmt::format("{:.1f} % of {:.0f} KiB{}", memory.percent(), memory.size / 1024,
-                                owner.empty() ? "" : ", in " + owner),
+                                owner == nullptr ? "" : ", in " + owner->name),
                     memory.used / memory.size});
   }
 }
@@ -344,6 +256,68 @@ void add_energy(std::vector<KeyFigure>& list, const RunRecord& run) {
 }
 
 }  // namespace
+
+Json run_json(const RunRecord& record, const RunFiles& files) {
+  const Json manifest = Json::parse(files.at("manifest.json"));
+  const std::string protocol = protocol_of(Json::parse(files.at("stats.json")));
+  Json json;
+  json["name"] = record.name;
+  json["facts"] = facts_of(record, manifest);
+  json["tables"] = tables_of(record, files);
+  json["stages"] = stages_of(record, json["tables"]["stages"]);
+  const std::optional<WorstFrame> worst =
+      worst_frame(record, json["tables"]["frames"], json["stages"]);
+  json["verdict"] = verdict_json(verdicts(record));
+  json["verdict"]["why"] = worst ? reason_of(*worst) : "";
+  json["figures"] = key_figures_json(record, protocol);
+  json["protocol"] = protocol;
+  if (!json["tables"]["stages"].is_null()) json["breakdown"] = account_of(json["tables"]["stages"]);
+  return json;
+}
+
+Json study_report(const StudyPage& page) {
+  Json data = report_json(page.title, Json::array());
+  Json& study = data["study"];
+  study["summary"] = page.summary;
+  study["boxes"] = Json::array();
+  for (const StudyBox& box : page.boxes)
+    study["boxes"].push_back({{"good", box.good ? Json(*box.good) : Json(nullptr)},
+                              {"mark", box.mark},
+                              {"sentence", box.sentence},
+                              {"lines", box.lines}});
+  study["best"] = page.best;
+  const Json table = csv_json("points", page.points);
+  study["columns"] = Json::array();
+  study["table"] = Json::object();
+  for (const StudyColumn& column : page.columns) {
+    if (!table.contains(column.name) || is_empty(table.at(column.name))) continue;
+    study["columns"].push_back({{"name", column.name},
+                                {"title", column.title},
+                                {"unit", column.unit},
+                                {"kind", column.is_setup ? "setup" : "figure"},
+                                {"more", column.more_is_better}});
+    study["table"][column.name] = scaled_cells(table.at(column.name), column.scale);
+  }
+  const auto known = [&](const std::string& name) { return study["table"].contains(name); };
+  const auto axis = [&](const std::string& wanted, std::size_t other) {
+    if (known(wanted) || study["columns"].empty()) return Json(wanted);
+    return study["columns"][std::min(other, study["columns"].size() - 1)]["name"];
+  };
+  study["axes"] = Json::array({axis(page.x, 0), axis(page.y, 1)});
+  study["colour"] = known(page.colour) ? page.colour : "";
+  study["limits"] = page.limits;
+  if (page.curves && known(page.curves->x) &&
+      (page.curves->series.empty() || known(page.curves->series)))
+    study["curves"] = {{"x", page.curves->x},
+                       {"series", page.curves->series},
+                       {"y", page.curves->y},
+                       {"hint", page.curves->hint},
+                       {"fromZero", page.curves->from_zero},
+                       {"names", page.curves->names},
+                       {"marks", page.curves->marks}};
+  if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
+  return data;
+}
 
 std::string reason_of(const WorstFrame& worst) {
   if (worst.stage.empty()) return {};

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <utility>
 
@@ -13,7 +12,6 @@
 #include "sim/base/interruption.h"
 #include "tools/app/images/feature_tracks.h"
 #include "tools/app/report/text_table.h"
-#include "traces/datasets/image_preparation.h"
 #include "traces/trajectories/evaluation.h"
 
 namespace leviosim::tools {
@@ -175,85 +173,6 @@ std::optional<double> ratio(const ImageStatistic& first, const ImageStatistic& l
   return last.median / first.median;
 }
 
-}  // namespace
-
-ImageStatistics image_statistics(const std::string& name, const traces::Dataset& data,
-                                 traces::ImageSize size,
-                                 const std::function<void(std::size_t)>& progress) {
-  const traces::ImageSource source(data, size);
-  Samples samples;
-  FeatureTracker tracker(size);
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    throw_if_interrupted();
-    const traces::GrayImage image = source.read(i);
-    add_picture(picture_figures(image), samples);
-    tracker.add(image);
-    if (progress) progress(i + 1);
-  }
-  const FeatureTracks features = tracker.take();
-  add_features(features, samples);
-  Geometry geometry(data, source.intrinsics(), samples);
-  for (const Track& track : features.tracks) geometry.add(track);
-  geometry.end();
-  ImageStatistics result{name, source.size(), {}};
-  for (std::size_t i = 0; i < kQuantities; ++i) {
-    ImageStatistic& row = result.rows.emplace_back();
-    row = {kRows[i].name, kRows[i].unit, kRows[i].over, samples[i].size()};
-    if (row.count == 0) continue;
-    row.tenth = quantile(samples[i], 0.1);
-    row.median = quantile(samples[i], 0.5);
-    row.ninth_tenth = quantile(samples[i], 0.9);
-  }
-  return result;
-}
-
-std::string image_statistics_table(const std::vector<ImageStatistics>& all) {
-  std::vector<TextTable::Column> columns{{"quantity", kLeft}, {"unit", kLeft, 2}};
-  for (const ImageStatistics& one : all) {
-    columns.push_back({"10 %", kRight, 1});
-    columns.push_back({one.name});
-    columns.push_back({"90 %", kRight, 1});
-  }
-  if (all.size() > 1) columns.push_back({"ratio"});
-  TextTable table(columns);
-  for (std::size_t i = 0; i < kQuantities; ++i) {
-    std::vector<std::string> cells{kRows[i].name, kRows[i].unit};
-    for (const ImageStatistics& one : all)
-      for (const double value : {one.rows[i].tenth, one.rows[i].median, one.rows[i].ninth_tenth})
-        cells.push_back(number(one.rows[i], value));
-    if (all.size() > 1) {
-      const std::optional<double> r = ratio(all.front().rows[i], all.back().rows[i]);
-      cells.push_back(r ? fmt::format("{:.2f}", *r) : "–");
-    }
-    table.add(std::move(cells));
-  }
-  return table.str();
-}
-
-std::string image_statistics_csv(const std::vector<ImageStatistics>& all) {
-  std::string csv = base::csv_line(
-      {"recording", "quantity", "unit", "over", "count", "tenth", "median", "ninth_tenth"});
-  for (const ImageStatistics& one : all)
-    for (const ImageStatistic& row : one.rows) {
-      const auto value = [&](double v) { return row.count == 0 ? "" : fmt::format("{:.6g}", v); };
-      csv += base::csv_line({one.name, row.name, row.unit, row.over, row.count, value(row.tenth),
-                             value(row.median), value(row.ninth_tenth)});
-    }
-  return csv;
-}
-
-std::vector<std::string> different_quantities(const ImageStatistics& a, const ImageStatistics& b) {
-  constexpr double kFactor = 1.25;
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < a.rows.size(); ++i)
-    if (const std::optional<double> r = ratio(a.rows[i], b.rows[i]);
-        r && (*r > kFactor || *r < 1 / kFactor))
-      names.push_back(a.rows[i].name);
-  return names;
-}
-
-namespace {
-
 constexpr int kSquare = 8;
 constexpr int kDarkBelow = 20;
 constexpr int kGlareAbove = 250;
@@ -367,6 +286,81 @@ void add_edge_width(const Picture& picture, PictureFigures& figures) {
 }
 
 }  // namespace
+
+ImageStatistics image_statistics(const std::string& name, const traces::Dataset& data,
+                                 traces::ImageSize size,
+                                 const std::function<void(std::size_t)>& progress) {
+  const traces::ImageSource source(data, size);
+  Samples samples;
+  FeatureTracker tracker(size);
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    throw_if_interrupted();
+    const traces::GrayImage image = source.read(i);
+    add_picture(picture_figures(image), samples);
+    tracker.add(image);
+    if (progress) progress(i + 1);
+  }
+  const FeatureTracks features = tracker.take();
+  add_features(features, samples);
+  Geometry geometry(data, source.intrinsics(), samples);
+  for (const Track& track : features.tracks) geometry.add(track);
+  geometry.end();
+  ImageStatistics result{name, source.size(), {}};
+  for (std::size_t i = 0; i < kQuantities; ++i) {
+    ImageStatistic& row = result.rows.emplace_back();
+    row = {kRows[i].name, kRows[i].unit, kRows[i].over, samples[i].size()};
+    if (row.count == 0) continue;
+    row.tenth = quantile(samples[i], 0.1);
+    row.median = quantile(samples[i], 0.5);
+    row.ninth_tenth = quantile(samples[i], 0.9);
+  }
+  return result;
+}
+
+std::string image_statistics_table(const std::vector<ImageStatistics>& all) {
+  std::vector<TextTable::Column> columns{{"quantity", kLeft}, {"unit", kLeft, 2}};
+  for (const ImageStatistics& one : all) {
+    columns.push_back({"10 %", kRight, 1});
+    columns.push_back({one.name});
+    columns.push_back({"90 %", kRight, 1});
+  }
+  if (all.size() > 1) columns.push_back({"ratio"});
+  TextTable table(columns);
+  for (std::size_t i = 0; i < kQuantities; ++i) {
+    std::vector<std::string> cells{kRows[i].name, kRows[i].unit};
+    for (const ImageStatistics& one : all)
+      for (const double value : {one.rows[i].tenth, one.rows[i].median, one.rows[i].ninth_tenth})
+        cells.push_back(number(one.rows[i], value));
+    if (all.size() > 1) {
+      const std::optional<double> r = ratio(all.front().rows[i], all.back().rows[i]);
+      cells.push_back(r ? fmt::format("{:.2f}", *r) : "–");
+    }
+    table.add(std::move(cells));
+  }
+  return table.str();
+}
+
+std::string image_statistics_csv(const std::vector<ImageStatistics>& all) {
+  std::string csv = base::csv_line(
+      {"recording", "quantity", "unit", "over", "count", "tenth", "median", "ninth_tenth"});
+  for (const ImageStatistics& one : all)
+    for (const ImageStatistic& row : one.rows) {
+      const auto value = [&](double v) { return row.count == 0 ? "" : fmt::format("{:.6g}", v); };
+      csv += base::csv_line({one.name, row.name, row.unit, row.over, row.count, value(row.tenth),
+                             value(row.median), value(row.ninth_tenth)});
+    }
+  return csv;
+}
+
+std::vector<std::string> different_quantities(const ImageStatistics& a, const ImageStatistics& b) {
+  constexpr double kFactor = 1.25;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < a.rows.size(); ++i)
+    if (const std::optional<double> r = ratio(a.rows[i], b.rows[i]);
+        r && (*r > kFactor || *r < 1 / kFactor))
+      names.push_back(a.rows[i].name);
+  return names;
+}
 
 double quantile(std::vector<double>& values, double share) {
   std::sort(values.begin(), values.end());

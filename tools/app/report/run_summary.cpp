@@ -3,20 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "sim/base/printable_text.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
-#include "tools/app/report/text_table.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
-#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::tools {
 namespace {
@@ -158,6 +153,56 @@ std::string stage_lines(const RunResult& run, int rows, int width) {
   return stages_of(run, stages, "").str(width) + left_out + unmeasured_note(run);
 }
 
+std::string waiting_line(const RunResult& run) {
+  const Waiting waiting = frames_that_waited(run);
+  return fmt::format("frames that waited for the front end: {}, the longest {:.2f} ms\n",
+                     waiting.frames, static_cast<double>(waiting.longest_ns) * 1e-6);
+}
+
+double mean_of(const RunResult& run, int FrameResult::*field) {
+  double sum = 0;
+  for (const FrameResult& frame : run.frames) sum += frame.*field;
+  return run.frames.empty() ? 0 : sum / static_cast<double>(run.frames.size());
+}
+
+std::int64_t count_of(const RunResult& run, PoseSource source) {
+  return std::count_if(run.frames.begin(), run.frames.end(),
+                       [&](const FrameResult& frame) { return frame.source == source; });
+}
+
+using traces::ErrorSummary;
+using traces::Evaluation;
+using traces::RelativeErrors;
+
+std::string relative_protocol(const Evaluation& evaluation) {
+  return "from every matched pose to the first that is the length farther along the true path; " +
+         evaluation.protocol;
+}
+
+std::string table_of(const std::vector<RelativeErrors>& errors) {
+  TextTable table({{"length"},
+                   {"number"},
+                   {"translation %: mean"},
+                   {"median"},
+                   {"RMSE"},
+                   {"worst"},
+                   {"rotation deg/m: mean"},
+                   {"median"},
+                   {"RMSE"},
+                   {"worst"}});
+  for (const RelativeErrors& e : errors) {
+    std::vector<std::string> cells{fmt::format("{:g} m", e.length_m), fmt::format("{}", e.count)};
+    const ErrorSummary& t = e.translation;
+    const ErrorSummary& r = e.rotation_deg_per_m;
+    for (const double value : {t.mean, t.median, t.rmse, t.max})
+      cells.push_back(fmt::format("{:.3f}", value));
+    for (const double value : {r.mean, r.median, r.rmse, r.max})
+      cells.push_back(fmt::format("{:.4f}", value));
+    table.add(std::move(cells));
+  }
+  return table.str();
+}
+
 }  // namespace
 
 std::string verdict(const RunResult& run) { return "verdict: " + verdicts(figures_of(run)).text(); }
@@ -184,54 +229,28 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
   return text + stage_lines(run, kScreenLines - static_cast<int>(lines), width) + end;
 }
 
-namespace {
-
-std::string waiting_line(const RunResult& run) {
-  const Waiting waiting = frames_that_waited(run);
-  return fmt::format("frames that waited for the front end: {}, the longest {:.2f} ms\n",
-                     waiting.frames, static_cast<double>(waiting.longest_ns) * 1e-6);
-}
-
-double mean_of(const RunResult& run, int FrameResult::*field) {
-  double sum = 0;
-  for (const FrameResult& frame : run.frames) sum += frame.*field;
-  return run.frames.empty() ? 0 : sum / static_cast<double>(run.frames.size());
-}
-
-std::int64_t count_of(const RunResult& run, PoseSource source) {
-  return std::count_if(run.frames.begin(), run.frames.end(),
-                       [&](const FrameResult& frame) { return frame.source == source; });
-}
-
-}  // namespace
-
 std::string latency_table(const RunResult& run, int width) {
   const auto period_ns = static_cast<double>(run.frame_period_ns);
-  TextTable table({{"pose from", TextTable::Align::Left},
-                   {"frames"},
-                   {"mean ms"},
-                   {"worst ms"},
-                   {"mean/period %", TextTable::Align::Right, 1},
-                   {"worst/period %"},
-                   {"over period"}});
-  const auto percent = [&](std::optional<double> ns) {
+  using S = const Scenario&;
+  const auto worst = [](S s) {
+    return s.frames > 0 ? std::optional(static_cast<double>(s.worst_latency_ns)) : std::nullopt;
+  };
+  const auto percent = [=](std::optional<double> ns) {
     return figure_text(ns ? std::optional(100.0 * *ns / period_ns) : std::nullopt, 1);
   };
-  const auto ms = [](std::optional<double> ns) {
-    return figure_text(ns ? std::optional(*ns * 1e-6) : std::nullopt, 2);
-  };
-  for (const Scenario& scenario : scenarios(run)) {
-    std::optional<double> worst;
-    if (scenario.frames > 0) worst = static_cast<double>(scenario.worst_latency_ns);
-    const std::optional<double> average = scenario.mean_latency_ns();
-    table.add({std::string(scenario.name), fmt::format("{}", scenario.frames), ms(average),
-               ms(worst), percent(average), percent(worst),
-               fmt::format("{}", scenario.over_period)});
-  }
+  const auto ms = [](std::optional<double> ns) { return figure_text(scaled(ns, 1e-6), 2); };
+  const TableOf<Scenario> table{
+      {{"pose from", kLeft}, [](S s) { return s.name; }},
+      {{"frames"}, [](S s) { return s.frames; }},
+      {{"mean ms"}, [=](S s) { return ms(s.mean_latency_ns()); }},
+      {{"worst ms"}, [=](S s) { return ms(worst(s)); }},
+      {{"mean/period %", kRight, 1}, [=](S s) { return percent(s.mean_latency_ns()); }},
+      {{"worst/period %"}, [=](S s) { return percent(worst(s)); }},
+      {{"over period"}, [](S s) { return s.over_period; }}};
   return fmt::format(
              "frame latency, from the camera's frame to its pose (frame period {:.2f} ms)\n",
              period_ns * 1e-6) +
-         table.str(width) + waiting_line(run);
+         table.with(scenarios(run)).str(width) + waiting_line(run);
 }
 
 std::string camera_summary(const RunResult& run) {
@@ -302,43 +321,6 @@ std::string map_warning(const RunResult& run) {
   const RunVerdict verdict = map_verdict(map_signs(run));
   return verdict.grade <= Grade::unknown ? "" : fmt::format("warning: {}\n", verdict.text());
 }
-
-namespace {
-
-using traces::ErrorSummary;
-using traces::Evaluation;
-using traces::RelativeErrors;
-
-std::string relative_protocol(const Evaluation& evaluation) {
-  return "from every matched pose to the first that is the length farther along the true path; " +
-         evaluation.protocol;
-}
-
-std::string table_of(const std::vector<RelativeErrors>& errors) {
-  TextTable table({{"length"},
-                   {"number"},
-                   {"translation %: mean"},
-                   {"median"},
-                   {"RMSE"},
-                   {"worst"},
-                   {"rotation deg/m: mean"},
-                   {"median"},
-                   {"RMSE"},
-                   {"worst"}});
-  for (const RelativeErrors& e : errors) {
-    std::vector<std::string> cells{fmt::format("{:g} m", e.length_m), fmt::format("{}", e.count)};
-    const ErrorSummary& t = e.translation;
-    const ErrorSummary& r = e.rotation_deg_per_m;
-    for (const double value : {t.mean, t.median, t.rmse, t.max})
-      cells.push_back(fmt::format("{:.3f}", value));
-    for (const double value : {r.mean, r.median, r.rmse, r.max})
-      cells.push_back(fmt::format("{:.4f}", value));
-    table.add(std::move(cells));
-  }
-  return table.str();
-}
-
-}  // namespace
 
 std::string ate_text(const Evaluation& evaluation) {
   const ErrorSummary& t = evaluation.translation;

@@ -1,6 +1,5 @@
 #include "tools/app/report/statistic_list.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <cmath>

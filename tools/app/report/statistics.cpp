@@ -7,8 +7,6 @@
 
 #include "sim/energy/area.h"
 #include "tools/app/report/run_summary.h"
-#include "tools/app/report/statistic_list.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 

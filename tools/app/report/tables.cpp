@@ -8,13 +8,10 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <vector>
 
 #include "sim/base/csv_table.h"
 #include "sim/base/printable_text.h"
 #include "sim/chip/accelerator.h"
-#include "tools/app/report/text_table.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
@@ -142,117 +139,6 @@ std::string blocks_at_peak(const std::vector<Occupant>& rows, int width) {
   return text;
 }
 
-}  // namespace
-
-std::vector<double> tenths_of_percent(const std::vector<double>& parts) {
-  const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
-  std::vector<double> tenths(parts.size(), 0.0);
-  if (!(total > 0)) return tenths;
-  std::vector<std::size_t> by_remainder(parts.size());
-  std::iota(by_remainder.begin(), by_remainder.end(), std::size_t{0});
-  const auto exact = [&](std::size_t i) { return 1000.0 * parts[i] / total; };
-  for (const std::size_t i : by_remainder) tenths[i] = std::floor(exact(i));
-  std::stable_sort(by_remainder.begin(), by_remainder.end(), [&](std::size_t a, std::size_t b) {
-    return exact(a) - tenths[a] > exact(b) - tenths[b];
-  });
-  double missing = 1000.0 - std::accumulate(tenths.begin(), tenths.end(), 0.0);
-  for (std::size_t k = 0; missing > 0 && k < by_remainder.size(); ++k, --missing)
-    ++tenths[by_remainder[k]];
-  for (double& value : tenths) value /= 10.0;
-  return tenths;
-}
-
-TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
-                    std::string_view mark_of_controller) {
-  TextTable table({{"stage", kLeft},
-                   {"call", kLeft, 3},
-                   {"calls", kRight, 2},
-                   {"kcycles, 1 core"},
-                   {"kcycles, " + on_cores(run.cores)},
-                   {"speed-up"},
-                   {"ms"},
-                   {"worst ms", kRight, 1}});
-  for (const StageResult* stage : stages) {
-    const std::optional<double> parallel = mean(stage->parallel, stage->calls);
-    const std::optional<double> worst = mean(stage->worst_parallel, stage->calls > 0 ? 1 : 0);
-    const Hertz clock = clock_of(run, *stage);
-    table.add({stage->name + (stage->on_controller ? std::string(mark_of_controller) : ""),
-               stage->unit, fmt::format("{}", stage->calls),
-               kilo(mean(stage->single, stage->calls), 2), kilo(parallel, 2),
-               figure_text(speedup(*stage), 2), milliseconds_text(parallel, clock),
-               milliseconds_text(worst, clock)});
-  }
-  return table;
-}
-
-std::string unmeasured_note(const RunResult& run) {
-  constexpr double kWorthMentioning = 0.01;
-  std::vector<std::string> shares;
-  for (const StageResult& stage : run.stages)
-    if (const auto share = unmeasured_share(stage); share && *share >= kWorthMentioning)
-      shares.push_back(fmt::format("{:.0f} % of {}", 100 * *share, stage.name));
-  if (shares.empty()) return "";
-  return fmt::format(
-      "not measured as compiled code, taken as counted (isa.unmeasured_instructions): {}\n",
-      fmt::join(shares, ", "));
-}
-
-std::string stage_table(const RunResult& run, int width) {
-  std::vector<const StageResult*> all;
-  for (const StageResult& stage : run.stages) all.push_back(&stage);
-  const bool any_on_controller = std::any_of(run.stages.begin(), run.stages.end(),
-                                             [](const StageResult& s) { return s.on_controller; });
-  return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) +
-         stages_of(run, all, " ¹").str(width) +
-         (run.cores == 1 ? ""
-                         : "1 core: this program on the master alone (--cores 1: the program for "
-                           "one core)\n") +
-         (any_on_controller ? "¹ on the fabric controller, which is one core\n" : "") +
-         unmeasured_note(run);
-}
-
-std::string breakdown_table(const RunResult& run, int width) {
-  std::vector<TextTable::Column> columns{{"stage", kLeft}};
-  const std::vector<BreakdownColumn> parts = breakdown_columns(run);
-  for (const BreakdownColumn& part : parts)
-    columns.push_back({std::string(part.name), kRight, rank_of(part.name)});
-  columns.push_back({"core-Mcycles", kRight, 2});
-  TextTable table(std::move(columns));
-  for (const StageResult& stage : run.stages) {
-    if (stage.on_controller) continue;
-    std::vector<std::string> cells = breakdown_cells(parts, stage.account.team);
-    cells.insert(cells.begin(), stage.name);
-    table.add(std::move(cells));
-  }
-  return fmt::format("where the core-cycles go on {} [%]\n", on_cores(run.cores)) +
-         table.str(width) +
-         "serial: the team idles while the master works alone; imbalance: waiting for the slowest "
-         "core of a fork\n";
-}
-
-std::string memory_table(const RunResult& run, int width) {
-  TextTable table({{"peak", kLeft},
-                   {"memory", kLeft},
-                   {"kB, 1 core"},
-                   {"kB, " + on_cores(run.cores)},
-                   {"%, 1 core"},
-                   {"%, " + on_cores(run.cores)}});
-  const std::vector<Occupant> rows = occupants(run);
-  for (const Occupant& row : rows) {
-    const auto kb = [](std::optional<Bytes> b) { return b ? kilobytes(*b) : kNothing; };
-    const auto percent = [&](std::optional<Bytes> b) {
-      return b ? figure_text(percent_of_nominal(*b, row.size), 2) : kNothing;
-    };
-    table.add({row.name, row.memory, kb(row.single), kb(row.parallel), percent(row.single),
-               percent(row.parallel)});
-  }
-  return fmt::format("memory (kB of 1000 bytes, % of {} kB L1 and {} kB L2)\n",
-                     run.l1_size.count() / 1024, run.l2_size.count() / 1024) +
-         table.str(width) + blocks_at_peak(rows, std::min(width, kWidth));
-}
-
-namespace {
-
 struct NamedTable {
   std::string_view name;
   bool is_of_chip;  ///< and absent from native runs
@@ -273,29 +159,6 @@ constexpr std::array kTables{
     NamedTable{"trajectory", false,
                [](const RunResult& run, int) { return trajectory_summary(run); }},
 };
-
-}  // namespace
-
-std::vector<std::string> table_names() {
-  std::vector<std::string> names;
-  for (const NamedTable& table : kTables) names.emplace_back(table.name);
-  return names;
-}
-
-std::string report(const RunResult& run, const std::vector<std::string>& names, int width) {
-  const auto is_wanted = [&](std::string_view name) {
-    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-  };
-  std::string text;
-  for (const NamedTable& table : kTables) {
-    if (!is_wanted(table.name) || (table.is_of_chip && !run.timed)) continue;
-    if (const std::string lines = table.text(run, width); !lines.empty())
-      text += lines + (table.is_of_chip ? "\n" : "");
-  }
-  return text + host_line(run) + map_warning(run);
-}
-
-namespace {
 
 using sim::Estimate;
 
@@ -349,7 +212,142 @@ double front_end_ms(const RunResult& run, Hertz cluster_clock) {
          static_cast<double>(run.frames.size());
 }
 
+using sim::AreaItem;
+
+std::vector<AreaItem> rows_of(const sim::ChipConfig& chip) {
+  std::vector<AreaItem> rows = sim::areas_of(chip);
+  rows.push_back(sim::cluster_area(chip));
+  rows.push_back(sim::total_area(chip));
+  return rows;
+}
+
+std::string thousands(sim::SquareMicrometres area) {
+  return fmt::format("{:.1f}", area.count() * 1e-3);
+}
+
 }  // namespace
+
+std::vector<double> tenths_of_percent(const std::vector<double>& parts) {
+  const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
+  std::vector<double> tenths(parts.size(), 0.0);
+  if (!(total > 0)) return tenths;
+  std::vector<std::size_t> by_remainder(parts.size());
+  std::iota(by_remainder.begin(), by_remainder.end(), std::size_t{0});
+  const auto exact = [&](std::size_t i) { return 1000.0 * parts[i] / total; };
+  for (const std::size_t i : by_remainder) tenths[i] = std::floor(exact(i));
+  std::stable_sort(by_remainder.begin(), by_remainder.end(), [&](std::size_t a, std::size_t b) {
+    return exact(a) - tenths[a] > exact(b) - tenths[b];
+  });
+  double missing = 1000.0 - std::accumulate(tenths.begin(), tenths.end(), 0.0);
+  for (std::size_t k = 0; missing > 0 && k < by_remainder.size(); ++k, --missing)
+    ++tenths[by_remainder[k]];
+  for (double& value : tenths) value /= 10.0;
+  return tenths;
+}
+
+TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
+                    std::string_view mark_of_controller) {
+  using S = const StageResult* const&;
+  const auto in_ms = [&](S s, std::optional<double> cycles) {
+    return milliseconds_text(cycles, clock_of(run, *s));
+  };
+  return TableOf<const StageResult*>{
+      {{"stage", kLeft},
+       [&](S s) { return s->name + std::string(s->on_controller ? mark_of_controller : ""); }},
+      {{"call", kLeft, 3}, [](S s) { return s->unit; }},
+      {{"calls", kRight, 2}, [](S s) { return s->calls; }},
+      {{"kcycles, 1 core"}, [](S s) { return kilo(mean(s->single, s->calls), 2); }},
+      {{"kcycles, " + on_cores(run.cores)},
+       [](S s) { return kilo(mean(s->parallel, s->calls), 2); }},
+      {{"speed-up"}, [](S s) { return figure_text(speedup(*s), 2); }},
+      {{"ms"}, [&](S s) { return in_ms(s, mean(s->parallel, s->calls)); }},
+      {{"worst ms", kRight, 1},
+       [&](S s) { return in_ms(s, mean(s->worst_parallel, s->calls > 0 ? 1 : 0)); }}}
+      .with(stages);
+}
+
+std::string unmeasured_note(const RunResult& run) {
+  constexpr double kWorthMentioning = 0.01;
+  std::vector<std::string> shares;
+  for (const StageResult& stage : run.stages)
+    if (const auto share = unmeasured_share(stage); share && *share >= kWorthMentioning)
+      shares.push_back(fmt::format("{:.0f} % of {}", 100 * *share, stage.name));
+  if (shares.empty()) return "";
+  return fmt::format(
+      "not measured as compiled code, taken as counted (isa.unmeasured_instructions): {}\n",
+      fmt::join(shares, ", "));
+}
+
+std::string stage_table(const RunResult& run, int width) {
+  std::vector<const StageResult*> all;
+  for (const StageResult& stage : run.stages) all.push_back(&stage);
+  const bool any_on_controller = std::any_of(run.stages.begin(), run.stages.end(),
+                                             [](const StageResult& s) { return s.on_controller; });
+  return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) +
+         stages_of(run, all, " ¹").str(width) +
+         (run.cores == 1 ? ""
+                         : "1 core: this program on the master alone (--cores 1: the program for "
+                           "one core)\n") +
+         (any_on_controller ? "¹ on the fabric controller, which is one core\n" : "") +
+         unmeasured_note(run);
+}
+
+std::string breakdown_table(const RunResult& run, int width) {
+  std::vector<TextTable::Column> columns{{"stage", kLeft}};
+  const std::vector<BreakdownColumn> parts = breakdown_columns(run);
+  for (const BreakdownColumn& part : parts)
+    columns.push_back({std::string(part.name), kRight, rank_of(part.name)});
+  columns.push_back({"core-Mcycles", kRight, 2});
+  TextTable table(std::move(columns));
+  for (const StageResult& stage : run.stages) {
+    if (stage.on_controller) continue;
+    std::vector<std::string> cells = breakdown_cells(parts, stage.account.team);
+    cells.insert(cells.begin(), stage.name);
+    table.add(std::move(cells));
+  }
+  return fmt::format("where the core-cycles go on {} [%]\n", on_cores(run.cores)) +
+         table.str(width) +
+         "serial: the team idles while the master works alone; imbalance: waiting for the slowest "
+         "core of a fork\n";
+}
+
+std::string memory_table(const RunResult& run, int width) {
+  using O = const Occupant&;
+  const auto kb = [](std::optional<Bytes> b) { return b ? kilobytes(*b) : kNothing; };
+  const auto percent = [](O o, std::optional<Bytes> b) {
+    return b ? figure_text(percent_of_nominal(*b, o.size), 2) : kNothing;
+  };
+  const TableOf<Occupant> table{
+      {{"peak", kLeft}, [](O o) { return o.name; }},
+      {{"memory", kLeft}, [](O o) { return o.memory; }},
+      {{"kB, 1 core"}, [=](O o) { return kb(o.single); }},
+      {{"kB, " + on_cores(run.cores)}, [=](O o) { return kb(o.parallel); }},
+      {{"%, 1 core"}, [=](O o) { return percent(o, o.single); }},
+      {{"%, " + on_cores(run.cores)}, [=](O o) { return percent(o, o.parallel); }}};
+  const std::vector<Occupant> rows = occupants(run);
+  return fmt::format("memory (kB of 1000 bytes, % of {} kB L1 and {} kB L2)\n",
+                     run.l1_size.count() / 1024, run.l2_size.count() / 1024) +
+         table.with(rows).str(width) + blocks_at_peak(rows, std::min(width, kWidth));
+}
+
+std::vector<std::string> table_names() {
+  std::vector<std::string> names;
+  for (const NamedTable& table : kTables) names.emplace_back(table.name);
+  return names;
+}
+
+std::string report(const RunResult& run, const std::vector<std::string>& names, int width) {
+  const auto is_wanted = [&](std::string_view name) {
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::string text;
+  for (const NamedTable& table : kTables) {
+    if (!is_wanted(table.name) || (table.is_of_chip && !run.timed)) continue;
+    if (const std::string lines = table.text(run, width); !lines.empty())
+      text += lines + (table.is_of_chip ? "\n" : "");
+  }
+  return text + host_line(run) + map_warning(run);
+}
 
 std::string energy_table(const RunResult& run, int width) {
   const std::optional<RunEnergy> energy = energy_of(run);
@@ -422,23 +420,6 @@ std::string operating_point_table(const RunResult& run, int width) {
   }
   return "the same cycles at the ends of the supply\n" + table.str(width);
 }
-
-namespace {
-
-using sim::AreaItem;
-
-std::vector<AreaItem> rows_of(const sim::ChipConfig& chip) {
-  std::vector<AreaItem> rows = sim::areas_of(chip);
-  rows.push_back(sim::cluster_area(chip));
-  rows.push_back(sim::total_area(chip));
-  return rows;
-}
-
-std::string thousands(sim::SquareMicrometres area) {
-  return fmt::format("{:.1f}", area.count() * 1e-3);
-}
-
-}  // namespace
 
 std::string area_table(const sim::ChipConfig& chip, int width) {
   TextTable table({{"part", TextTable::Align::Left},

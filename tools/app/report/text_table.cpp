@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "sim/base/check.h"
 #include "sim/base/printable_text.h"

@@ -1,9 +1,13 @@
 // Text in aligned columns for terminals.
 #pragma once
 
+#include <concepts>
+#include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sim/base/units.h"
@@ -47,6 +51,48 @@ class TextTable {
 inline constexpr auto kLeft = TextTable::Align::Left;
 inline constexpr auto kRight = TextTable::Align::Right;
 
+/// What stands in a cell: text, or a whole number.
+struct TextCell {
+  TextCell(std::string_view words) : text(words) {}
+  TextCell(std::string words) : text(std::move(words)) {}
+  TextCell(const char* words) : text(words) {}
+  template <std::integral T>
+  TextCell(T number) : text(std::to_string(number)) {}
+
+  std::string text;
+};
+
+/// A table of which each column is described once: its title, and its cell in a row.
+template <class Row>
+class TableOf {
+ public:
+  using Of = std::function<TextCell(const Row&)>;
+  struct Column {
+    TextTable::Column shown;
+    Of of;
+  };
+
+  TableOf(std::initializer_list<Column> columns) : columns_(columns) {}
+  void add(TextTable::Column shown, Of of) {
+    columns_.push_back({std::move(shown), std::move(of)});
+  }
+  template <class Rows>
+  TextTable with(const Rows& rows) const {
+    std::vector<TextTable::Column> shown;
+    for (const Column& column : columns_) shown.push_back(column.shown);
+    TextTable table(std::move(shown));
+    for (const auto& row : rows) {
+      std::vector<std::string> cells;
+      for (const Column& column : columns_) cells.push_back(column.of(row).text);
+      table.add(std::move(cells));
+    }
+    return table;
+  }
+
+ private:
+  std::vector<Column> columns_;
+};
+
 // Numbers as text for tables.
 
 /// What stands in a cell of which nothing is known.
@@ -55,6 +101,11 @@ inline constexpr const char* kNothing = "–";
 /// With so many decimals; `otherwise` for what does not exist.
 std::string figure_text(std::optional<double> value, int decimals,
                         std::string_view otherwise = kNothing);
+
+/// In another unit.
+inline std::optional<double> scaled(std::optional<double> value, double factor) {
+  return value ? std::optional(*value * factor) : std::nullopt;
+}
 
 /// A clock in MHz.
 inline double megahertz(Hertz clock) { return static_cast<double>(clock.count()) / 1e6; }

@@ -207,6 +207,18 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames,
   return signs;
 }
 
+const StageName* fullest_stage(const RunFigures& run) {
+  const StageName* fullest = nullptr;
+  double most = 0;
+  for (const StageName& stage : run.stages) {
+    const auto peak = run.value(fmt::format("stages.{}.memory.parallel", stage.key));
+    if (stage.on_controller || !peak || *peak <= most) continue;
+    fullest = &stage;
+    most = *peak;
+  }
+  return fullest;
+}
+
 double deadline_ns(const RunFigures& run) {
   const double rate = run.value("camera.rate").value_or(0);
   return rate > 0 ? 1e9 / rate : run.value("run.frame_period").value_or(0);

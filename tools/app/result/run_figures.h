@@ -89,6 +89,9 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames,
 void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
               const std::vector<PositionPair>& positions);
 
+/// The stage of the cluster with the highest peak of L1; null if there is none.
+const StageName* fullest_stage(const RunFigures& run);
+
 /// Between two frames of the camera. [ns]
 double deadline_ns(const RunFigures& run);
 

@@ -9,7 +9,6 @@
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/result/summary.h"
-#include "traces/datasets/asl_reader.h"
 #include "traces/datasets/imu_batches.h"
 #include "traces/recordings/recording.h"
 #include "traces/trajectories/evaluation.h"
@@ -64,6 +63,42 @@ traces::StampedPose body_pose(const vio::CameraPose& report, const traces::Camer
   T_world_camera.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
   T_world_camera.translation() = p;
   return {t_ns, T_world_camera * camera.T_body_camera.inverse()};
+}
+
+vio::Rig make_rig(const traces::CameraModel& camera, const traces::PinholeIntrinsics& k) {
+  vio::Rig rig{};
+  rig.camera = {static_cast<float>(k.fx), static_cast<float>(k.fy), static_cast<float>(k.cx),
+                static_cast<float>(k.cy)};
+  rig.width = k.width;
+  rig.height = k.height;
+  const Eigen::Matrix3d R = camera.T_body_camera.rotation().transpose();
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      rig.R_camera_body[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(R(r, c));
+  const Eigen::Vector3d p = -(R * camera.T_body_camera.translation());
+  for (int r = 0; r < 3; ++r)
+    rig.p_camera_body[static_cast<std::size_t>(r)] = static_cast<float>(p[r]);
+  return rig;
+}
+
+float seconds(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-9); }
+
+vio::ImuInput to_input(const traces::ImuSample& sample, std::int64_t before_ns) {
+  vio::ImuInput input{};
+  input.dt = seconds(sample.t_ns - before_ns);
+  for (int k = 0; k < 3; ++k) {
+    input.gyro[k] = static_cast<float>(sample.gyro[k]);
+    input.accel[k] = static_cast<float>(sample.accel[k]);
+  }
+  return input;
+}
+
+std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
+                                            const traces::Dataset& data) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
+  if (!request.camera || !request.camera->fps) return soc::all_frames(stamps_ns);
+  return soc::frames_at(*request.camera->fps, stamps_ns, data.camera.rate_hz);
 }
 
 }  // namespace
@@ -170,49 +205,9 @@ void LiveSource::evaluate(RunResult& result) const {
   }
 }
 
-namespace {
-
-vio::Rig make_rig(const traces::CameraModel& camera, const traces::PinholeIntrinsics& k) {
-  vio::Rig rig{};
-  rig.camera = {static_cast<float>(k.fx), static_cast<float>(k.fy), static_cast<float>(k.cx),
-                static_cast<float>(k.cy)};
-  rig.width = k.width;
-  rig.height = k.height;
-  const Eigen::Matrix3d R = camera.T_body_camera.rotation().transpose();
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c)
-      rig.R_camera_body[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(R(r, c));
-  const Eigen::Vector3d p = -(R * camera.T_body_camera.translation());
-  for (int r = 0; r < 3; ++r)
-    rig.p_camera_body[static_cast<std::size_t>(r)] = static_cast<float>(p[r]);
-  return rig;
-}
-
-float seconds(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-9); }
-
-vio::ImuInput to_input(const traces::ImuSample& sample, std::int64_t before_ns) {
-  vio::ImuInput input{};
-  input.dt = seconds(sample.t_ns - before_ns);
-  for (int k = 0; k < 3; ++k) {
-    input.gyro[k] = static_cast<float>(sample.gyro[k]);
-    input.accel[k] = static_cast<float>(sample.accel[k]);
-  }
-  return input;
-}
-
-std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
-                                            const traces::Dataset& data) {
-  std::vector<std::int64_t> stamps_ns;
-  for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
-  if (!request.camera || !request.camera->fps) return soc::all_frames(stamps_ns);
-  return soc::frames_at(*request.camera->fps, stamps_ns, data.camera.rate_hz);
-}
-
-}  // namespace
-
 Feed::Feed(const RunRequest& request)
     : data_(traces::open_recording(request.data,
-                             {.frames = request.frames, .disturbance = request.disturbance})),
+                                   {.frames = request.frames, .disturbance = request.disturbance})),
       frames_(camera_frames(request, data_)),
       rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),
       images_(data_, request.image_size),

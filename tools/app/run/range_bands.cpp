@@ -4,26 +4,11 @@
 #include <string_view>
 
 #include "platform_models/loader/value.h"
-#include "sim/base/check.h"
 #include "sim/base/parallel_for.h"
 #include "sim/soc/job_timer.h"
 #include "sim/work/op.h"
 
 namespace leviosim::tools {
-
-bool is_of_time(const platform::Parameter& parameter) {
-  for (const std::string_view section : {"energy.", "supply.", "area."})
-    if (parameter.path.starts_with(section)) return false;
-  return true;
-}
-
-std::vector<const platform::Parameter*> ranged(const platform::ResolvedPlatform& platform) {
-  std::vector<const platform::Parameter*> parameters;
-  for (const platform::Parameter& parameter : platform.parameters)
-    if (parameter.range && is_of_time(parameter)) parameters.push_back(&parameter);
-  return parameters;
-}
-
 namespace {
 
 constexpr const char* kOverhead = "isa.instruction_overhead";
@@ -61,38 +46,6 @@ std::vector<platform::Change> with_unmeasured_as_it_is(const platform::Variants&
         {kUnmeasured, value_of(*unmeasured) * value_of(*platform.find(kOverhead)) / change.value});
   return changes;
 }
-
-}  // namespace
-
-bool is_end(const platform::Parameter& parameter, double end) { return value_of(parameter) == end; }
-
-bool is_in_bands(const platform::Parameter& parameter, const sim::ChipConfig& chip) {
-  return !is_of_compiler(parameter, chip.cluster.core);
-}
-
-std::vector<Banded> range_bands(const platform::Variants& platform, const ChipFigures& figures,
-                                unsigned threads) {
-  std::vector<const platform::Parameter*> parameters = ranged(platform.platform());
-  std::erase_if(parameters, [&](const platform::Parameter* parameter) {
-    return !is_in_bands(*parameter, platform.platform().config);
-  });
-  const std::vector<double> base = figures(platform.config({}));
-  std::vector<BandOf> bands;
-  for (const double figure : base) bands.emplace_back(figure);
-  const auto run = [&](std::size_t count, const auto& job) {
-    base::parallel_for(count, threads, job);
-  };
-  const auto with = [&](const platform::Change& change) {
-    return with_unmeasured_as_it_is(platform, change);
-  };
-  for (const auto& ends : at_ends(platform, parameters, base, figures, run, with))
-    for (std::size_t k = 0; k < bands.size(); ++k) bands[k].add(ends.low[k], ends.high[k]);
-  std::vector<Banded> result;
-  for (const BandOf& band : bands) result.push_back(band.band());
-  return result;
-}
-
-namespace {
 
 constexpr std::size_t kMostFrames = 6;
 
@@ -148,6 +101,47 @@ Banded relative(const Banded& figure) {
 }
 
 }  // namespace
+
+bool is_of_time(const platform::Parameter& parameter) {
+  for (const std::string_view section : {"energy.", "supply.", "area."})
+    if (parameter.path.starts_with(section)) return false;
+  return true;
+}
+
+std::vector<const platform::Parameter*> ranged(const platform::ResolvedPlatform& platform) {
+  std::vector<const platform::Parameter*> parameters;
+  for (const platform::Parameter& parameter : platform.parameters)
+    if (parameter.range && is_of_time(parameter)) parameters.push_back(&parameter);
+  return parameters;
+}
+
+bool is_end(const platform::Parameter& parameter, double end) { return value_of(parameter) == end; }
+
+bool is_in_bands(const platform::Parameter& parameter, const sim::ChipConfig& chip) {
+  return !is_of_compiler(parameter, chip.cluster.core);
+}
+
+std::vector<Banded> range_bands(const platform::Variants& platform, const ChipFigures& figures,
+                                unsigned threads) {
+  std::vector<const platform::Parameter*> parameters = ranged(platform.platform());
+  std::erase_if(parameters, [&](const platform::Parameter* parameter) {
+    return !is_in_bands(*parameter, platform.platform().config);
+  });
+  const std::vector<double> base = figures(platform.config({}));
+  std::vector<BandOf> bands;
+  for (const double figure : base) bands.emplace_back(figure);
+  const auto run = [&](std::size_t count, const auto& job) {
+    base::parallel_for(count, threads, job);
+  };
+  const auto with = [&](const platform::Change& change) {
+    return with_unmeasured_as_it_is(platform, change);
+  };
+  for (const auto& ends : at_ends(platform, parameters, base, figures, run, with))
+    for (std::size_t k = 0; k < bands.size(); ++k) bands[k].add(ends.low[k], ends.high[k]);
+  std::vector<Banded> result;
+  for (const BandOf& band : bands) result.push_back(band.band());
+  return result;
+}
 
 void JobSample::Longest::take(const work::Job& other, Cycles its) {
   if (its <= cycles) return;

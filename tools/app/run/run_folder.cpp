@@ -1,6 +1,5 @@
 #include "tools/app/run/run_folder.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include "sim/base/csv_table.h"
@@ -8,7 +7,6 @@
 #include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "traces/trajectories/trajectory.h"
 
@@ -203,6 +201,42 @@ CsvTable<traces::MatchedPose> error_table() {
   return table;
 }
 
+Json inputs_json(const std::vector<InputDigest>& inputs) {
+  Json list = Json::array();
+  for (const InputDigest& input : inputs) {
+    Json& entry = list.emplace_back(Json::object());
+    entry["name"] = input.name;
+    entry["bytes"] = input.bytes;
+    entry["sha256"] = input.sha256;
+  }
+  return list;
+}
+
+Json platform_json(const Manifest& manifest, const RunResult& run) {
+  if (!run.timed) return nullptr;
+  Json platform;
+  platform["name"] = manifest.platform;
+  platform["overrides"] = manifest.overrides;
+  platform["cores"] = run.cores;
+  return platform;
+}
+
+namespace fs = std::filesystem;
+
+InputDigest digest_of(std::string name, const std::vector<fs::path>& files, base::InputKind kind) {
+  InputDigest digest;
+  digest.name = std::move(name);
+  base::Sha256 sha;
+  for (const fs::path& file : files) {
+    throw_if_interrupted();
+    const std::string bytes = base::read_file(file, kind);
+    sha.add(bytes);
+    digest.bytes += static_cast<std::int64_t>(bytes.size());
+  }
+  digest.sha256 = sha.hex();
+  return digest;
+}
+
 }  // namespace
 
 std::string stages_csv(const RunResult& run) { return stage_table_of(run).text(run.stages); }
@@ -261,30 +295,6 @@ void write_run_folder(outputs::OutputFolder& out, const RunResult& run, const Ma
   write_run_files(out, run_files(run, manifest, platform_yaml), below);
 }
 
-namespace {
-
-Json inputs_json(const std::vector<InputDigest>& inputs) {
-  Json list = Json::array();
-  for (const InputDigest& input : inputs) {
-    Json& entry = list.emplace_back(Json::object());
-    entry["name"] = input.name;
-    entry["bytes"] = input.bytes;
-    entry["sha256"] = input.sha256;
-  }
-  return list;
-}
-
-Json platform_json(const Manifest& manifest, const RunResult& run) {
-  if (!run.timed) return nullptr;
-  Json platform;
-  platform["name"] = manifest.platform;
-  platform["overrides"] = manifest.overrides;
-  platform["cores"] = run.cores;
-  return platform;
-}
-
-}  // namespace
-
 Json manifest_json(const Manifest& manifest, const RunResult& run) {
   Json document;
   document["format"] = "leviosim manifest";
@@ -309,26 +319,6 @@ Json manifest_json(const Manifest& manifest, const RunResult& run) {
   document["host"]["seconds"] = run.host_seconds;
   return document;
 }
-
-namespace fs = std::filesystem;
-
-namespace {
-
-InputDigest digest_of(std::string name, const std::vector<fs::path>& files, base::InputKind kind) {
-  InputDigest digest;
-  digest.name = std::move(name);
-  base::Sha256 sha;
-  for (const fs::path& file : files) {
-    throw_if_interrupted();
-    const std::string bytes = base::read_file(file, kind);
-    sha.add(bytes);
-    digest.bytes += static_cast<std::int64_t>(bytes.size());
-  }
-  digest.sha256 = sha.hex();
-  return digest;
-}
-
-}  // namespace
 
 InputDigest digest_of_file(const fs::path& file) {
   return digest_of(file.filename().string(), {file}, base::InputKind::work_trace);

@@ -1,6 +1,5 @@
 #include "tools/app/run/run_request.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -17,27 +16,6 @@
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {
-
-void check_together(const vio::Profile& profile) {
-  if (profile.extractor.subpixel_steps > 1 && !profile.optimiser.joint)
-    throw InputError(
-        "workload.subpixel_steps is above 1 and workload.joint is off: only the joint optimiser's "
-        "camera has steps between pixels; expected workload.subpixel_steps=1 or workload.joint=on");
-  if (profile.optimiser.joint && !profile.use_imu)
-    throw InputError(
-        "workload.joint is on, but the profile works without IMU: expected workload.joint=off, or "
-        "a profile with IMU");
-  if (profile.released && profile.guided.enabled)
-    throw InputError(
-        "workload.released is on: only levio does as the released program; expected "
-        "workload.released=off, or the profile levio");
-  if (profile.loop.enabled && !(profile.guided.enabled && profile.optimiser.joint))
-    throw InputError(
-        "workload.loop is on: it takes landmarks that were tracked and a world whose vertical is "
-        "known; expected workload.guided=on and workload.joint=on, as next has them, or "
-        "workload.loop=off");
-}
-
 namespace {
 
 /// Each workload has parameters of its own.
@@ -49,18 +27,6 @@ void check_parameters(const RunRequest& request) {
                       "(leviosim workload --profile {})",
                       a.text(), request.profile, request.profile));
 }
-
-}  // namespace
-
-vio::Profile profile_of(const RunRequest& request) {
-  check_parameters(request);
-  vio::Profile profile = vio::profile_named(request.profile, request.seed);
-  vio::set_parameters(request.workload, profile);
-  check_together(profile);
-  return profile;
-}
-
-namespace {
 
 constexpr std::int64_t kLargestSide = 16384;
 
@@ -126,7 +92,47 @@ void resolve_chip(const RunOptions& options, RunRequest& request) {
   request.cores = cores_of(options, request.platform.config.cluster);
 }
 
+constexpr double kLeast = 1 << 20;
+constexpr double kMost = 1024.0 * (1 << 30);
+constexpr std::array kLargeUnits{platform::Unit{"GB", 1e9}, platform::Unit{"GiB", 1 << 30}};
+
+/// In bytes; 0 for no unit of a size.
+double factor_of(std::string_view unit) {
+  if (const platform::Unit* known = platform::kSize.find(unit)) return known->factor;
+  const auto large = std::find_if(kLargeUnits.begin(), kLargeUnits.end(),
+                                  [&](const platform::Unit& u) { return u.name == unit; });
+  return large == kLargeUnits.end() ? 0 : large->factor;
+}
+
 }  // namespace
+
+void check_together(const vio::Profile& profile) {
+  if (profile.extractor.subpixel_steps > 1 && !profile.optimiser.joint)
+    throw InputError(
+        "workload.subpixel_steps is above 1 and workload.joint is off: only the joint optimiser's "
+        "camera has steps between pixels; expected workload.subpixel_steps=1 or workload.joint=on");
+  if (profile.optimiser.joint && !profile.use_imu)
+    throw InputError(
+        "workload.joint is on, but the profile works without IMU: expected workload.joint=off, or "
+        "a profile with IMU");
+  if (profile.released && profile.guided.enabled)
+    throw InputError(
+        "workload.released is on: only levio does as the released program; expected "
+        "workload.released=off, or the profile levio");
+  if (profile.loop.enabled && !(profile.guided.enabled && profile.optimiser.joint))
+    throw InputError(
+        "workload.loop is on: it takes landmarks that were tracked and a world whose vertical is "
+        "known; expected workload.guided=on and workload.joint=on, as next has them, or "
+        "workload.loop=off");
+}
+
+vio::Profile profile_of(const RunRequest& request) {
+  check_parameters(request);
+  vio::Profile profile = vio::profile_named(request.profile, request.seed);
+  vio::set_parameters(request.workload, profile);
+  check_together(profile);
+  return profile;
+}
 
 void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
   const TextOptions add{command};
@@ -226,22 +232,6 @@ RunRequest make_chip_request(const RunOptions& options) {
   resolve_chip(options, request);
   return request;
 }
-
-namespace {
-
-constexpr double kLeast = 1 << 20;
-constexpr double kMost = 1024.0 * (1 << 30);
-constexpr std::array kLargeUnits{platform::Unit{"GB", 1e9}, platform::Unit{"GiB", 1 << 30}};
-
-/// In bytes; 0 for no unit of a size.
-double factor_of(std::string_view unit) {
-  if (const platform::Unit* known = platform::kSize.find(unit)) return known->factor;
-  const auto large = std::find_if(kLargeUnits.begin(), kLargeUnits.end(),
-                                  [&](const platform::Unit& u) { return u.name == unit; });
-  return large == kLargeUnits.end() ? 0 : large->factor;
-}
-
-}  // namespace
 
 void add_memory_option(CLI::App& command, std::string& text) {
   TextOptions{command}(

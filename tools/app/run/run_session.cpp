@@ -5,28 +5,45 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <vector>
 
 #include "platform_models/loader/platform_file.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
 #include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "sim/energy/model.h"
 #include "tools/app/cli/host.h"
-#include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/run_summary.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/simulate.h"
-#include "tools/app/run/trace_source.h"
 #include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
+namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kAll = "all";
+/// Lines of remarks for which stages make room.
+constexpr int kMostRemarks = 8;
+
+/// The names in "latency,memory"; none for all.
+std::vector<std::string> parse_tables(const std::string& text) {
+  std::vector<std::string> valid = table_names();
+  std::vector<std::string> names = base::split(text, ',');
+  if (names.size() == 1 && names.front() == kAll) return {};
+  for (const std::string& name : names)
+    if (std::find(valid.begin(), valid.end(), name) == valid.end())
+      throw InputError(
+          fmt::format("--tables '{}': there is no table '{}'; expected all, or some of {}{}", text,
+                      name, fmt::join(valid, ","), base::did_you_mean(name, valid)));
+  return names;
+}
+
+}  // namespace
 
 outputs::OutputRequest out_request(const RunOptions& options, const char* option) {
   outputs::OutputRequest request{.option = option, .path = options.out, .replace = options.force};
@@ -57,8 +74,6 @@ std::string data_folder(const RunOptions& options, ProgressLine::Style progress)
   return options.data == "synthetic" ? cached_flight(progress).string() : options.data;
 }
 
-namespace {
-
 ProgressCallback shown_on(ProgressLine& line) {
   return [&line](const Progress& p) {
     throw_if_interrupted();
@@ -66,8 +81,6 @@ ProgressCallback shown_on(ProgressLine& line) {
               [&] { return frame_progress(p.done, p.total, p.simulated_ns, line.host_seconds()); });
   };
 }
-
-}  // namespace
 
 RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style) {
   ProgressLine line(style);
@@ -152,10 +165,9 @@ std::string heading(const RunOptions& options, const RunResult& run) {
   const auto [chip, workload] = split_overrides(options.overrides);
   for (const std::vector<std::string>* sets : {&chip, &workload})
     for (const std::string& set : *sets) text += ", " + printable(set);
-  const auto mhz = [](Hertz f) { return static_cast<double>(f.count()) * 1e-6; };
   if (run.timed)
     text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,
-                        mhz(run.cluster_clock), mhz(run.controller_clock));
+                        megahertz(run.cluster_clock), megahertz(run.controller_clock));
   if (run.timed && sim::knows_energy(run.chip))
     text += fmt::format(", {:g} V", run.chip.supply.voltage.count());
   if (run.camera)
@@ -163,32 +175,6 @@ std::string heading(const RunOptions& options, const RunResult& run) {
                         info_of(run.camera->deadline).name);
   return text + "\n\n";
 }
-
-namespace {
-
-constexpr const char* kAll = "all";
-/// Lines of remarks for which stages make room.
-constexpr int kMostRemarks = 8;
-
-/// The names in "latency,memory"; none for all.
-std::vector<std::string> parse_tables(const std::string& text) {
-  std::vector<std::string> valid = table_names();
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    names.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  if (names.size() == 1 && names.front() == kAll) return {};
-  for (const std::string& name : names)
-    if (std::find(valid.begin(), valid.end(), name) == valid.end())
-      throw InputError(
-          fmt::format("--tables '{}': there is no table '{}'; expected all, or some of {}{}", text,
-                      name, fmt::join(valid, ","), base::did_you_mean(name, valid)));
-  return names;
-}
-
-}  // namespace
 
 void add_print_options(CLI::App& command, RunOptions& options) {
   TextOptions{command}(

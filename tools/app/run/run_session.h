@@ -31,6 +31,9 @@ std::uint64_t expected_bytes(const RunRequest& request, bool record);
 /// The folder that --data names; makes the synthetic flight if it is asked for and not there yet.
 std::string data_folder(const RunOptions& options, ProgressLine::Style progress);
 
+/// Shows the frames on the line, which outlives it. @throws Interrupted if the user asked to stop
+ProgressCallback shown_on(ProgressLine& line);
+
 /// @throws Interrupted between two frames if the user asked to stop
 RunResult simulate_with_progress(const RunRequest& request, ProgressLine::Style style);
 

@@ -1,6 +1,5 @@
 #include "tools/app/run/trace_source.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,9 +13,6 @@
 #include "sim/chip/accelerator.h"
 #include "sim/work/transfers.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/result/summary.h"
-#include "tools/app/run/simulate.h"
-#include "traces/work_traces/work_frames.h"
 
 namespace leviosim::tools {
 namespace {
@@ -37,6 +33,157 @@ std::vector<const vio::FrameFact*> known_facts(const traces::WorkTraceInfo& info
     facts.push_back(fact == vio::kFrameFacts.end() ? nullptr : &*fact);
   }
   return facts;
+}
+
+constexpr std::size_t kMostRows = 10;
+
+/// "busy", "begins", or "idle": what the optimiser does when a frame begins.
+std::string_view optimiser_of(const FrameComparison::Start& start) {
+  if (start.optimiser_busy) return "busy";
+  return start.optimised ? "begins" : "idle";
+}
+
+bool newly_queued(const FrameComparison& frame) {
+  return frame.replayed.waited_ns > 0 && frame.recorded.waited_ns == 0;
+}
+
+bool is_worth_a_row(const FrameComparison& frame) {
+  return !frame.computes_the_same() || newly_queued(frame);
+}
+
+std::string seen_text(int seen) { return seen < 0 ? "none" : fmt::format("frame {}", seen); }
+
+std::string ms(std::int64_t ns) { return fmt::format("{:.2f}", static_cast<double>(ns) * 1e-6); }
+
+std::string differing_frames(const Replay& replay) {
+  TextTable table({{"frame"},
+                   {"optimiser: recorded", kLeft},
+                   {"here", kLeft},
+                   {"result seen: recorded", kLeft},
+                   {"here", kLeft},
+                   {"waited ms: recorded"},
+                   {"here"}});
+  std::size_t rows = 0;
+  for (const FrameComparison& frame : replay.frames) {
+    if (!is_worth_a_row(frame) || ++rows > kMostRows) continue;
+    const FrameComparison::Start& a = frame.recorded;
+    const FrameComparison::Start& b = frame.replayed;
+    table.add({fmt::format("{}", frame.frame), std::string(optimiser_of(a)),
+               std::string(optimiser_of(b)), seen_text(a.seen), seen_text(b.seen), ms(a.waited_ns),
+               ms(b.waited_ns)});
+  }
+  if (rows == 0) return {};
+  std::string text = table.str();
+  if (rows > kMostRows) text += fmt::format("… and {} more in replay.csv\n", rows - kMostRows);
+  return text;
+}
+
+/// All executions of one stage.
+struct StageSum {
+  std::int64_t calls = 0;
+  std::int64_t segments = 0;
+  std::int64_t forks = 0;
+  work::Counts counts;
+  work::Transferred transfers;
+  Bytes peak;
+};
+
+/// Straddling is a property of accesses that are counted already.
+double operations(const work::Counts& counts) {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t n : counts.n) sum += n;
+  return static_cast<double>(sum - counts[work::Op::Straddle]);
+}
+
+class Contents {
+ public:
+  explicit Contents(const traces::WorkTrace& trace) {
+    traces::WorkFrames reader(trace, true);
+    for (traces::WorkFrame frame; reader.next(frame);) {
+      keyframes += frame.keyframe;
+      optimised += frame.optimised;
+      iterations += static_cast<std::int64_t>(frame.iterations.size());
+      busy += frame.optimiser_busy;
+      add(frame.front_end);
+      for (const work::Job& job : frame.iterations) add(job);
+    }
+  }
+
+  const StageSum& of(const std::string& stage) const {
+    static const StageSum none;
+    const auto found = stages_.find(stage);
+    return found == stages_.end() ? none : found->second;
+  }
+  StageSum all() const {
+    StageSum sum;
+    for (const auto& [name, stage] : stages_) {
+      sum.segments += stage.segments;
+      sum.forks += stage.forks;
+      sum.counts += stage.counts;
+    }
+    return sum;
+  }
+
+  std::int64_t keyframes = 0;
+  std::int64_t optimised = 0;
+  std::int64_t iterations = 0;
+  std::int64_t busy = 0;
+  work::Segment offload;  ///< calls of them
+
+ private:
+  void add(const work::Job& job) {
+    for (const work::StageRun& run : job.stages) {
+      StageSum& sum = stages_[std::string(run.stage)];
+      ++sum.calls;
+      work::Segment segment = work::segments_of(run);
+      sum.counts += segment;
+      offload += work::Segment({}, std::move(segment.offload));
+      sum.transfers += work::transferred_by(run);
+      sum.peak = std::max(sum.peak, run.memory.parallel);
+      for (const work::Step& step : run.steps) {
+        if (std::holds_alternative<work::Serial>(step)) ++sum.segments;
+        const auto* fork = std::get_if<work::Fork>(&step);
+        if (fork == nullptr) continue;
+        ++sum.forks;
+        sum.segments += static_cast<std::int64_t>(fork->shares.size());
+      }
+    }
+  }
+
+  std::map<std::string, StageSum> stages_;
+};
+
+std::string stage_table(const traces::WorkTrace& trace, const Contents& contents) {
+  TextTable table({{"stage", kLeft},
+                   {"call", kLeft},
+                   {"calls"},
+                   {"forks"},
+                   {"work segments"},
+                   {"million operations"},
+                   {"transfers"},
+                   {"kB moved"},
+                   {"peak bytes"}});
+  for (const traces::WorkTraceInfo::Stage& stage : trace.info().stages) {
+    const StageSum& sum = contents.of(stage.name);
+    table.add({stage.name, stage.unit, fmt::format("{}", sum.calls), fmt::format("{}", sum.forks),
+               fmt::format("{}", sum.segments),
+               fmt::format("{:.1f}", operations(sum.counts) * 1e-6),
+               fmt::format("{}", sum.transfers.transfers),
+               fmt::format("{:.1f}", static_cast<double>(sum.transfers.bytes.count()) * 1e-3),
+               fmt::format("{}", sum.peak.count())});
+  }
+  return table.str();
+}
+
+/// What an accelerator might serve.
+std::string kernel_line(const Contents& contents) {
+  std::string text;
+  for (const work::OffloadWork& calls : contents.offload.offload)
+    text += fmt::format(
+        "{}{} {} ({} %)", text.empty() ? "" : ", ",
+        work::kOffloadKinds[work::index(calls.kernel)].name, calls.calls,
+        std::llround(100 * operations(calls.counts) / operations(contents.all().counts)));
+  return fmt::format("offload regions (share of operations): {}\n", text.empty() ? "none" : text);
 }
 
 }  // namespace
@@ -220,53 +367,6 @@ void RecordingSource::describe(RunResult& result) const {
   info.ate = result.ate;
 }
 
-namespace {
-
-constexpr std::size_t kMostRows = 10;
-
-/// "busy", "begins", or "idle": what the optimiser does when a frame begins.
-std::string_view optimiser_of(const FrameComparison::Start& start) {
-  if (start.optimiser_busy) return "busy";
-  return start.optimised ? "begins" : "idle";
-}
-
-bool newly_queued(const FrameComparison& frame) {
-  return frame.replayed.waited_ns > 0 && frame.recorded.waited_ns == 0;
-}
-
-bool is_worth_a_row(const FrameComparison& frame) {
-  return !frame.computes_the_same() || newly_queued(frame);
-}
-
-std::string seen_text(int seen) { return seen < 0 ? "none" : fmt::format("frame {}", seen); }
-
-std::string ms(std::int64_t ns) { return fmt::format("{:.2f}", static_cast<double>(ns) * 1e-6); }
-
-std::string differing_frames(const Replay& replay) {
-  TextTable table({{"frame"},
-                   {"optimiser: recorded", kLeft},
-                   {"here", kLeft},
-                   {"result seen: recorded", kLeft},
-                   {"here", kLeft},
-                   {"waited ms: recorded"},
-                   {"here"}});
-  std::size_t rows = 0;
-  for (const FrameComparison& frame : replay.frames) {
-    if (!is_worth_a_row(frame) || ++rows > kMostRows) continue;
-    const FrameComparison::Start& a = frame.recorded;
-    const FrameComparison::Start& b = frame.replayed;
-    table.add({fmt::format("{}", frame.frame), std::string(optimiser_of(a)),
-               std::string(optimiser_of(b)), seen_text(a.seen), seen_text(b.seen), ms(a.waited_ns),
-               ms(b.waited_ns)});
-  }
-  if (rows == 0) return {};
-  std::string text = table.str();
-  if (rows > kMostRows) text += fmt::format("… and {} more in replay.csv\n", rows - kMostRows);
-  return text;
-}
-
-}  // namespace
-
 std::string replay_report(const Replay& replay, const traces::WorkTrace& trace) {
   const auto count = [&](auto&& predicate) {
     return std::count_if(replay.frames.begin(), replay.frames.end(), predicate);
@@ -328,118 +428,6 @@ Json recording_json(const traces::WorkTrace& trace, const std::string& sha256) {
   }
   return json;
 }
-
-namespace {
-
-/// All executions of one stage.
-struct StageSum {
-  std::int64_t calls = 0;
-  std::int64_t segments = 0;
-  std::int64_t forks = 0;
-  work::Counts counts;
-  work::Transferred transfers;
-  Bytes peak;
-};
-
-/// Straddling is a property of accesses that are counted already.
-double operations(const work::Counts& counts) {
-  std::uint64_t sum = 0;
-  for (const std::uint64_t n : counts.n) sum += n;
-  return static_cast<double>(sum - counts[work::Op::Straddle]);
-}
-
-class Contents {
- public:
-  explicit Contents(const traces::WorkTrace& trace) {
-    traces::WorkFrames reader(trace, true);
-    for (traces::WorkFrame frame; reader.next(frame);) {
-      keyframes += frame.keyframe;
-      optimised += frame.optimised;
-      iterations += static_cast<std::int64_t>(frame.iterations.size());
-      busy += frame.optimiser_busy;
-      add(frame.front_end);
-      for (const work::Job& job : frame.iterations) add(job);
-    }
-  }
-
-  const StageSum& of(const std::string& stage) const {
-    static const StageSum none;
-    const auto found = stages_.find(stage);
-    return found == stages_.end() ? none : found->second;
-  }
-  StageSum all() const {
-    StageSum sum;
-    for (const auto& [name, stage] : stages_) {
-      sum.segments += stage.segments;
-      sum.forks += stage.forks;
-      sum.counts += stage.counts;
-    }
-    return sum;
-  }
-
-  std::int64_t keyframes = 0;
-  std::int64_t optimised = 0;
-  std::int64_t iterations = 0;
-  std::int64_t busy = 0;
-  work::Segment offload;  ///< calls of them
-
- private:
-  void add(const work::Job& job) {
-    for (const work::StageRun& run : job.stages) {
-      StageSum& sum = stages_[std::string(run.stage)];
-      ++sum.calls;
-      work::Segment segment = work::segments_of(run);
-      sum.counts += segment;
-      offload += work::Segment({}, std::move(segment.offload));
-      sum.transfers += work::transferred_by(run);
-      sum.peak = std::max(sum.peak, run.memory.parallel);
-      for (const work::Step& step : run.steps) {
-        if (std::holds_alternative<work::Serial>(step)) ++sum.segments;
-        const auto* fork = std::get_if<work::Fork>(&step);
-        if (fork == nullptr) continue;
-        ++sum.forks;
-        sum.segments += static_cast<std::int64_t>(fork->shares.size());
-      }
-    }
-  }
-
-  std::map<std::string, StageSum> stages_;
-};
-
-std::string stage_table(const traces::WorkTrace& trace, const Contents& contents) {
-  TextTable table({{"stage", kLeft},
-                   {"call", kLeft},
-                   {"calls"},
-                   {"forks"},
-                   {"work segments"},
-                   {"million operations"},
-                   {"transfers"},
-                   {"kB moved"},
-                   {"peak bytes"}});
-  for (const traces::WorkTraceInfo::Stage& stage : trace.info().stages) {
-    const StageSum& sum = contents.of(stage.name);
-    table.add({stage.name, stage.unit, fmt::format("{}", sum.calls), fmt::format("{}", sum.forks),
-               fmt::format("{}", sum.segments),
-               fmt::format("{:.1f}", operations(sum.counts) * 1e-6),
-               fmt::format("{}", sum.transfers.transfers),
-               fmt::format("{:.1f}", static_cast<double>(sum.transfers.bytes.count()) * 1e-3),
-               fmt::format("{}", sum.peak.count())});
-  }
-  return table.str();
-}
-
-/// What an accelerator might serve.
-std::string kernel_line(const Contents& contents) {
-  std::string text;
-  for (const work::OffloadWork& calls : contents.offload.offload)
-    text += fmt::format(
-        "{}{} {} ({} %)", text.empty() ? "" : ", ",
-        work::kOffloadKinds[work::index(calls.kernel)].name, calls.calls,
-        std::llround(100 * operations(calls.counts) / operations(contents.all().counts)));
-  return fmt::format("offload regions (share of operations): {}\n", text.empty() ? "none" : text);
-}
-
-}  // namespace
 
 std::string trace_summary(const traces::WorkTrace& trace) {
   const Contents contents(trace);

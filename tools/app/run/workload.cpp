@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/schema.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
@@ -77,7 +76,16 @@ class FrameByFrame : public RunSource {
   work::Job job_;
 };
 
+using vio::Parameter;
+
+std::vector<std::string> names() {
+  std::vector<std::string> all;
+  for (const Parameter& p : vio::parameters()) all.emplace_back(p.name);
+  return all;
+}
+
 }  // namespace
+
 }  // namespace leviosim::tools
 
 namespace leviosim {
@@ -133,18 +141,6 @@ std::vector<vio::StageName> stages_of(const RunRequest& request) {
   for (const std::string& name : other->stages) names.push_back({name, "frame", false});
   return names;
 }
-
-namespace {
-
-using vio::Parameter;
-
-std::vector<std::string> names() {
-  std::vector<std::string> all;
-  for (const Parameter& p : vio::parameters()) all.emplace_back(p.name);
-  return all;
-}
-
-}  // namespace
 
 SplitOverrides split_overrides(const std::vector<std::string>& overrides) {
   SplitOverrides split;

@@ -16,15 +16,11 @@
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/result/energy.h"
-#include "tools/app/result/summary.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/workload.h"
-#include "tools/app/study/engine.h"
-#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::tools {
 namespace {
@@ -126,6 +122,39 @@ RunOutcome compute(const Point& point, const Measure& how) {
   request.evaluate = false;  // outcome_of() does, and takes note of what diverged
   const RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
   return outcome_of(result, point.sequence->truth, how);
+}
+
+/// The same input twice would only look like more runs.
+template <class T>
+std::vector<T> without_repetitions(const std::string& option, std::vector<T> values,
+                                   const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (std::find(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(i), words[i]) !=
+        words.begin() + static_cast<std::ptrdiff_t>(i))
+      throw InputError(fmt::format("{} '{}': is given twice", option, words[i]));
+  return values;
+}
+
+std::vector<traces::ImageSize> parse_sizes(const std::vector<std::string>& words) {
+  std::vector<traces::ImageSize> sizes;
+  for (const std::string& word : words) sizes.push_back(parse_size(word));
+  return without_repetitions("--size", sizes, words);
+}
+
+/// Digests of what is read are kept with the folder's name for the messages.
+std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan) {
+  std::vector<Sequence> sequences;
+  for (const std::string& word : words.data) {
+    throw_if_interrupted();
+    NamedFolder named = parse_named_folder(word);
+    if (named.folder == "synthetic") named.folder = cached_flight(plan.runner.progress).string();
+    sequences.push_back(open_sequence(named, plan.frames, plan.sizes));
+    for (std::size_t i = 0; i + 1 < sequences.size(); ++i)
+      if (sequences[i].inputs == sequences.back().inputs)
+        throw InputError(
+            fmt::format("--data {}: holds the same flight as {}", word, sequences[i].folder));
+  }
+  return sequences;
 }
 
 }  // namespace
@@ -274,43 +303,6 @@ std::string runs_csv(const std::vector<Point>& points, const std::vector<RunOutc
   for (std::size_t i = 0; i < points.size(); ++i) runs.push_back({points[i], outcomes[i]});
   return columns.text(runs);
 }
-
-namespace {
-
-/// The same input twice would only look like more runs.
-template <class T>
-std::vector<T> without_repetitions(const std::string& option, std::vector<T> values,
-                                   const std::vector<std::string>& words) {
-  for (std::size_t i = 0; i < words.size(); ++i)
-    if (std::find(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(i), words[i]) !=
-        words.begin() + static_cast<std::ptrdiff_t>(i))
-      throw InputError(fmt::format("{} '{}': is given twice", option, words[i]));
-  return values;
-}
-
-std::vector<traces::ImageSize> parse_sizes(const std::vector<std::string>& words) {
-  std::vector<traces::ImageSize> sizes;
-  for (const std::string& word : words) sizes.push_back(parse_size(word));
-  return without_repetitions("--size", sizes, words);
-}
-
-/// Digests of what is read are kept with the folder's name for the messages.
-std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan) {
-  std::vector<Sequence> sequences;
-  for (const std::string& word : words.data) {
-    throw_if_interrupted();
-    NamedFolder named = parse_named_folder(word);
-    if (named.folder == "synthetic") named.folder = cached_flight(plan.runner.progress).string();
-    sequences.push_back(open_sequence(named, plan.frames, plan.sizes));
-    for (std::size_t i = 0; i + 1 < sequences.size(); ++i)
-      if (sequences[i].inputs == sequences.back().inputs)
-        throw InputError(
-            fmt::format("--data {}: holds the same flight as {}", word, sequences[i].folder));
-  }
-  return sequences;
-}
-
-}  // namespace
 
 std::vector<std::uint32_t> batch_seeds(const std::vector<std::string>& words) {
   std::vector<std::uint32_t> seeds;

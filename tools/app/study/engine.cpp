@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <mutex>
-#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -50,20 +48,6 @@ std::string chip_lines(const RunRequest& request, const platform::Schema& schema
                             info_of(deadline).name);
 }
 
-}  // namespace
-
-std::string identity_of(const Point& point, const platform::Schema& schema) {
-  std::string text = point.work + '\n';
-  if (point.trace == nullptr) text += workload_lines(point.request);
-  return text + (point.request.native ? "native\n" : chip_lines(point.request, schema));
-}
-
-std::string point_key(std::string_view kept, const std::string& identity) {
-  return base::sha256_of(fmt::format("simulator {}\n{}\n{}", results_version(), kept, identity));
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 double path_over_frames(const traces::Dataset& data) {
@@ -77,7 +61,71 @@ double path_over_frames(const traces::Dataset& data) {
   return length;
 }
 
+constexpr const char* kFormat = "leviosim outcome 1";
+
+constexpr std::uint64_t kLargestFile = 64 << 20;
+
+/// The first line of a file, by which it is known to be what was stored under the key.
+std::string header_of(const std::string& key, const std::string& text) {
+  return fmt::format("leviosim cache 2 {} {}\n", key, base::sha256_of(text));
+}
+
+/// The one that commands use unless told otherwise.
+fs::path default_outcome_cache() { return cache_folder() / "outcomes"; }
+
+constexpr std::int64_t kMostJobs = 1024;
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// The points of equal keys as chains.
+struct Chains {
+  std::vector<std::size_t> firsts;  ///< in their order
+  std::vector<std::size_t> next;    ///< by point; kNone after the last
+};
+
+Chains chains_of(const std::vector<std::string>& keys) {
+  constexpr std::size_t kKeysPerPoll = 1024;
+  Chains chains{{}, std::vector<std::size_t>(keys.size(), kNone)};
+  std::unordered_map<std::string_view, std::size_t> last;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i % kKeysPerPoll == 0) throw_if_interrupted();
+    const auto [it, is_new] = last.try_emplace(keys[i], i);
+    if (is_new)
+      chains.firsts.push_back(i);
+    else
+      chains.next[std::exchange(it->second, i)] = i;
+  }
+  return chains;
+}
+
+void show(ProgressLine& line, const std::string& noun, const Tally& tally) {
+  line.show(static_cast<std::int64_t>(tally.done()), static_cast<std::int64_t>(tally.total),
+            [&] { return progress_text(noun, tally, line.host_seconds()); });
+}
+
+std::vector<double> sorted_values(const std::vector<std::optional<double>>& values) {
+  std::vector<double> sorted;
+  for (const std::optional<double>& value : values)
+    sorted.push_back(value.value_or(std::numeric_limits<double>::infinity()));
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+std::optional<double> finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
+
+std::string identity_of(const Point& point, const platform::Schema& schema) {
+  std::string text = point.work + '\n';
+  if (point.trace == nullptr) text += workload_lines(point.request);
+  return text + (point.request.native ? "native\n" : chip_lines(point.request, schema));
+}
+
+std::string point_key(std::string_view kept, const std::string& identity) {
+  return base::sha256_of(fmt::format("simulator {}\n{}\n{}", results_version(), kept, identity));
+}
 
 std::string folder_name(const std::string& folder) {
   const fs::path path = fs::absolute(folder).lexically_normal();
@@ -133,12 +181,6 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
           work_of(data, digest)};
 }
 
-namespace {
-
-constexpr const char* kFormat = "leviosim outcome 1";
-
-}  // namespace
-
 std::string to_text(const Outcome& outcome) {
   Json json;
   json["format"] = kFormat;
@@ -164,22 +206,6 @@ std::optional<Outcome> parse_outcome(std::string_view text) {
     return std::nullopt;
   }
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::uint64_t kLargestFile = 64 << 20;
-
-/// The first line of a file, by which it is known to be what was stored under the key.
-std::string header_of(const std::string& key, const std::string& text) {
-  return fmt::format("leviosim cache 2 {} {}\n", key, base::sha256_of(text));
-}
-
-/// The one that commands use unless told otherwise.
-fs::path default_outcome_cache() { return cache_folder() / "outcomes"; }
-
-}  // namespace
 
 /// Folders of a few files each, also after a million runs.
 fs::path OutcomeCache::file_of(const std::string& key) const {
@@ -211,40 +237,6 @@ void OutcomeCache::store(const std::string& key, const Outcome& outcome) const {
     throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
   outputs::write_file_atomically(file, header_of(key, text) + text);
 }
-
-namespace {
-
-constexpr std::int64_t kMostJobs = 1024;
-
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-/// The points of equal keys as chains.
-struct Chains {
-  std::vector<std::size_t> firsts;  ///< in their order
-  std::vector<std::size_t> next;    ///< by point; kNone after the last
-};
-
-Chains chains_of(const std::vector<std::string>& keys) {
-  constexpr std::size_t kKeysPerPoll = 1024;
-  Chains chains{{}, std::vector<std::size_t>(keys.size(), kNone)};
-  std::unordered_map<std::string_view, std::size_t> last;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (i % kKeysPerPoll == 0) throw_if_interrupted();
-    const auto [it, is_new] = last.try_emplace(keys[i], i);
-    if (is_new)
-      chains.firsts.push_back(i);
-    else
-      chains.next[std::exchange(it->second, i)] = i;
-  }
-  return chains;
-}
-
-void show(ProgressLine& line, const std::string& noun, const Tally& tally) {
-  line.show(static_cast<std::int64_t>(tally.done()), static_cast<std::int64_t>(tally.total),
-            [&] { return progress_text(noun, tally, line.host_seconds()); });
-}
-
-}  // namespace
 
 void add_jobs_option(CLI::App& command, std::string& jobs, const std::string& noun) {
   TextOptions{command}("--jobs", jobs, "N", noun + "s at a time [cores of the host]");
@@ -318,22 +310,6 @@ Tally run_points(const PointBatch& batch, const RunnerOptions& options) {
   });
   return tally;
 }
-
-namespace {
-
-std::vector<double> sorted_values(const std::vector<std::optional<double>>& values) {
-  std::vector<double> sorted;
-  for (const std::optional<double>& value : values)
-    sorted.push_back(value.value_or(std::numeric_limits<double>::infinity()));
-  std::sort(sorted.begin(), sorted.end());
-  return sorted;
-}
-
-std::optional<double> finite(double value) {
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-}  // namespace
 
 Spread spread_of(const std::vector<std::optional<double>>& values) {
   Spread spread;

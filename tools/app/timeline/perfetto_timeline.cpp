@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "tools/app/result/energy.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/timeline/core_slices.h"
 #include "tools/app/timeline/track_events.h"
@@ -235,22 +234,6 @@ void Timeline::add_optimiser() {
   }
 }
 
-}  // namespace
-
-std::string perfetto_timeline(const TimelineEvents& events, const RunResult& run,
-                              std::size_t most_bytes_of_frame) {
-  Timeline timeline(events, run);
-  timeline.add_camera();
-  for (const FrameEvents& frame : events.frames) {
-    timeline.add_frame(frame, most_bytes_of_frame);
-    timeline.add_counters(frame);
-  }
-  timeline.add_optimiser();
-  return timeline.bytes();
-}
-
-namespace {
-
 void add_core(std::vector<CoreEvents>& cores, const CoreEvents& core) {
   const auto at = std::lower_bound(cores.begin(), cores.end(), core.core,
                                    [](const CoreEvents& c, int number) { return c.core < number; });
@@ -292,6 +275,18 @@ void add_step(StepEvents& sum, const StepEvents& step) {
 }
 
 }  // namespace
+
+std::string perfetto_timeline(const TimelineEvents& events, const RunResult& run,
+                              std::size_t most_bytes_of_frame) {
+  Timeline timeline(events, run);
+  timeline.add_camera();
+  for (const FrameEvents& frame : events.frames) {
+    timeline.add_frame(frame, most_bytes_of_frame);
+    timeline.add_counters(frame);
+  }
+  timeline.add_optimiser();
+  return timeline.bytes();
+}
 
 StageEvents with_short_steps_joined(const StageEvents& stage, Cycles shortest) {
   StageEvents joined = stage;

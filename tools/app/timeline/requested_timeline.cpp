@@ -12,7 +12,7 @@
 #include "sim/soc/account.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
 
 namespace leviosim::tools {
 namespace {
@@ -56,6 +56,23 @@ outputs::OutputRequest file_request(const std::string& file,
   refuse_within(results, file);
   return {
       .option = "--timeline", .path = file, .replace = results.replace, .inputs = results.inputs};
+}
+
+StepKind kind_of(const work::Step& step) {
+  if (std::holds_alternative<work::Serial>(step)) return StepKind::Serial;
+  if (std::holds_alternative<work::Fork>(step)) return StepKind::Fork;
+  if (std::holds_alternative<work::Transfer>(step)) return StepKind::Transfer;
+  return StepKind::Wait;
+}
+
+/// Absent where the energy is not known.
+std::optional<Watts> power_in(const std::optional<RunEnergy>& energy, std::string_view stage) {
+  if (!energy) return std::nullopt;
+  const auto row = std::find_if(energy->rows.begin(), energy->rows.end(),
+                                [&](const EnergyRow& r) { return r.name == stage; });
+  if (row == energy->rows.end()) return std::nullopt;
+  const std::optional<sim::Estimate<Watts>> power = row->power();
+  return power ? std::optional(power->value) : std::nullopt;
 }
 
 }  // namespace
@@ -104,27 +121,6 @@ std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& optio
     throw InputError("run: --native computes without a chip; leave out --timeline");
   return std::optional<RequestedTimeline>(std::in_place, options, results, request);
 }
-
-namespace {
-
-StepKind kind_of(const work::Step& step) {
-  if (std::holds_alternative<work::Serial>(step)) return StepKind::Serial;
-  if (std::holds_alternative<work::Fork>(step)) return StepKind::Fork;
-  if (std::holds_alternative<work::Transfer>(step)) return StepKind::Transfer;
-  return StepKind::Wait;
-}
-
-/// Absent where the energy is not known.
-std::optional<Watts> power_in(const std::optional<RunEnergy>& energy, std::string_view stage) {
-  if (!energy) return std::nullopt;
-  const auto row = std::find_if(energy->rows.begin(), energy->rows.end(),
-                                [&](const EnergyRow& r) { return r.name == stage; });
-  if (row == energy->rows.end()) return std::nullopt;
-  const std::optional<sim::Estimate<Watts>> power = row->power();
-  return power ? std::optional(power->value) : std::nullopt;
-}
-
-}  // namespace
 
 TimelineCollector::TimelineCollector(const sim::ChipConfig& chip, int cores,
                                      std::optional<traces::FrameRange> range, int middle)

@@ -1,25 +1,119 @@
 #include "tools/app/timeline/requested_timeline.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "sim/base/printable_text.h"
 #include "sim/chip/accelerator.h"
-#include "tools/app/report/plot/plot.h"
+#include "tools/app/cli/terminal.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/timeline/core_slices.h"
 
 namespace leviosim::tools {
 namespace {
 
-using plot::Anchor;
-using plot::Box;
-using plot::Stroke;
-using plot::Svg;
+/// Pixels, x right, y down.
+struct SvgPoint {
+  double x = 0;
+  double y = 0;
+};
+
+struct SvgBox {
+  double x = 0;
+  double y = 0;
+  double width = 0;
+  double height = 0;
+};
+
+struct TextStyle {
+  double size = 12;              ///< [px]
+  const char* anchor = "start";  ///< or middle, end
+  const char* colour = "#333333";
+  bool bold = false;
+};
+
+/// Two decimals, no negative zero.
+std::string px(double value) {
+  constexpr double kPrintsAsZero = 0.005;
+  return fmt::format("{:.2f}", std::abs(value) < kPrintsAsZero ? 0.0 : value);
+}
+
+std::string markup(std::string_view text) { return escape_markup(printable(text)); }
+
+/// A small writer of SVG 1.1: shapes and text in the order in which they are added.
+class Svg {
+ public:
+  /// On white. `title` is for readers that do not see the picture.
+  Svg(double width, double height, std::string_view title) : width_(width), height_(height) {
+    add("<title>{}</title>\n", markup(title));
+    rectangle({0, 0, width, height}, "#ffffff");
+  }
+
+  /// @param attributes  of the stroke, besides its colour and width
+  void line(SvgPoint from, SvgPoint to, const char* colour, double width,
+            const char* attributes = "") {
+    add("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n",
+        px(from.x), px(from.y), px(to.x), px(to.y), colour, px(width), attributes);
+  }
+  void rectangle(const SvgBox& box, std::string_view fill) {
+    add("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", px(box.x), px(box.y),
+        px(box.width), px(box.height), fill);
+  }
+  /// Many of a colour, in a third of the bytes that rectangle() takes.
+  void rectangles(const std::vector<SvgBox>& boxes, std::string_view fill) {
+    if (boxes.empty()) return;
+    add("<path fill=\"{}\" d=\"", fill);
+    for (const SvgBox& box : boxes)
+      add("M{:g} {:g}h{:g}v{:g}h{:g}z", box.x, box.y, box.width, box.height, -box.width);
+    body_ += "\"/>\n";
+  }
+  void text(SvgPoint at, std::string_view text, const TextStyle& style) {
+    add("<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{}\" fill=\"{}\"{}>{}</text>\n",
+        px(at.x), px(at.y), px(style.size), style.anchor, style.colour,
+        style.bold ? " font-weight=\"bold\"" : "", markup(text));
+  }
+  /// The whole file.
+  std::string str() const {
+    return fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+        "viewBox=\"0 0 {0} {1}\" font-family=\"Helvetica, Arial, sans-serif\">\n{2}</svg>\n",
+        px(width_), px(height_), body_);
+  }
+
+ private:
+  template <class... Values>
+  void add(fmt::format_string<const Values&...> text, const Values&... values) {
+    fmt::format_to(std::back_inserter(body_), text, values...);
+  }
+
+  std::string body_;
+  double width_;
+  double height_;
+};
+
+/// Between the ticks of an axis from 0: the least of 1, 2 or 5 times a power of ten that gives at
+/// most `most` ticks, both ends included.
+double tick_step(double length, int most) {
+  constexpr std::array<double, 3> kMantissas{1, 2, 5};
+  int exponent = static_cast<int>(std::floor(std::log10(length / most)));
+  for (std::size_t i = 0;; ++i) {
+    if (i == kMantissas.size()) {
+      i = 0;
+      ++exponent;
+    }
+    const double step = kMantissas[i] * std::pow(10.0, exponent);
+    if (std::floor(length / step) + 1 <= most) return step;
+  }
+}
 
 constexpr double kWidth = 1000;
 constexpr double kLeftEdge = 96;
@@ -165,25 +259,27 @@ void Picture::draw_legend(Svg& svg) const {
 }
 
 void Picture::draw_axis(Svg& svg) const {
-  const plot::Ticks ticks = plot::round_ticks({0, end_ms_ - begin_ms_}, 12);
-  for (const double value : ticks.values) {
-    const double x = x_of(begin_ms_ + value);
-    svg.line({x, kTop - 4}, {x, bottom()}, {"#e4e8ec", 1});
-    svg.text({x, bottom() + 15}, plot::tick_label(value, ticks.step),
-             {.size = 11, .anchor = Anchor::middle});
+  const double length = end_ms_ - begin_ms_;
+  const double step = tick_step(length, 12);
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+  for (int k = 0; k * step <= length; ++k) {
+    const double x = x_of(begin_ms_ + k * step);
+    svg.line({x, kTop - 4}, {x, bottom()}, "#e4e8ec", 1);
+    svg.text({x, bottom() + 15}, fmt::format("{:.{}f}", k * step, decimals),
+             {.size = 11, .anchor = "middle"});
   }
   svg.text({kLeftEdge + kPlotWidth / 2, bottom() + 33},
-           "ms since the arrival of the first frame shown", {.size = 12, .anchor = Anchor::middle});
+           "ms since the arrival of the first frame shown", {.size = 12, .anchor = "middle"});
 }
 
 void Picture::draw_label(Svg& svg, std::size_t row, std::string_view name) const {
-  svg.text({kLeftEdge - 8, row_top(row) + 14}, name, {.size = 11, .anchor = Anchor::end});
+  svg.text({kLeftEdge - 8, row_top(row) + 14}, name, {.size = 11, .anchor = "end"});
 }
 
 /// Its name stands in it where there is room.
 void Picture::draw_block(Svg& svg, std::size_t row, double from_ms, double to_ms,
                          std::string_view name, std::string_view colour) const {
-  const Box box{x_of(from_ms), row_top(row), x_of(to_ms) - x_of(from_ms), kRowHeight};
+  const SvgBox box{x_of(from_ms), row_top(row), x_of(to_ms) - x_of(from_ms), kRowHeight};
   svg.rectangle(box, colour);
   if (box.width > kLetterWidth * static_cast<double>(name.size()))
     svg.text({box.x + 3, box.y + 13}, name, {.size = 10.5, .colour = kInk});
@@ -204,9 +300,9 @@ void Picture::draw_deadlines(Svg& svg) const {
     const bool late = is_late(frame.result, run_);
     const double x =
         x_of(static_cast<double>(frame.result.arrival_ns + run_.frame_period_ns) * 1e-6);
-    svg.line({x, kTop - 8}, {x, bottom()}, {late ? kMiss : kInk, 1.2, "4 3"});
+    svg.line({x, kTop - 8}, {x, bottom()}, late ? kMiss : kInk, 1.2, " stroke-dasharray=\"4 3\"");
     svg.text({x - 4, kTop - 5}, late ? "deadline missed" : "deadline",
-             {.size = 10.5, .anchor = Anchor::end, .colour = late ? kMiss : kInk});
+             {.size = 10.5, .anchor = "end", .colour = late ? kMiss : kInk});
   }
 }
 
@@ -216,7 +312,7 @@ void Picture::draw_strip(Svg& svg, std::size_t row, const Strip& strip) const {
   std::array<double, kColumns> below{};
   const double base = row_top(row) + kRowHeight;
   for (std::size_t part = 0; part < kParts; ++part) {
-    std::vector<Box> boxes;
+    std::vector<SvgBox> boxes;
     std::array<double, kColumns> above = below;
     for (std::size_t i = 0; i < kColumns; ++i) above[i] += strip[i][part];
     for (std::size_t begin = 0; begin < kColumns;) {

@@ -1,6 +1,5 @@
 #include "tools/app/timeline/track_events.h"
 
-#include "sim/base/check.h"
 #include "sim/base/printable_text.h"
 
 namespace leviosim::tools {

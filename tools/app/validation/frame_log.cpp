@@ -5,7 +5,6 @@
 
 #include "sim/base/check.h"
 #include "tools/app/result/summary.h"
-#include "workload/vio/stages.h"
 
 namespace leviosim::tools {
 namespace {
@@ -18,6 +17,59 @@ LoggedStage& stage_of(LoggedFrame& frame, std::string_view name) {
   stage.name = name;
   frame.stages.push_back(stage);
   return frame.stages.back();
+}
+
+using work::Op;
+
+constexpr std::string_view kEpnp = "solve EPnP";
+constexpr std::string_view kEightPoint = "8-point hypotheses";
+
+double number(const work::Counts& counts, Op op) { return static_cast<double>(counts[op]); }
+double rotations(const work::Counts& hypothesis) { return number(hypothesis, Op::F64Mul) / 2; }
+
+/// In whole steps, at least the one that finds no pivot.
+double steps(const work::Counts& hypothesis) {
+  constexpr double kOutsideOfSteps = 21;
+  constexpr double kOfAStep = 54;
+  const double divisions = number(hypothesis, Op::F32Div) - rotations(hypothesis) - kOutsideOfSteps;
+  return std::max(1.0, std::round(divisions / kOfAStep));
+}
+
+std::int64_t pairs_of(const LoggedFrame& frame, std::string_view stage) {
+  const std::int64_t features = frame.result.features;
+  if (stage == vio::stages::kFrameMatching) return features * frame.keyframe_features;
+  if (stage == vio::stages::kWorldMatching) return features * frame.landmarks_before;
+  return 0;
+}
+
+using Value = std::optional<double>;
+using Frames = std::vector<LoggedFrame>;
+
+bool ran(const LoggedFrame& frame, std::string_view stage) { return frame.find(stage) != nullptr; }
+
+template <class Wanted>
+Frames frames_that(const FrameLog& log, const Wanted& wanted) {
+  Frames frames;
+  for (const LoggedFrame& frame : log.frames())
+    if (frame.result.source != PoseSource::First && wanted(frame)) frames.push_back(frame);
+  return frames;
+}
+
+/// A path's frames, and what share of all frames they are in the paper.
+struct Path {
+  Frames frames;
+  double share;
+
+  /// Of the paper's frames, those that take the path and come to the stage.
+  double weight(const StageSum& sum) const {
+    if (frames.empty()) return 0;
+    return share * static_cast<double>(sum.frames) / static_cast<double>(frames.size());
+  }
+};
+
+Value weighed(Value a, double weight_a, Value b, double weight_b) {
+  if (!a || !b) return std::nullopt;
+  return (*a * weight_a + *b * weight_b) / (weight_a + weight_b);
 }
 
 }  // namespace
@@ -64,26 +116,6 @@ void FrameLog::on_optimiser(const OptimiserJob& event) {
   if (iterated) iterations_.push_back({event.frame, cycles});
 }
 
-namespace {
-
-using work::Op;
-
-constexpr std::string_view kEpnp = "solve EPnP";
-constexpr std::string_view kEightPoint = "8-point hypotheses";
-
-double number(const work::Counts& counts, Op op) { return static_cast<double>(counts[op]); }
-double rotations(const work::Counts& hypothesis) { return number(hypothesis, Op::F64Mul) / 2; }
-
-/// In whole steps, at least the one that finds no pivot.
-double steps(const work::Counts& hypothesis) {
-  constexpr double kOutsideOfSteps = 21;
-  constexpr double kOfAStep = 54;
-  const double divisions = number(hypothesis, Op::F32Div) - rotations(hypothesis) - kOutsideOfSteps;
-  return std::max(1.0, std::round(divisions / kOfAStep));
-}
-
-}  // namespace
-
 void RansacSamples::add(const work::Job& job) {
   for (const work::StageRun& stage : job.stages)
     for (const work::Step& step : stage.steps) {
@@ -104,17 +136,6 @@ void RansacSamples::add(const work::Job& job) {
     }
 }
 
-namespace {
-
-std::int64_t pairs_of(const LoggedFrame& frame, std::string_view stage) {
-  const std::int64_t features = frame.result.features;
-  if (stage == vio::stages::kFrameMatching) return features * frame.keyframe_features;
-  if (stage == vio::stages::kWorldMatching) return features * frame.landmarks_before;
-  return 0;
-}
-
-}  // namespace
-
 std::optional<double> StageSum::mean_single() const { return mean(single, frames); }
 std::optional<double> StageSum::mean_parallel() const { return mean(parallel, frames); }
 
@@ -134,40 +155,6 @@ StageSum sum_over(const std::vector<LoggedFrame>& frames, const PaperStage& stag
   }
   return sum;
 }
-
-namespace {
-
-using Value = std::optional<double>;
-using Frames = std::vector<LoggedFrame>;
-
-bool ran(const LoggedFrame& frame, std::string_view stage) { return frame.find(stage) != nullptr; }
-
-template <class Wanted>
-Frames frames_that(const FrameLog& log, const Wanted& wanted) {
-  Frames frames;
-  for (const LoggedFrame& frame : log.frames())
-    if (frame.result.source != PoseSource::First && wanted(frame)) frames.push_back(frame);
-  return frames;
-}
-
-/// A path's frames, and what share of all frames they are in the paper.
-struct Path {
-  Frames frames;
-  double share;
-
-  /// Of the paper's frames, those that take the path and come to the stage.
-  double weight(const StageSum& sum) const {
-    if (frames.empty()) return 0;
-    return share * static_cast<double>(sum.frames) / static_cast<double>(frames.size());
-  }
-};
-
-Value weighed(Value a, double weight_a, Value b, double weight_b) {
-  if (!a || !b) return std::nullopt;
-  return (*a * weight_a + *b * weight_b) / (weight_a + weight_b);
-}
-
-}  // namespace
 
 std::vector<StageOnPaths> stages_on_paths(const FrameLog& log) {
   const auto on_eight_point = [](const LoggedFrame& f) { return ran(f, vio::stages::kEightPoint); };

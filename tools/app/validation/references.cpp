@@ -1,6 +1,7 @@
 #include "tools/app/validation/references.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,76 +10,43 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/text.h"
 
 namespace leviosim::tools {
 namespace {
 
-constexpr std::string_view kFile = "paper.csv";
-constexpr std::string_view kHeader = "name,value,unit,tolerance,guard,status,source";
+constexpr const char* kFile = "paper.csv";
 constexpr std::string_view kMissed = "missed: ";
-constexpr std::size_t kReferenceColumns = 7;
+const std::vector<std::string> kTitles{"name",  "value",  "unit",  "tolerance",
+                                       "guard", "status", "source"};
+enum Title : std::size_t { kName, kValue, kUnit, kTolerance, kGuard, kStatus, kSource };
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
+double number_in(const base::CsvRow& row, Title column, std::string_view text) {
+  double value = 0;
+  if (!base::parse_number(text, value)) row.fail(column, "not a finite number");
+  return value;
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = line.find(',', begin);
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
-    if (end == std::string_view::npos) return cells;
-    begin = end + 1;
-  }
+Deviation deviation_in(const base::CsvRow& row, Title column) {
+  std::string_view text = row.text(column);
+  const bool relative = text.ends_with('%');
+  if (relative) text.remove_suffix(text.ends_with(" %") ? 2 : 1);
+  const Deviation deviation{number_in(row, column, text), relative};
+  if (deviation.value < 0) row.fail(column, "not 0 or more");
+  return deviation;
 }
 
-/// One row as text, with what its faults are called.
-class Row {
- public:
-  Row(std::string where, std::vector<std::string_view> cells)
-      : where_(std::move(where)), cells_(std::move(cells)) {
-    if (cells_.size() != kReferenceColumns)
-      fail(fmt::format("has {} columns; expected {}: {}", cells_.size(), kReferenceColumns,
-                       kHeader));
-  }
-
-  [[noreturn]] void fail(std::string_view message) const {
-    throw InputError(fmt::format("{}: {}", where_, message));
-  }
-  std::string_view cell(std::size_t column) const { return cells_[column]; }
-  double number(std::string_view text, std::string_view what) const {
-    double value = 0;
-    if (!base::parse_number(text, value))
-      fail(fmt::format("{} '{}': expected a number", what, text));
-    return value;
-  }
-  Deviation deviation(std::size_t column, std::string_view what) const {
-    std::string_view text = cells_[column];
-    const bool relative = !text.empty() && text.back() == '%';
-    if (relative) text = trimmed(text.substr(0, text.size() - 1));
-    const Deviation deviation{number(text, what), relative};
-    if (deviation.value < 0) fail(fmt::format("{} '{}': expected 0 or more", what, text));
-    return deviation;
-  }
-
- private:
-  std::string where_;
-  std::vector<std::string_view> cells_;
-};
-
-void read_status(const Row& row, Reference& reference) {
-  const std::string_view status = row.cell(5);
+void read_status(const base::CsvRow& row, Reference& reference) {
+  const std::string_view status = row.text(kStatus);
   reference.met = status == "met";
   if (reference.met) {
-    if (!row.cell(4).empty()) row.fail("is met: expected no guard");
+    if (!row.text(kGuard).empty()) row.fail("is met: expected no guard");
     return;
   }
-  if (status.substr(0, kMissed.size()) != kMissed || status.size() == kMissed.size())
-    row.fail(fmt::format("status '{}': expected met, or missed: REASON", status));
+  if (!status.starts_with(kMissed) || status.size() == kMissed.size())
+    row.fail(kStatus, "neither met nor missed: REASON");
   reference.reason = status.substr(kMissed.size());
-  const Deviation guard = row.deviation(4, "guard");
+  const Deviation guard = deviation_in(row, kGuard);
   if (guard.relative != reference.tolerance.relative)
     row.fail("guard and tolerance: expected both in per cent or both in the unit");
   if (!(guard.value > reference.tolerance.value))
@@ -86,50 +54,22 @@ void read_status(const Row& row, Reference& reference) {
   reference.guard = guard.value;
 }
 
-Reference reference_from(const Row& row) {
+Reference reference_from(const base::CsvRow& row) {
+  for (const Title column : {kName, kUnit, kSource})
+    if (row.text(column).empty()) row.fail(column, "empty");
   Reference reference;
-  reference.name = row.cell(0);
-  if (reference.name.empty()) row.fail("name: is empty");
-  std::string_view value = row.cell(1);
+  reference.name = row.text(kName);
+  std::string_view value = row.text(kValue);
   reference.limit = !value.empty() && value.front() == '<';
   if (reference.limit) value.remove_prefix(1);
-  reference.value = row.number(value, "value");
-  reference.unit = row.cell(2);
-  if (reference.unit.empty()) row.fail("unit: is empty");
-  reference.tolerance = row.deviation(3, "tolerance");
+  reference.value = number_in(row, kValue, value);
+  reference.unit = row.text(kUnit);
+  reference.tolerance = deviation_in(row, kTolerance);
   if (reference.tolerance.relative && reference.value == 0)
     row.fail("value 0: expected a tolerance in its unit");
   read_status(row, reference);
-  reference.source = row.cell(6);
-  if (reference.source.empty()) row.fail("source: is empty");
+  reference.source = row.text(kSource);
   return reference;
-}
-
-/// Calls `visit(line, row)` for every line; `row` is empty for comments, blanks and the header.
-void for_each_line(const std::string& file, std::string_view text,
-                   const std::function<void(std::string_view, const Row*)>& visit) {
-  bool header = false;
-  int number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
-    ++number;
-    const std::string where = fmt::format("{}:{}", file, number);
-    const bool is_row = header && !line.empty() && line.front() != '#';
-    if (!header && !line.empty() && line.front() != '#') {
-      if (line != kHeader)
-        throw InputError(fmt::format("{}: expected the header {}", where, kHeader));
-      header = true;
-    }
-    if (is_row) {
-      const Row row(where, cells_of(line));
-      visit(line, &row);
-    } else {
-      visit(line, nullptr);
-    }
-  }
-  if (!header) throw InputError(fmt::format("{}: expected the header {}", file, kHeader));
 }
 
 std::string deviation_text(Deviation deviation) {
@@ -146,7 +86,7 @@ double guard_for(const Reference& reference, double error) {
   return guard;
 }
 
-std::string row_text(const Row& row, const Reference& reference, double value,
+std::string row_text(const base::CsvRow& row, const Reference& reference, double value,
                      const std::string& new_reason) {
   const double error = std::abs(error_of(reference, value));
   std::string guard;
@@ -155,8 +95,8 @@ std::string row_text(const Row& row, const Reference& reference, double value,
     guard = deviation_text({guard_for(reference, error), reference.tolerance.relative});
     status = fmt::format("{}{}", kMissed, reference.met ? new_reason : reference.reason);
   }
-  return fmt::format("{},{},{},{},{},{},{}", row.cell(0), row.cell(1), row.cell(2), row.cell(3),
-                     guard, status, row.cell(6));
+  return fmt::format("{},{},{},{},{},{},{}", row.text(kName), row.text(kValue), row.text(kUnit),
+                     row.text(kTolerance), guard, status, row.text(kSource));
 }
 
 }  // namespace
@@ -164,11 +104,9 @@ std::string row_text(const Row& row, const Reference& reference, double value,
 std::vector<Reference> parse_references(const std::string& file, std::string_view text) {
   std::vector<Reference> references;
   std::set<std::string> names;
-  for_each_line(file, text, [&](std::string_view, const Row* row) {
-    if (row == nullptr) return;
-    references.push_back(reference_from(*row));
-    if (!names.insert(references.back().name).second)
-      row->fail(fmt::format("'{}' is there twice", references.back().name));
+  for_each_row(file, text, kTitles, [&](const base::CsvRow& row) {
+    references.push_back(reference_from(row));
+    if (!names.insert(references.back().name).second) row.fail(kName, "there twice");
   });
   return references;
 }
@@ -184,7 +122,9 @@ void for_each_row(const std::string& file, std::string_view text,
                   const std::function<void(const base::CsvRow&)>& visit) {
   base::CsvReader reader(file, base::Separator::comma, titles, std::string(text));
   const base::CsvRow* row = reader.next();
-  for (std::size_t i = 0; row != nullptr && i < titles.size(); ++i)
+  if (row == nullptr)
+    throw InputError(fmt::format("{}: expected the titles {}", file, fmt::join(titles, ",")));
+  for (std::size_t i = 0; i < titles.size(); ++i)
     if (row->text(i) != titles[i]) row->fail(i, fmt::format("expected the title {}", titles[i]));
   while ((row = reader.next()) != nullptr) visit(*row);
 }
@@ -192,7 +132,7 @@ void for_each_row(const std::string& file, std::string_view text,
 std::string_view paper_references_text() { return reference_text("paper"); }
 
 std::vector<Reference> paper_references() {
-  return parse_references(std::string(kFile), paper_references_text());
+  return parse_references(kFile, paper_references_text());
 }
 
 double error_of(const Reference& reference, double value) {
@@ -221,18 +161,14 @@ Verdict judge(double error, double tolerance, std::optional<double> guard) {
 std::string updated_references(const std::string& file, std::string_view text,
                                const std::vector<std::optional<double>>& values,
                                const std::string& new_reason) {
-  std::string out;
+  std::vector<std::string> lines = base::split(text, '\n');
   std::size_t next = 0;
-  for_each_line(file, text, [&](std::string_view line, const Row* row) {
-    std::string written(line);
-    if (row != nullptr) {
-      const std::optional<double> value = values.at(next++);
-      if (value) written = row_text(*row, reference_from(*row), *value, new_reason);
-    }
-    out += written + '\n';
+  for_each_row(file, text, kTitles, [&](const base::CsvRow& row) {
+    if (const std::optional<double> value = values.at(next++))
+      lines[row.line() - 1] = row_text(row, reference_from(row), *value, new_reason);
   });
   check_equal(next, values.size(), "values for the references");
-  return out;
+  return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 }  // namespace leviosim::tools

@@ -23,7 +23,7 @@ struct Deviation {
 };
 
 struct Reference {
-  std::string name;     ///< "compute.epnp_ransac.single"; of a quantity (quantities.h)
+  std::string name;     ///< "compute.epnp_ransac.single"; of a quantity (validation.h)
   double value = 0;     ///< never 0 if the tolerance is relative
   bool limit = false;   ///< the value is an upper limit ("<50") and not an expectation
   std::string unit;     ///< of the quantity

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest.h"
-#include "tools/app/validation/frame_log.h"
+#include "workload/vio/stages.h"
 
 namespace leviosim::tools {
 namespace {
@@ -62,7 +63,6 @@ Value find(const std::vector<Quantity>& quantities, const Reference& reference) 
 }
 
 std::string cell(Value value) { return value ? fmt::format("{:.6g}", *value) : std::string(); }
-Json json(Value value) { return value ? Json(*value) : Json(nullptr); }
 std::string deviation_text(const Reference& reference, double value) {
   return fmt::format("{:.6g}{}", value, reference.tolerance.relative ? " %" : "");
 }
@@ -83,11 +83,11 @@ Json comparison_json(const Comparison& c) {
   entry["unit"] = r.unit;
   entry["reference"] = r.value;
   entry["is_limit"] = r.limit;
-  entry["value"] = json(c.value);
-  entry["error"] = json(c.error());
+  entry["value"] = value_of(c.value);
+  entry["error"] = value_of(c.error());
   entry["error_unit"] = r.tolerance.relative ? "%" : r.unit;
   entry["tolerance"] = r.tolerance.value;
-  entry["guard"] = json(r.guard);
+  entry["guard"] = value_of(r.guard);
   entry["verdict"] = name_of(c.verdict);
   entry["reason"] = r.reason;
   entry["source"] = r.source;
@@ -106,40 +106,23 @@ std::string path_lines(const StageOnPaths& stage, std::string_view cores,
 }
 
 Json means_json(const StageOnPaths::Means& means) {
-  return {{"epnp", json(means.epnp)},
-          {"eight_point", json(means.eight_point)},
-          {"as_in_the_paper", json(means.weighed)}};
+  return {{"epnp", value_of(means.epnp)},
+          {"eight_point", value_of(means.eight_point)},
+          {"as_in_the_paper", value_of(means.weighed)}};
 }
 
 Json normalised_json(const NormalisedFigure& n) {
   Json entry;
   entry["stage"] = n.stage;
   entry["unit"] = n.unit;
-  entry["units_per_call"] = json(n.units);
-  entry["cycles_single"] = json(n.single);
-  entry["cycles_parallel"] = json(n.parallel);
-  entry["paper_units_per_call"] = json(n.paper_units);
-  entry["paper_cycles_single"] = json(n.paper_single);
-  entry["units_that_explain_the_paper"] = json(n.explaining_units);
+  entry["units_per_call"] = value_of(n.units);
+  entry["cycles_single"] = value_of(n.single);
+  entry["cycles_parallel"] = value_of(n.parallel);
+  entry["paper_units_per_call"] = value_of(n.paper_units);
+  entry["paper_cycles_single"] = value_of(n.paper_single);
+  entry["units_that_explain_the_paper"] = value_of(n.explaining_units);
   return entry;
 }
-
-}  // namespace
-
-std::vector<Comparison> compare(const std::vector<Reference>& references,
-                                const std::vector<Quantity>& quantities) {
-  std::vector<Comparison> comparisons;
-  for (const Reference& reference : references) {
-    Comparison comparison{reference, {}, Verdict::NotCovered};
-    comparison.value =
-        is_summary(reference) ? summary(reference.name, comparisons) : find(quantities, reference);
-    comparison.verdict = judge(reference, comparison.value);
-    comparisons.push_back(std::move(comparison));
-  }
-  return comparisons;
-}
-
-namespace {
 
 /// Of a stage of the paper's table on one core or on N; absent if the run has no such band.
 std::optional<BandedStage> banded_stage(const RunResult& run, const Validation& validation,
@@ -162,7 +145,106 @@ std::optional<BandedStage> banded_stage(const RunResult& run, const Validation& 
   return std::nullopt;
 }
 
+using Samples = std::vector<double>;
+using Frame = LoggedFrame;
+
+/// Of the frames after the first one that are asked for.
+template <class Wanted, class Value>
+Samples of_frames(const FrameLog& log, const Wanted& wanted, const Value& value) {
+  Samples samples;
+  for (const Frame& frame : log.frames())
+    if (frame.result.source != PoseSource::First && wanted(frame))
+      samples.push_back(static_cast<double>(value(frame)));
+  return samples;
+}
+
+bool is_any(const Frame&) { return true; }
+bool ran_epnp(const Frame& frame) { return frame.find(vio::stages::kEpnp) != nullptr; }
+bool ran_eight_point(const Frame& frame) { return frame.find(vio::stages::kEightPoint) != nullptr; }
+bool from_epnp(const Frame& frame) { return frame.result.source == PoseSource::Epnp; }
+bool from_eight_point(const Frame& frame) { return frame.result.source == PoseSource::EightPoint; }
+bool is_keyframe(const Frame& frame) { return frame.result.keyframe; }
+
+int features(const Frame& frame) { return frame.result.features; }
+int world_matches(const Frame& frame) { return frame.result.world_matches; }
+int frame_matches(const Frame& frame) { return frame.result.frame_matches; }
+int inliers(const Frame& frame) { return frame.result.inliers; }
+int landmarks(const Frame& frame) { return frame.landmarks_before; }
+
+/// 100 where it is so, and else 0: their mean is a share in per cent.
+template <class Wanted>
+Samples share_of_frames(const FrameLog& log, const Wanted& wanted) {
+  return of_frames(log, is_any, [&](const Frame& frame) { return wanted(frame) ? 100 : 0; });
+}
+
+struct Input {
+  std::string_view quantity;
+  Samples (*samples)(const FrameLog&);
+  bool is_share = false;
+};
+using Log = FrameLog;
+const std::array kInputs{
+    Input{"keypoints of a frame", [](const Log& l) { return of_frames(l, is_any, features); }},
+    Input{"landmarks compared in world matching",
+          [](const Log& l) { return of_frames(l, is_any, landmarks); }},
+    Input{"two-way world matches of a frame",
+          [](const Log& l) { return of_frames(l, is_any, world_matches); }},
+    Input{"two-way frame matches of a frame",
+          [](const Log& l) { return of_frames(l, is_any, frame_matches); }},
+    Input{"frames with EPnP", [](const Log& l) { return share_of_frames(l, ran_epnp); }, true},
+    Input{"frames with 8-point", [](const Log& l) { return share_of_frames(l, ran_eight_point); },
+          true},
+    Input{"keyframes", [](const Log& l) { return share_of_frames(l, is_keyframe); }, true},
+    Input{"EPnP: matches scored",
+          [](const Log& l) { return of_frames(l, ran_epnp, world_matches); }},
+    Input{"EPnP: inliers of the best",
+          [](const Log& l) { return of_frames(l, from_epnp, inliers); }},
+    Input{"8-point: matches scored",
+          [](const Log& l) { return of_frames(l, ran_eight_point, frame_matches); }},
+    Input{"8-point: inliers of the best",
+          [](const Log& l) { return of_frames(l, from_eight_point, inliers); }},
+    Input{"EPnP: rotations of a hypothesis",
+          [](const Log& l) { return l.ransac().epnp_rotations; }},
+    Input{"8-point: rotations of a hypothesis",
+          [](const Log& l) { return l.ransac().eight_point_rotations; }},
+    Input{"8-point: steps of 9x9 of a hypothesis",
+          [](const Log& l) { return l.ransac().eight_point_steps; }},
+    Input{"8-point: steps of the slowest of eight",
+          [](const Log& l) { return l.ransac().slowest_of_eight; }},
+};
+
+const Input& input_named(const base::CsvRow& row) {
+  std::vector<std::string> names;
+  for (const Input& input : kInputs) {
+    if (row.text(0) == input.quantity) return input;
+    names.emplace_back(input.quantity);
+  }
+  row.fail(0, "unknown" + base::did_you_mean(row.text(0), names));
+}
+
+InputDistribution::Cells simulated(const Input& input, const FrameLog& log) {
+  InputDistribution::Cells cells;
+  const std::optional<Distribution> found = distribution_of(input.samples(log));
+  if (!found) return cells;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (i == 0 || !input.is_share) cells[i] = (*found)[i];
+  return cells;
+}
+
 }  // namespace
+
+std::vector<Comparison> compare(const std::vector<Reference>& references,
+                                const std::vector<Quantity>& quantities) {
+  std::vector<Comparison> comparisons;
+  for (const Reference& reference : references) {
+    Comparison comparison{reference, {}, Verdict::NotCovered};
+    comparison.value =
+        is_summary(reference) ? summary(reference.name, comparisons) : find(quantities, reference);
+    comparison.verdict = judge(reference, comparison.value);
+    comparisons.push_back(std::move(comparison));
+  }
+  return comparisons;
+}
 
 Validation validate(const RunResult& run, const FrameLog& log, const vio::Profile& profile,
                     const std::vector<Reference>& references) {
@@ -190,10 +272,8 @@ std::string validation_csv(const Validation& validation) {
         text += fmt::format("distribution,{}: {},,{},{},,,,,,\n", d.quantity,
                             kDistributionColumns[i], cell(d.released[i]), cell(d.simulated[i]));
   for (const NormalisedFigure& n : validation.normalised) {
-    const Value paper =
-        n.paper_units && n.paper_single ? Value(*n.paper_single / *n.paper_units) : std::nullopt;
     text += fmt::format("normalised,{}: one core,cycles per {},{},{},,,,,,\n", n.stage, n.unit,
-                        cell(paper), cell(n.single));
+                        cell(n.paper_per_unit()), cell(n.single));
     text += fmt::format("normalised,{}: N cores,cycles per {},,{},,,,,,\n", n.stage, n.unit,
                         cell(n.parallel));
   }
@@ -221,8 +301,8 @@ Json validation_json(const Validation& validation) {
     entry["name"] = input.key;
     entry["description"] = input.name;
     entry["unit"] = input.unit;
-    entry["value"] = json(input.value);
-    entry["paper"] = json(input.paper);
+    entry["value"] = value_of(input.value);
+    entry["paper"] = value_of(input.paper);
     entry["source"] = input.source;
     document["inputs"].push_back(std::move(entry));
   }
@@ -231,8 +311,8 @@ Json validation_json(const Validation& validation) {
     Json entry;
     entry["quantity"] = d.quantity;
     for (std::size_t i = 0; i < kDistributionColumns.size(); ++i)
-      entry[std::string(kDistributionColumns[i])] = {{"release", json(d.released[i])},
-                                                     {"value", json(d.simulated[i])}};
+      entry[std::string(kDistributionColumns[i])] = {{"release", value_of(d.released[i])},
+                                                     {"value", value_of(d.simulated[i])}};
     document["distributions"].push_back(std::move(entry));
   }
   document["normalised"] = Json::array();
@@ -264,6 +344,42 @@ RunOptions as_released(RunOptions options) {
                                 [&](const std::string& set) { return set.starts_with(parameter); });
   if (!said) options.overrides.push_back(parameter + "on");
   return options;
+}
+
+std::optional<Distribution> distribution_of(std::vector<double> samples) {
+  if (samples.empty()) return std::nullopt;
+  std::sort(samples.begin(), samples.end());
+  const auto quantile = [&](double share) {
+    const double place = share * static_cast<double>(samples.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, samples.size() - 1);
+    return std::lerp(samples[below], samples[above], place - static_cast<double>(below));
+  };
+  double sum = 0;
+  for (const double sample : samples) sum += sample;
+  return Distribution{sum / static_cast<double>(samples.size()), quantile(0.1), quantile(0.5),
+                      quantile(0.9), samples.back()};
+}
+
+std::vector<InputDistribution> input_distributions(const std::string& file, std::string_view text,
+                                                   const FrameLog& log) {
+  std::vector<std::string> columns{"quantity"};
+  for (const std::string_view column : {"mean", "p10", "median", "p90", "max"})
+    columns.emplace_back(column);
+  std::vector<InputDistribution> rows;
+  for_each_row(file, text, columns, [&](const base::CsvRow& row) {
+    const Input& input = input_named(row);
+    InputDistribution& distribution = rows.emplace_back(
+        InputDistribution{std::string(input.quantity), {}, simulated(input, log)});
+    for (std::size_t i = 0; i < kDistributionColumns.size(); ++i)
+      if (!row.text(i + 1).empty()) distribution.released[i] = row.number(i + 1);
+  });
+  return rows;
+}
+
+std::vector<InputDistribution> input_distributions(const FrameLog& log) {
+  constexpr std::string_view kName = "released_inputs";
+  return input_distributions(fmt::format("{}.csv", kName), reference_text(kName), log);
 }
 
 }  // namespace leviosim::tools

@@ -89,29 +89,30 @@ std::string compute_table(const Validation& validation, int cores) {
 }
 
 std::string reference_table(const Validation& validation) {
-  TextTable table({{"quantity", kLeft},
-                   {"unit", kLeft},
-                   {"paper"},
-                   {"simulated"},
-                   {"error"},
-                   {"tolerance"},
-                   {"within", kLeft}});
-  for (const Comparison& c : validation.comparisons) {
-    const Reference& r = c.reference;
-    if (is_of_compute_table(r.name)) continue;
-    table.add({r.name, r.unit, fmt::format("{}{:g}", r.limit ? "< " : "", r.value),
-               figure_text(c.value, 2), error_text(c), tolerance_text(r), within_text(c)});
-  }
-  return "shares, latencies, memory and limits (kB of 1000 bytes)\n" + table.str();
+  using C = const Comparison&;
+  const TableOf<Comparison> table{
+      {{"quantity", kLeft}, [](C c) { return c.reference.name; }},
+      {{"unit", kLeft}, [](C c) { return c.reference.unit; }},
+      {{"paper"},
+       [](C c) { return fmt::format("{}{:g}", c.reference.limit ? "< " : "", c.reference.value); }},
+      {{"simulated"}, [](C c) { return figure_text(c.value, 2); }},
+      {{"error"}, [](C c) { return error_text(c); }},
+      {{"tolerance"}, [](C c) { return tolerance_text(c.reference); }},
+      {{"within", kLeft}, [](C c) { return within_text(c); }}};
+  std::vector<Comparison> rows = validation.comparisons;
+  std::erase_if(rows, [](C c) { return is_of_compute_table(c.reference.name); });
+  return "shares, latencies, memory and limits (kB of 1000 bytes)\n" + table.with(rows).str();
 }
 
 std::string input_table(const Validation& validation) {
-  TextTable table(
-      {{"input, mean", kLeft}, {"unit", kLeft}, {"paper"}, {"simulated"}, {"paper's", kLeft}});
-  for (const InputFigure& input : validation.inputs)
-    table.add({input.name, input.unit == "1" ? "" : input.unit, readable(input.paper),
-               readable(input.value), std::string(input.source)});
-  return "what the figures depend on\n" + table.str();
+  using I = const InputFigure&;
+  const TableOf<InputFigure> table{
+      {{"input, mean", kLeft}, [](I i) { return i.name; }},
+      {{"unit", kLeft}, [](I i) { return i.unit == "1" ? "" : i.unit; }},
+      {{"paper"}, [](I i) { return readable(i.paper); }},
+      {{"simulated"}, [](I i) { return readable(i.value); }},
+      {{"paper's", kLeft}, [](I i) { return i.source; }}};
+  return "what the figures depend on\n" + table.with(validation.inputs).str();
 }
 
 std::string distribution_table(const Validation& validation) {
@@ -136,23 +137,20 @@ std::string distribution_table(const Validation& validation) {
 }
 
 std::string normalised_table(const Validation& validation, int cores) {
-  TextTable table({{"cycles of", kLeft},
-                   {"for a", kLeft},
-                   {"1 core"},
-                   {fmt::format("{} cores", cores)},
-                   {"paper, 1 core"},
-                   {"in a call"},
-                   {"needed"}});
-  for (const NormalisedFigure& n : validation.normalised) {
-    const std::optional<double> paper = n.paper_units && n.paper_single
-                                            ? std::optional(*n.paper_single / *n.paper_units)
-                                            : std::nullopt;
-    table.add({n.stage, n.unit, readable(n.single), readable(n.parallel), readable(paper),
-               readable(n.units ? std::optional(std::round(*n.units)) : std::nullopt),
-               readable(n.explaining_units ? std::optional(std::round(*n.explaining_units))
-                                           : std::nullopt)});
-  }
-  return "cycles for a unit of work, which depend less on the input\n" + table.str() + kHowToRead;
+  using N = const NormalisedFigure&;
+  const auto whole = [](std::optional<double> units) {
+    return readable(units ? std::optional(std::round(*units)) : std::nullopt);
+  };
+  const TableOf<NormalisedFigure> table{
+      {{"cycles of", kLeft}, [](N n) { return n.stage; }},
+      {{"for a", kLeft}, [](N n) { return n.unit; }},
+      {{"1 core"}, [](N n) { return readable(n.single); }},
+      {{fmt::format("{} cores", cores)}, [](N n) { return readable(n.parallel); }},
+      {{"paper, 1 core"}, [](N n) { return readable(n.paper_per_unit()); }},
+      {{"in a call"}, [=](N n) { return whole(n.units); }},
+      {{"needed"}, [=](N n) { return whole(n.explaining_units); }}};
+  return "cycles for a unit of work, which depend less on the input\n" +
+         table.with(validation.normalised).str() + kHowToRead;
 }
 
 std::string path_table(const Validation& validation, int cores) {
@@ -189,31 +187,26 @@ std::string path_table(const Validation& validation, int cores) {
 
 std::string band_table(const Validation& validation, int cores) {
   if (validation.bands.empty()) return "";
-  TextTable table({{"stage", kLeft},
-                   {"cores"},
-                   {"paper"},
-                   {"this run"},
-                   {"band"},
-                   {"weighed"},
-                   {"band"},
-                   {"inside", kLeft}});
-  const auto inside = [](const auto& of) { return of ? "yes" : "no"; };
+  using B = const BandedStage&;
   const auto ends = [](const Banded& b) { return fmt::format("{:.0f} … {:.0f}", b.low, b.high); };
-  int in_run = 0;
-  int in_weighed = 0;
-  for (const BandedStage& band : validation.bands) {
-    in_run += band.simulated.holds(band.paper) ? 1 : 0;
-    in_weighed += band.is_inside() ? 1 : 0;
-    table.add({std::string(band.title), band.single ? "1" : std::to_string(cores),
-               figure_text(band.paper, 0), figure_text(band.simulated.value, 0),
-               ends(band.simulated), band.weighed ? figure_text(band.weighed->value, 0) : kNothing,
-               band.weighed ? ends(*band.weighed) : kNothing, inside(band.is_inside())});
-  }
+  const TableOf<BandedStage> table{
+      {{"stage", kLeft}, [](B b) { return b.title; }},
+      {{"cores"}, [=](B b) { return b.single ? 1 : cores; }},
+      {{"paper"}, [](B b) { return figure_text(b.paper, 0); }},
+      {{"this run"}, [](B b) { return figure_text(b.simulated.value, 0); }},
+      {{"band"}, [=](B b) { return ends(b.simulated); }},
+      {{"weighed"}, [](B b) { return b.weighed ? figure_text(b.weighed->value, 0) : kNothing; }},
+      {{"band"}, [=](B b) { return b.weighed ? ends(*b.weighed) : kNothing; }},
+      {{"inside", kLeft}, [](B b) { return b.is_inside() ? "yes" : "no"; }}};
+  const auto count = [&](auto is) {
+    return std::count_if(validation.bands.begin(), validation.bands.end(), is);
+  };
   return fmt::format(
       "kcycles with the band that the platform's ranges leave, of this run and weighed as the "
       "paper's frames\n{}{} of {} of the paper's figures lie inside; of this run's own means "
       "{}\n\n",
-      table.str(), in_weighed, validation.bands.size(), in_run);
+      table.with(validation.bands).str(), count([](B b) { return b.is_inside(); }),
+      validation.bands.size(), count([](B b) { return b.simulated.holds(b.paper); }));
 }
 
 std::vector<std::string> validation_report(const Validation& validation, int cores) {

@@ -12,7 +12,6 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/study/accuracy_study.h"
 #include "tools/app/validation/references.h"
 #include "workload/vio/profile.h"
 
@@ -85,51 +84,6 @@ AblationRow row_of(const std::string& sequence, const traces::ImageSize& size,
   return row;
 }
 
-}  // namespace
-
-std::vector<Point> ablation_runs(const BatchPlan& plan) {
-  std::vector<Point> runs;
-  std::size_t row = 0;
-  for (const std::string& name : sequence_names(plan))
-    for (const traces::ImageSize& size : plan.sizes)
-      for (const std::string& profile : plan.profiles) {
-        for (const Sequence& sequence : plan.sequences)
-          for (const std::uint32_t seed : plan.seeds) {
-            if (sequence.name != name) continue;
-            runs.push_back(make_run(plan, sequence, profile, size, seed));
-            runs.back().row = row;
-          }
-        ++row;
-      }
-  return runs;
-}
-
-std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
-                                       const std::vector<RunOutcome>& outcomes,
-                                       const std::vector<PublishedAccuracy>& published) {
-  const std::vector<std::string> sequences = sequence_names(plan);
-  const auto of_rows =
-      by_row(runs, outcomes, sequences.size() * plan.sizes.size() * plan.profiles.size());
-  std::vector<AblationRow> rows;
-  for (const std::string& sequence : sequences)
-    for (const traces::ImageSize& size : plan.sizes)
-      for (const std::string& profile : plan.profiles) {
-        AblationRow row = row_of(sequence, size, profile, of_rows[rows.size()]);
-        row.paper_ate = paper_value(published, row, PaperFigure::ate);
-        if (plan.measure.length_m == kPaperLengthM)
-          row.paper_relative = paper_value(published, row, PaperFigure::relative);
-        rows.push_back(std::move(row));
-      }
-  if (sequences.size() < 2) return rows;
-  const std::vector<AblationRow> single = rows;
-  for (const traces::ImageSize& size : plan.sizes)
-    for (const std::string& profile : plan.profiles)
-      rows.push_back(mean_row(single, size, profile));
-  return rows;
-}
-
-namespace {
-
 constexpr const char* kMean = "mean of them";
 
 std::string median_text(const Spread& spread, int count) {
@@ -154,25 +108,24 @@ std::string range_text(const AblationRow& row, const Spread& spread, int count) 
 }
 
 TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
-  TextTable table({{"sequence", kLeft},
-                   {"images", kRight, 1},
-                   {"profile", kLeft},
-                   {"runs", kRight, 3},
-                   {"absolute [m]"},
-                   {"least … greatest", kRight, 2},
-                   {"paper", kRight, 2},
-                   {fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
-                   {"least … greatest", kRight, 2},
-                   {"paper", kRight, 2},
-                   {"completion", kRight, 1}});
-  for (const AblationRow& row : rows)
-    table.add(
-        {row.sequence.empty() ? kMean : row.sequence, size_text(row.size), row.profile,
-         fmt::format("{}", row.ate.runs), median_text(row.ate, 3), range_text(row, row.ate, 3),
-         paper_text(row.paper_ate, row, 3), median_text(row.relative, 2),
-         range_text(row, row.relative, 2), paper_text(row.paper_relative, row, 2),
-         row.least_completion ? fmt::format("{:.1f} %", 100 * *row.least_completion) : kNothing});
-  return table;
+  using R = const AblationRow&;
+  return TableOf<AblationRow>{
+      {{"sequence", kLeft}, [](R r) { return r.sequence.empty() ? kMean : r.sequence; }},
+      {{"images", kRight, 1}, [](R r) { return size_text(r.size); }},
+      {{"profile", kLeft}, [](R r) { return r.profile; }},
+      {{"runs", kRight, 3}, [](R r) { return r.ate.runs; }},
+      {{"absolute [m]"}, [](R r) { return median_text(r.ate, 3); }},
+      {{"least … greatest", kRight, 2}, [](R r) { return range_text(r, r.ate, 3); }},
+      {{"paper", kRight, 2}, [](R r) { return paper_text(r.paper_ate, r, 3); }},
+      {{fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
+       [](R r) { return median_text(r.relative, 2); }},
+      {{"least … greatest", kRight, 2}, [](R r) { return range_text(r, r.relative, 2); }},
+      {{"paper", kRight, 2}, [](R r) { return paper_text(r.paper_relative, r, 2); }},
+      {{"completion", kRight, 1},
+       [](R r) {
+         return r.least_completion ? fmt::format("{:.1f} %", 100 * *r.least_completion) : kNothing;
+       }}}
+      .with(rows);
 }
 
 std::vector<std::string> protocols_of(const std::string& sequence,
@@ -241,14 +194,6 @@ Estimator& row_for(std::vector<Estimator>& table, const Estimator& wanted) {
 
 std::string metres(double value) { return fmt::format("{:.2f}", value); }
 
-}  // namespace
-
-std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
-  return table_of(plan, rows).str() + notes(plan, rows, "  ");
-}
-
-namespace {
-
 /// The row with the least absolute error, in a sentence.
 std::string ablation_conclusion(const std::vector<AblationRow>& rows) {
   const AblationRow* best = nullptr;
@@ -266,7 +211,127 @@ std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationR
   return table_of(plan, rows).markdown() + '\n' + notes(plan, rows, "- ");
 }
 
+const std::vector<std::string> kColumns{"sequence", "estimator", "loop_closure", "width",
+                                        "height",   "chosen_by", "figure",       "value",
+                                        "unit",     "source"};
+enum Column : std::size_t {
+  kSequence,
+  kEstimator,
+  kLoopClosure,
+  kWidth,
+  kHeight,
+  kChosenBy,
+  kFigure,
+  kValue,
+  kUnit,
+  kSource
+};
+
+PaperFigure figure_in(const base::CsvRow& row, Column column) {
+  if (row.text(column) == "ate") return PaperFigure::ate;
+  if (row.text(column) == "relative") return PaperFigure::relative;
+  row.fail(column, "no figure; expected ate or relative");
+}
+
+PublishedAccuracy accuracy_from(const base::CsvRow& row) {
+  const std::string_view loops = row.text(kLoopClosure);
+  if (loops != "yes" && loops != "no") row.fail(kLoopClosure, "expected yes or no");
+  PublishedAccuracy entry{
+      std::string(row.text(kSequence)),
+      std::string(row.text(kEstimator)),
+      loops == "yes",
+      {static_cast<int>(row.number(kWidth)), static_cast<int>(row.number(kHeight))},
+      std::nullopt,
+      figure_in(row, kFigure),
+      row.number(kValue),
+      std::string(row.text(kSource))};
+  if (!row.text(kChosenBy).empty()) {
+    entry.chosen_by = figure_in(row, kChosenBy);
+    vio::profile_named(entry.estimator, 1);
+  }
+  const std::string_view unit = entry.figure == PaperFigure::ate ? "m" : "%";
+  if (row.text(kUnit) != unit)
+    row.fail(kUnit, fmt::format("not the unit of this figure; expected {}", unit));
+  if (entry.source.empty()) row.fail("has no source");
+  return entry;
+}
+
+// `leviosim ablate`: the paper's table of pipeline configurations, for any sequences and image
+// sizes. Its folder:
+//
+//   manifest.json   what the batch was made from
+//   runs.csv        a row per run
+//   table.md        the table that is printed
+//   table.json      its rows, with more digits
+
+void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
+  const BatchPlan plan = make_plan(command, words);
+  const std::vector<Point> runs = ablation_runs(plan);
+  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
+  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, published_accuracy());
+  const Printout text = printout(
+      words.json,
+      [&] {
+        return Printout({fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
+                                     ablation_text(plan, rows)),
+                         accuracy_comparison(plan, rows, published_accuracy())})
+            .ending(ablation_conclusion(rows), after_batch(plan));
+      },
+      [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
+  publish(*plan.out, text, [&] {
+    plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
+    plan.out->write("table.md", ablation_markdown(plan, rows));
+    plan.out->write("table.json", json_text(ablation_json(plan, rows), 2) + '\n');
+    plan.out->write("manifest.json", json_text(batch_manifest(plan, command_line), 2) + '\n');
+  });
+}
+
 }  // namespace
+
+std::vector<Point> ablation_runs(const BatchPlan& plan) {
+  std::vector<Point> runs;
+  std::size_t row = 0;
+  for (const std::string& name : sequence_names(plan))
+    for (const traces::ImageSize& size : plan.sizes)
+      for (const std::string& profile : plan.profiles) {
+        for (const Sequence& sequence : plan.sequences)
+          for (const std::uint32_t seed : plan.seeds) {
+            if (sequence.name != name) continue;
+            runs.push_back(make_run(plan, sequence, profile, size, seed));
+            runs.back().row = row;
+          }
+        ++row;
+      }
+  return runs;
+}
+
+std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
+                                       const std::vector<RunOutcome>& outcomes,
+                                       const std::vector<PublishedAccuracy>& published) {
+  const std::vector<std::string> sequences = sequence_names(plan);
+  const auto of_rows =
+      by_row(runs, outcomes, sequences.size() * plan.sizes.size() * plan.profiles.size());
+  std::vector<AblationRow> rows;
+  for (const std::string& sequence : sequences)
+    for (const traces::ImageSize& size : plan.sizes)
+      for (const std::string& profile : plan.profiles) {
+        AblationRow row = row_of(sequence, size, profile, of_rows[rows.size()]);
+        row.paper_ate = paper_value(published, row, PaperFigure::ate);
+        if (plan.measure.length_m == kPaperLengthM)
+          row.paper_relative = paper_value(published, row, PaperFigure::relative);
+        rows.push_back(std::move(row));
+      }
+  if (sequences.size() < 2) return rows;
+  const std::vector<AblationRow> single = rows;
+  for (const traces::ImageSize& size : plan.sizes)
+    for (const std::string& profile : plan.profiles)
+      rows.push_back(mean_row(single, size, profile));
+  return rows;
+}
+
+std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
+  return table_of(plan, rows).str() + notes(plan, rows, "  ");
+}
 
 Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
   Json document;
@@ -320,55 +385,6 @@ std::string accuracy_comparison(const BatchPlan& plan, const std::vector<Ablatio
          "  published: LEVIO's paper, over whole sequences; loop closure takes out the drift\n";
 }
 
-namespace {
-
-const std::vector<std::string> kColumns{"sequence", "estimator", "loop_closure", "width",
-                                        "height",   "chosen_by", "figure",       "value",
-                                        "unit",     "source"};
-enum Column : std::size_t {
-  kSequence,
-  kEstimator,
-  kLoopClosure,
-  kWidth,
-  kHeight,
-  kChosenBy,
-  kFigure,
-  kValue,
-  kUnit,
-  kSource
-};
-
-PaperFigure figure_in(const base::CsvRow& row, Column column) {
-  if (row.text(column) == "ate") return PaperFigure::ate;
-  if (row.text(column) == "relative") return PaperFigure::relative;
-  row.fail(column, "no figure; expected ate or relative");
-}
-
-PublishedAccuracy accuracy_from(const base::CsvRow& row) {
-  const std::string_view loops = row.text(kLoopClosure);
-  if (loops != "yes" && loops != "no") row.fail(kLoopClosure, "expected yes or no");
-  PublishedAccuracy entry{
-      std::string(row.text(kSequence)),
-      std::string(row.text(kEstimator)),
-      loops == "yes",
-      {static_cast<int>(row.number(kWidth)), static_cast<int>(row.number(kHeight))},
-      std::nullopt,
-      figure_in(row, kFigure),
-      row.number(kValue),
-      std::string(row.text(kSource))};
-  if (!row.text(kChosenBy).empty()) {
-    entry.chosen_by = figure_in(row, kChosenBy);
-    vio::profile_named(entry.estimator, 1);
-  }
-  const std::string_view unit = entry.figure == PaperFigure::ate ? "m" : "%";
-  if (row.text(kUnit) != unit)
-    row.fail(kUnit, fmt::format("not the unit of this figure; expected {}", unit));
-  if (entry.source.empty()) row.fail("has no source");
-  return entry;
-}
-
-}  // namespace
-
 std::vector<PublishedAccuracy> parse_accuracy(const std::string& file, std::string_view text) {
   std::vector<PublishedAccuracy> entries;
   for_each_row(file, text, kColumns,
@@ -379,40 +395,6 @@ std::vector<PublishedAccuracy> parse_accuracy(const std::string& file, std::stri
 std::vector<PublishedAccuracy> published_accuracy() {
   return parse_accuracy("accuracy.csv", reference_text("accuracy"));
 }
-
-namespace {
-
-// `leviosim ablate`: the paper's table of pipeline configurations, for any sequences and image
-// sizes. Its folder:
-//
-//   manifest.json   what the batch was made from
-//   runs.csv        a row per run
-//   table.md        the table that is printed
-//   table.json      its rows, with more digits
-
-void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
-  const BatchPlan plan = make_plan(command, words);
-  const std::vector<Point> runs = ablation_runs(plan);
-  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
-  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, published_accuracy());
-  const Printout text = printout(
-      words.json,
-      [&] {
-        return Printout({fmt::format("leviosim {}: {} native runs\n{}", version(), runs.size(),
-                                     ablation_text(plan, rows)),
-                         accuracy_comparison(plan, rows, published_accuracy())})
-            .ending(ablation_conclusion(rows), after_batch(plan));
-      },
-      [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
-  publish(*plan.out, text, [&] {
-    plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
-    plan.out->write("table.md", ablation_markdown(plan, rows));
-    plan.out->write("table.json", json_text(ablation_json(plan, rows), 2) + '\n');
-    plan.out->write("manifest.json", json_text(batch_manifest(plan, command_line), 2) + '\n');
-  });
-}
-
-}  // namespace
 
 Command add_ablate_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand(

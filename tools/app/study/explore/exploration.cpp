@@ -1,6 +1,5 @@
 #include "tools/app/study/explore/exploration.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -16,23 +15,12 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
-
-std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point,
-                                       const std::string& profile) {
-  const bool use_imu = vio::profile_named(profile, 1).use_imu;
-  std::vector<vio::Assignment> set;
-  for (const vio::Assignment& a : point)
-    if (use_imu || !a.parameter->needs_imu) set.push_back(a);
-  return set;
-}
-
 namespace {
 
 /// Rows are by point, profile, then sequence_names().
@@ -263,20 +251,6 @@ Dimension around(const char* name, const vio::Profile& profile) {
   return {parameter, std::max(parameter->low, value / 4), std::min(parameter->high, value * 4)};
 }
 
-}  // namespace
-
-std::vector<Dimension> paper_dimensions() {
-  const vio::Profile levio = vio::profile_named("levio", 1);
-  return {{vio::find_parameter("workload.window"), 4, 16},
-          around("workload.keyframe_parallax", levio),
-          around("workload.reprojection_noise", levio),
-          around("workload.imu_noise.gyro", levio),
-          around("workload.imu_noise.accel", levio),
-          {vio::find_parameter("workload.gravity_updates"), 0, 1}};
-}
-
-namespace {
-
 /// "workload.window=4:12"; toggles take no range: "workload.gravity_updates".
 /// @throws InputError for unknown parameters and ranges outside of what they can be
 Dimension parse_dimension(const std::string& text) {
@@ -310,24 +284,6 @@ Domain domain_of(const Dimension& d) {
   const bool is_whole = d.parameter->kind == Kind::whole;
   return {{}, Span{d.low, d.high, !is_whole, is_whole, 1, {}}};
 }
-
-}  // namespace
-
-ExplorationPoints sample_points(const std::vector<Dimension>& dimensions, std::size_t count,
-                                std::uint64_t seed) {
-  ExplorationPoints points(count);
-  for (std::size_t d = 0; d < dimensions.size(); ++d) {
-    const vio::Parameter& parameter = *dimensions[d].parameter;
-    const Domain domain = domain_of(dimensions[d]);
-    const std::vector<double> draws = random_draws(count, d, seed);
-    for (std::size_t i = 1; i < count; ++i)
-      points[i].push_back(
-          {&parameter, parse_workload_value("--vary", parameter, value_at(domain, draws[i]))});
-  }
-  return points;
-}
-
-namespace {
 
 // `leviosim explore`: the paper's parameter sweep. Its folder:
 //
@@ -420,6 +376,39 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
 }
 
 }  // namespace
+
+std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point,
+                                       const std::string& profile) {
+  const bool use_imu = vio::profile_named(profile, 1).use_imu;
+  std::vector<vio::Assignment> set;
+  for (const vio::Assignment& a : point)
+    if (use_imu || !a.parameter->needs_imu) set.push_back(a);
+  return set;
+}
+
+std::vector<Dimension> paper_dimensions() {
+  const vio::Profile levio = vio::profile_named("levio", 1);
+  return {{vio::find_parameter("workload.window"), 4, 16},
+          around("workload.keyframe_parallax", levio),
+          around("workload.reprojection_noise", levio),
+          around("workload.imu_noise.gyro", levio),
+          around("workload.imu_noise.accel", levio),
+          {vio::find_parameter("workload.gravity_updates"), 0, 1}};
+}
+
+ExplorationPoints sample_points(const std::vector<Dimension>& dimensions, std::size_t count,
+                                std::uint64_t seed) {
+  ExplorationPoints points(count);
+  for (std::size_t d = 0; d < dimensions.size(); ++d) {
+    const vio::Parameter& parameter = *dimensions[d].parameter;
+    const Domain domain = domain_of(dimensions[d]);
+    const std::vector<double> draws = random_draws(count, d, seed);
+    for (std::size_t i = 1; i < count; ++i)
+      points[i].push_back(
+          {&parameter, parse_workload_value("--vary", parameter, value_at(domain, draws[i]))});
+  }
+  return points;
+}
 
 Command add_explore_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand(

@@ -11,7 +11,7 @@
 #include "sim/base/interruption.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/trace_source.h"
 #include "tools/app/validation/references.h"
@@ -98,6 +98,40 @@ void add_times(const RunResult& run, Feasibility& found) {
           ms_of(static_cast<double>(stage.parallel.count()), run.controller_clock) / frames;
 }
 
+/// Time of a frame of LEVIO in its paper, on GAP9 at 370 MHz (validate/references.h).
+struct Published {
+  int cores;
+  std::string_view reference;
+  int decimals;
+  std::string_view about;  ///< the paper says so in round numbers
+};
+constexpr std::array<Published, 2> kPublished = {
+    {{8, "latency.epnp", 1, ""}, {1, "latency.single_core", 0, "≈ "}}};
+constexpr std::array<std::string_view, 2> kPublishedOn = {"gap9", "gap9-370mhz"};
+
+std::string published(const Feasibility& row) {
+  if (std::find(kPublishedOn.begin(), kPublishedOn.end(), row.platform) == kPublishedOn.end())
+    return {};
+  for (const Published& p : kPublished)
+    for (const Reference& reference : paper_references())
+      if (p.cores == row.cores && p.reference == reference.name)
+        return fmt::format("{}{:.{}f}", p.about, reference.value, p.decimals);
+  return {};
+}
+
+std::string missing(const char* memory, const MemoryVerdict& verdict) {
+  return fmt::format("{} kB short of {} at '{}'",
+                     ((verdict.occupied - verdict.size).count() + 999) / 1000, memory,
+                     verdict.block);
+}
+
+template <class Unit>
+std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, int decimals) {
+  if (!e) return "–";
+  return fmt::format("{:.{}f} ({:.{}f}–{:.{}f})", e->value.count() * scale, decimals,
+                     e->low().count() * scale, decimals, e->high().count() * scale, decimals);
+}
+
 }  // namespace
 
 double Feasibility::frame_ms() const {
@@ -153,44 +187,6 @@ Feasibility FeasibilityStudy::on(const FeasibilityPoint& point) {
   return found;
 }
 
-namespace {
-
-/// Time of a frame of LEVIO in its paper, on GAP9 at 370 MHz (validate/references.h).
-struct Published {
-  int cores;
-  std::string_view reference;
-  int decimals;
-  std::string_view about;  ///< the paper says so in round numbers
-};
-constexpr std::array<Published, 2> kPublished = {
-    {{8, "latency.epnp", 1, ""}, {1, "latency.single_core", 0, "≈ "}}};
-constexpr std::array<std::string_view, 2> kPublishedOn = {"gap9", "gap9-370mhz"};
-
-std::string published(const Feasibility& row) {
-  if (std::find(kPublishedOn.begin(), kPublishedOn.end(), row.platform) == kPublishedOn.end())
-    return {};
-  for (const Published& p : kPublished)
-    for (const Reference& reference : paper_references())
-      if (p.cores == row.cores && p.reference == reference.name)
-        return fmt::format("{}{:.{}f}", p.about, reference.value, p.decimals);
-  return {};
-}
-
-std::string missing(const char* memory, const MemoryVerdict& verdict) {
-  return fmt::format("{} kB short of {} at '{}'",
-                     ((verdict.occupied - verdict.size).count() + 999) / 1000, memory,
-                     verdict.block);
-}
-
-template <class Unit>
-std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, int decimals) {
-  if (!e) return "–";
-  return fmt::format("{:.{}f} ({:.{}f}–{:.{}f})", e->value.count() * scale, decimals,
-                     e->low().count() * scale, decimals, e->high().count() * scale, decimals);
-}
-
-}  // namespace
-
 std::string memory_verdict(const Feasibility& row) {
   if (row.fits()) return "fits";
   if (row.l1.fits()) return missing("L2", row.l2);
@@ -199,37 +195,32 @@ std::string memory_verdict(const Feasibility& row) {
 }
 
 std::string feasibility_table(const std::vector<Feasibility>& rows) {
-  TextTable table({{"chip", kLeft},
-                   {"cores", kRight, 1},
-                   {"MHz"},
-                   {"frame ms"},
-                   {"worst", kRight, 1},
-                   {"published", kRight, 2},
-                   {"optimiser ms", kRight, 2},
-                   {"frames/s"},
-                   {"mJ/frame"},
-                   {"mW", kRight, 1},
-                   {"memory", kLeft}});
-  bool any_without = false;
-  for (const Feasibility& row : rows) {
-    any_without = any_without || !row.fits();
-    const char* mark = row.fits() ? "" : "*";
-    table.add({row.platform, fmt::format("{}", row.cores),
-               fmt::format("{:g}", static_cast<double>(row.clock.count()) * 1e-6),
-               fmt::format("{:.1f}{}", row.front_end_ms, mark),
-               fmt::format("{:.1f}{}", row.worst_ms, mark), published(row),
-               fmt::format("{:.1f}{}", row.optimiser_ms, mark),
-               fmt::format("{:.1f}{}", row.frames_per_second(), mark),
-               banded(row.energy_per_frame, 1e3, 2), banded(row.power, 1e3, 1),
-               memory_verdict(row)});
-  }
-  std::string text = table.str();
+  using F = const Feasibility&;
+  // A star where the chip does not have the memory.
+  const auto marked = [](double value, F f) {
+    return fmt::format("{:.1f}{}", value, f.fits() ? "" : "*");
+  };
+  std::string text =
+      TableOf<Feasibility>{
+          {{"chip", kLeft}, [](F f) { return f.platform; }},
+          {{"cores", kRight, 1}, [](F f) { return f.cores; }},
+          {{"MHz"}, [](F f) { return fmt::format("{:g}", megahertz(f.clock)); }},
+          {{"frame ms"}, [=](F f) { return marked(f.front_end_ms, f); }},
+          {{"worst", kRight, 1}, [=](F f) { return marked(f.worst_ms, f); }},
+          {{"published", kRight, 2}, [](F f) { return published(f); }},
+          {{"optimiser ms", kRight, 2}, [=](F f) { return marked(f.optimiser_ms, f); }},
+          {{"frames/s"}, [=](F f) { return marked(f.frames_per_second(), f); }},
+          {{"mJ/frame"}, [](F f) { return banded(f.energy_per_frame, 1e3, 2); }},
+          {{"mW", kRight, 1}, [](F f) { return banded(f.power, 1e3, 1); }},
+          {{"memory", kLeft}, [](F f) { return memory_verdict(f); }}}
+          .with(rows)
+          .str();
   text +=
       "frame: front end, mean and worst; optimiser: per frame. A chip with one core does one after "
       "the other, others both at once\n"
       "energy and mean power, with bands, at the rate that the chip keeps up with, at most the "
       "camera's\n";
-  if (any_without)
+  if (std::any_of(rows.begin(), rows.end(), [](F f) { return !f.fits(); }))
     text += "* if it had the memory: times and energy of the same work, as though all had fitted\n";
   return text;
 }
@@ -245,12 +236,13 @@ std::string feasibility_conclusion(const std::vector<Feasibility>& rows) {
   if (fastest == nullptr)
     return fmt::format("verdict: does not fit: {}: {}", rows.front().platform,
                        memory_verdict(rows.front()));
-  return fmt::format("{} rows have the memory; the fastest of them, {} with {} {}, does {:.1f} "
-                     "frames/s",
-                     fit == rows.size() ? fmt::format("verdict: fits: all {}", fit)
-                                        : fmt::format("in short: {} of {}", fit, rows.size()),
-                     fastest->platform, fastest->cores, fastest->cores == 1 ? "core" : "cores",
-                     fastest->frames_per_second());
+  return fmt::format(
+      "{} rows have the memory; the fastest of them, {} with {} {}, does {:.1f} "
+      "frames/s",
+      fit == rows.size() ? fmt::format("verdict: fits: all {}", fit)
+                         : fmt::format("in short: {} of {}", fit, rows.size()),
+      fastest->platform, fastest->cores, fastest->cores == 1 ? "core" : "cores",
+      fastest->frames_per_second());
 }
 
 std::string stage_comparison(const std::vector<Feasibility>& rows) {

@@ -186,97 +186,6 @@ std::string draw(const Benchmark& benchmark, const DrawnFlight& flight,
       .string();
 }
 
-}  // namespace
-
-Benchmark make_benchmark(FlightPlan plan, const std::string& folder) {
-  Benchmark benchmark;
-  benchmark.plan = std::move(plan);
-  for (const std::string& name : benchmark.plan.motions) {
-    throw_if_interrupted();
-    benchmark.motions.push_back(open_one_motion(benchmark.plan, name, fs::path(folder) / name));
-  }
-  for (const std::string& name : benchmark.plan.recordings) {
-    throw_if_interrupted();
-    benchmark.motions.push_back(open_one_recording(benchmark.plan, name, fs::path(folder) / name));
-  }
-  for (const std::size_t length : benchmark.plan.lengths)
-    for (std::size_t set = 0; set < benchmark.plan.sets.size(); ++set)
-      for (std::size_t motion = 0; motion < benchmark.motions.size(); ++motion)
-        add_pieces(benchmark, length, set, motion);
-  if (benchmark.pieces.empty())
-    throw InputError(
-        fmt::format("{}: no piece begins in mid-air (motions: every {:g} s) and ends within its "
-                    "flight; expected shorter pieces, or whole flights",
-                    benchmark.plan.name, benchmark.plan.every_s));
-  return benchmark;
-}
-
-std::size_t row_of(const Benchmark& benchmark, std::size_t variant, std::size_t piece) {
-  return variant * benchmark.pieces.size() + piece;
-}
-
-std::vector<Point> benchmark_runs(const Benchmark& benchmark) {
-  std::vector<Point> runs;
-  for (std::size_t v = 0; v < benchmark.plan.variants.size(); ++v)
-    for (std::size_t p = 0; p < benchmark.pieces.size(); ++p)
-      for (const std::uint32_t seed : benchmark.plan.seeds) {
-        const FlightPiece& piece = benchmark.pieces[p];
-        Point& run = runs.emplace_back();
-        run.request.profile = benchmark.plan.variants[v].profile;
-        run.request.workload = benchmark.plan.variants[v].workload;
-        run.request.image_size = benchmark.plan.size;
-        run.request.native = true;
-        run.request.seed = seed;
-        run.work = pictures_of(benchmark, piece);
-        run.request.disturbance = benchmark.plan.disturbances[piece.disturbance];
-        if (benchmark.motions[piece.motion].recorded) {
-          run.request.data = benchmark.motions[piece.motion].sequence.folder;
-          run.request.frames = piece.frames;
-        }
-        run.sequence = &benchmark.motions[piece.motion].sequence;
-        run.row = row_of(benchmark, v, p);
-      }
-  return runs;
-}
-
-std::vector<DrawnFlight> drawn_flights(const Benchmark& benchmark) {
-  std::map<std::pair<std::size_t, traces::Place>, std::vector<FrameRange>> all;
-  for (const FlightPiece& piece : benchmark.pieces)
-    if (!benchmark.motions[piece.motion].recorded)
-      all[{piece.motion, piece.world}].push_back(piece.frames);
-  std::vector<DrawnFlight> flights;
-  for (auto& [of, ranges] : all)
-    flights.push_back({of.first, of.second, merged(std::move(ranges))});
-  return flights;
-}
-
-void draw_flights(const Benchmark& benchmark, const Measure& how, const RunnerOptions& options,
-                  std::vector<Point>& runs) {
-  const OutcomeCache cache(options.cache);
-  const platform::Schema schema;
-  const auto piece_of = [&](const Point& run) -> const FlightPiece& {
-    return benchmark.pieces[run.row % benchmark.pieces.size()];
-  };
-  for (const DrawnFlight& flight : drawn_flights(benchmark)) {
-    std::vector<Point*> open;
-    for (Point& run : runs) {
-      throw_if_interrupted();
-      const FlightPiece& piece = piece_of(run);
-      if (piece.motion == flight.motion && piece.world == flight.world &&
-          !cache.find(run_key(run, how, schema)))
-        open.push_back(&run);
-    }
-    if (open.empty()) continue;
-    const std::string folder = draw(benchmark, flight, options);
-    for (Point* run : open) {
-      run->request.data = folder;
-      run->request.frames = within(flight.frames, piece_of(*run).frames);
-    }
-  }
-}
-
-namespace {
-
 using Values = std::vector<std::optional<double>>;
 
 /// The outcomes of a piece, by seed.
@@ -376,6 +285,93 @@ class RowMaker {
 };
 
 }  // namespace
+
+Benchmark make_benchmark(FlightPlan plan, const std::string& folder) {
+  Benchmark benchmark;
+  benchmark.plan = std::move(plan);
+  for (const std::string& name : benchmark.plan.motions) {
+    throw_if_interrupted();
+    benchmark.motions.push_back(open_one_motion(benchmark.plan, name, fs::path(folder) / name));
+  }
+  for (const std::string& name : benchmark.plan.recordings) {
+    throw_if_interrupted();
+    benchmark.motions.push_back(open_one_recording(benchmark.plan, name, fs::path(folder) / name));
+  }
+  for (const std::size_t length : benchmark.plan.lengths)
+    for (std::size_t set = 0; set < benchmark.plan.sets.size(); ++set)
+      for (std::size_t motion = 0; motion < benchmark.motions.size(); ++motion)
+        add_pieces(benchmark, length, set, motion);
+  if (benchmark.pieces.empty())
+    throw InputError(
+        fmt::format("{}: no piece begins in mid-air (motions: every {:g} s) and ends within its "
+                    "flight; expected shorter pieces, or whole flights",
+                    benchmark.plan.name, benchmark.plan.every_s));
+  return benchmark;
+}
+
+std::size_t row_of(const Benchmark& benchmark, std::size_t variant, std::size_t piece) {
+  return variant * benchmark.pieces.size() + piece;
+}
+
+std::vector<Point> benchmark_runs(const Benchmark& benchmark) {
+  std::vector<Point> runs;
+  for (std::size_t v = 0; v < benchmark.plan.variants.size(); ++v)
+    for (std::size_t p = 0; p < benchmark.pieces.size(); ++p)
+      for (const std::uint32_t seed : benchmark.plan.seeds) {
+        const FlightPiece& piece = benchmark.pieces[p];
+        Point& run = runs.emplace_back();
+        run.request.profile = benchmark.plan.variants[v].profile;
+        run.request.workload = benchmark.plan.variants[v].workload;
+        run.request.image_size = benchmark.plan.size;
+        run.request.native = true;
+        run.request.seed = seed;
+        run.work = pictures_of(benchmark, piece);
+        run.request.disturbance = benchmark.plan.disturbances[piece.disturbance];
+        if (benchmark.motions[piece.motion].recorded) {
+          run.request.data = benchmark.motions[piece.motion].sequence.folder;
+          run.request.frames = piece.frames;
+        }
+        run.sequence = &benchmark.motions[piece.motion].sequence;
+        run.row = row_of(benchmark, v, p);
+      }
+  return runs;
+}
+
+std::vector<DrawnFlight> drawn_flights(const Benchmark& benchmark) {
+  std::map<std::pair<std::size_t, traces::Place>, std::vector<FrameRange>> all;
+  for (const FlightPiece& piece : benchmark.pieces)
+    if (!benchmark.motions[piece.motion].recorded)
+      all[{piece.motion, piece.world}].push_back(piece.frames);
+  std::vector<DrawnFlight> flights;
+  for (auto& [of, ranges] : all)
+    flights.push_back({of.first, of.second, merged(std::move(ranges))});
+  return flights;
+}
+
+void draw_flights(const Benchmark& benchmark, const Measure& how, const RunnerOptions& options,
+                  std::vector<Point>& runs) {
+  const OutcomeCache cache(options.cache);
+  const platform::Schema schema;
+  const auto piece_of = [&](const Point& run) -> const FlightPiece& {
+    return benchmark.pieces[run.row % benchmark.pieces.size()];
+  };
+  for (const DrawnFlight& flight : drawn_flights(benchmark)) {
+    std::vector<Point*> open;
+    for (Point& run : runs) {
+      throw_if_interrupted();
+      const FlightPiece& piece = piece_of(run);
+      if (piece.motion == flight.motion && piece.world == flight.world &&
+          !cache.find(run_key(run, how, schema)))
+        open.push_back(&run);
+    }
+    if (open.empty()) continue;
+    const std::string folder = draw(benchmark, flight, options);
+    for (Point* run : open) {
+      run->request.data = folder;
+      run->request.frames = within(flight.frames, piece_of(*run).frames);
+    }
+  }
+}
 
 std::optional<double> error_percent(const RunOutcome& outcome) {
   const std::optional<double> error = error_of(outcome);

@@ -1,4 +1,3 @@
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -11,7 +10,6 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/html_report/page_json.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/study/accuracy_study.h"
@@ -40,53 +38,34 @@ std::string alarm_text(const Alarms& alarms, std::size_t count, std::size_t of) 
 
 /// Percent of the path for pieces, which differ in length; metres as well for whole flights.
 TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
+  using R = const BenchmarkRow&;
   const FlightPlan& plan = benchmark.plan;
-  TextTable table({{"profile", kLeft, 1},
-                   {"piece", kLeft, 1},
-                   {"set", kLeft},
-                   {"disturbance", kLeft, 1},
-                   {"motion", kLeft},
-                   {"pieces", kRight, 4},
-                   {"ATE %"},
-                   {"of pieces", kRight, 2},
-                   {"of seeds", kRight, 3},
-                   {"worst %"},
-                   {"ATE m"},
-                   {"worst m", kRight, 1},
-                   {"end m", kRight, 1},
-                   {"scale", kRight, 4},
-                   {"σ %", kRight, 3},
-                   {"diverged"},
-                   {"failed"},
-                   {"detected", kRight, 1},
-                   {"false", kRight, 1},
-                   {"silent", kRight, 1},
-                   {"restarts", kRight, 5}});
-  for (const BenchmarkRow& row : result.rows)
-    table.add({plan.variants[row.variant].name(),
-               length_text(row.length),
-               plan.sets[row.set].name,
-               plan.disturbances[row.disturbance].text(),
-               motion_name(benchmark, row),
-               fmt::format("{}", row.pieces),
-               error_text(row.percent.median, 2),
-               interval_text(row.percent.over_pieces, 2),
-               interval_text(row.percent.over_seeds, 2),
-               error_text(row.percent.worst, 2),
-               error_text(row.metres.median, 3),
-               error_text(row.metres.worst, 3),
-               figure_text(row.end_drift.median, 3),
-               figure_text(row.scale.median, 3),
-               figure_text(row.scale_sigma.median ? std::optional(100 * *row.scale_sigma.median)
-                                                  : std::nullopt,
-                           1),
-               fmt::format("{} of {}", row.diverged, row.runs),
-               fmt::format("{}", row.failed),
-               alarm_text(row.alarms, row.alarms.detected, row.alarms.failed),
-               alarm_text(row.alarms, row.alarms.false_alarms, row.alarms.right),
-               row.alarms.runs > 0 ? fmt::format("{}", row.alarms.silent) : kNothing,
-               fmt::format("{}", row.map_restarts)});
-  return table;
+  return TableOf<BenchmarkRow>{
+      {{"profile", kLeft, 1}, [&](R r) { return plan.variants[r.variant].name(); }},
+      {{"piece", kLeft, 1}, [](R r) { return length_text(r.length); }},
+      {{"set", kLeft}, [&](R r) { return plan.sets[r.set].name; }},
+      {{"disturbance", kLeft, 1}, [&](R r) { return plan.disturbances[r.disturbance].text(); }},
+      {{"motion", kLeft}, [&](R r) { return motion_name(benchmark, r); }},
+      {{"pieces", kRight, 4}, [](R r) { return r.pieces; }},
+      {{"ATE %"}, [](R r) { return error_text(r.percent.median, 2); }},
+      {{"of pieces", kRight, 2}, [](R r) { return interval_text(r.percent.over_pieces, 2); }},
+      {{"of seeds", kRight, 3}, [](R r) { return interval_text(r.percent.over_seeds, 2); }},
+      {{"worst %"}, [](R r) { return error_text(r.percent.worst, 2); }},
+      {{"ATE m"}, [](R r) { return error_text(r.metres.median, 3); }},
+      {{"worst m", kRight, 1}, [](R r) { return error_text(r.metres.worst, 3); }},
+      {{"end m", kRight, 1}, [](R r) { return figure_text(r.end_drift.median, 3); }},
+      {{"scale", kRight, 4}, [](R r) { return figure_text(r.scale.median, 3); }},
+      {{"σ %", kRight, 3}, [](R r) { return figure_text(scaled(r.scale_sigma.median, 100), 1); }},
+      {{"diverged"}, [](R r) { return fmt::format("{} of {}", r.diverged, r.runs); }},
+      {{"failed"}, [](R r) { return r.failed; }},
+      {{"detected", kRight, 1},
+       [](R r) { return alarm_text(r.alarms, r.alarms.detected, r.alarms.failed); }},
+      {{"false", kRight, 1},
+       [](R r) { return alarm_text(r.alarms, r.alarms.false_alarms, r.alarms.right); }},
+      {{"silent", kRight, 1},
+       [](R r) { return r.alarms.runs > 0 ? std::to_string(r.alarms.silent) : kNothing; }},
+      {{"restarts", kRight, 5}, [](R r) { return r.map_restarts; }}}
+      .with(result.rows);
 }
 
 /// "75 % (3 values), 96 % (9 values)".
@@ -223,14 +202,6 @@ std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result
   return table.text(result.pieces);
 }
 
-}  // namespace
-
-std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& result, int width) {
-  return table_of(benchmark, result).str(width) + notes(benchmark, result, "  ");
-}
-
-namespace {
-
 /// Of each variant the worst median of all motions, in a sentence.
 std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResult& result) {
   std::string text;
@@ -253,54 +224,9 @@ std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult
   return table_of(benchmark, result).markdown() + '\n' + notes(benchmark, result, "- ");
 }
 
-}  // namespace
-
-Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result) {
-  Json document;
-  document["format"] = "leviosim flight benchmark";
-  document["version"] = 1;
-  document["plan"] = benchmark.plan.name;
-  document["rows"] = Json::array();
-  for (const BenchmarkRow& row : result.rows) document["rows"].push_back(row_json(benchmark, row));
-  document["pieces"] = rows_of_csv(pieces_csv(benchmark, result));
-  return document;
-}
-
-namespace {
-
 std::string health_text(const std::optional<Health>& health) {
   return health ? std::string(vio::kHealthNames[static_cast<std::size_t>(*health)]) : "";
 }
-
-}  // namespace
-
-std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Point>& runs,
-                               const std::vector<RunOutcome>& outcomes, const Measure& how) {
-  using Run = const FinishedRun&;
-  const FlightPlan& plan = benchmark.plan;
-  const auto piece_of = [&](Run r) -> const FlightPiece& {
-    return benchmark.pieces[r.point.row % benchmark.pieces.size()];
-  };
-  RunColumns columns;
-  columns.add("variant",
-              [&](Run r) { return plan.variants[r.point.row / benchmark.pieces.size()].name(); });
-  columns.add("set", [=, &plan](Run r) { return plan.sets[piece_of(r).set].name; });
-  columns.add("world", [=](Run r) { return piece_of(r).world.text(); });
-  columns.add("disturbance",
-              [=, &plan](Run r) { return plan.disturbances[piece_of(r).disturbance].text(); });
-  columns.add("piece", [=](Run r) { return length_text(piece_of(r).length); });
-  columns.add("start_s", [=](Run r) { return base::fixed(piece_of(r).start_s, 3); });
-  columns.add("first_frame", [=](Run r) { return piece_of(r).frames.begin; });
-  columns.add("ate_percent", [](Run r) { return base::fixed(error_percent(r.outcome), 6); });
-  columns.add("scale_mean", [](Run r) { return base::fixed(r.outcome.scale.mean, 6); });
-  columns.add("scale_sigma", [](Run r) { return base::fixed(r.outcome.scale.sigma, 6); });
-  columns.add("end_drift_m", [](Run r) { return base::fixed(r.outcome.end_drift_m, 6); });
-  columns.add("map_restarts", [](Run r) { return r.outcome.map_restarts; });
-  columns.add("health", [](Run r) { return health_text(r.outcome.health); });
-  return runs_csv(runs, outcomes, how, std::move(columns));
-}
-
-namespace {
 
 /// The content of manifest.json. Nothing in it depends on the host or on what was found in caches.
 Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Words& command_line) {
@@ -321,39 +247,6 @@ Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Wo
                                    {"starts_at_rest", motion.starts.at_rest}});
   return document;
 }
-
-}  // namespace
-
-Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
-                    const std::string& csv) {
-  StudyPage page;
-  page.title = fmt::format("Flights: {}", benchmark.plan.name);
-  page.summary = benchmark_text(benchmark, result, kAnyWidth);
-  page.points = csv;
-  page.columns = {{"variant", "profile", "", true},
-                  {"piece", "piece", "", true},
-                  {"set", "set", "", true},
-                  {"sequence", "motion", "", true},
-                  {"world", "world", "", true},
-                  {"disturbance", "disturbance", "", true},
-                  {"start_s", "start", "s", true},
-                  {"seed", "seed", "", true},
-                  {"path_m", "path", "m", true},
-                  {"ate_percent", "error (ATE) over the path", "%"},
-                  {"ate_rmse_m", "error (ATE)", "m"},
-                  {"scale_mean", "scale", "1"},
-                  {"scale_sigma", "wander of the scale", "%", false, false, 100},
-                  {"end_drift_m", "drift at the end", "m"},
-                  {"map_restarts", "restarts of the map", ""},
-                  {"completion", "completion", "%", false, true, 100},
-                  {"failure", "failure", ""}};
-  page.x = "path_m";
-  page.y = "ate_percent";
-  page.colour = "set";
-  return study_report(page);
-}
-
-namespace {
 
 // `leviosim benchmark-flights`: how accurate the workload is on flights that chose nothing. Its
 // folder:
@@ -462,6 +355,76 @@ std::string plan_names() {
 }
 
 }  // namespace
+
+std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& result, int width) {
+  return table_of(benchmark, result).str(width) + notes(benchmark, result, "  ");
+}
+
+Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result) {
+  Json document;
+  document["format"] = "leviosim flight benchmark";
+  document["version"] = 1;
+  document["plan"] = benchmark.plan.name;
+  document["rows"] = Json::array();
+  for (const BenchmarkRow& row : result.rows) document["rows"].push_back(row_json(benchmark, row));
+  document["pieces"] = rows_of_csv(pieces_csv(benchmark, result));
+  return document;
+}
+
+std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Point>& runs,
+                               const std::vector<RunOutcome>& outcomes, const Measure& how) {
+  using Run = const FinishedRun&;
+  const FlightPlan& plan = benchmark.plan;
+  const auto piece_of = [&](Run r) -> const FlightPiece& {
+    return benchmark.pieces[r.point.row % benchmark.pieces.size()];
+  };
+  RunColumns columns;
+  columns.add("variant",
+              [&](Run r) { return plan.variants[r.point.row / benchmark.pieces.size()].name(); });
+  columns.add("set", [=, &plan](Run r) { return plan.sets[piece_of(r).set].name; });
+  columns.add("world", [=](Run r) { return piece_of(r).world.text(); });
+  columns.add("disturbance",
+              [=, &plan](Run r) { return plan.disturbances[piece_of(r).disturbance].text(); });
+  columns.add("piece", [=](Run r) { return length_text(piece_of(r).length); });
+  columns.add("start_s", [=](Run r) { return base::fixed(piece_of(r).start_s, 3); });
+  columns.add("first_frame", [=](Run r) { return piece_of(r).frames.begin; });
+  columns.add("ate_percent", [](Run r) { return base::fixed(error_percent(r.outcome), 6); });
+  columns.add("scale_mean", [](Run r) { return base::fixed(r.outcome.scale.mean, 6); });
+  columns.add("scale_sigma", [](Run r) { return base::fixed(r.outcome.scale.sigma, 6); });
+  columns.add("end_drift_m", [](Run r) { return base::fixed(r.outcome.end_drift_m, 6); });
+  columns.add("map_restarts", [](Run r) { return r.outcome.map_restarts; });
+  columns.add("health", [](Run r) { return health_text(r.outcome.health); });
+  return runs_csv(runs, outcomes, how, std::move(columns));
+}
+
+Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
+                    const std::string& csv) {
+  StudyPage page;
+  page.title = fmt::format("Flights: {}", benchmark.plan.name);
+  page.summary = benchmark_text(benchmark, result, kAnyWidth);
+  page.points = csv;
+  page.columns = {{"variant", "profile", "", true},
+                  {"piece", "piece", "", true},
+                  {"set", "set", "", true},
+                  {"sequence", "motion", "", true},
+                  {"world", "world", "", true},
+                  {"disturbance", "disturbance", "", true},
+                  {"start_s", "start", "s", true},
+                  {"seed", "seed", "", true},
+                  {"path_m", "path", "m", true},
+                  {"ate_percent", "error (ATE) over the path", "%"},
+                  {"ate_rmse_m", "error (ATE)", "m"},
+                  {"scale_mean", "scale", "1"},
+                  {"scale_sigma", "wander of the scale", "%", false, false, 100},
+                  {"end_drift_m", "drift at the end", "m"},
+                  {"map_restarts", "restarts of the map", ""},
+                  {"completion", "completion", "%", false, true, 100},
+                  {"failure", "failure", ""}};
+  page.x = "path_m";
+  page.y = "ate_percent";
+  page.colour = "set";
+  return study_report(page);
+}
 
 Command add_benchmark_flights_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand("benchmark-flights",

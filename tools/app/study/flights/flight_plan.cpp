@@ -9,7 +9,6 @@
 #include <set>
 
 #include "platform_models/loader/instruction_set.h"
-#include "platform_models/loader/yaml_entries.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
@@ -17,6 +16,7 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/workload.h"
+#include "tools/app/run/yaml_map.h"
 
 namespace leviosim::tools {
 namespace {
@@ -43,20 +43,11 @@ class PlanReader {
   }
 
   FlightPlan read() {
-    const YamlNode root = platform::parse_yaml(file_, plan_.text);
-    const std::vector<std::string> keys{"motions",      "worlds",  "recordings", "starts",
-                                        "pieces",       "every",   "seeds",      "size",
-                                        "disturbances", "variants"};
-    const std::vector<YamlEntry> all = platform::entries_of(root, file_, "");
-    for (const YamlEntry& entry : all) {
-      if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
-        place(entry).fail(fmt::format("unknown key{}; expected {}",
-                                      base::did_you_mean(entry.key, keys), fmt::join(keys, ", ")));
-      read_key(entry);
-    }
-    const auto has = [&](const char* key) {
-      return std::any_of(all.begin(), all.end(), [&](const YamlEntry& e) { return e.key == key; });
-    };
+    const YamlMap root(platform::parse_yaml(file_, plan_.text), file_, "");
+    root.check_keys({"motions", "worlds", "recordings", "starts", "pieces", "every", "seeds",
+                     "size", "disturbances", "variants"});
+    for (const YamlEntry& entry : root.entries()) read_key(root, entry);
+    const auto has = [&](const char* key) { return root.find(key) != nullptr; };
     const auto need = [&](const char* key) {
       if (!has(key)) Place{file_}.fail(fmt::format("missing key '{}'", key));
     };
@@ -71,38 +62,36 @@ class PlanReader {
   }
 
  private:
-  Place place(const YamlEntry& entry, const std::string& path = {}) const {
-    return platform::place_of(file_, entry.line, platform::joined(path, entry.key));
-  }
-
-  void read_key(const YamlEntry& entry) {
-    const Place at = place(entry);
+  void read_key(const YamlMap& root, const YamlEntry& entry) {
+    const Place at = root.place(entry);
     if (entry.key == "motions") {
       for (const Item& item : items(entry, at)) plan_.motions.push_back(plain_name(item));
     } else if (entry.key == "recordings") {
       for (const Item& item : items(entry, at)) plan_.recordings.push_back(plain_name(item));
     } else if (entry.key == "worlds" || entry.key == "starts") {
-      read_sets(entry);
+      read_sets(root.below(entry), entry.key, at);
     } else if (entry.key == "pieces") {
       for (const Item& item : items(entry, at))
-        plan_.lengths.push_back(item.text == "whole"  ? kWholeFlight
-                                : item.text == "rest" ? kRest
-                                                      : frames(item));
+        plan_.lengths.push_back(item.text == "whole" ? kWholeFlight
+                                : item.text == "rest"
+                                    ? kRest
+                                    : whole<std::size_t>("frames", item, kFewestFrames, kMostFrames,
+                                                         ", rest, or whole"));
     } else if (entry.key == "disturbances") {
       for (const Item& item : items(entry, at))
-        checked(at, [&] { plan_.disturbances.push_back(traces::parse_disturbance(item.text)); });
+        read_at(at, [&] { plan_.disturbances.push_back(traces::parse_disturbance(item.text)); });
     } else if (entry.key == "seeds") {
       plan_.seeds.clear();
       for (const Item& item : items(entry, at))
         plan_.seeds.push_back(
             whole<std::uint32_t>("a seed", item, 0, std::numeric_limits<std::uint32_t>::max()));
     } else if (entry.key == "every") {
-      plan_.every_s = seconds({platform::scalar(entry.value, at), at});
+      plan_.every_s = seconds({root.text(entry), at});
     } else if (entry.key == "size") {
-      const std::string text = platform::scalar(entry.value, at);
-      checked(at, [&] { plan_.size = parse_size(text); });
+      const std::string text = root.text(entry);
+      plan_.size = read_at(at, [&] { return parse_size(text); });
     } else {
-      read_variants(entry);
+      read_variants(entry.value, at);
     }
   }
 
@@ -121,34 +110,16 @@ class PlanReader {
     return all;
   }
 
-  template <class Check>
-  static void checked(const Place& at, const Check& check) {
-    try {
-      check();
-    } catch (const InputError& error) {
-      at.fail(error.what());
-    }
-  }
-
   template <class Number>
-  static Number whole(const char* what, const Item& item, std::int64_t low, std::int64_t high) {
-    std::int64_t value = 0;
-    checked(item.place, [&] { value = parse_whole(what, item.text, low, high); });
-    return static_cast<Number>(value);
-  }
-
-  static std::size_t frames(const Item& item) {
-    std::size_t count = 0;
-    checked(item.place, [&] {
-      count = static_cast<std::size_t>(
-          parse_whole("frames", item.text, kFewestFrames, kMostFrames, ", rest, or whole"));
-    });
-    return count;
+  static Number whole(const char* what, const Item& item, std::int64_t low, std::int64_t high,
+                      std::string_view about_max = {}) {
+    return static_cast<Number>(
+        read_at(item.place, [&] { return parse_whole(what, item.text, low, high, about_max); }));
   }
 
   static double seconds(const Item& item) {
-    double value = 0;
-    checked(item.place, [&] { value = parse_positive("a time in seconds", item.text); });
+    const double value =
+        read_at(item.place, [&] { return parse_positive("a time in seconds", item.text); });
     if (value < kLeastEvery || value > kMostEvery)
       item.place.fail(
           fmt::format("{} s; expected {:g} to {:g} s", item.text, kLeastEvery, kMostEvery));
@@ -163,25 +134,25 @@ class PlanReader {
     return item.text;
   }
 
-  void read_sets(const YamlEntry& sets) {
-    for (const YamlEntry& entry : platform::entries_of(sets.value, file_, sets.key)) {
-      const Place at = place(entry, sets.key);
+  void read_sets(const YamlMap& sets, const std::string& kind, const Place& all) {
+    for (const YamlEntry& entry : sets.entries()) {
+      const Place at = sets.place(entry);
       FlightSet set{plain_name({entry.key, at}), {}};
       for (const FlightSet& other : plan_.sets)
         if (other.name == set.name) at.fail(fmt::format("there is a set '{}' already", set.name));
-      if (sets.key == "worlds")
+      if (kind == "worlds")
         read_worlds(items(entry, at), set);
       else
         read_starts(items(entry, at), at, set);
       plan_.sets.push_back(std::move(set));
     }
-    if (plan_.sets.empty())
-      place(sets).fail(fmt::format("is empty; expected sets of {}", sets.key));
+    if (plan_.sets.empty()) all.fail(fmt::format("is empty; expected sets of {}", kind));
   }
 
   void read_worlds(const std::vector<Item>& worlds, FlightSet& set) {
     for (const Item& item : worlds) {
-      checked(item.place, [&] { set.worlds.push_back(traces::parse_place("a world", item.text)); });
+      set.worlds.push_back(
+          read_at(item.place, [&] { return traces::parse_place("a world", item.text); }));
       if (!worlds_.insert(set.worlds.back()).second)
         item.place.fail(
             fmt::format("world {} is in another set, too; sets share no world", item.text));
@@ -195,27 +166,27 @@ class PlanReader {
     set.step = whole<std::size_t>("frames", starts[1], 1, kMostFrames);
   }
 
-  void read_variants(const YamlEntry& variants) {
-    const Place all = place(variants);
-    if (!variants.value.is_sequence())
+  void read_variants(const YamlNode& variants, const Place& all) {
+    if (!variants.is_sequence())
       all.fail(fmt::format("is {}; expected a list of {{ profile: NAME, workload.NAME: VALUE }}",
-                           platform::kind_of(variants.value)));
-    for (const YamlNode& node : variants.value.items()) {
+                           platform::kind_of(variants)));
+    for (const YamlNode& node : variants.items()) {
       FlightVariant& variant = plan_.variants.emplace_back(FlightVariant{"next", {}});
-      for (const YamlEntry& entry : platform::entries_of(node, file_, "variants"))
-        read_setting(entry, place(entry, "variants"), variant);
+      const YamlMap settings(node, file_, "variants");
+      for (const YamlEntry& entry : settings.entries())
+        read_setting(settings.text(entry), entry.key, settings.place(entry), variant);
     }
     if (plan_.variants.empty()) all.fail("is empty; expected at least one variant");
   }
 
-  static void read_setting(const YamlEntry& entry, const Place& at, FlightVariant& variant) {
-    const std::string text = platform::scalar(entry.value, at);
-    if (entry.key == "profile") {
-      checked(at, [&] { vio::profile_named(text, 1); });
+  static void read_setting(const std::string& text, const std::string& key, const Place& at,
+                           FlightVariant& variant) {
+    if (key == "profile") {
+      read_at(at, [&] { vio::profile_named(text, 1); });
       variant.profile = text;
       return;
     }
-    const vio::Parameter& parameter = workload_parameter(at.where, entry.key);
+    const vio::Parameter& parameter = workload_parameter(at.where, key);
     variant.workload.push_back({&parameter, parse_workload_value(at.where, parameter, text)});
   }
 
@@ -223,6 +194,23 @@ class PlanReader {
   FlightPlan plan_;
   std::set<traces::Place> worlds_;  ///< of all sets
 };
+
+using traces::FrameRange;
+using traces::StampedPose;
+using traces::Trajectory;
+
+Trajectory::const_iterator sample_at(const Trajectory& truth, std::int64_t t_ns) {
+  return std::partition_point(truth.begin(), truth.end(),
+                              [&](const StampedPose& pose) { return pose.t_ns < t_ns; });
+}
+
+/// Over the second after a time, or over what there is of it. [m/s]
+double mean_speed(const Trajectory& truth, std::int64_t t_ns) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const std::int64_t end_ns = std::min(t_ns + kSecond, truth.back().t_ns);
+  if (end_ns <= t_ns) return 0;
+  return true_path_m(truth, t_ns, end_ns) / (static_cast<double>(end_ns - t_ns) * 1e-9);
+}
 
 }  // namespace
 
@@ -283,27 +271,6 @@ void check_variants(const FlightPlan& plan) {
     }
   }
 }
-
-namespace {
-
-using traces::FrameRange;
-using traces::StampedPose;
-using traces::Trajectory;
-
-Trajectory::const_iterator sample_at(const Trajectory& truth, std::int64_t t_ns) {
-  return std::partition_point(truth.begin(), truth.end(),
-                              [&](const StampedPose& pose) { return pose.t_ns < t_ns; });
-}
-
-/// Over the second after a time, or over what there is of it. [m/s]
-double mean_speed(const Trajectory& truth, std::int64_t t_ns) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  const std::int64_t end_ns = std::min(t_ns + kSecond, truth.back().t_ns);
-  if (end_ns <= t_ns) return 0;
-  return true_path_m(truth, t_ns, end_ns) / (static_cast<double>(end_ns - t_ns) * 1e-9);
-}
-
-}  // namespace
 
 double true_path_m(const Trajectory& truth, std::int64_t begin_ns, std::int64_t end_ns) {
   double length = 0;

@@ -71,6 +71,100 @@ double largest(std::optional<double> a, std::optional<double> b) {
   return std::max(std::abs(a.value_or(0)), std::abs(b.value_or(0)));
 }
 
+double effect_on_iteration(const Swing& swing, const MeanTimes& base) {
+  return largest(percent_change(swing.low.iteration, base.iteration),
+                 percent_change(swing.high.iteration, base.iteration));
+}
+
+constexpr double kShown = 0.005;  ///< per cent; below, 0.00 would be printed
+constexpr int kLineWidth = 100;
+
+struct TimeColumn {
+  const char* title;
+  const char* key;
+  std::optional<double> MeanTimes::*of;
+};
+constexpr std::array kTimeColumns{
+    TimeColumn{"frame", "frame", &MeanTimes::frame},
+    TimeColumn{"EPnP", "epnp", &MeanTimes::epnp},
+    TimeColumn{"8-point", "eight_point", &MeanTimes::eight_point},
+    TimeColumn{"optimiser", "iteration", &MeanTimes::iteration},
+};
+
+std::string ms(std::optional<double> value) {
+  return value ? fmt::format("{:.3f} ms", *value) : "–";
+}
+
+/// "-1.2 … +3.4", what the ends of the range do.
+std::string change_text(const Swing& swing, const MeanTimes& base,
+                        std::optional<double> MeanTimes::*of) {
+  const auto low = percent_change(swing.low.*of, base.*of);
+  const auto high = percent_change(swing.high.*of, base.*of);
+  if (!low || !high) return "–";
+  return fmt::format("{:+.2f} … {:+.2f}", *low, *high);
+}
+
+std::string list_line(const std::string& title, const std::vector<std::string>& names) {
+  if (names.empty()) return {};
+  return title + "\n  " + wrap(names, ", ", 2, kLineWidth) + '\n';
+}
+
+std::string bands_table(const Sensitivity& sensitivity) {
+  TextTable table({{"stage", kLeft}, {"kcycles"}, {"band"}, {"per cent"}});
+  for (const auto& [stage, band] : stage_bands(sensitivity))
+    table.add({stage, fmt::format("{:.1f}", band.value),
+               fmt::format("{:.1f} … {:.1f}", band.low, band.high),
+               fmt::format("{:+.1f} … {:+.1f}", percent_change(band.low, band.value).value_or(0),
+                           percent_change(band.high, band.value).value_or(0))});
+  return "\na mean call of each stage if all these numbers are uncertain at once (root of the sum "
+         "of\n"
+         "squares; of what compilers make of operations, the factors of all together)\n" +
+         table.str();
+}
+
+/// The number with the largest effect, in a sentence.
+std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
+  if (sensitivity.swings.empty()) return "in short: no number of this chip has a range";
+  const Swing& swing = sensitivity.swings.front();
+  return fmt::format(
+      "in short: {} has the largest effect: {} % of the front end between {:g} and {:g} {}",
+      swing.parameter.path, change_text(swing, sensitivity.base, &MeanTimes::frame),
+      swing.parameter.range->low, swing.parameter.range->high, swing.parameter.unit);
+}
+
+// `leviosim sensitivity`: which uncertain numbers of a platform matter.
+
+constexpr const char* kFramesByDefault = "0:100";
+
+struct SensitivityOptions : RunOptions {
+  std::string jobs;
+};
+
+void run(const SensitivityOptions& options) {
+  const unsigned jobs = parse_jobs(options.jobs);
+  RunRequest request = make_chip_request(options);
+  std::optional<outputs::OutputFile> out = claimed_file(out_request(options, "--csv"));
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  request.data = data_folder(options, style);
+  WorkRecording recording(request.cores);
+  request.recording = &recording;
+  const RunResult result = simulate_with_progress(request, style);
+  const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
+  const Sensitivity found =
+      sensitivity(platform::Variants(std::move(request.platform)), request.cores, trace,
+                  {.noun = "chip", .threads = jobs, .progress = style});
+  publish({{out, sensitivity_csv(found), "table"}},
+          printout(
+              options.json,
+              [&] {
+                std::vector<std::string> parts = sensitivity_tables(found, result.cores);
+                parts.front().insert(0, heading(options, result));
+                return Printout(std::move(parts))
+                    .ending(sensitivity_conclusion(found), {"leviosim microbench"});
+              },
+              [&] { return table_document("sensitivity", sensitivity_csv(found)); }));
+}
+
 }  // namespace
 
 MeanTimes time_on(const sim::ChipConfig& chip, int workers, const traces::WorkTrace& trace) {
@@ -131,15 +225,6 @@ double effect_on_frame(const Swing& swing, const MeanTimes& base) {
                  percent_change(swing.high.frame, base.frame));
 }
 
-namespace {
-
-double effect_on_iteration(const Swing& swing, const MeanTimes& base) {
-  return largest(percent_change(swing.low.iteration, base.iteration),
-                 percent_change(swing.high.iteration, base.iteration));
-}
-
-}  // namespace
-
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
                         const traces::WorkTrace& trace, const RunnerOptions& options) {
   Sensitivity result;
@@ -160,66 +245,6 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
     if (!parameter.range && is_uncertain(parameter)) result.unbounded.push_back(parameter.path);
   return result;
 }
-
-namespace {
-
-constexpr double kShown = 0.005;  ///< per cent; below, 0.00 would be printed
-constexpr int kLineWidth = 100;
-
-struct TimeColumn {
-  const char* title;
-  const char* key;
-  std::optional<double> MeanTimes::*of;
-};
-constexpr std::array kTimeColumns{
-    TimeColumn{"frame", "frame", &MeanTimes::frame},
-    TimeColumn{"EPnP", "epnp", &MeanTimes::epnp},
-    TimeColumn{"8-point", "eight_point", &MeanTimes::eight_point},
-    TimeColumn{"optimiser", "iteration", &MeanTimes::iteration},
-};
-
-std::string ms(std::optional<double> value) {
-  return value ? fmt::format("{:.3f} ms", *value) : "–";
-}
-
-/// "-1.2 … +3.4", what the ends of the range do.
-std::string change_text(const Swing& swing, const MeanTimes& base,
-                        std::optional<double> MeanTimes::*of) {
-  const auto low = percent_change(swing.low.*of, base.*of);
-  const auto high = percent_change(swing.high.*of, base.*of);
-  if (!low || !high) return "–";
-  return fmt::format("{:+.2f} … {:+.2f}", *low, *high);
-}
-
-std::string list_line(const std::string& title, const std::vector<std::string>& names) {
-  if (names.empty()) return {};
-  return title + "\n  " + wrap(names, ", ", 2, kLineWidth) + '\n';
-}
-
-std::string bands_table(const Sensitivity& sensitivity) {
-  TextTable table({{"stage", kLeft}, {"kcycles"}, {"band"}, {"per cent"}});
-  for (const auto& [stage, band] : stage_bands(sensitivity))
-    table.add({stage, fmt::format("{:.1f}", band.value),
-               fmt::format("{:.1f} … {:.1f}", band.low, band.high),
-               fmt::format("{:+.1f} … {:+.1f}", percent_change(band.low, band.value).value_or(0),
-                           percent_change(band.high, band.value).value_or(0))});
-  return "\na mean call of each stage if all these numbers are uncertain at once (root of the sum "
-         "of\n"
-         "squares; of what compilers make of operations, the factors of all together)\n" +
-         table.str();
-}
-
-/// The number with the largest effect, in a sentence.
-std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
-  if (sensitivity.swings.empty()) return "in short: no number of this chip has a range";
-  const Swing& swing = sensitivity.swings.front();
-  return fmt::format(
-      "in short: {} has the largest effect: {} % of the front end between {:g} and {:g} {}",
-      swing.parameter.path, change_text(swing, sensitivity.base, &MeanTimes::frame),
-      swing.parameter.range->low, swing.parameter.range->high, swing.parameter.unit);
-}
-
-}  // namespace
 
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers) {
   std::vector<TextTable::Column> columns{
@@ -286,43 +311,6 @@ std::string sensitivity_csv(const Sensitivity& sensitivity) {
   }
   return table.text(sensitivity.swings);
 }
-
-namespace {
-
-// `leviosim sensitivity`: which uncertain numbers of a platform matter.
-
-constexpr const char* kFramesByDefault = "0:100";
-
-struct SensitivityOptions : RunOptions {
-  std::string jobs;
-};
-
-void run(const SensitivityOptions& options) {
-  const unsigned jobs = parse_jobs(options.jobs);
-  RunRequest request = make_chip_request(options);
-  std::optional<outputs::OutputFile> out = claimed_file(out_request(options, "--csv"));
-  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  request.data = data_folder(options, style);
-  WorkRecording recording(request.cores);
-  request.recording = &recording;
-  const RunResult result = simulate_with_progress(request, style);
-  const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
-  const Sensitivity found =
-      sensitivity(platform::Variants(std::move(request.platform)), request.cores, trace,
-                  {.noun = "chip", .threads = jobs, .progress = style});
-  publish({{out, sensitivity_csv(found), "table"}},
-          printout(
-              options.json,
-              [&] {
-                std::vector<std::string> parts = sensitivity_tables(found, result.cores);
-                parts.front().insert(0, heading(options, result));
-                return Printout(std::move(parts))
-                    .ending(sensitivity_conclusion(found), {"leviosim microbench"});
-              },
-              [&] { return table_document("sensitivity", sensitivity_csv(found)); }));
-}
-
-}  // namespace
 
 Command add_sensitivity_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(

@@ -1,17 +1,14 @@
 #include "tools/app/study/sweep/points.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "platform_models/loader/yaml_entries.h"
-#include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/nearest.h"
 #include "tools/app/cli/command_line.h"
+#include "tools/app/run/yaml_map.h"
 
 namespace leviosim::tools {
 namespace {
@@ -41,54 +38,31 @@ class PlanReader {
   }
 
   SweepPlan read() {
-    const std::vector<YamlEntry> root = entries(platform::parse_yaml(plan_.file, plan_.text), "");
-    check_keys(root, "", {"base", "points", "impossible"});
-    const YamlEntry* base = find(root, "base");
-    const YamlEntry* points = find(root, "points");
+    const YamlMap root(platform::parse_yaml(plan_.file, plan_.text), plan_.file, "");
+    root.check_keys({"base", "points", "impossible"});
+    const YamlEntry* base = root.find("base");
+    const YamlEntry* points = root.find("points");
     if (base == nullptr)
       Place{plan_.file}.fail("missing key 'base'; expected base: { trace: … } or { data: … }");
     if (points == nullptr)
       Place{plan_.file}.fail(
           "missing key 'points'; expected groups of grid, list, random or "
           "latin_hypercube");
-    read_impossible(find(root, "impossible"));
-    const std::vector<YamlEntry> common = entries(base->value, "base");
+    if (const YamlEntry* impossible = root.find("impossible")) {
+      const std::string text = root.text(*impossible);
+      if (text != "refuse" && text != "skip")
+        root.place(*impossible)
+            .fail(fmt::format("'{}' is not known; expected refuse or skip", text));
+      plan_.skip_impossible = text == "skip";
+    }
+    const YamlMap common = root.below(*base);
     choose_reference(common, points->value);
     read_base(common);
-    read_groups(*points);
+    read_groups(points->value, root.place(*points), points->line);
     return std::move(plan_);
   }
 
  private:
-  std::vector<YamlEntry> entries(const YamlNode& node, const std::string& path) const {
-    return platform::entries_of(node, plan_.file, path);
-  }
-  Place place(const YamlEntry& entry, const std::string& path) const {
-    return platform::place_of(plan_.file, entry.line, platform::joined(path, entry.key));
-  }
-  static const YamlEntry* find(const std::vector<YamlEntry>& all, std::string_view key) {
-    const auto it =
-        std::find_if(all.begin(), all.end(), [&](const YamlEntry& e) { return e.key == key; });
-    return it == all.end() ? nullptr : &*it;
-  }
-  void check_keys(const std::vector<YamlEntry>& all, const std::string& path,
-                  const std::vector<std::string>& known) const {
-    for (const YamlEntry& entry : all)
-      if (std::find(known.begin(), known.end(), entry.key) == known.end())
-        place(entry, path)
-            .fail(fmt::format("unknown key{}; expected {}", base::did_you_mean(entry.key, known),
-                              fmt::join(known, ", ")));
-  }
-
-  void read_impossible(const YamlEntry* entry) {
-    if (entry == nullptr) return;
-    const Place at = place(*entry, "");
-    const std::string text = platform::scalar(entry->value, at);
-    if (text != "refuse" && text != "skip")
-      at.fail(fmt::format("'{}' is not known; expected refuse or skip", text));
-    plan_.skip_impossible = text == "skip";
-  }
-
   /// The first value of a key anywhere in a tree, in the order of the file.
   static std::string first_value(const YamlNode& node, const std::string& key) {
     if (node.is_sequence())
@@ -106,15 +80,15 @@ class PlanReader {
   }
 
   /// Numbers without unit are in the units of the first platform that the plan names.
-  void choose_reference(const std::vector<YamlEntry>& base, const YamlNode& points) {
+  void choose_reference(const YamlMap& base, const YamlNode& points) {
     const auto first = [&](const char* key) {
-      const YamlEntry* entry = find(base, key);
+      const YamlEntry* entry = base.find(key);
       return entry != nullptr && entry->value.is_scalar() ? entry->value.scalar()
                                                           : first_value(points, key);
     };
     const auto at = [&](const char* key) {
-      const YamlEntry* entry = find(base, key);
-      return entry != nullptr ? place(*entry, "base") : Place{plan_.file + ": points"};
+      const YamlEntry* entry = base.find(key);
+      return entry != nullptr ? base.place(*entry) : Place{plan_.file + ": points"};
     };
     if (const std::string name = first("platform"); !name.empty())
       plan_.reference = &inputs_.platform(name, at("platform"));
@@ -124,38 +98,42 @@ class PlanReader {
       Place{plan_.file}.fail("base.platform is missing; expected a chip (leviosim platforms)");
   }
 
-  void read_base(const std::vector<YamlEntry>& all) {
-    for (const YamlEntry& entry : all) {
-      const Place at = place(entry, "base");
-      const SweepKey key = find_key(entry.key, plan_.reference->schema(), at);
-      plan_.base[entry.key] =
-          normal_value(key, platform::scalar(entry.value, at), *plan_.reference, at);
-      plan_.base_places.emplace(entry.key, at);
+  void read_base(const YamlMap& all) {
+    for (const YamlEntry& entry : all.entries()) {
+      plan_.base[entry.key] = read_value(all, entry).second;
+      plan_.base_places.emplace(entry.key, all.place(entry));
     }
   }
 
-  void read_groups(const YamlEntry& points) {
-    const Place at = place(points, "");
-    if (points.value.is_mapping()) {
-      read_group(points.value, "points", points.line);
-    } else if (points.value.is_sequence()) {
-      for (const YamlNode& group : points.value.items()) read_group(group, "points", group.line());
+  /// A key of the plan with its only value.
+  std::pair<SweepKey, std::string> read_value(const YamlMap& all, const YamlEntry& entry) const {
+    const Place at = all.place(entry);
+    const SweepKey key = find_key(entry.key, plan_.reference->schema(), at);
+    return {key, normal_value(key, all.text(entry), *plan_.reference, at)};
+  }
+
+  void read_groups(const YamlNode& points, const Place& at, int line) {
+    if (points.is_mapping()) {
+      read_group(points, line);
+    } else if (points.is_sequence()) {
+      for (const YamlNode& group : points.items()) read_group(group, group.line());
     } else {
-      at.fail(fmt::format("is {}; expected groups", platform::kind_of(points.value)));
+      at.fail(fmt::format("is {}; expected groups", platform::kind_of(points)));
     }
     if (plan_.groups.empty()) at.fail("is empty; expected groups");
   }
 
-  void read_group(const YamlNode& node, const std::string& path, int line) {
-    SweepGroup group{platform::place_of(plan_.file, line, path), {}};
-    const std::vector<YamlEntry> all = entries(node, path);
+  void read_group(const YamlNode& node, int line) {
+    SweepGroup group{platform::place_of(plan_.file, line, "points"), {}};
+    const YamlMap all(node, plan_.file, "points");
     std::vector<std::string> names;
     for (const MemberName& m : kMembers) names.emplace_back(m.name);
-    check_keys(all, path, names);
-    if (all.empty()) group.place.fail("is empty; expected grid, list, random or latin_hypercube");
+    all.check_keys(names);
+    if (all.entries().empty())
+      group.place.fail("is empty; expected grid, list, random or latin_hypercube");
     std::map<std::string, Place> given;
-    for (const YamlEntry& entry : all) {
-      group.members.push_back(read_member(entry, path));
+    for (const YamlEntry& entry : all.entries()) {
+      group.members.push_back(read_member(all, entry));
       for (const SweepAxis& axis : group.members.back().axes) {
         const auto [it, is_new] = given.emplace(axis.key.name, axis.place);
         if (!is_new)
@@ -172,30 +150,27 @@ class PlanReader {
     plan_.keys.push_back(key);
   }
 
-  SweepMember read_member(const YamlEntry& entry, const std::string& path) {
-    const std::string inner = platform::joined(path, entry.key);
+  SweepMember read_member(const YamlMap& group, const YamlEntry& entry) {
     SweepMember member;
-    member.place = place(entry, path);
+    member.place = group.place(entry);
     for (const MemberName& m : kMembers)
       if (entry.key == m.name) member.kind = m.kind;
     if (member.kind == MemberKind::list)
-      read_list(entry, inner, member);
+      read_list(entry.value, member);
     else if (member.kind == MemberKind::grid)
-      member.axes = read_axes(entries(entry.value, inner), inner, false);
+      member.axes = read_axes(group.below(entry), false);
     else
-      read_draws(entries(entry.value, inner), inner, member);
+      read_draws(group.below(entry), member);
     if (member.axes.empty()) member.place.fail("is empty; expected keys with their values");
     return member;
   }
 
-  std::vector<SweepAxis> read_axes(const std::vector<YamlEntry>& all, const std::string& path,
-                                   bool ranges) const {
+  std::vector<SweepAxis> read_axes(const YamlMap& all, bool ranges) const {
     std::vector<SweepAxis> axes;
-    for (const YamlEntry& entry : all) {
-      const Place at = place(entry, path);
+    for (const YamlEntry& entry : all.entries()) {
+      const Place at = all.place(entry);
       SweepAxis axis{find_key(entry.key, plan_.reference->schema(), at), at, {}};
-      axis.domain = read_domain(axis.key, entry.value, plan_.file, entry.line,
-                                platform::joined(path, entry.key), *plan_.reference);
+      axis.domain = read_domain(axis.key, all, entry, *plan_.reference);
       if (axis.domain.span && !ranges)
         at.fail("is a range without step; expected values, or a step");
       axes.push_back(std::move(axis));
@@ -203,44 +178,36 @@ class PlanReader {
     return axes;
   }
 
-  void read_draws(const std::vector<YamlEntry>& all, const std::string& path, SweepMember& member) {
-    check_keys(all, path, {"number", "seed", "over"});
-    const YamlEntry* number = find(all, "number");
-    const YamlEntry* over = find(all, "over");
+  void read_draws(const YamlMap& all, SweepMember& member) {
+    all.check_keys({"number", "seed", "over"});
+    const YamlEntry* number = all.find("number");
+    const YamlEntry* over = all.find("over");
     if (number == nullptr || over == nullptr)
       member.place.fail("expected number: how many points, and over: { key: values or range }");
-    member.count = static_cast<std::size_t>(whole(*number, path, 1, kMostDraws));
-    if (const YamlEntry* seed = find(all, "seed"))
-      member.seed = static_cast<std::uint64_t>(
-          whole(*seed, path, 0, std::numeric_limits<std::int64_t>::max()));
-    const std::string inner = platform::joined(path, "over");
-    member.axes = read_axes(entries(over->value, inner), inner, true);
+    const auto whole = [&](const YamlEntry& entry, std::int64_t low, std::int64_t high) {
+      const std::string text = all.text(entry);
+      return read_at(all.place(entry), [&] { return parse_whole(entry.key, text, low, high); });
+    };
+    member.count = static_cast<std::size_t>(whole(*number, 1, kMostDraws));
+    if (const YamlEntry* seed = all.find("seed"))
+      member.seed =
+          static_cast<std::uint64_t>(whole(*seed, 0, std::numeric_limits<std::int64_t>::max()));
+    member.axes = read_axes(all.below(*over), true);
   }
 
-  std::int64_t whole(const YamlEntry& entry, const std::string& path, std::int64_t low,
-                     std::int64_t high) const {
-    const Place at = place(entry, path);
-    try {
-      return parse_whole(entry.key, platform::scalar(entry.value, at), low, high);
-    } catch (const InputError& error) {
-      at.fail(error.what());
-    }
-  }
-
-  void read_list(const YamlEntry& list, const std::string& path, SweepMember& member) const {
-    if (!list.value.is_sequence())
+  void read_list(const YamlNode& list, SweepMember& member) const {
+    if (!list.is_sequence())
       member.place.fail(fmt::format("is {}; expected a list of points, {{ key: value, … }} each",
-                                    platform::kind_of(list.value)));
-    for (const YamlNode& row : list.value.items()) {
+                                    platform::kind_of(list)));
+    for (const YamlNode& row : list.items()) {
       SweepRow& values = member.rows.emplace_back();
-      for (const YamlEntry& entry : entries(row, path)) {
-        const Place at = place(entry, path);
-        const SweepKey key = find_key(entry.key, plan_.reference->schema(), at);
-        values[key.name] =
-            normal_value(key, platform::scalar(entry.value, at), *plan_.reference, at);
+      const YamlMap all(row, plan_.file, "points.list");
+      for (const YamlEntry& entry : all.entries()) {
+        const auto [key, value] = read_value(all, entry);
+        values[key.name] = value;
         if (std::none_of(member.axes.begin(), member.axes.end(),
-                         [&](const SweepAxis& a) { return a.key.name == key.name; }))
-          member.axes.push_back({key, at, {}});
+                         [&, &name = key.name](const SweepAxis& a) { return a.key.name == name; }))
+          member.axes.push_back({key, all.place(entry), {}});
       }
     }
   }

@@ -79,18 +79,6 @@ Outcome computed(const ResolvedPoint& point) {
   return outcome;
 }
 
-}  // namespace
-
-Outcome run_point(const ResolvedPoint& point) {
-  try {
-    return computed(point);
-  } catch (const InputError& error) {
-    return {error.what(), {}};
-  }
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 bool holds_sweep(const fs::path& folder) { return base::is_file(folder / kSweepFile); }
@@ -130,44 +118,6 @@ Manifest manifest_of(const ResolvedPoint& point, const SweepRow& settings) {
   manifest.overrides = point.overrides;
   return manifest;
 }
-
-}  // namespace
-
-std::optional<PointName> point_name(const std::string& text) {
-  if (holds_sweep(text)) {
-    const std::int64_t planned = SweepStore(fs::path(text)).planned();
-    throw InputError(fmt::format("{}: is a sweep; expected one of its points: {}:1 to {}:{}", text,
-                                 text, text, planned));
-  }
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || base::exists(text)) return std::nullopt;
-  PointName name{text.substr(0, colon), text.substr(colon + 1)};
-  if (!holds_sweep(name.sweep)) return std::nullopt;
-  return name;
-}
-
-RunRecord read_point(const PointName& name, const RecordOptions& options, RunFiles* files) {
-  SweepStore store{fs::path(name.sweep)};
-  const std::size_t i = index_of(name, store.planned());
-  const std::optional<fs::path> file = store.place();
-  if (!file) refuse(name, "the sweep does not say where its plan lies");
-  if (store.simulator() != results_version()) refuse(name, "the sweep is of another leviosim");
-  Swept swept(*file, store.plan_text(), options);
-  const std::vector<SweepPoint>& points = swept.expansion.points;
-  if (i >= points.size() || points[i].key != store.key_of(static_cast<int>(i) + 1))
-    refuse(name, "what the plan names has changed since the sweep");
-  const SweepRow settings = points[i].settings;
-  const ResolvedPoint point = resolve(swept.plan, settings, swept.inputs, name.text());
-  return computed_record(
-      name.text(), point.request, manifest_of(point, settings),
-      [&](const RunRequest& request, const ProgressCallback& progress) {
-        return point.trace != nullptr ? replay(*point.trace, request, progress).run
-                                      : simulate(request, progress);
-      },
-      options.quiet, files);
-}
-
-namespace {
 
 constexpr std::size_t kMostMisses = 40;
 
@@ -234,6 +184,48 @@ RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int
 }
 
 }  // namespace
+
+Outcome run_point(const ResolvedPoint& point) {
+  try {
+    return computed(point);
+  } catch (const InputError& error) {
+    return {error.what(), {}};
+  }
+}
+
+std::optional<PointName> point_name(const std::string& text) {
+  if (holds_sweep(text)) {
+    const std::int64_t planned = SweepStore(fs::path(text)).planned();
+    throw InputError(fmt::format("{}: is a sweep; expected one of its points: {}:1 to {}:{}", text,
+                                 text, text, planned));
+  }
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || base::exists(text)) return std::nullopt;
+  PointName name{text.substr(0, colon), text.substr(colon + 1)};
+  if (!holds_sweep(name.sweep)) return std::nullopt;
+  return name;
+}
+
+RunRecord read_point(const PointName& name, const RecordOptions& options, RunFiles* files) {
+  SweepStore store{fs::path(name.sweep)};
+  const std::size_t i = index_of(name, store.planned());
+  const std::optional<fs::path> file = store.place();
+  if (!file) refuse(name, "the sweep does not say where its plan lies");
+  if (store.simulator() != results_version()) refuse(name, "the sweep is of another leviosim");
+  Swept swept(*file, store.plan_text(), options);
+  const std::vector<SweepPoint>& points = swept.expansion.points;
+  if (i >= points.size() || points[i].key != store.key_of(static_cast<int>(i) + 1))
+    refuse(name, "what the plan names has changed since the sweep");
+  const SweepRow settings = points[i].settings;
+  const ResolvedPoint point = resolve(swept.plan, settings, swept.inputs, name.text());
+  return computed_record(
+      name.text(), point.request, manifest_of(point, settings),
+      [&](const RunRequest& request, const ProgressCallback& progress) {
+        return point.trace != nullptr ? replay(*point.trace, request, progress).run
+                                      : simulate(request, progress);
+      },
+      options.quiet, files);
+}
 
 SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
                        const std::vector<SweepPoint>& points, SweepInputs& inputs,

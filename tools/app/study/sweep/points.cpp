@@ -1,6 +1,5 @@
 #include "tools/app/study/sweep/points.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -169,58 +168,6 @@ std::string text_of(const SweepRow& row) {
   return fmt::format("{}", fmt::join(parts, " "));
 }
 
-}  // namespace
-
-ResolvedPoint resolve(const SweepPlan& plan, const SweepRow& settings, SweepInputs& inputs,
-                      const std::string& where) {
-  return Resolver(plan, settings, inputs, where).resolve();
-}
-
-std::string SweepPoint::settings_text() const {
-  std::vector<std::string> parts;
-  for (const PointParameter& p : parameters) parts.push_back(fmt::format("{}={}", p.name, p.text));
-  return fmt::format("{}", fmt::join(parts, " "));
-}
-
-Expansion expand(const SweepPlan& plan, SweepInputs& inputs) {
-  Expansion all;
-  std::unordered_set<std::string> seen;  // keys
-  const auto add = [&](const SweepGroup& group, SweepRow row) {
-    const std::string where = fmt::format("{}: point {}", group.place.where, text_of(row));
-    row.insert(plan.base.begin(), plan.base.end());
-    try {
-      const ResolvedPoint point = resolve(plan, row, inputs, where);
-      std::string key = point_key(kSweepFigures, point.identity);
-      if (!seen.insert(key).second) return;
-      SweepPoint& added = all.points.emplace_back();
-      added.number = static_cast<int>(all.points.size());
-      const ParameterReader parameters(plan, point, row);
-      for (const SweepKey& k : plan.keys) added.parameters.push_back(parameters.read(k));
-      added.settings = std::move(row);
-      added.key = std::move(key);
-    } catch (const InputError& error) {
-      if (!plan.skip_impossible) throw;
-      if (all.impossible++ == 0) all.first_impossible = error.what();
-    }
-  };
-  for (const SweepGroup& group : plan.groups) {
-    std::vector<SweepRow> rows = rows_of(group);
-    all.asked += rows.size();
-    if (all.asked > kMostPoints)
-      group.place.fail(fmt::format("gives more than {} points in all", kMostPoints));
-    for (SweepRow& row : rows) {
-      throw_if_interrupted();
-      add(group, std::move(row));
-    }
-  }
-  if (all.points.empty())
-    throw InputError(
-        fmt::format("{}: no point of the plan is possible: {}", plan.file, all.first_impossible));
-  return all;
-}
-
-namespace {
-
 using MemberKind = SweepMember::Kind;
 
 /// @throws InputError at `place` for too many
@@ -277,6 +224,54 @@ std::vector<SweepRow> rows_of(const SweepMember& member) {
 }
 
 }  // namespace
+
+ResolvedPoint resolve(const SweepPlan& plan, const SweepRow& settings, SweepInputs& inputs,
+                      const std::string& where) {
+  return Resolver(plan, settings, inputs, where).resolve();
+}
+
+std::string SweepPoint::settings_text() const {
+  std::vector<std::string> parts;
+  for (const PointParameter& p : parameters) parts.push_back(fmt::format("{}={}", p.name, p.text));
+  return fmt::format("{}", fmt::join(parts, " "));
+}
+
+Expansion expand(const SweepPlan& plan, SweepInputs& inputs) {
+  Expansion all;
+  std::unordered_set<std::string> seen;  // keys
+  const auto add = [&](const SweepGroup& group, SweepRow row) {
+    const std::string where = fmt::format("{}: point {}", group.place.where, text_of(row));
+    row.insert(plan.base.begin(), plan.base.end());
+    try {
+      const ResolvedPoint point = resolve(plan, row, inputs, where);
+      std::string key = point_key(kSweepFigures, point.identity);
+      if (!seen.insert(key).second) return;
+      SweepPoint& added = all.points.emplace_back();
+      added.number = static_cast<int>(all.points.size());
+      const ParameterReader parameters(plan, point, row);
+      for (const SweepKey& k : plan.keys) added.parameters.push_back(parameters.read(k));
+      added.settings = std::move(row);
+      added.key = std::move(key);
+    } catch (const InputError& error) {
+      if (!plan.skip_impossible) throw;
+      if (all.impossible++ == 0) all.first_impossible = error.what();
+    }
+  };
+  for (const SweepGroup& group : plan.groups) {
+    std::vector<SweepRow> rows = rows_of(group);
+    all.asked += rows.size();
+    if (all.asked > kMostPoints)
+      group.place.fail(fmt::format("gives more than {} points in all", kMostPoints));
+    for (SweepRow& row : rows) {
+      throw_if_interrupted();
+      add(group, std::move(row));
+    }
+  }
+  if (all.points.empty())
+    throw InputError(
+        fmt::format("{}: no point of the plan is possible: {}", plan.file, all.first_impossible));
+  return all;
+}
 
 std::vector<double> random_draws(std::size_t count, std::size_t dimension, std::uint64_t seed) {
   std::vector<double> draws(count);

@@ -14,10 +14,10 @@
 
 #include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/value.h"
-#include "sim/base/yaml_document.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/comparison/run_record.h"
+#include "tools/app/run/yaml_map.h"
 #include "tools/app/study/engine.h"
 #include "traces/datasets/dataset.h"
 #include "traces/work_traces/work_trace.h"
@@ -94,9 +94,9 @@ struct Domain {
 
 /// `[240, 370]`, `240`, `{ from: 100, to: 400, step: 10 }` or `{ from: 1, to: 16, scale: log }`
 /// (without step, scale is `linear` unless given).
-/// @param line  of the key
-Domain read_domain(const SweepKey& key, const base::YamlNode& node, const std::string& file,
-                   int line, const std::string& path, platform::PlatformFile& reference);
+/// @param entry  of the map
+Domain read_domain(const SweepKey& key, const YamlMap& map, const YamlMap::Entry& entry,
+                   platform::PlatformFile& reference);
 
 /// The value that lies at `u` of the domain, 0 <= u < 1; of equal u, equal values. Numbers of a
 /// range have four digits, so that a point can be typed again.

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "platform_models/loader/instruction_set.h"
-#include "platform_models/loader/yaml_entries.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
@@ -71,19 +70,112 @@ platform::Setting read_chip_value(const SweepKey& key, std::string_view text,
   return platform::read_value(field, number, measure->unit, place);
 }
 
-/// Checks of the command line say the option, not the place.
-template <class Check>
-void check_at(const platform::Place& place, const Check& check) {
-  try {
-    check();
-  } catch (const InputError& error) {
-    place.fail(error.what());
-  }
-}
-
 std::int64_t most_of(Kind kind) {
   return kind == Kind::seed ? std::numeric_limits<std::uint32_t>::max()
                             : std::numeric_limits<int>::max();
+}
+
+using platform::Place;
+using platform::YamlEntry;
+
+constexpr double kMostSteps = 1e6;
+
+double to_digits(double value, int digits) {
+  return platform::parse_number(fmt::format("{:.{}g}", value, digits)).value_or(value);
+}
+
+bool is_whole(const SweepKey& key, const platform::Schema& schema) {
+  if (key.kind == SweepKey::Kind::chip)
+    return schema.fields()[schema.find(key.path)].dimension->whole;
+  return key.parameter == nullptr || key.parameter->kind != vio::Parameter::Kind::number;
+}
+
+class RangeReader {
+ public:
+  RangeReader(const SweepKey& key, YamlMap map, platform::PlatformFile& reference)
+      : key_(key), map_(std::move(map)), reference_(reference) {}
+
+  Domain read(const Place& place) const {
+    if (!key_.is_number(reference_.schema()))
+      place.fail("has no range, as it is no number; expected a list of values");
+    map_.check_keys({"from", "to", "step", "scale"});
+    const SweepNumber low = number("from", place);
+    const SweepNumber high = number("to", place);
+    if (!(low.value < high.value)) place.fail("expected from below to");
+    const YamlEntry* step = map_.find("step");
+    const YamlEntry* scale = map_.find("scale");
+    if (step != nullptr && scale != nullptr) place.fail("has step and scale; expected one of them");
+    if (step != nullptr) return steps(low, high, *step);
+    return {{},
+            Span{low.value, high.value, is_logarithmic(scale, low, place),
+                 is_whole(key_, reference_.schema()), low.factor, low.unit}};
+  }
+
+ private:
+  SweepNumber number(const char* name, const Place& at) const {
+    const YamlEntry* entry = map_.find(name);
+    if (entry == nullptr) at.fail(fmt::format("missing key '{}'", name));
+    return number_of(key_, map_.text(*entry), reference_, map_.place(*entry));
+  }
+  bool is_logarithmic(const YamlEntry* scale, const SweepNumber& low, const Place& at) const {
+    if (scale == nullptr) return false;
+    const std::string text = map_.text(*scale);
+    if (text != "log" && text != "linear")
+      map_.place(*scale).fail(fmt::format("'{}' is not known; expected linear or log", text));
+    if (text == "log" && !(low.value > 0)) at.fail("a log scale begins above 0");
+    return text == "log";
+  }
+  /// A step has the unit of the range; it may be smaller than any valid value.
+  double step_size(const YamlEntry& entry, const SweepNumber& low) const {
+    const Place at = map_.place(entry);
+    const std::string text = map_.text(entry);
+    const std::optional<platform::Measure> measure = platform::split_measure(text);
+    if (!measure || !(measure->number > 0)) at.fail(fmt::format("'{}' is no number above 0", text));
+    if (measure->unit.empty() || measure->unit == low.unit) return measure->number;
+    const platform::Schema& schema = reference_.schema();
+    const platform::Unit* unit =
+        key_.kind == SweepKey::Kind::chip
+            ? schema.fields()[schema.find(key_.path)].dimension->find(measure->unit)
+            : nullptr;
+    if (unit == nullptr) at.fail(fmt::format("'{}' is no unit of {}", measure->unit, key_.name));
+    return measure->number * unit->factor / low.factor;
+  }
+  Domain steps(const SweepNumber& low, const SweepNumber& high, const YamlEntry& entry) const {
+    const double step = step_size(entry, low);
+    constexpr double kRounding = 1e-9;
+    const double count = std::floor((high.value - low.value) / step + kRounding) + 1;
+    if (count > kMostSteps)
+      map_.place(entry).fail(
+          fmt::format("gives {:g} values; expected at most {:g}", count, kMostSteps));
+    Domain domain;
+    for (int k = 0; k < static_cast<int>(count); ++k) {
+      SweepNumber value = low;
+      value.value = to_digits(low.value + k * step, 12);
+      domain.values.push_back(normal_value(key_, value.text(), reference_, map_.place(entry)));
+    }
+    return domain;
+  }
+
+  const SweepKey& key_;
+  YamlMap map_;
+  platform::PlatformFile& reference_;
+};
+
+namespace fs = std::filesystem;
+
+bool is_regular(const fs::path& file) {
+  const std::optional<struct stat> status = outputs::status_of(file);
+  return status && S_ISREG(status->st_mode);
+}
+
+[[noreturn]] void refuse(const SweepFolder::Request& request, const std::string& why) {
+  throw InputError(fmt::format("{} {}: {}", request.option, request.path, why));
+}
+
+/// What SQLite keeps beside the data base while it is open.
+bool is_of_sqlite(const std::string& name) {
+  const std::string file(kSweepFile);
+  return name == file + "-journal" || name == file + "-wal" || name == file + "-shm";
 }
 
 }  // namespace
@@ -136,7 +228,7 @@ SweepNumber number_of(const SweepKey& key, const std::string& text,
   if (key.kind == Kind::workload)
     return {parse_workload_value(place.where, *key.parameter, text), 1, {}};
   SweepNumber number;
-  check_at(place, [&] {
+  read_at(place, [&] {
     number.value = static_cast<double>(
         parse_whole(key.name, text, key.kind == Kind::cores ? 1 : 0, most_of(key.kind)));
   });
@@ -160,132 +252,24 @@ std::string normal_value(const SweepKey& key, const std::string& text,
     case Kind::cores:
       return number_of(key, value, reference, place).text();
     case Kind::profile:
-      check_at(place, [&] { vio::profile_named(value, 1); });
+      read_at(place, [&] { vio::profile_named(value, 1); });
       return value;
     case Kind::size:
-      check_at(place, [&] { parse_size(value); });
+      read_at(place, [&] { parse_size(value); });
       return value;
     case Kind::frames:
-      check_at(place, [&] { traces::parse_frame_range(value); });
+      read_at(place, [&] { traces::parse_frame_range(value); });
       return value;
     default:
       return value;  // names of files: checked when they are opened
   }
 }
 
-namespace {
-
-using platform::Place;
-using platform::YamlEntry;
-
-constexpr double kMostSteps = 1e6;
-
-double to_digits(double value, int digits) {
-  return platform::parse_number(fmt::format("{:.{}g}", value, digits)).value_or(value);
-}
-
-bool is_whole(const SweepKey& key, const platform::Schema& schema) {
-  if (key.kind == SweepKey::Kind::chip)
-    return schema.fields()[schema.find(key.path)].dimension->whole;
-  return key.parameter == nullptr || key.parameter->kind != vio::Parameter::Kind::number;
-}
-
-class RangeReader {
- public:
-  RangeReader(const SweepKey& key, const std::string& file, const std::string& path,
-              platform::PlatformFile& reference)
-      : key_(key), file_(file), path_(path), reference_(reference) {}
-
-  Domain read(const std::vector<YamlEntry>& entries, const Place& place) {
-    if (!key_.is_number(reference_.schema()))
-      place.fail("has no range, as it is no number; expected a list of values");
-    check_keys(entries);
-    const SweepNumber low = number(entries, "from", place);
-    const SweepNumber high = number(entries, "to", place);
-    if (!(low.value < high.value)) place.fail("expected from below to");
-    const YamlEntry* step = find(entries, "step");
-    const YamlEntry* scale = find(entries, "scale");
-    if (step != nullptr && scale != nullptr) place.fail("has step and scale; expected one of them");
-    if (step != nullptr) return steps(low, high, *step);
-    return {{},
-            Span{low.value, high.value, is_logarithmic(scale, low, place),
-                 is_whole(key_, reference_.schema()), low.factor, low.unit}};
-  }
-
- private:
-  static const YamlEntry* find(const std::vector<YamlEntry>& entries, std::string_view key) {
-    const auto it = std::find_if(entries.begin(), entries.end(),
-                                 [&](const YamlEntry& e) { return e.key == key; });
-    return it == entries.end() ? nullptr : &*it;
-  }
-  Place place(const YamlEntry& entry) const {
-    return platform::place_of(file_, entry.line, platform::joined(path_, entry.key));
-  }
-  void check_keys(const std::vector<YamlEntry>& entries) const {
-    const std::vector<std::string> known{"from", "to", "step", "scale"};
-    for (const YamlEntry& entry : entries)
-      if (std::find(known.begin(), known.end(), entry.key) == known.end())
-        place(entry).fail("unknown key" + base::did_you_mean(entry.key, known) +
-                          "; a range has from, to, and step or scale");
-  }
-  SweepNumber number(const std::vector<YamlEntry>& entries, const char* name, const Place& at) {
-    const YamlEntry* entry = find(entries, name);
-    if (entry == nullptr) at.fail(fmt::format("missing key '{}'", name));
-    return number_of(key_, platform::scalar(entry->value, place(*entry)), reference_,
-                     place(*entry));
-  }
-  bool is_logarithmic(const YamlEntry* scale, const SweepNumber& low, const Place& at) const {
-    if (scale == nullptr) return false;
-    const std::string text = platform::scalar(scale->value, place(*scale));
-    if (text != "log" && text != "linear")
-      place(*scale).fail(fmt::format("'{}' is not known; expected linear or log", text));
-    if (text == "log" && !(low.value > 0)) at.fail("a log scale begins above 0");
-    return text == "log";
-  }
-  /// A step has the unit of the range; it may be smaller than any valid value.
-  double step_size(const YamlEntry& entry, const SweepNumber& low) const {
-    const Place at = place(entry);
-    const std::string text = platform::scalar(entry.value, at);
-    const std::optional<platform::Measure> measure = platform::split_measure(text);
-    if (!measure || !(measure->number > 0)) at.fail(fmt::format("'{}' is no number above 0", text));
-    if (measure->unit.empty() || measure->unit == low.unit) return measure->number;
-    const platform::Schema& schema = reference_.schema();
-    const platform::Unit* unit =
-        key_.kind == SweepKey::Kind::chip
-            ? schema.fields()[schema.find(key_.path)].dimension->find(measure->unit)
-            : nullptr;
-    if (unit == nullptr) at.fail(fmt::format("'{}' is no unit of {}", measure->unit, key_.name));
-    return measure->number * unit->factor / low.factor;
-  }
-  Domain steps(const SweepNumber& low, const SweepNumber& high, const YamlEntry& entry) {
-    const double step = step_size(entry, low);
-    constexpr double kRounding = 1e-9;
-    const double count = std::floor((high.value - low.value) / step + kRounding) + 1;
-    if (count > kMostSteps)
-      place(entry).fail(fmt::format("gives {:g} values; expected at most {:g}", count, kMostSteps));
-    Domain domain;
-    for (int k = 0; k < static_cast<int>(count); ++k) {
-      SweepNumber value = low;
-      value.value = to_digits(low.value + k * step, 12);
-      domain.values.push_back(normal_value(key_, value.text(), reference_, place(entry)));
-    }
-    return domain;
-  }
-
-  const SweepKey& key_;
-  const std::string& file_;
-  const std::string& path_;
-  platform::PlatformFile& reference_;
-};
-
-}  // namespace
-
-Domain read_domain(const SweepKey& key, const platform::YamlNode& node, const std::string& file,
-                   int line, const std::string& path, platform::PlatformFile& reference) {
-  const Place place = platform::place_of(file, line, path);
-  if (node.is_mapping())
-    return RangeReader(key, file, path, reference)
-        .read(platform::entries_of(node, file, path), place);
+Domain read_domain(const SweepKey& key, const YamlMap& map, const YamlMap::Entry& entry,
+                   platform::PlatformFile& reference) {
+  const Place place = map.place(entry);
+  const platform::YamlNode& node = entry.value;
+  if (node.is_mapping()) return RangeReader(key, map.below(entry), reference).read(place);
   Domain domain;
   const auto add = [&](const platform::YamlNode& value) {
     domain.values.push_back(normal_value(key, platform::scalar(value, place), reference, place));
@@ -319,20 +303,6 @@ std::string value_at(const Domain& domain, double u) {
   return platform::number_text(value) + span.unit;
 }
 
-namespace {
-
-/// What open() returns, with the place in front of its complaints.
-template <class Open>
-auto opened_at(const platform::Place& place, const Open& open) {
-  try {
-    return open();
-  } catch (const InputError& error) {
-    place.fail(error.what());
-  }
-}
-
-}  // namespace
-
 std::filesystem::path SweepInputs::beside(const std::string& name) const {
   return (folder_ / name).lexically_normal();  // an absolute name stays what it is
 }
@@ -341,7 +311,7 @@ platform::PlatformFile& SweepInputs::platform(const std::string& name,
                                               const platform::Place& place) {
   const auto known = platforms_.find(name);
   if (known != platforms_.end()) return known->second;
-  return opened_at(place, [&]() -> std::reference_wrapper<platform::PlatformFile> {
+  return read_at(place, [&]() -> std::reference_wrapper<platform::PlatformFile> {
     platform::PlatformFile file = platform::PlatformFile::named(name, folder_);
     file.resolve({});  // refuses what is wrong with the file itself
     return platforms_.emplace(name, std::move(file)).first->second;
@@ -351,7 +321,7 @@ platform::PlatformFile& SweepInputs::platform(const std::string& name,
 SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::Place& place) {
   const auto known = traces_.find(name);
   if (known != traces_.end()) return known->second;
-  return opened_at(place, [&]() -> std::reference_wrapper<Trace> {
+  return read_at(place, [&]() -> std::reference_wrapper<Trace> {
     std::filesystem::path file = beside(name);
     if (base::is_folder(file)) file /= kWorkTraceFile;
     // Called as in the plan: what a point says must not depend on where the plan lies.
@@ -371,7 +341,7 @@ const SweepInputs::Data& SweepInputs::data(const std::string& name, const std::s
   const auto key = std::make_pair(name, frames);
   const auto known = data_.find(key);
   if (known != data_.end()) return known->second;
-  return opened_at(place, [&]() -> std::reference_wrapper<const Data> {
+  return read_at(place, [&]() -> std::reference_wrapper<const Data> {
     const std::filesystem::path folder =
         name == "synthetic" ? cached_flight(progress_) : beside(name);
     std::optional<traces::FrameRange> range;
@@ -381,27 +351,6 @@ const SweepInputs::Data& SweepInputs::data(const std::string& name, const std::s
         .first->second;
   });
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-bool is_regular(const fs::path& file) {
-  const std::optional<struct stat> status = outputs::status_of(file);
-  return status && S_ISREG(status->st_mode);
-}
-
-[[noreturn]] void refuse(const SweepFolder::Request& request, const std::string& why) {
-  throw InputError(fmt::format("{} {}: {}", request.option, request.path, why));
-}
-
-/// What SQLite keeps beside the data base while it is open.
-bool is_of_sqlite(const std::string& name) {
-  const std::string file(kSweepFile);
-  return name == file + "-journal" || name == file + "-wal" || name == file + "-shm";
-}
-
-}  // namespace
 
 SweepFolder::SweepFolder(const Request& request) {
   std::error_code error;

@@ -167,37 +167,6 @@ bool dominates(const Values& a, const Values& b) {
   return better;
 }
 
-}  // namespace
-
-bool dominates(const SweepOutcome& a, const SweepOutcome& b) {
-  return dominates(values_of(a), values_of(b));
-}
-
-std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes) {
-  struct Candidate {
-    Values values;
-    const SweepOutcome* outcome;
-  };
-  std::vector<Candidate> sorted;
-  for (const SweepOutcome& o : outcomes)
-    if (o.failure.empty()) sorted.push_back({values_of(o), &o});
-  std::sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
-    return a.values != b.values ? a.values < b.values : a.outcome->point < b.outcome->point;
-  });
-  // What dominates a point comes before it, and if that is dominated itself, so does what is on the
-  // front: each has to be compared with the front so far only.
-  std::vector<Candidate> front;
-  for (const Candidate& c : sorted)
-    if (std::none_of(front.begin(), front.end(),
-                     [&](const Candidate& f) { return dominates(f.values, c.values); }))
-      front.push_back(c);
-  std::vector<SweepOutcome> result;
-  for (const Candidate& c : front) result.push_back(*c.outcome);
-  return result;
-}
-
-namespace {
-
 /// "platform.cluster.clock" → "cluster.clock".
 std::string title_of(const std::string& parameter) {
   constexpr std::string_view kPlatform = "platform.";
@@ -436,6 +405,33 @@ void run(const CLI::App& command, const SweepWords& words) {
 }
 
 }  // namespace
+
+bool dominates(const SweepOutcome& a, const SweepOutcome& b) {
+  return dominates(values_of(a), values_of(b));
+}
+
+std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes) {
+  struct Candidate {
+    Values values;
+    const SweepOutcome* outcome;
+  };
+  std::vector<Candidate> sorted;
+  for (const SweepOutcome& o : outcomes)
+    if (o.failure.empty()) sorted.push_back({values_of(o), &o});
+  std::sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
+    return a.values != b.values ? a.values < b.values : a.outcome->point < b.outcome->point;
+  });
+  // What dominates a point comes before it, and if that is dominated itself, so does what is on the
+  // front: each has to be compared with the front so far only.
+  std::vector<Candidate> front;
+  for (const Candidate& c : sorted)
+    if (std::none_of(front.begin(), front.end(),
+                     [&](const Candidate& f) { return dominates(f.values, c.values); }))
+      front.push_back(c);
+  std::vector<SweepOutcome> result;
+  for (const Candidate& c : front) result.push_back(*c.outcome);
+  return result;
+}
 
 Command add_sweep_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(

@@ -22,7 +22,7 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/study/sweep/points.h"
 
 struct sqlite3;

@@ -1,6 +1,5 @@
 #include "tools/app/study/systems/systems_report.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,9 +9,9 @@
 #include "sim/base/csv.h"
 #include "sim/base/csv_table.h"
 #include "tools/app/flow/flow.h"
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/result/energy.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/study/feasibility/feasibility.h"
 #include "tools/app/validation/references.h"
@@ -41,41 +40,125 @@ std::string model_of(const SystemRow& row) {
   return row.here ? fmt::format("{} on {}", row.published.workload, row.published.platform) : "";
 }
 
+RunRequest request_for(const PublishedSystem& system, const RunRequest& request) {
+  RunRequest own = request;
+  own.platform = platform::resolve_platform(system.platform, system.overrides);
+  own.cores = own.platform.config.cluster.workers;
+  return own;
+}
+
+/// Recorded frames stand for faster ones: the work of a frame hardly depends on what is in it.
+Prediction predict_flow(const PublishedSystem& system, const RunRequest& request,
+                        const ProgressCallback& progress) {
+  FlowSource source(request, {});
+  const RunResult run = simulate_source(request, source, progress);
+  Prediction here;
+  here.memory = "fits";
+  const std::optional<FlowCycles> cycles = flow_cycles(run);
+  if (!cycles) return here;
+  here.most_frames_per_s = static_cast<double>(run.cluster_clock.count()) / cycles->parallel;
+  here.frames_per_s =
+      std::min(system.frames_per_s.value_or(here.most_frames_per_s), here.most_frames_per_s);
+  if (const auto energy = energy_of(at_rate(run, here.frames_per_s))) {
+    here.power = energy->mean_power();
+    here.frame = energy->per_frame();
+  }
+  return here;
+}
+
+Prediction predict_levio(const PublishedSystem& system, const RunRequest& request,
+                         const ProgressCallback& progress) {
+  RunRequest own = request;
+  own.profile = system.workload;
+  FeasibilityStudy study(own, progress);
+  const Feasibility found = study.on({system.platform, request.platform, request.cores});
+  Prediction here;
+  here.most_frames_per_s = found.frames_per_second();
+  here.power = found.power;
+  here.frame = found.energy_per_frame;
+  // The rate at which the study takes energy and power.
+  here.frames_per_s = here.power && here.frame
+                          ? here.power->value.count() / here.frame->value.count()
+                          : here.most_frames_per_s;
+  here.memory = memory_verdict(found);
+  return here;
+}
+
+const std::vector<std::string> kColumns{"system",       "year",     "class", "chip",
+                                        "frames_per_s", "power_mw", "bound", "workload",
+                                        "platform",     "set",      "source"};
+enum Column : std::size_t {
+  kSystem,
+  kYear,
+  kClass,
+  kChip,
+  kRate,
+  kPower,
+  kBound,
+  kWorkload,
+  kPlatform,
+  kSet,
+  kSource
+};
+
+std::optional<double> positive(const base::CsvRow& row, Column column) {
+  if (row.text(column).empty()) return std::nullopt;
+  const double value = row.number(column);
+  if (!(value > 0)) row.fail(column, "expected a number above 0, or nothing");
+  return value;
+}
+
+PublishedSystem system_from(const base::CsvRow& row) {
+  PublishedSystem system;
+  system.name = row.text(kSystem);
+  system.year = static_cast<int>(row.number(kYear));
+  system.kind = row.text(kClass);
+  system.chip = row.text(kChip);
+  system.frames_per_s = positive(row, kRate);
+  system.power_mw = positive(row, kPower);
+  const std::string bound(row.text(kBound));
+  if (!bound.empty() && bound != "at most") row.fail(kBound, "expected 'at most', or nothing");
+  system.is_bound = !bound.empty();
+  system.workload = row.text(kWorkload);
+  system.platform = row.text(kPlatform);
+  if (system.workload.empty() != system.platform.empty())
+    row.fail(kPlatform, "expected a workload and a platform, or neither");
+  std::istringstream words{std::string(row.text(kSet))};
+  for (std::string word; words >> word;) system.overrides.push_back(word);
+  system.source = row.text(kSource);
+  if (system.name.empty() || system.source.empty()) row.fail("has no name or no source");
+  return system;
+}
+
 }  // namespace
 
 std::string systems_table(const std::vector<SystemRow>& rows) {
-  TextTable table({{"system", kLeft},
-                   {"class", kLeft, 3},
-                   {"chip", kLeft, 2},
-                   {"frames/s"},
-                   {"mW"},
-                   {"mJ/frame"},
-                   {"here", kLeft, 2},
-                   {"frames/s", kRight, 1},
-                   {"mW"},
-                   {"mJ/frame"},
-                   {"most frames/s", kRight, 2}});
+  using S = const SystemRow&;
+  const auto here = [](auto of) {
+    return [of](S s) { return s.here ? of(*s.here) : std::string(); };
+  };
+  using P = const Prediction&;
+  const TableOf<SystemRow> table{
+      {{"system", kLeft},
+       [](S s) { return fmt::format("{}, {}", s.published.name, s.published.year); }},
+      {{"class", kLeft, 3}, [](S s) { return s.published.kind; }},
+      {{"chip", kLeft, 2}, [](S s) { return s.published.chip; }},
+      {{"frames/s"}, [](S s) { return number(s.published.frames_per_s); }},
+      {{"mW"}, [](S s) { return number(s.published.power_mw, s.published.is_bound); }},
+      {{"mJ/frame"}, [](S s) { return number(s.published.frame_mj(), s.published.is_bound); }},
+      {{"here", kLeft, 2}, [](S s) { return model_of(s); }},
+      {{"frames/s", kRight, 1}, here([](P p) { return number(p.frames_per_s); })},
+      {{"mW"}, here([](P p) { return in_milli(p.power); })},
+      {{"mJ/frame"}, here([](P p) { return in_milli(p.frame); })},
+      {{"most frames/s", kRight, 2}, here([](P p) { return number(p.most_frames_per_s); })}};
   std::string sources;
   std::string small;
   for (const SystemRow& row : rows) {
-    const PublishedSystem& p = row.published;
-    std::vector<std::string> cells{fmt::format("{}, {}", p.name, p.year),
-                                   p.kind,
-                                   p.chip,
-                                   number(p.frames_per_s),
-                                   number(p.power_mw, p.is_bound),
-                                   number(p.frame_mj(), p.is_bound),
-                                   model_of(row)};
-    if (row.here)
-      cells.insert(cells.end(), {number(row.here->frames_per_s), in_milli(row.here->power),
-                                 in_milli(row.here->frame), number(row.here->most_frames_per_s)});
-    cells.resize(11);
-    table.add(std::move(cells));
-    sources += fmt::format("  {}: {}\n", p.name, p.source);
+    sources += fmt::format("  {}: {}\n", row.published.name, row.published.source);
     if (row.here && row.here->memory != "fits")
-      small += fmt::format("{} as though it fitted: {}\n", p.name, row.here->memory);
+      small += fmt::format("{} as though it fitted: {}\n", row.published.name, row.here->memory);
   }
-  return table.str() +
+  return table.with(rows).str() +
          "published: of whole systems, as their authors define them; < is a bound\n"
          "here: what leviosim predicts for the chip alone, at that rate, with bands; most: what "
          "the computing would allow. Where it is empty, the system is not modelled\n" +
@@ -179,54 +262,6 @@ Json systems_page(const std::vector<SystemRow>& rows) {
   return study_report(page);
 }
 
-namespace {
-
-RunRequest request_for(const PublishedSystem& system, const RunRequest& request) {
-  RunRequest own = request;
-  own.platform = platform::resolve_platform(system.platform, system.overrides);
-  own.cores = own.platform.config.cluster.workers;
-  return own;
-}
-
-/// Recorded frames stand for faster ones: the work of a frame hardly depends on what is in it.
-Prediction predict_flow(const PublishedSystem& system, const RunRequest& request,
-                        const ProgressCallback& progress) {
-  FlowSource source(request, {});
-  const RunResult run = simulate_source(request, source, progress);
-  Prediction here;
-  here.memory = "fits";
-  const std::optional<FlowCycles> cycles = flow_cycles(run);
-  if (!cycles) return here;
-  here.most_frames_per_s = static_cast<double>(run.cluster_clock.count()) / cycles->parallel;
-  here.frames_per_s =
-      std::min(system.frames_per_s.value_or(here.most_frames_per_s), here.most_frames_per_s);
-  if (const auto energy = energy_of(at_rate(run, here.frames_per_s))) {
-    here.power = energy->mean_power();
-    here.frame = energy->per_frame();
-  }
-  return here;
-}
-
-Prediction predict_levio(const PublishedSystem& system, const RunRequest& request,
-                         const ProgressCallback& progress) {
-  RunRequest own = request;
-  own.profile = system.workload;
-  FeasibilityStudy study(own, progress);
-  const Feasibility found = study.on({system.platform, request.platform, request.cores});
-  Prediction here;
-  here.most_frames_per_s = found.frames_per_second();
-  here.power = found.power;
-  here.frame = found.energy_per_frame;
-  // The rate at which the study takes energy and power.
-  here.frames_per_s = here.power && here.frame
-                          ? here.power->value.count() / here.frame->value.count()
-                          : here.most_frames_per_s;
-  here.memory = memory_verdict(found);
-  return here;
-}
-
-}  // namespace
-
 std::vector<SystemRow> predict_systems(const std::vector<PublishedSystem>& systems,
                                        const RunRequest& request,
                                        const ProgressCallback& progress) {
@@ -240,56 +275,6 @@ std::vector<SystemRow> predict_systems(const std::vector<PublishedSystem>& syste
   }
   return rows;
 }
-
-namespace {
-
-const std::vector<std::string> kColumns{"system",       "year",     "class", "chip",
-                                        "frames_per_s", "power_mw", "bound", "workload",
-                                        "platform",     "set",      "source"};
-enum Column : std::size_t {
-  kSystem,
-  kYear,
-  kClass,
-  kChip,
-  kRate,
-  kPower,
-  kBound,
-  kWorkload,
-  kPlatform,
-  kSet,
-  kSource
-};
-
-std::optional<double> positive(const base::CsvRow& row, Column column) {
-  if (row.text(column).empty()) return std::nullopt;
-  const double value = row.number(column);
-  if (!(value > 0)) row.fail(column, "expected a number above 0, or nothing");
-  return value;
-}
-
-PublishedSystem system_from(const base::CsvRow& row) {
-  PublishedSystem system;
-  system.name = row.text(kSystem);
-  system.year = static_cast<int>(row.number(kYear));
-  system.kind = row.text(kClass);
-  system.chip = row.text(kChip);
-  system.frames_per_s = positive(row, kRate);
-  system.power_mw = positive(row, kPower);
-  const std::string bound(row.text(kBound));
-  if (!bound.empty() && bound != "at most") row.fail(kBound, "expected 'at most', or nothing");
-  system.is_bound = !bound.empty();
-  system.workload = row.text(kWorkload);
-  system.platform = row.text(kPlatform);
-  if (system.workload.empty() != system.platform.empty())
-    row.fail(kPlatform, "expected a workload and a platform, or neither");
-  std::istringstream words{std::string(row.text(kSet))};
-  for (std::string word; words >> word;) system.overrides.push_back(word);
-  system.source = row.text(kSource);
-  if (system.name.empty() || system.source.empty()) row.fail("has no name or no source");
-  return system;
-}
-
-}  // namespace
 
 std::optional<double> PublishedSystem::frame_mj() const {
   if (!frames_per_s || !power_mw) return std::nullopt;

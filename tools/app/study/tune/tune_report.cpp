@@ -1,4 +1,3 @@
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -13,7 +12,7 @@
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/comparison/cycle_parts.h"
+#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
@@ -25,6 +24,8 @@
 
 namespace leviosim::tools {
 namespace {
+
+constexpr double kNsToMs = 1e-6;
 
 std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
 
@@ -96,14 +97,23 @@ Json banded_json(const std::optional<Banded>& figure) {
   return figure ? Json(figure->value) : Json(nullptr);
 }
 
+/// A percentile of the latency, in runs.csv and on the page, and in the table.
 struct LatencyColumn {
-  double (*of)(const LoopOutcome&);
+  StudyColumn column;
+  TextTable::Column shown;
+  std::int64_t CameraFigures::Latencies::*of;
 };
-constexpr std::array kLatencies{
-    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p50_ns); }},
-    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p95_ns); }},
-    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.p99_ns); }},
-    LatencyColumn{[](const LoopOutcome& l) { return double(l.camera.latency.max_ns); }}};
+const std::array kLatencies{
+    LatencyColumn{{"latency_p50_ns", "median latency", "ms", false, false, kNsToMs},
+                  {"p50 ms", kRight, 3},
+                  &CameraFigures::Latencies::p50_ns},
+    LatencyColumn{{"latency_p95_ns"}, {"p95 ms", kRight, 3}, &CameraFigures::Latencies::p95_ns},
+    LatencyColumn{{"latency_p99_ns", "latency of 99 %", "ms", false, false, kNsToMs},
+                  {"p99 ms"},
+                  &CameraFigures::Latencies::p99_ns},
+    LatencyColumn{{"latency_worst_ns", "worst latency", "ms", false, false, kNsToMs},
+                  {"worst ms", kRight, 3},
+                  &CameraFigures::Latencies::max_ns}};
 
 /// A row of runs.csv.
 struct Run {
@@ -111,8 +121,6 @@ struct Run {
   const RunOutcome& outcome;
   const Variation& variation;
 };
-
-constexpr double kNsToMs = 1e-6;
 
 StudyTable<Run> runs_table(const TunePlan& plan) {
   using base::fixed;
@@ -148,13 +156,8 @@ StudyTable<Run> runs_table(const TunePlan& plan) {
                 [](C c) { return fixed(c.share_of(c.missed()), 6); });
   add_of_camera({"waited"}, [](C c) { return c.waited; });
   add_of_camera({"most_found"}, [](C c) { return c.most_found; });
-  add_of_camera({"latency_p50_ns", "median latency", "ms", false, false, kNsToMs},
-                [](C c) { return c.latency.p50_ns; });
-  add_of_camera({"latency_p95_ns"}, [](C c) { return c.latency.p95_ns; });
-  add_of_camera({"latency_p99_ns", "latency of 99 %", "ms", false, false, kNsToMs},
-                [](C c) { return c.latency.p99_ns; });
-  add_of_camera({"latency_worst_ns", "worst latency", "ms", false, false, kNsToMs},
-                [](C c) { return c.latency.max_ns; });
+  for (const LatencyColumn& latency : kLatencies)
+    add_of_camera(latency.column, [of = latency.of](C c) { return c.latency.*of; });
   const auto add_milli = [&](const StudyColumn& column, auto figure, double Banded::*part) {
     add(column, [=](O o) {
       const std::optional<Banded>& banded = *o.loop.*figure;
@@ -206,71 +209,6 @@ std::vector<Run> runs_of(const TunePlan& plan, const std::vector<TunePoint>& poi
       runs.push_back({point, point.outcomes[i], plan.variations[i]});
   return runs;
 }
-
-}  // namespace
-
-std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  const bool several = plan.variations.size() > 1;
-  std::vector<TextTable::Column> columns{{"frames/s"},
-                                         {"MHz"},
-                                         {"V", kRight, 1},
-                                         {"missed %"},
-                                         {"dropped %", kRight, 3},
-                                         {"p50 ms", kRight, 3},
-                                         {"p95 ms", kRight, 3},
-                                         {"p99 ms"},
-                                         {"worst ms", kRight, 3},
-                                         {"mW"},
-                                         {"band", kRight, 2},
-                                         {"mJ/frame", kRight, 1},
-                                         {"ATE m"}};
-  if (several) columns.push_back({"least … greatest", kRight, 2});
-  if (plan.perturbs) columns.push_back({"failed", kRight, 1});
-  columns.push_back({"poses %", kRight, 2});
-  columns.push_back({"meets limits", kLeft});
-  TextTable table(std::move(columns));
-  for (const TunePoint& point : points) {
-    const auto power = point.median(&LoopOutcome::power_w);
-    const Spread errors = point.ate();
-    std::vector<std::string> cells{
-        fmt::format("{:g}", point.fps), fmt::format("{:g}", megahertz(point.setting.clock)),
-        volts(point.setting), percent(point.miss_rate()), percent(point.drop_rate())};
-    for (const LatencyColumn& latency : kLatencies) cells.push_back(ms(point.median(latency.of)));
-    cells.insert(cells.end(),
-                 {milli(power, 2), milli_band(power), milli(point.median(&LoopOutcome::frame_j), 3),
-                  error_text(errors.median, 3)});
-    if (several)
-      cells.push_back(
-          fmt::format("{} … {}", error_text(errors.low, 3), error_text(errors.high, 3)));
-    if (plan.perturbs) cells.push_back(std::to_string(failures(point, plan)));
-    cells.push_back(percent(point.completion()));
-    cells.push_back(is_enough(point, plan) ? "yes" : "");
-    table.add(std::move(cells));
-  }
-  return table.str();
-}
-
-std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  return runs_table(plan).csv(runs_of(plan, points));
-}
-
-std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
-  std::string text = fmt::format(
-      "the lowest clocks from which on all have at most {:g} % missed and an ATE of {:g} "
-      "m:\n",
-      100 * plan.miss_rate, plan.ate_m);
-  for (const Choice& choice : choices) text += choice_line(choice);
-  return text;
-}
-
-std::string tune_conclusion(const std::vector<Choice>& choices) {
-  const TunePoint* best = chosen(choices);
-  if (best == nullptr) return "verdict: NOT met: no point meets the limits";
-  return fmt::format("verdict: met: the lowest of all: {} at {:g} frames/s: {}",
-                     clock_text(best->setting), best->fps, point_text(*best));
-}
-
-namespace {
 
 /// The same as boxes of a page, one for each frame rate.
 std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choice>& choices) {
@@ -454,6 +392,52 @@ void run(const CLI::App& command, const GatedTuneWords& words, const Words& comm
 }
 
 }  // namespace
+
+std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  using P = const TunePoint&;
+  TableOf<TunePoint> table{
+      {{"frames/s"}, [](P p) { return fmt::format("{:g}", p.fps); }},
+      {{"MHz"}, [](P p) { return fmt::format("{:g}", megahertz(p.setting.clock)); }},
+      {{"V", kRight, 1}, [](P p) { return volts(p.setting); }},
+      {{"missed %"}, [](P p) { return percent(p.miss_rate()); }},
+      {{"dropped %", kRight, 3}, [](P p) { return percent(p.drop_rate()); }}};
+  for (const LatencyColumn& latency : kLatencies)
+    table.add(latency.shown, [of = latency.of](P p) {
+      return ms(p.median([of](const LoopOutcome& l) { return double(l.camera.latency.*of); }));
+    });
+  table.add({"mW"}, [](P p) { return milli(p.median(&LoopOutcome::power_w), 2); });
+  table.add({"band", kRight, 2}, [](P p) { return milli_band(p.median(&LoopOutcome::power_w)); });
+  table.add({"mJ/frame", kRight, 1}, [](P p) { return milli(p.median(&LoopOutcome::frame_j), 3); });
+  table.add({"ATE m"}, [](P p) { return error_text(p.ate().median, 3); });
+  if (plan.variations.size() > 1)
+    table.add({"least … greatest", kRight, 2}, [](P p) {
+      return fmt::format("{} … {}", error_text(p.ate().low, 3), error_text(p.ate().high, 3));
+    });
+  if (plan.perturbs) table.add({"failed", kRight, 1}, [&](P p) { return failures(p, plan); });
+  table.add({"poses %", kRight, 2}, [](P p) { return percent(p.completion()); });
+  table.add({"meets limits", kLeft}, [&](P p) { return is_enough(p, plan) ? "yes" : ""; });
+  return table.with(points).str();
+}
+
+std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  return runs_table(plan).csv(runs_of(plan, points));
+}
+
+std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
+  std::string text = fmt::format(
+      "the lowest clocks from which on all have at most {:g} % missed and an ATE of {:g} "
+      "m:\n",
+      100 * plan.miss_rate, plan.ate_m);
+  for (const Choice& choice : choices) text += choice_line(choice);
+  return text;
+}
+
+std::string tune_conclusion(const std::vector<Choice>& choices) {
+  const TunePoint* best = chosen(choices);
+  if (best == nullptr) return "verdict: NOT met: no point meets the limits";
+  return fmt::format("verdict: met: the lowest of all: {} at {:g} frames/s: {}",
+                     clock_text(best->setting), best->fps, point_text(*best));
+}
 
 Command add_tune_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand(

@@ -12,7 +12,6 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "sim/energy/model.h"
-#include "tools/app/cli/command_line.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload.h"
@@ -89,36 +88,6 @@ double checked_recorded_rate(const RunRequest& request, const std::vector<double
   return data.camera.rate_hz;
 }
 
-}  // namespace
-
-std::vector<Hertz> parse_clocks(const std::string& text) {
-  std::vector<Hertz> clocks;
-  for (const std::string& item : base::split(text, ',')) {
-    const std::vector<std::string> parts = base::split(item, ':');
-    if (parts.size() == 1) {
-      clocks.push_back(parse_megahertz(item));
-    } else if (parts.size() == 3) {
-      for (const Hertz clock : clock_range(item, parts)) clocks.push_back(clock);
-    } else {
-      refuse("--clock", item, "MHz, or a range LOW:HIGH:STEP of them, such as 100:370:10");
-    }
-  }
-  sort_and_refuse_repetitions("--clock", text, clocks);
-  return clocks;
-}
-
-std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
-  std::vector<std::uint32_t> seeds;
-  for (const std::string& item : base::split(text, ','))
-    seeds.push_back(static_cast<std::uint32_t>(
-        parse_whole("--seed", item, 0, std::numeric_limits<std::uint32_t>::max())));
-  std::vector<std::uint32_t> sorted = seeds;
-  sort_and_refuse_repetitions("--seed", text, sorted);
-  return seeds;
-}
-
-namespace {
-
 /// As it is; from one frame and from two frames later; with a clock 2 % lower and 2 % higher; with
 /// a hair of gyro bias, either way.
 std::vector<Variation> perturbations(std::uint32_t seed) {
@@ -153,7 +122,49 @@ void choose_variations(const CLI::App& command, const TuneWords& words, TunePlan
       plan.variations.push_back({.name = fmt::format("seed {}", seed), .seed = seed});
 }
 
+std::vector<std::string> overrides_at(const TunePlan& plan, const ClockSetting& setting) {
+  std::vector<std::string> all = plan.options.overrides;
+  all.insert(all.end(), setting.overrides.begin(), setting.overrides.end());
+  return all;
+}
+
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:=,@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 }  // namespace
+
+std::vector<Hertz> parse_clocks(const std::string& text) {
+  std::vector<Hertz> clocks;
+  for (const std::string& item : base::split(text, ',')) {
+    const std::vector<std::string> parts = base::split(item, ':');
+    if (parts.size() == 1) {
+      clocks.push_back(parse_megahertz(item));
+    } else if (parts.size() == 3) {
+      for (const Hertz clock : clock_range(item, parts)) clocks.push_back(clock);
+    } else {
+      refuse("--clock", item, "MHz, or a range LOW:HIGH:STEP of them, such as 100:370:10");
+    }
+  }
+  sort_and_refuse_repetitions("--clock", text, clocks);
+  return clocks;
+}
+
+std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
+  std::vector<std::uint32_t> seeds;
+  for (const std::string& item : base::split(text, ','))
+    seeds.push_back(static_cast<std::uint32_t>(
+        parse_whole("--seed", item, 0, std::numeric_limits<std::uint32_t>::max())));
+  std::vector<std::uint32_t> sorted = seeds;
+  sort_and_refuse_repetitions("--seed", text, sorted);
+  return seeds;
+}
 
 std::vector<double> parse_rates(const std::string& text) {
   std::vector<double> rates;
@@ -232,28 +243,8 @@ TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
   return plan;
 }
 
-namespace {
-
-std::vector<std::string> overrides_at(const TunePlan& plan, const ClockSetting& setting) {
-  std::vector<std::string> all = plan.options.overrides;
-  all.insert(all.end(), setting.overrides.begin(), setting.overrides.end());
-  return all;
-}
-
-/// As a shell takes it for one word.
-std::string quoted(const std::string& word) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:=,@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
-}  // namespace
-
-double TunePoint::median(double (*of)(const LoopOutcome&)) const {
-  return *spread_of(values_of(outcomes, [of](const RunOutcome& o) { return of(*o.loop); })).median;
+double TunePoint::median(const std::function<double(const LoopOutcome&)>& of) const {
+  return *spread_of(values_of(outcomes, [&](const RunOutcome& o) { return of(*o.loop); })).median;
 }
 
 std::optional<Banded> TunePoint::median(std::optional<Banded> LoopOutcome::*of) const {

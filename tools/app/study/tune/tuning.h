@@ -1,6 +1,7 @@
 // The options of `leviosim tune`: as typed, and what they ask for once checked.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,7 +9,7 @@
 
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/accuracy_study.h"
@@ -101,7 +102,7 @@ struct TunePoint {
   std::vector<RunOutcome> outcomes;  ///< by variation
 
   /// Median over the variations of a figure of their loops.
-  double median(double (*of)(const LoopOutcome&)) const;
+  double median(const std::function<double(const LoopOutcome&)>& of) const;
   /// The same of a figure that chips without energies lack.
   std::optional<Banded> median(std::optional<Banded> LoopOutcome::*of) const;
   /// Dropped or late frames over all, and dropped ones.

@@ -10,8 +10,8 @@
 
 #include "tools/app/cli/command_line.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/cycle_parts.h"
-#include "tools/app/html_report/page_json.h"
+#include "tools/app/comparison/run_record.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 #include "tools/app/study/accuracy_study.h"

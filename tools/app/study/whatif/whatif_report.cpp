@@ -13,7 +13,6 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/printable_text.h"
-#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
@@ -54,7 +53,7 @@ Changes changes_of(const VariantResult& base, const VariantResult& variant) {
 }
 
 std::string wrapped(const std::string& text) {
-  return std::string(kIndent, ' ') + wrap(base::split(text, ' '), " ", kIndent, kWidth) + '\n';
+  return std::string(kIndent, ' ') + wrap_words(text, kIndent, kWidth) + '\n';
 }
 
 std::string below(const VariantResult& base, const VariantResult& variant) {
@@ -128,25 +127,6 @@ std::string list_of(const std::string& title, const std::vector<std::string>& it
   return title + '\n' + wrapped(fmt::format("{}", fmt::join(items, "; ")));
 }
 
-}  // namespace
-
-std::string reason_of(const VariantResult& base, const VariantResult& variant) {
-  if (!variant.failure.empty()) return variant.failure;
-  const double difference = variant.mean_ms() - base.mean_ms();
-  std::vector<std::string> parts;
-  if (std::abs(difference) >= kNoChange * 1e-2 * base.mean_ms())
-    for (const MainCause& cause : main_causes(base.parts, variant.parts)) {
-      if (parts.size() == 2 || std::abs(cause.ms) < kLeastCause * std::abs(difference)) break;
-      parts.push_back(cause_text(cause));
-    }
-  if (std::string unused = unused_text(base.unused, variant.unused); !unused.empty())
-    parts.push_back(std::move(unused));
-  if (parts.empty()) return "no frame waits for it";
-  return fmt::format("{}", fmt::join(parts, "; "));
-}
-
-namespace {
-
 /// In a sentence: the variant that cannot run, else the fastest.
 std::string whatif_conclusion(const std::vector<VariantResult>& results) {
   const VariantResult* fastest = nullptr;
@@ -165,25 +145,6 @@ std::string whatif_table(const std::vector<VariantResult>& results) {
   for (std::size_t i = 1; i < results.size(); ++i) rows.push_back(&results[i]);
   return table_of(results.front(), rows);
 }
-
-}  // namespace
-
-std::string whatif_bars(const std::vector<VariantResult>& results) {
-  constexpr double kBar = 34;
-  double longest = 0;
-  for (const VariantResult& r : results) longest = std::max(longest, r.mean_ms());
-  std::string text;
-  for (const VariantResult& r : results) {
-    text += fmt::format("{:<22}{:6.2f} ms {:5.2f} mJ ", r.name, r.mean_ms(),
-                        r.energy_mj ? r.energy_mj->value : 0);
-    for (int n = static_cast<int>(longest > 0 ? kBar * r.mean_ms() / longest + 0.5 : 0); n > 0; --n)
-      text += "█";
-    text += '\n';
-  }
-  return text;
-}
-
-namespace {
 
 /// The same ranked: time gained per area and per energy; what changes nothing, and what cannot be.
 std::string advice_text(const std::vector<VariantResult>& results) {
@@ -287,14 +248,6 @@ StudyTable<VariantResult> variants_table(const std::vector<VariantResult>& resul
        }},
       {{"failure", "failure", ""}, [](R r) { return r.failure; }}};
 }
-
-}  // namespace
-
-std::string whatif_csv(const std::vector<VariantResult>& results) {
-  return variants_table(results).csv(results);
-}
-
-namespace {
 
 /// @param title   of the page
 /// @param summary  lines
@@ -440,6 +393,40 @@ void run(const WhatIfWords& typed, const Words& words) {
 }
 
 }  // namespace
+
+std::string reason_of(const VariantResult& base, const VariantResult& variant) {
+  if (!variant.failure.empty()) return variant.failure;
+  const double difference = variant.mean_ms() - base.mean_ms();
+  std::vector<std::string> parts;
+  if (std::abs(difference) >= kNoChange * 1e-2 * base.mean_ms())
+    for (const MainCause& cause : main_causes(base.parts, variant.parts)) {
+      if (parts.size() == 2 || std::abs(cause.ms) < kLeastCause * std::abs(difference)) break;
+      parts.push_back(cause_text(cause));
+    }
+  if (std::string unused = unused_text(base.unused, variant.unused); !unused.empty())
+    parts.push_back(std::move(unused));
+  if (parts.empty()) return "no frame waits for it";
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string whatif_bars(const std::vector<VariantResult>& results) {
+  constexpr double kBar = 34;
+  double longest = 0;
+  for (const VariantResult& r : results) longest = std::max(longest, r.mean_ms());
+  std::string text;
+  for (const VariantResult& r : results) {
+    text += fmt::format("{:<22}{:6.2f} ms {:5.2f} mJ ", r.name, r.mean_ms(),
+                        r.energy_mj ? r.energy_mj->value : 0);
+    for (int n = static_cast<int>(longest > 0 ? kBar * r.mean_ms() / longest + 0.5 : 0); n > 0; --n)
+      text += "█";
+    text += '\n';
+  }
+  return text;
+}
+
+std::string whatif_csv(const std::vector<VariantResult>& results) {
+  return variants_table(results).csv(results);
+}
 
 Command add_whatif_command(CLI::App& app, const Words& words) {
   CLI::App* command =

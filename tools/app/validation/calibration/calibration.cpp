@@ -2,20 +2,114 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 #include "sim/base/nearest.h"
 #include "sim/base/text.h"
 #include "tools/app/report/text_table.h"
-#include "tools/app/validation/calibration/least_squares.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
 namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// The unknowns run from 0 to 1 across the box.
+constexpr int kMaxSteps = 200;
+constexpr double kDifference = 1e-6;  ///< of the derivatives
+constexpr double kSettled = 1e-10;    ///< largest move of an unknown at the end
+constexpr double kMostDamping = 1e12;
+
+class Problem {
+ public:
+  Problem(const Residuals& residuals, const Box& box) : residuals_(residuals), box_(box) {}
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(box_.low.size()); }
+
+  std::vector<double> in_units(const VectorXd& x) const {
+    std::vector<double> values(box_.low.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = std::clamp(box_.low[i] + x[static_cast<Eigen::Index>(i)] * width(i), box_.low[i],
+                             box_.high[i]);
+    return values;
+  }
+
+  VectorXd from_units(const std::vector<double>& values) const {
+    VectorXd x(size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      x[static_cast<Eigen::Index>(i)] = width(i) > 0 ? (values[i] - box_.low[i]) / width(i) : 0;
+    return x.cwiseMax(0.0).cwiseMin(1.0);
+  }
+
+  VectorXd residuals(const VectorXd& x) const {
+    throw_if_interrupted();
+    const std::vector<double> r = residuals_(in_units(x));
+    return Eigen::Map<const VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
+  }
+
+  MatrixXd jacobian(const VectorXd& x) const {
+    MatrixXd j(residuals(x).size(), size());
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      VectorXd above = x;
+      VectorXd below = x;
+      above[i] = std::min(x[i] + kDifference, 1.0);
+      below[i] = std::max(x[i] - kDifference, 0.0);
+      j.col(i) = (residuals(above) - residuals(below)) / (above[i] - below[i]);
+    }
+    return j;
+  }
+
+ private:
+  double width(std::size_t i) const { return box_.high[i] - box_.low[i]; }
+
+  const Residuals& residuals_;
+  const Box& box_;
+};
+
+/// The damped step, with the unknowns held that stand at a bound and are pushed outwards.
+VectorXd step(const VectorXd& x, const MatrixXd& j, const VectorXd& r, double damping) {
+  const VectorXd gradient = j.transpose() * r;
+  MatrixXd normal = j.transpose() * j;
+  normal.diagonal() *= 1 + damping;
+  normal.diagonal().array() += 1e-14;  // an unknown without effect stays where it is
+  VectorXd right = -gradient;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const bool held = (x[i] <= 0 && gradient[i] >= 0) || (x[i] >= 1 && gradient[i] <= 0);
+    if (!held) continue;
+    normal.row(i).setZero();
+    normal.col(i).setZero();
+    normal(i, i) = 1;
+    right[i] = 0;
+  }
+  return normal.ldlt().solve(right);
+}
+
+Fit descend(const Problem& problem, VectorXd x) {
+  VectorXd r = problem.residuals(x);
+  double damping = 1e-3;
+  for (int k = 0; k < kMaxSteps && damping < kMostDamping; ++k) {
+    const VectorXd delta = step(x, problem.jacobian(x), r, damping);
+    const VectorXd next = (x + delta).cwiseMax(0.0).cwiseMin(1.0);
+    const VectorXd r_next = problem.residuals(next);
+    if (r_next.squaredNorm() < r.squaredNorm()) {
+      const double moved = (next - x).cwiseAbs().maxCoeff();
+      x = next;
+      r = r_next;
+      damping = std::max(damping / 10, 1e-12);
+      if (moved < kSettled) break;
+    } else {
+      damping *= 10;
+    }
+  }
+  return {problem.in_units(x), r.squaredNorm()};
+}
 
 std::vector<platform::Change> changes(const std::vector<Bounded>& constants,
                                       const std::vector<double>& values) {
@@ -58,37 +152,84 @@ std::vector<double> fit(const platform::Variants& platform,
   return found;
 }
 
-double mean_of(const std::vector<double>& errors) {
+/// Of all of them, the absolute error of a part, in per cent of the reference.
+template <class Rows, class Part>
+double mean_error(const Rows& rows, Part part) {
   double sum = 0;
-  for (const double error : errors) sum += std::abs(error);
-  return errors.empty() ? 0 : sum / static_cast<double>(errors.size());
+  for (const auto& row : rows) sum += std::abs(percent_error(row.*part, row.reference));
+  return rows.empty() ? 0 : sum / static_cast<double>(rows.size());
+}
+
+std::string kilo(double cycles) { return fmt::format("{:.0f}", cycles / 1e3); }
+
+std::string percent(double simulated, double reference) {
+  return fmt::format("{:+.1f} %", percent_error(simulated, reference));
+}
+
+std::string_view mechanism_of(const std::string& path) {
+  for (const FittableConstant& constant : kFittableConstants)
+    if (constant.path == path) return constant.mechanism;
+  return "";
+}
+
+/// A fit that stands at a bound asks for more than the range allows.
+const char* bound_text(const Bounded& constant, double value) {
+  if (value <= constant.low) return "at the lower bound";
+  if (value >= constant.high) return "at the upper bound";
+  return "";
+}
+
+double paper_cycles(const std::vector<Reference>& references, std::string_view key) {
+  for (const Reference& reference : references)
+    if (reference.name == fmt::format("compute.{}.single", key)) return reference.value * 1e3;
+  throw InputError(fmt::format("paper.csv: compute.{}.single is missing", key));
+}
+
+/// Cycles of the operations alone, with their code at hand.
+double cost_of(const sim::WorkSum& work, const sim::ChipConfig& chip) {
+  return work.cost(chip.cluster.core).total();
+}
+
+void check_fittable(const std::string& option, const std::string& path) {
+  std::vector<std::string> known;
+  for (const FittableConstant& constant : kFittableConstants) known.emplace_back(constant.path);
+  if (std::find(known.begin(), known.end(), path) != known.end()) return;
+  throw InputError(
+      fmt::format("{} '{}': is no constant that may be fitted{}; expected up to {} of {}", option,
+                  path, base::did_you_mean(path, known), kMostConstants, fmt::join(known, ", ")));
 }
 
 }  // namespace
+
+Fit least_squares(const Residuals& residuals, const Box& box, const std::vector<double>& start) {
+  check_equal(box.low.size(), start.size(), "lower bounds");
+  check_equal(box.high.size(), start.size(), "upper bounds");
+  const Problem problem(residuals, box);
+  Fit best = descend(problem, problem.from_units(start));
+  for (unsigned corner = 0; corner < 1u << start.size(); ++corner) {
+    VectorXd x(problem.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = corner >> i & 1u ? 0.75 : 0.25;
+    Fit fit = descend(problem, x);
+    // Of points that are as good, the one found first is kept.
+    if (fit.cost < best.cost - 1e-12 * (1 + best.cost)) best = std::move(fit);
+  }
+  return best;
+}
 
 double percent_error(double simulated, double reference) {
   return 100 * (simulated / reference - 1);
 }
 
 double mean_error_before(const Calibration& calibration) {
-  std::vector<double> errors;
-  for (const Residual& r : calibration.residuals)
-    errors.push_back(percent_error(r.before, r.reference));
-  return mean_of(errors);
+  return mean_error(calibration.residuals, &Residual::before);
 }
 
 double mean_error_after(const Calibration& calibration) {
-  std::vector<double> errors;
-  for (const Residual& r : calibration.residuals)
-    errors.push_back(percent_error(r.after, r.reference));
-  return mean_of(errors);
+  return mean_error(calibration.residuals, &Residual::after);
 }
 
 double mean_error_left_out(const Calibration& calibration) {
-  std::vector<double> errors;
-  for (const LeftOut& l : calibration.left_out)
-    errors.push_back(percent_error(l.predicted, l.reference));
-  return mean_of(errors);
+  return mean_error(calibration.left_out, &LeftOut::predicted);
 }
 
 Calibration calibrate(const platform::Variants& platform, const std::vector<StageModel>& stages,
@@ -123,29 +264,6 @@ platform::ResolvedPlatform calibrated_platform(const platform::Variants& platfor
       "leviosim calibrate: fitted to the single-core compute table of the LEVIO paper");
 }
 
-namespace {
-
-std::string kilo(double cycles) { return fmt::format("{:.0f}", cycles / 1e3); }
-
-std::string percent(double simulated, double reference) {
-  return fmt::format("{:+.1f} %", percent_error(simulated, reference));
-}
-
-std::string_view mechanism_of(const std::string& path) {
-  for (const FittableConstant& constant : kFittableConstants)
-    if (constant.path == path) return constant.mechanism;
-  return "";
-}
-
-/// A fit that stands at a bound asks for more than the range allows.
-const char* bound_text(const Bounded& constant, double value) {
-  if (value <= constant.low) return "at the lower bound";
-  if (value >= constant.high) return "at the upper bound";
-  return "";
-}
-
-}  // namespace
-
 std::string constants_table(const Calibration& calibration) {
   TextTable table({{"constant", kLeft},
                    {"before"},
@@ -166,28 +284,29 @@ std::string constants_table(const Calibration& calibration) {
 }
 
 std::string residual_table(const Calibration& calibration) {
-  TextTable table(
-      {{"stage, 1 core", kLeft}, {"paper, kcycles"}, {"before"}, {"error"}, {"fitted"}, {"error"}});
-  for (const Residual& r : calibration.residuals)
-    table.add({r.stage, kilo(r.reference), kilo(r.before), percent(r.before, r.reference),
-               kilo(r.after), percent(r.after, r.reference)});
-  return "residuals\n" + table.str() +
+  using R = const Residual&;
+  const TableOf<Residual> table{{{"stage, 1 core", kLeft}, [](R r) { return r.stage; }},
+                                {{"paper, kcycles"}, [](R r) { return kilo(r.reference); }},
+                                {{"before"}, [](R r) { return kilo(r.before); }},
+                                {{"error"}, [](R r) { return percent(r.before, r.reference); }},
+                                {{"fitted"}, [](R r) { return kilo(r.after); }},
+                                {{"error"}, [](R r) { return percent(r.after, r.reference); }}};
+  return "residuals\n" + table.with(calibration.residuals).str() +
          fmt::format("mean absolute error: {:.1f} % before, {:.1f} % fitted\n",
                      mean_error_before(calibration), mean_error_after(calibration));
 }
 
 std::string left_out_table(const Calibration& calibration) {
-  std::vector<TextTable::Column> columns{
-      {"stage, left out", kLeft}, {"paper, kcycles"}, {"predicted"}, {"error"}};
-  for (const Bounded& constant : calibration.constants) columns.push_back({constant.path});
-  TextTable table(std::move(columns));
-  for (const LeftOut& l : calibration.left_out) {
-    std::vector<std::string> cells{l.stage, kilo(l.reference), kilo(l.predicted),
-                                   percent(l.predicted, l.reference)};
-    for (const double constant : l.constants) cells.push_back(fmt::format("{:.4f}", constant));
-    table.add(std::move(cells));
-  }
-  return "each stage as the constants fitted to the others predict it\n" + table.str() +
+  using L = const LeftOut&;
+  TableOf<LeftOut> table{{{"stage, left out", kLeft}, [](L l) { return l.stage; }},
+                         {{"paper, kcycles"}, [](L l) { return kilo(l.reference); }},
+                         {{"predicted"}, [](L l) { return kilo(l.predicted); }},
+                         {{"error"}, [](L l) { return percent(l.predicted, l.reference); }}};
+  for (std::size_t i = 0; i < calibration.constants.size(); ++i)
+    table.add({calibration.constants[i].path},
+              [i](L l) { return fmt::format("{:.4f}", l.constants[i]); });
+  return "each stage as the constants fitted to the others predict it\n" +
+         table.with(calibration.left_out).str() +
          fmt::format("mean absolute error: {:.1f} %\n", mean_error_left_out(calibration));
 }
 
@@ -201,10 +320,11 @@ std::string calibration_conclusion(const Calibration& calibration) {
   for (std::size_t i = 0; i < calibration.constants.size(); ++i)
     text += fmt::format("{} {:.4f} instead of {:g}, ", calibration.constants[i].path,
                         calibration.fitted[i], calibration.constants[i].value);
-  return text + fmt::format("mean absolute error {:.1f} % instead of {:.1f} %, {:.1f} % of stages "
-                            "left out",
-                            mean_error_after(calibration), mean_error_before(calibration),
-                            mean_error_left_out(calibration));
+  return text + fmt::format(
+                    "mean absolute error {:.1f} % instead of {:.1f} %, {:.1f} % of stages "
+                    "left out",
+                    mean_error_after(calibration), mean_error_before(calibration),
+                    mean_error_left_out(calibration));
 }
 
 Json calibration_json(const Calibration& calibration) {
@@ -234,21 +354,6 @@ Json calibration_json(const Calibration& calibration) {
   return document;
 }
 
-namespace {
-
-double paper_cycles(const std::vector<Reference>& references, std::string_view key) {
-  for (const Reference& reference : references)
-    if (reference.name == fmt::format("compute.{}.single", key)) return reference.value * 1e3;
-  throw InputError(fmt::format("paper.csv: compute.{}.single is missing", key));
-}
-
-/// Cycles of the operations alone, with their code at hand.
-double cost_of(const sim::WorkSum& work, const sim::ChipConfig& chip) {
-  return work.cost(chip.cluster.core).total();
-}
-
-}  // namespace
-
 double StageModel::cycles(const sim::ChipConfig& chip) const {
   return (cost_of(work, chip) + fixed) / static_cast<double>(frames);
 }
@@ -274,19 +379,6 @@ std::vector<StageModel> stage_models(const FrameLog& log, const sim::ChipConfig&
   }
   return models;
 }
-
-namespace {
-
-void check_fittable(const std::string& option, const std::string& path) {
-  std::vector<std::string> known;
-  for (const FittableConstant& constant : kFittableConstants) known.emplace_back(constant.path);
-  if (std::find(known.begin(), known.end(), path) != known.end()) return;
-  throw InputError(
-      fmt::format("{} '{}': is no constant that may be fitted{}; expected up to {} of {}", option,
-                  path, base::did_you_mean(path, known), kMostConstants, fmt::join(known, ", ")));
-}
-
-}  // namespace
 
 std::vector<std::string> parse_constants(const std::string& option, const std::string& text) {
   std::vector<std::string> paths = base::split(text, ',');

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,26 @@
 #include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
+
+// Least squares between bounds, for a handful of unknowns and smooth residuals: Levenberg–Marquardt
+// on the unknowns that are free, with derivatives from finite differences. An unknown at a bound
+// that the cost pushes outwards is held there. Started from several points of the box, since what
+// is fitted need not be convex. Deterministic.
+
+struct Box {
+  std::vector<double> low;
+  std::vector<double> high;
+};
+
+struct Fit {
+  std::vector<double> at;
+  double cost = 0;  ///< sum of the squared residuals
+};
+
+using Residuals = std::function<std::vector<double>(const std::vector<double>&)>;
+
+/// @param start  inside the box; the first of the points from which it is started
+Fit least_squares(const Residuals& residuals, const Box& box, const std::vector<double>& start);
 
 // What a stage would take on one core of a chip whose code-generation constants were others, from
 // one recorded run: its operations are costed again, without running anything.

@@ -8,16 +8,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "platform_models/loader/variants.h"
 #include "sim/chip/chip.h"
+#include "sim/chip/config.h"
 #include "sim/work/machine.h"
 #include "sim/work/program.h"
 #include "tools/app/result/banded.h"
@@ -134,5 +137,65 @@ std::vector<MicrobenchRow> banded_rows(const std::vector<KernelJob>& kernels,
 /// is published, but for kernels that mostly wait for something else than instructions. Rising.
 std::vector<double> needed_instructions(const std::vector<KernelJob>& kernels,
                                         const platform::Variants& platform);
+
+// The programs behind the rows of tools/app/validation/published/gap9_units.csv, by name.
+
+/// One program; what it measures is in the unit of its reference.
+struct UnitBench {
+  std::string_view name;
+  double (*measure)(const sim::ChipConfig& chip, int cores);
+};
+
+/// Streams of instructions that share units, or run on one core.
+std::span<const UnitBench> stream_benches();
+/// Memories, caches, synchronisation and transfers.
+std::span<const UnitBench> memory_benches();
+
+/// Runs every program that has a reference on the chip.
+/// @throws InputError if the reference file names a program that does not exist
+std::vector<MicrobenchRow> unit_rows(const sim::ChipConfig& chip);
+
+// The kernels that the vendor measured on a GAP8 board (board_programs.h), timed on a chip and
+// compared with tools/app/validation/published/gap8_board.csv.
+
+/// The kernel of every reference: 100 calls, each with its fork.
+/// @param references  as reference_rows() gives them: group is the kernel, name the variant
+/// @throws InputError if there is no such kernel
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip,
+                                     std::vector<MicrobenchRow> references);
+/// Those that are part of the program.
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip);
+
+/// Cycles with bands, and after them the speed-ups of eight cores, with a tolerance of 0.5; with
+/// the guards that are part of the program.
+std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
+                                      const platform::Variants& platform);
+
+// Kernels of a public library for which cycles are published (library_programs.h), timed on a chip
+// and compared with tools/app/validation/published/pulp_dsp.csv.
+
+/// What the chip of the figures, a sibling of GAP9, has less of; none of it matters to the kernels.
+/// They were scheduled by hand: what compilers add to other code is not in them.
+inline constexpr std::array kLibraryChip{"cluster.l1.size=64KiB", "cluster.fpu.units=2",
+                                         "isa.instruction_overhead=1", "isa.load_use_fraction=0"};
+
+/// The kernel of every reference. @throws InputError if there is no such kernel
+std::vector<KernelJob> library_kernels(const sim::ChipConfig& chip);
+
+// Rows of a comparison with hardware, for people and for programs.
+
+/// Grouped, with the error of each row, a line that sums up, and a warning for each row that is
+/// worse than its tolerance or guard.
+std::string microbench_table(std::string_view chip, const std::vector<MicrobenchRow>& rows);
+/// How many references lie inside their bands, and what plain code is short of.
+/// @param needed  needed_instructions(), rising
+std::string coverage_text(const std::vector<MicrobenchRow>& rows,
+                          const std::vector<double>& needed);
+/// Whether all rows are as near as they have to be, in a sentence.
+std::string microbench_conclusion(const std::vector<MicrobenchRow>& rows);
+std::string microbench_csv(const std::vector<MicrobenchRow>& rows);
+
+/// Mean of the absolute errors.
+double mean_error(const std::vector<MicrobenchRow>& rows);
 
 }  // namespace leviosim::tools

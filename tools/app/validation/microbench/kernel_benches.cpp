@@ -1,5 +1,3 @@
-#include "tools/app/validation/microbench/kernel_benches.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -127,44 +125,8 @@ MicrobenchRow speed_up(const MicrobenchRow& one, const MicrobenchRow& many) {
   return row;
 }
 
-}  // namespace
-
-std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip,
-                                     std::vector<MicrobenchRow> references) {
-  std::vector<KernelJob> kernels;
-  for (MicrobenchRow& row : references) {
-    const work::Job job = Bench(chip, row.cores).record(kernel_of(row).run);
-    kernels.push_back({.row = std::move(row), .job = job, .calls = kCalls});
-  }
-  return kernels;
-}
-
-std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip) {
-  return board_kernels(chip, reference_rows(fmt::format("{}.csv", kBoardReferences),
-                                            reference_text(kBoardReferences), 2));
-}
-
-std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
-                                      const platform::Variants& platform) {
-  std::vector<MicrobenchRow> rows = banded_rows(kernels, platform);
-  const std::size_t timed = rows.size();
-  for (std::size_t i = 0; i < timed; ++i)
-    for (std::size_t j = 0; j < timed; ++j)
-      if (rows[i].cores == 1 && rows[j].cores > 1 && rows[i].group == rows[j].group &&
-          rows[i].name == rows[j].name)
-        rows.push_back(speed_up(rows[i], rows[j]));
-  take_guards(fmt::format("{}.csv", kBoardGuards), reference_text(kBoardGuards), rows);
-  return rows;
-}
-
-namespace {
-
-using P = work::Counting;
 using I32 = P::I32;
 using Integers = P::Span<I32>;
-using PairSpan = P::Span<work::I16x2<P>>;
-using work::Core;
-using work::Machine;
 
 constexpr std::string_view kLibraryReferences = "pulp_dsp";
 constexpr std::string_view kLibraryGuards = "pulp_dsp_guards";
@@ -176,7 +138,7 @@ void run_int32_product(Machine& m, int n) {
 }
 
 void run_int16_product(Machine& m, int n) {
-  const auto a = block<PairSpan>(m, "a", n * n / 2), b = block<PairSpan>(m, "b", n * n / 2);
+  const auto a = block<Pairs>(m, "a", n * n / 2), b = block<Pairs>(m, "b", n * n / 2);
   const auto c = block<Integers>(m, "c", n * n);
   m.fork("product", [&](Core& core) { multiply_int16<P>(a, b, c, n, core); });
 }
@@ -273,6 +235,34 @@ std::uint32_t bytes_of(const sim::ChipConfig& chip, const OnePass& code) {
 }
 
 }  // namespace
+
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip,
+                                     std::vector<MicrobenchRow> references) {
+  std::vector<KernelJob> kernels;
+  for (MicrobenchRow& row : references) {
+    const work::Job job = Bench(chip, row.cores).record(kernel_of(row).run);
+    kernels.push_back({.row = std::move(row), .job = job, .calls = kCalls});
+  }
+  return kernels;
+}
+
+std::vector<KernelJob> board_kernels(const sim::ChipConfig& chip) {
+  return board_kernels(chip, reference_rows(fmt::format("{}.csv", kBoardReferences),
+                                            reference_text(kBoardReferences), 2));
+}
+
+std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
+                                      const platform::Variants& platform) {
+  std::vector<MicrobenchRow> rows = banded_rows(kernels, platform);
+  const std::size_t timed = rows.size();
+  for (std::size_t i = 0; i < timed; ++i)
+    for (std::size_t j = 0; j < timed; ++j)
+      if (rows[i].cores == 1 && rows[j].cores > 1 && rows[i].group == rows[j].group &&
+          rows[i].name == rows[j].name)
+        rows.push_back(speed_up(rows[i], rows[j]));
+  take_guards(fmt::format("{}.csv", kBoardGuards), reference_text(kBoardGuards), rows);
+  return rows;
+}
 
 std::vector<KernelJob> library_kernels(const sim::ChipConfig& chip) {
   std::vector<KernelJob> kernels;
