@@ -107,7 +107,7 @@ TEST_F(Check, JUnitIsAsItsSchemaSays) {
     EXPECT_EQ(schema_fault(junit), "") << base::read_text_file(junit);
     EXPECT_EQ(junit_fault(base::read_text_file(junit)), "");
   }
-  expect_holds(base::read_text_file(junit), {"a&amp;b &lt;c&gt; &quot;d&quot; 'e' \\x07\\x1b[1m"});
+  expect_holds(base::read_text_file(junit), {"a&amp;b &lt;c&gt; &quot;d&quot; &#39;e&#39; \\x07\\x1b[1m"});
   const std::string good = base::read_text_file(junit);
   for (const auto& [before, after] :
        std::vector<std::pair<std::string, std::string>>{{" skipped=\"0\"", ""},
