@@ -10,10 +10,9 @@
 namespace leviosim::sim {
 namespace {
 
-/// Adjacent lines among those that a loop over functions executes: the mean of both RANSACs of
-/// `levio` and of `next` on RV32 over as many fetches as a hypothesis of EPnP has
-/// (tests/workload/ransac_code_test.cpp), and what it is for other instruction sets as long as they
-/// are not measured.
+/// Adjacent lines among those that a loop over functions executes. On RV32, over as many fetches as
+/// a hypothesis of EPnP has, the two RANSACs have 31 (tests/workload/ransac_code_test.cpp), and two
+/// others of the same purpose had 24. Other instruction sets are not measured.
 constexpr double kStretch = 29;
 constexpr double kLineOfTable = 16;
 /// Of an instruction; compressed ones have half of it, which is left out.
