@@ -29,8 +29,10 @@ struct OffloadTally {
 OffloadTally& of_this_thread() {
   static constinit thread_local OffloadTally* held = nullptr;
   if (held != nullptr) return *held;
-  static const base::AtThreadEnd at_thread_end(
-      [](void* ended) { delete static_cast<OffloadTally*>(ended); });
+  static const base::AtThreadEnd at_thread_end([](void* ended) {
+    delete static_cast<OffloadTally*>(ended);
+    held = nullptr;
+  });
   auto made = std::make_unique<OffloadTally>();
   if (!at_thread_end.set(made.get())) throw std::bad_alloc();
   return *(held = made.release());
