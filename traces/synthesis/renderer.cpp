@@ -37,8 +37,9 @@ void Renderer::make_tiles(const CameraModel& camera, const RenderOptions& option
     return options.wanted.empty() || options.wanted[static_cast<std::size_t>(y) * width_ + x] != 0;
   };
   for (int y0 = 0; y0 < height_; y0 += kTileEdge) {
+    Part row{tiles_.size(), 0, {}};
     for (int x0 = 0; x0 < width_; x0 += kTileEdge) {
-      Tile tile{pixels_.size(), 0, {}};
+      Part tile{pixels_.size(), 0, {}};
       for (int y = y0; y < std::min(y0 + kTileEdge, height_); ++y)
         for (int x = x0; x < std::min(x0 + kTileEdge, width_); ++x)
           if (wanted(x, y)) add_pixel(camera, options.vignetting, x, y);
@@ -48,8 +49,11 @@ void Renderer::make_tiles(const CameraModel& camera, const RenderOptions& option
       for (std::size_t i = tile.begin; i < tile.end; ++i)
         for (const float margin : {-kRoundingMargin, kRoundingMargin})
           tile.bounds.extend(Eigen::Vector2f(rays_[i].head<2>().array() + margin));
+      row.bounds.extend(tile.bounds);
       tiles_.push_back(tile);
     }
+    row.end = tiles_.size();
+    rows_.push_back(row);
   }
 }
 
@@ -79,18 +83,29 @@ void Renderer::add_light(const Eigen::Isometry3d& T_world_camera, std::vector<fl
   const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
   const Eigen::Isometry3f T_camera_world = T_world_camera.inverse().cast<float>();
   std::vector<ScreenBounds> bounds;
-  for (const Box& box : world_.objects()) bounds.push_back(screen_bounds(box, T_camera_world));
-  std::vector<int> candidates;
+  std::vector<int> in_picture, in_row, in_tile;
+  for (const Box& box : world_.objects()) {
+    bounds.push_back(screen_bounds(box, T_camera_world));
+    in_picture.push_back(static_cast<int>(in_picture.size()));
+  }
+  const auto keep = [&bounds](const std::vector<int>& from, const Part& part,
+                              std::vector<int>& to) {
+    to.clear();
+    for (const int i : from)
+      if (bounds[static_cast<std::size_t>(i)].intersects(part.bounds)) to.push_back(i);
+  };
   RayPacket packet;
-  for (const Tile& tile : tiles_) {
-    candidates.clear();
-    for (std::size_t i = 0; i < bounds.size(); ++i)
-      if (bounds[i].intersects(tile.bounds)) candidates.push_back(static_cast<int>(i));
-    packet.aim(origin, rotation, std::span(rays_).subspan(tile.begin, tile.end - tile.begin));
-    packet.cast(world_, candidates);
-    for (int i = 0; i < packet.size(); ++i)
-      light[tile.begin + static_cast<std::size_t>(i)] +=
-          World::grey(packet.hit(world_, i), origin, packet.direction(i), pixel_angle_);
+  for (const Part& row : rows_) {
+    keep(in_picture, row, in_row);
+    for (std::size_t t = row.begin; t < row.end; ++t) {
+      const Part& tile = tiles_[t];
+      keep(in_row, tile, in_tile);
+      packet.aim(origin, rotation, std::span(rays_).subspan(tile.begin, tile.end - tile.begin));
+      packet.cast(world_, in_tile);
+      for (int i = 0; i < packet.size(); ++i)
+        light[tile.begin + static_cast<std::size_t>(i)] +=
+            World::grey(packet.hit(world_, i), origin, packet.direction(i), pixel_angle_);
+    }
   }
 }
 

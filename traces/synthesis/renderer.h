@@ -4,8 +4,8 @@
 // rolling shutter, anti-aliased silhouettes.
 //
 // Speed: the rays are precomputed and cast in packets, one for each tile of 16x16 pixels. Objects
-// whose projection does not touch the tile are dropped first, so most pixels test the room and a
-// few boxes. Pixels that nobody will read need not be drawn.
+// whose projection does not touch the picture, the row of tiles, the tile are dropped first, so
+// most pixels test the room and a few boxes. Pixels that nobody will read need not be drawn.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,10 +66,10 @@ class Renderer {
                                    std::uint64_t frame) const;
 
  private:
-  /// The drawn pixels of a square of the picture: entries begin ... end of the arrays below.
-  struct Tile {
+  /// Entries begin ... end of a list below, and the bounds of their rays.
+  struct Part {
     std::size_t begin, end;
-    ScreenBounds bounds;  // of the rays
+    ScreenBounds bounds;
   };
   void make_tiles(const CameraModel& camera, const RenderOptions& options);
   void add_pixel(const CameraModel& camera, double vignetting, int x, int y);
@@ -84,8 +84,9 @@ class Renderer {
   int height_;
   float pixel_angle_;
   std::uint64_t seed_;
-  float shot_ = 0;  // squares of shot over other noise, for each grey level
-  std::vector<Tile> tiles_;
+  float shot_ = 0;                     // squares of shot over other noise, for each grey level
+  std::vector<Part> rows_;             // of tiles
+  std::vector<Part> tiles_;            // of pixels that are drawn, in a square of the picture
   std::vector<std::size_t> pixels_;    // index in the picture, tile by tile
   std::vector<Eigen::Vector3f> rays_;  // camera frame, z = 1
   std::vector<float> vignetting_;      // factor

@@ -184,20 +184,45 @@ Texture paint_surface(const SurfaceSpec& spec) {
 
 namespace {
 
-/// In [-1, 1), smooth, with random values at whole u and v.
-double smooth_noise(std::uint64_t seed, double u, double v) {
-  const auto at = [seed](double i, double j) {
-    const auto key = (static_cast<std::uint64_t>(static_cast<std::int64_t>(i)) << 32) ^
-                     static_cast<std::uint32_t>(static_cast<std::int64_t>(j));
-    return static_cast<double>(derive_seed(seed, key) >> 11) * 0x1p-52 - 1;
-  };
-  const double i = std::floor(u), j = std::floor(v);
-  const auto eased = [](double t) { return t * t * (3 - 2 * t); };
-  const double s = eased(u - i), t = eased(v - j);
-  const double top = at(i, j) + s * (at(i + 1, j) - at(i, j));
-  const double bottom = at(i, j + 1) + s * (at(i + 1, j + 1) - at(i, j + 1));
-  return top + t * (bottom - top);
-}
+/// In [-1, 1), smooth, with random values at whole u and v. A pure function of them; the values
+/// around the last point are kept, since the next one lies in the same cell or the one after it.
+class SmoothNoise {
+ public:
+  SmoothNoise(const SurfaceSpec& spec, std::uint64_t part) : seed_(derive_seed(spec.seed, part)) {}
+
+  double operator()(double u, double v) {
+    const auto i = whole(u), j = whole(v);
+    if (i != i_ || j != j_ || !begun_) enter(i, j);
+    const auto eased = [](double t) { return t * t * (3 - 2 * t); };
+    const double s = eased(u - static_cast<double>(i)), t = eased(v - static_cast<double>(j));
+    const double top = left_[0] + s * (right_[0] - left_[0]);
+    const double bottom = left_[1] + s * (right_[1] - left_[1]);
+    return top + t * (bottom - top);
+  }
+
+ private:
+  static std::int64_t whole(double x) {
+    const auto i = static_cast<std::int64_t>(x);
+    return static_cast<double>(i) > x ? i - 1 : i;
+  }
+  double at(std::int64_t i, std::int64_t j) const {
+    const auto key = (static_cast<std::uint64_t>(i) << 32) ^ static_cast<std::uint32_t>(j);
+    return static_cast<double>(derive_seed(seed_, key) >> 11) * 0x1p-52 - 1;
+  }
+  void enter(std::int64_t i, std::int64_t j) {
+    const bool next = begun_ && j == j_ && i == i_ + 1;
+    left_ = next ? right_ : std::array{at(i, j), at(i, j + 1)};
+    right_ = {at(i + 1, j), at(i + 1, j + 1)};
+    i_ = i;
+    j_ = j;
+    begun_ = true;
+  }
+
+  std::uint64_t seed_;
+  bool begun_ = false;
+  std::int64_t i_ = 0, j_ = 0;
+  std::array<double, 2> left_{}, right_{};  // of the cell, at j and j + 1
+};
 
 /// Coordinates along and across the grain, which runs along the longer side.
 struct Grain {
@@ -227,17 +252,15 @@ void darken(Canvas& canvas, const Canvas::Patch& patch, double tone, double shar
 void paint_timber(Canvas& canvas, const SurfaceSpec& spec) {
   const Grain grain(spec);
   const double s = spec.scale;
-  const auto noise = [&](std::uint64_t part, double u, double v) {
-    return smooth_noise(derive_seed(spec.seed, part), u / s, v / s);
-  };
+  SmoothNoise bends(spec, 1), fine(spec, 2), wide(spec, 3), stained(spec, 4), rough(spec, 5);
   canvas.fill([&](double x, double y) {
     const double u = grain.along(x, y);
-    const double bend = 0.02 * noise(1, u / 0.35, grain.across(x, y) / 0.2);
+    const double bend = 0.02 * bends(u / 0.35 / s, grain.across(x, y) / 0.2 / s);
     const double v = grain.across(x, y) + bend;
     const double streaks =
-        0.25 * noise(2, u / 0.5, v / 0.012) + 0.25 * noise(3, u / 0.7, v / 0.045);
+        0.25 * fine(u / 0.5 / s, v / 0.012 / s) + 0.25 * wide(u / 0.7 / s, v / 0.045 / s);
     const double stains =
-        0.18 * noise(4, u / 0.12, v / 0.05) + 0.12 * noise(5, u / 0.02, v / 0.005);
+        0.18 * stained(u / 0.12 / s, v / 0.05 / s) + 0.12 * rough(u / 0.02 / s, v / 0.005 / s);
     return static_cast<float>(spec.tone * (1 + streaks + stains));
   });
   Rng rng(derive_seed(spec.seed, 6));
@@ -261,34 +284,33 @@ void paint_timber(Canvas& canvas, const SurfaceSpec& spec) {
 void paint_net(Canvas& canvas, const SurfaceSpec& spec) {
   const double s = spec.scale;
   const double mesh = 0.045;
+  SmoothNoise bends_u(spec, 1), bends_v(spec, 2), shades(spec, 3);
   canvas.fill([&](double x, double y) {
-    const double u =
-        x / s + 0.025 * smooth_noise(derive_seed(spec.seed, 1), x / s / 0.15, y / s / 0.15);
-    const double v =
-        y / s + 0.025 * smooth_noise(derive_seed(spec.seed, 2), x / s / 0.15, y / s / 0.15);
+    const double u = x / s + 0.025 * bends_u(x / s / 0.15, y / s / 0.15);
+    const double v = y / s + 0.025 * bends_v(x / s / 0.15, y / s / 0.15);
     const auto strand = [&](double across) {
       const double off = std::abs(across / mesh - std::floor(across / mesh) - 0.5) * mesh;
       return off < 0.007;
     };
-    const double shade = 1 + 0.3 * smooth_noise(derive_seed(spec.seed, 3), u / 0.25, v / 0.25);
+    const double shade = 1 + 0.3 * shades(u / 0.25, v / 0.25);
     return static_cast<float>(spec.tone * shade * (strand(u + v) || strand(u - v) ? 1.0 : 0.35));
   });
 }
 
 void paint_cloth(Canvas& canvas, const SurfaceSpec& spec) {
   const double s = spec.scale;
+  SmoothNoise folds(spec, 1), creases(spec, 2);
   canvas.fill([&](double x, double y) {
-    const double folds =
-        smooth_noise(derive_seed(spec.seed, 1), (x + 0.4 * y) / s / 0.5, y / s / 0.15);
-    const double fine = smooth_noise(derive_seed(spec.seed, 2), x / s / 0.06, y / s / 0.04);
-    return static_cast<float>(spec.tone * (1 + 0.7 * folds + 0.2 * fine));
+    const double fold = folds((x + 0.4 * y) / s / 0.5, y / s / 0.15);
+    const double crease = creases(x / s / 0.06, y / s / 0.04);
+    return static_cast<float>(spec.tone * (1 + 0.7 * fold + 0.2 * crease));
   });
 }
 
 void paint_metal(Canvas& canvas, const SurfaceSpec& spec) {
+  SmoothNoise stains(spec, 1);
   canvas.fill([&](double x, double y) {
-    const double stains = smooth_noise(derive_seed(spec.seed, 1), x / 0.3, y / 0.3);
-    return static_cast<float>(spec.tone * (1 + 0.1 * stains));
+    return static_cast<float>(spec.tone * (1 + 0.1 * stains(x / 0.3, y / 0.3)));
   });
 }
 
