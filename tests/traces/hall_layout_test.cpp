@@ -87,8 +87,8 @@ TEST(WorkshopLayout, HasThingsNearThePathAndNoneTooNear) {
       near += clearance(layout, position) < 0.8 ? 1 : 0;
     }
     EXPECT_GT(near, path.size() / 2) << "tables below the path, seed " << seed;
-    for (const SurfaceStyle style :
-         {SurfaceStyle::timber, SurfaceStyle::net, SurfaceStyle::cloth, SurfaceStyle::metal})
+    for (const SurfaceStyle style : {SurfaceStyle::timber, SurfaceStyle::net, SurfaceStyle::cloth,
+                                     SurfaceStyle::metal, SurfaceStyle::stack})
       EXPECT_TRUE(std::any_of(layout.objects.begin(), layout.objects.end(),
                               [&](const HallObject& o) { return o.style == style; }));
   }

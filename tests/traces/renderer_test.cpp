@@ -228,5 +228,25 @@ TEST(Renderer, GlossIsALampThatOnlySomeViewsSee) {
   EXPECT_LT(seen(3 * lamp), seen(3 * mirrored));
 }
 
+/// Mean grey level of a picture of walls of one grey level.
+double mean_of_walls(std::uint8_t grey, double exposed_to, float gain) {
+  const World world(plain_box({-4, -4, -4}, {4, 4, 4}, grey), {});
+  const CameraModel camera = euroc_cam0();
+  const Renderer renderer(world, camera, {.noise = 0, .vignetting = 0, .exposed_to = exposed_to});
+  const Eigen::Isometry3d pose = camera_pose();
+  double sum = 0;
+  const auto picture = renderer.render({.T_world_camera = {&pose, 1}, .gain = gain, .frame = 0});
+  for (const std::uint8_t pixel : picture) sum += pixel;
+  return sum / static_cast<double>(picture.size());
+}
+
+TEST(Renderer, ExposesPicturesToAMeanWithinLimits) {
+  EXPECT_DOUBLE_EQ(mean_of_walls(50, 0, 1), 50) << "fixed";
+  EXPECT_NEAR(mean_of_walls(50, 130, 1), 130, 1);
+  EXPECT_NEAR(mean_of_walls(200, 130, 1), 130, 1);
+  EXPECT_NEAR(mean_of_walls(50, 130, 0.8f), 130, 1) << "whatever light there is";
+  EXPECT_NEAR(mean_of_walls(10, 130, 1), 10 * kMostExposure, 1) << "too dark";
+}
+
 }  // namespace
 }  // namespace leviosim::traces

@@ -27,8 +27,9 @@ enum RenderedPart : std::uint64_t { kPlaceSeed, kLightSeed, kSimulatedImuSeed, k
 // A small sensor and a wide lens, open in little light.
 constexpr double kWorkshopShotNoise = 8;  // at 128 [grey levels]
 constexpr double kWorkshopVignetting = 0.45;
+constexpr double kWorkshopMeanGrey = 130;
 constexpr double kWorkshopSpotPx =
-    1.5;  // standard deviation of the lens's blur, also at silhouettes
+    1.4;  // standard deviation of the lens's blur, also at silhouettes
 
 /// Everything about the flight but its pictures.
 struct Plan {
@@ -217,6 +218,7 @@ void write_pictures(outputs::OutputFolder& out, const Plan& plan,
   if (options.place.kind == PlaceKind::workshop) {
     render_options.shot_noise = kWorkshopShotNoise;
     render_options.vignetting = kWorkshopVignetting;
+    render_options.exposed_to = kWorkshopMeanGrey;
   }
   render_options.seed = derive_seed(options.place.seed, kPictureSeed);
   if (options.prepared) render_options.wanted = preparation.pixels_read();

@@ -24,7 +24,8 @@ Renderer::Renderer(const World& world, const CameraModel& camera, const RenderOp
       width_(camera.width),
       height_(camera.height),
       pixel_angle_(static_cast<float>(options.spot_px / std::sqrt(camera.fx * camera.fy))),
-      seed_(options.seed) {
+      seed_(options.seed),
+      exposed_to_(static_cast<float>(options.exposed_to)) {
   const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
   check(options.shot_noise == 0 || options.noise > 0, "Renderer: shot noise beside read noise");
   check(options.wanted.empty() || options.wanted.size() == pixels, "Renderer: wanted pixels");
@@ -109,11 +110,22 @@ void Renderer::add_light(const Eigen::Isometry3d& T_world_camera, std::vector<fl
   }
 }
 
+float Renderer::automatic_exposure(const std::vector<float>& grey) const {
+  if (exposed_to_ == 0) return 1;
+  double sum = 0;
+  for (const std::size_t pixel : pixels_)
+    sum += std::min(grey[pixel], 255.0f);  // what is brighter counts as white
+  const float mean = static_cast<float>(sum / static_cast<double>(pixels_.size()));
+  return std::clamp(exposed_to_ / std::max(mean, 1.0f), 1 / kMostExposure, kMostExposure);
+}
+
 std::vector<std::uint8_t> Renderer::expose(const std::vector<float>& light, float gain,
                                            std::uint64_t frame) const {
   std::vector<float> grey(static_cast<std::size_t>(width_) * height_, -1.0f);
   for (std::size_t i = 0; i < light.size(); ++i)
     grey[pixels_[i]] = vignetting_[i] * (gain * light[i]);
+  const float exposure = automatic_exposure(grey);
+  for (const std::size_t pixel : pixels_) grey[pixel] *= exposure;
   Rng rng(derive_seed(seed_, frame + 1));
   std::vector<std::uint8_t> bytes(grey.size());
   std::uint64_t draws = 0;

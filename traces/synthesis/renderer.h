@@ -1,7 +1,7 @@
 // Pictures of a World through a distorting camera. Each pixel's ray comes from the exact inverse of
 // the distortion; surfaces are averaged over the pixel (mip levels); then vignetting, exposure and
-// sensor noise. Motion blur is the mean of pictures from several poses. Left out: exposure control,
-// rolling shutter, anti-aliased silhouettes.
+// sensor noise. Motion blur is the mean of pictures from several poses. Left out: the delay of
+// automatic exposure and its effect on motion blur, rolling shutter, anti-aliased silhouettes.
 //
 // Speed: the rays are precomputed and cast in packets, one for each tile of 16x16 pixels. Objects
 // whose projection does not touch the picture, the row of tiles, the tile are dropped first, so
@@ -42,7 +42,12 @@ struct RenderOptions {
   /// Of the noise that rises with the root of the light, where it is 128; only beside the other
   /// one. [grey levels]
   double shot_noise = 0;
+  /// Mean that automatic exposure brings a picture to, with at most kMostExposure times more light
+  /// or less; 0: exposure is fixed. It is there at once. [grey levels]
+  double exposed_to = 0;
 };
+
+inline constexpr float kMostExposure = 4;
 
 /// One picture to be taken.
 struct Exposure {
@@ -76,6 +81,8 @@ class Renderer {
   void make_noise(const RenderOptions& options);
   /// Adds the light from one pose to every drawn pixel, in the order of the tiles.
   void add_light(const Eigen::Isometry3d& T_world_camera, std::vector<float>& light) const;
+  /// The factor of automatic exposure on pixels, which are as seen with a fixed one.
+  float automatic_exposure(const std::vector<float>& grey) const;
   std::vector<std::uint8_t> expose(const std::vector<float>& light, float gain,
                                    std::uint64_t frame) const;
 
@@ -84,6 +91,7 @@ class Renderer {
   int height_;
   float pixel_angle_;
   std::uint64_t seed_;
+  float exposed_to_;
   float shot_ = 0;                     // squares of shot over other noise, for each grey level
   std::vector<Part> rows_;             // of tiles
   std::vector<Part> tiles_;            // of pixels that are drawn, in a square of the picture

@@ -314,6 +314,24 @@ void paint_metal(Canvas& canvas, const SurfaceSpec& spec) {
   });
 }
 
+/// Pallets one upon the other, from the side: edges of boards, all alike, and the ends of joists
+/// in the dark between them.
+void paint_stack(Canvas& canvas, const SurfaceSpec& spec) {
+  constexpr double kPalletM = 0.145, kBoardM = 0.028, kJoistEveryM = 0.42, kJoistM = 0.09;
+  const double s = spec.scale;
+  SmoothNoise grain(spec, 1), dirt(spec, 2);
+  canvas.fill([&](double x, double y) {
+    const double pallet = std::floor(y / s / kPalletM);
+    const double below_top = (pallet + 1) * kPalletM - y / s;
+    const double random = cell_random(spec.seed, 0, static_cast<int>(pallet));
+    const double along = (x / s + 0.1 * random) / kJoistEveryM;
+    const bool joist = (along - std::floor(along)) * kJoistEveryM < kJoistM;
+    const double wood = below_top < kBoardM ? 1 + 0.25 * random : joist ? 0.5 : 0.2;
+    const double stains = 0.2 * grain(x / s / 0.15, y / s / 0.006) + 0.3 * dirt(x / 0.3, y / 0.2);
+    return static_cast<float>(spec.tone * wood * (1 + stains));
+  });
+}
+
 }  // namespace
 
 Texture paint_material(const SurfaceSpec& spec) {
@@ -327,6 +345,9 @@ Texture paint_material(const SurfaceSpec& spec) {
       break;
     case SurfaceStyle::cloth:
       paint_cloth(canvas, spec);
+      break;
+    case SurfaceStyle::stack:
+      paint_stack(canvas, spec);
       break;
     default:
       paint_metal(canvas, spec);

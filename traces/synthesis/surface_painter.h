@@ -12,7 +12,18 @@
 
 namespace leviosim::traces {
 
-enum class SurfaceStyle { plaster, planks, bricks, crate, panels, timber, net, cloth, metal };
+enum class SurfaceStyle {
+  plaster,
+  planks,
+  bricks,
+  crate,
+  panels,
+  timber,
+  net,
+  cloth,
+  metal,
+  stack
+};
 
 struct SurfaceSpec {
   SurfaceStyle style = SurfaceStyle::plaster;
@@ -29,9 +40,9 @@ Texture paint_surface(const SurfaceSpec& spec);
 
 // Surfaces as they are in workshops, which give a detector edges rather than corners: timber with
 // long grain, knots and rows of nails that repeat; nets, whose meshes all look alike; dark cloth
-// without contrast; metal.
+// without contrast; metal; the sides of stacked pallets.
 
-/// The texture of a surface of style timber, net, cloth or metal. A pure function of the spec.
+/// The texture of a surface of style timber or later. A pure function of the spec.
 Texture paint_material(const SurfaceSpec& spec);
 
 // Boxes of indoor scenes: how much light each side gets, and what is painted on it.

@@ -12,11 +12,11 @@ using Eigen::Vector3d;
 using Group = LayoutBuilder::Group;
 
 /// Windows on one side: what looks up is bright, what looks down or away lies in deep shadow.
-constexpr std::array<float, 6> kWorkshopLight{0.5f, 1.0f, 0.7f, 1.2f, 0.1f, 1.7f};
+constexpr std::array<float, 6> kWorkshopLight{0.55f, 1.0f, 0.7f, 1.2f, 0.1f, 1.4f};
 /// Dark walls, so that things in front of them are bright and what lies between is not.
 constexpr std::array<HallFace, 6> kWorkshopFaces{{{SurfaceStyle::panels, 45},
                                                   {SurfaceStyle::bricks, 60},
-                                                  {SurfaceStyle::cloth, 30},
+                                                  {SurfaceStyle::planks, 45},
                                                   {SurfaceStyle::panels, 70},
                                                   {SurfaceStyle::planks, 50},
                                                   {SurfaceStyle::cloth, 20}}};
@@ -46,7 +46,7 @@ class WorkshopBuilder : public LayoutBuilder {
   Group machine();
 };
 
-/// Pallets on stacks of dark cloth, and nets on some, all along the path and just below it.
+/// Stacks of pallets, and nets on some, all along the path and just below it.
 void WorkshopBuilder::add_tables() {
   constexpr double kStepM = 0.5;
   constexpr int kTries = 300;  // until hardly any more fit between those that are there
@@ -70,7 +70,7 @@ void WorkshopBuilder::add_tables() {
   }
 }
 
-/// Boards with gaps on three joists, on a block of dark cloth that reaches to the floor.
+/// Boards with gaps on three joists, on a stack of others that reaches to the floor.
 /// @param middle  of its upper side
 Group WorkshopBuilder::pallet(const Vector3d& middle, bool turned) {
   const double length = rng_.uniform(0.5, 1.8);
@@ -99,7 +99,8 @@ Group WorkshopBuilder::pallet(const Vector3d& middle, bool turned) {
   foot.z() = low().z();
   const Vector3d size = turn(length, breadth, 0) - 2 * inset;
   if (top - foot.z() > 0.05)
-    group.push_back({box_at(foot, {size.x(), size.y(), top - foot.z()}), SurfaceStyle::cloth, 25});
+    group.push_back(
+        {box_at(foot, {size.x(), size.y(), top - foot.z()}), SurfaceStyle::stack, 0.4 * wood});
   return group;
 }
 
@@ -111,7 +112,7 @@ Group WorkshopBuilder::heap(const Vector3d& top, double height) {
   if (corner.z() - low().z() > 0.05)
     group.push_back({box_at({corner.x() + 0.03, corner.y() + 0.03, low().z()},
                             {size.x() - 0.06, size.y() - 0.06, corner.z() - low().z()}),
-                     SurfaceStyle::cloth, 20});
+                     SurfaceStyle::stack, 50});
   return group;
 }
 
