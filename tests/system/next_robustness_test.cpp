@@ -114,6 +114,36 @@ TEST(NextRobustnessOf, StartsInMotionWithADelay) {
   RecordProperty("ate_mm", static_cast<int>(delayed.ate * 1000));
 }
 
+/// The IMU leads back to frames whose keyframes have left the map, or were of one that was given
+/// up.
+TEST(NextRobustnessOf, FramesBeforeAnEarlyDarknessAreCorrectedToo) {
+  ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 6);
+  darken(flight, 4, 24);
+  Profile profile = profile_named("next", 1);
+  const Flown at_once = fly(flight, profile);
+  profile.initial_frames = 100;
+  const Flown delayed = fly(flight, profile);
+  RecordProperty("at_once_mm", static_cast<int>(at_once.ate * 1000));
+  RecordProperty("delayed_mm", static_cast<int>(delayed.ate * 1000));
+  EXPECT_LT(delayed.ate, 0.1);
+  EXPECT_LT(delayed.ate, 0.3 * at_once.ate);
+}
+
+/// What is seen after the alignment corrects the poses before it, as long as they wait.
+TEST(NextRobustnessOf, PosesThatWaitLongerAreBetter) {
+  const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 6);
+  Profile profile = profile_named("next", 1);
+  profile.initial_frames = 100;
+  profile.settling_time = 0;
+  const Flown aligned = fly(flight, profile);
+  profile.settling_time = 1.5f;
+  const Flown settled = fly(flight, profile);
+  RecordProperty("aligned_mm", static_cast<int>(aligned.ate * 1000));
+  RecordProperty("settled_mm", static_cast<int>(settled.ate * 1000));
+  EXPECT_EQ(settled.sources, aligned.sources);
+  EXPECT_LT(settled.ate, aligned.ate);
+}
+
 /// Images tell that a shaken vehicle stands where it stood, before and after rest was first told.
 TEST(NextRobustnessOf, NudgeAtRestBeforeThereIsAMap) {
   for (const std::size_t first : {8u, 40u}) {

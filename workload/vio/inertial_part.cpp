@@ -114,6 +114,12 @@ ImuDelta<P> InertialPart<P>::motion_since_keyframe() const {
 }
 
 template <class P>
+Vec3<P> InertialPart<P>::lever_arm() const {
+  const auto& p = state_.rig.p_camera_body;
+  return {p[0], p[1], p[2]};
+}
+
+template <class P>
 Pose<P> InertialPart<P>::moved_on(const KeyframeState<P>& keyframe,
                                   const ImuDelta<P>& delta) const {
   const Pose<P>& from = keyframe.T_world_camera;
@@ -121,9 +127,17 @@ Pose<P> InertialPart<P>::moved_on(const KeyframeState<P>& keyframe,
   const Pose<P> moved{from.R * delta.R,
                       from.t + (keyframe.velocity + fall) * delta.dt + from.R * delta.p};
   if (!state_.profile.optimiser.joint) return moved;
-  const Vec3<P> lever_arm{state_.rig.p_camera_body[0], state_.rig.p_camera_body[1],
-                          state_.rig.p_camera_body[2]};
-  return {moved.R, moved.t + from.R * lever_arm - moved.R * lever_arm};
+  return {moved.R, moved.t + from.R * lever_arm() - moved.R * lever_arm()};
+}
+
+template <class P>
+KeyframeState<P> InertialPart<P>::moved_back(const KeyframeState<P>& to,
+                                             const ImuDelta<P>& delta) const {
+  const Mat3<P> R = orthonormalised<P>(to.T_world_camera.R * transpose(delta.R));
+  const Vec3<P> fallen = state_.graph_in_l2.gravity() * delta.dt;
+  const Vec3<P> velocity = to.velocity - fallen - R * delta.v;
+  const KeyframeState<P> still{{R, {0.0f, 0.0f, 0.0f}}, velocity};
+  return {{R, to.T_world_camera.t - moved_on(still, delta).t}, velocity};
 }
 
 template <class P>

@@ -28,6 +28,8 @@ class InertialPart {
 
   /// A keyframe's pose, moved on by the motion since then.
   Pose<P> moved_on(const KeyframeState<P>& from, const ImuDelta<P>& delta) const;
+  /// What a motion has led from, if it ended here.
+  KeyframeState<P> moved_back(const KeyframeState<P>& to, const ImuDelta<P>& delta) const;
   /// The last keyframe's pose, moved on as the IMU measured; without an IMU, at its velocity.
   Pose<P> predicted_pose() const;
 
@@ -39,6 +41,7 @@ class InertialPart {
  private:
   ImuNoise noise_of(const ImuInput& sample) const;
   void detect_stillness(const Preintegration<P>& interval, float seconds);
+  Vec3<P> lever_arm() const;  // from the camera to the IMU
 
   const FrontEndState<P>& state_;
   Mat3<P> R_camera_body_;

@@ -121,7 +121,8 @@ struct Profile {
   AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser
   float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
   float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]
-  int initial_frames = 0;            ///< before it whose poses wait until it corrects them
+  int initial_frames = 0;            ///< whose poses wait until the alignment has settled
+  float settling_time = 1.5f;        ///< of those poses after the alignment, s
   LoopOptions loop;
 
   // Keyframes and landmarks (III.B.5–6).

@@ -36,7 +36,9 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   if (repeats_last(frame) && !inertial_.rest()) frame.features.list.count = 0;
   report.keyframe = true;
   still_ = rests_ = false;
-  if (state_.started && !initialises()) report.earlier = path_.poses();
+  const bool waited = initialises();
+  correct_path(input.dt, report);
+  path_.take_motion();
   if (!state_.started) {
     start_map<P>(state_, frame);
   } else if (inertial_.rest() && (initialises() || !prediction_.window_is_full())) {
@@ -59,7 +61,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
       if (report.keyframe) insert_keyframe<P>(state_, frame, any_depth());
     }
   }
-  if (initialises()) path_.remember();
+  if (waited || initialises() || !path_.empty()) path_.remember();
   prediction_.remember(frame, report);
   if (initialises()) hold_position(frame);
   complete<P>(state_, frame, report);
@@ -131,6 +133,19 @@ float NextFrontEnd<P>::any_depth() const {
 template <class P>
 bool NextFrontEnd<P>::initialises() const {
   return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
+}
+
+/// Once the map is aligned, all poses since images were first seen in motion are corrected, again
+/// and again until it has settled.
+template <class P>
+void NextFrontEnd<P>::correct_path(float dt, FrameReport& report) {
+  if (initialises()) {
+    settling_ = 0;
+    return;
+  }
+  report.earlier = path_.poses();
+  settling_ += dt;
+  if (settling_ > state_.profile.settling_time) path_.clear();
 }
 
 /// While no alignment of more than few keyframes has converged, its scale is a guess, and so is how
@@ -298,47 +313,73 @@ InitialPath<P>::InitialPath(const FrontEndState<P>& state, const InertialPart<P>
                             work::Arena& arena, int frames)
     : state_(state), inertial_(inertial), frames_(frames) {
   if (frames_ == 0) return;
-  intervals_ = arena.alloc<Floats>("motion of the first frames", kFloats * frames_);
-  keyframe_ids_ = {arena.alloc<Ids>("keyframes of the first frames", frames_).data(), frames_};
+  motions_ = arena.alloc<Floats>("motion of the first frames", kFloats * frames_);
+  since_ = {arena.alloc<Ids>("keyframes before the first frames", frames_).data(), frames_};
+  became_ = {arena.alloc<Ids>("keyframes of the first frames", frames_).data(), frames_};
 }
 
 template <class P>
-void InitialPath<P>::remember() {
+typename InitialPath<P>::I32 InitialPath<P>::newest_keyframe() const {
+  const auto& graph = state_.graph_in_l2;
+  return state_.started ? I32(graph.keyframe_ids[graph.newest_keyframe()]) : I32(-1);
+}
+
+/// Of this serial number, if the map has it.
+template <class P>
+std::optional<KeyframeState<P>> InitialPath<P>::keyframe(I32 id) const {
+  const auto& graph = state_.graph_in_l2;
+  for (int k : P::range(0, work::value(graph.keyframe_count()))) {
+    const I32 slot = graph.keyframe_slot(k);
+    if (I32(graph.keyframe_ids[slot]) == id) return graph.keyframe(slot);
+  }
+  return std::nullopt;
+}
+
+template <class P>
+void InitialPath<P>::take_motion() {
   if (frames_ == 0) return;
   work::Machine& machine = state_.machine;
   const work::Arena::Frame memory(machine.local());
   const auto stage = machine.stage(stages::kGuided);
   const auto record = machine.local().template alloc<Floats>("IMU interval", kFloats);
+  const int at = count_ % frames_;
+  since_[at] = newest_keyframe();  // uncounted: a place a frame
+  if (!state_.started) return;
   machine.copy_in(record, state_.keyframe.interval.subspan(0, kFloats));
-  const int at = count_++ % frames_;
-  machine.copy_out(intervals_.subspan(at * kFloats, kFloats), record);
-  const auto& graph = state_.graph_in_l2;
-  // uncounted: a place a frame
-  keyframe_ids_[at] = I32(graph.keyframe_ids[graph.newest_keyframe()]);
+  machine.copy_out(motions_.subspan(at * kFloats, kFloats), record);
 }
 
 template <class P>
-std::vector<EarlierPose> InitialPath<P>::poses() {
+void InitialPath<P>::remember() {
+  if (frames_ == 0) return;
+  const auto stage = state_.machine.stage(stages::kGuided);
+  became_[count_++ % frames_] = newest_keyframe();  // uncounted: a place a frame
+}
+
+template <class P>
+std::vector<EarlierPose> InitialPath<P>::poses() const {
   std::vector<EarlierPose> poses;
   if (count_ == 0) return poses;
   work::Machine& machine = state_.machine;
   const work::Arena::Frame memory(machine.local());
   const auto stage = machine.stage(stages::kGuided);
   const auto record = machine.local().template alloc<Floats>("IMU interval", kFloats);
-  const auto& graph = state_.graph_in_l2;
-  for (int n = std::max(0, count_ - frames_); n < count_; ++n) {
+  std::optional<KeyframeState<P>> state = keyframe(newest_keyframe());
+  for (int n = count_ - 1; n >= std::max(0, count_ - frames_) && state; --n) {
     const int at = n % frames_;
-    const I32 id = keyframe_ids_[at];  // uncounted: a place a frame
-    for (int k : P::range(0, work::value(graph.keyframe_count()))) {
-      const I32 slot = graph.keyframe_slot(k);
-      if (I32(graph.keyframe_ids[slot]) != id) continue;
-      machine.copy_in(record, intervals_.subspan(at * kFloats, kFloats));
-      const ImuDelta<P> delta = Preintegration<P>(record).corrected(graph.bias());
-      const Pose<P> T = inertial_.moved_on(graph.keyframe(slot), delta);
-      poses.push_back({plain(T), count_ - n});
-    }
+    const I32 since = since_[at], became = became_[at];  // uncounted: places a frame
+    machine.copy_in(record, motions_.subspan(at * kFloats, kFloats));
+    const auto motion = [&] {
+      return Preintegration<P>(record).corrected(state_.graph_in_l2.bias());
+    };
+    const bool is_keyframe = bool(became != since);
+    const Pose<P> pose = is_keyframe ? state->T_world_camera : inertial_.moved_on(*state, motion());
+    poses.push_back({plain(pose), count_ - n});
+    if (!is_keyframe) continue;
+    if (since < I32(0)) break;
+    const std::optional<KeyframeState<P>> before = keyframe(since);
+    state = before ? before : inertial_.moved_back(*state, motion());
   }
-  clear();
   return poses;
 }
 

@@ -13,8 +13,10 @@
 
 namespace leviosim::vio {
 
-// The frames since a map began in motion, each as what the IMU measured since its keyframe, so that
-// their poses can be corrected when the map is aligned. In L2; the oldest frames are forgotten.
+// The frames since images were first seen in motion, each as what the IMU measured since the
+// keyframe before, so that their poses can be corrected when the map is aligned. Of keyframes that
+// have left the map, or were of a map that was given up, the IMU tells where they were: it is
+// followed back from the oldest that is there. In L2; the oldest frames are forgotten.
 
 template <class P>
 class InitialPath {
@@ -29,22 +31,30 @@ class InitialPath {
   InitialPath(const FrontEndState<P>& state, const InertialPart<P>& inertial, work::Arena& arena,
               int frames);
 
-  void clear() { count_ = 0; }
+  /// Takes the motion since the last keyframe, before the present frame becomes one.
+  void take_motion();
   /// The present frame, after it has become a keyframe or not.
   void remember();
-  /// Where the frames were, of those whose keyframes are still there. Clears the path. Call it with
-  /// the frame after the last one that was remembered.
-  std::vector<EarlierPose> poses();
+  bool empty() const { return count_ == 0; }
+  void clear() { count_ = 0; }
+  /// Where the frames were. Call it with the frame after the last one that was remembered, before
+  /// take_motion().
+  std::vector<EarlierPose> poses() const;
 
  private:
   static constexpr int kFloats = Preintegration<P>::kMotionFloats;
+  using L2Ids = typename P::template L2Span<I32>;
+
+  I32 newest_keyframe() const;
+  std::optional<KeyframeState<P>> keyframe(I32 id) const;
 
   const FrontEndState<P>& state_;
   const InertialPart<P>& inertial_;
   int frames_;
-  int count_ = 0;  ///< frames remembered since clear(), forgotten ones included
-  Floats intervals_;
-  typename P::template L2Span<I32> keyframe_ids_;
+  int count_ = 0;  ///< frames remembered since they were cleared, forgotten ones included
+  Floats motions_;
+  L2Ids since_;   ///< serial numbers of the keyframes before, -1 for the first frame of all
+  L2Ids became_;  ///< of the frame as a keyframe, or that of the keyframe before
 };
 
 template <class P>
@@ -66,6 +76,7 @@ class NextFrontEnd : public FrontEnd<P> {
   bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);
   bool initialises() const;
+  void correct_path(float dt, FrameReport& report);
   float any_depth() const;
   void hold_position(TrackedFrame<P>& frame) const;
   void follow(TrackedFrame<P>& frame, FrameReport& report);
@@ -81,7 +92,8 @@ class NextFrontEnd : public FrontEnd<P> {
   Prediction<P> prediction_;
   levio::ShiftRegister<P> random_;   ///< of both estimators
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
-  InitialPath<P> path_;              ///< while the map waits for its alignment
+  InitialPath<P> path_;              ///< until the map has settled
+  float settling_ = 0;               ///< time since its alignment, s
   typename P::U32 sum_;              ///< over the features of the frame before
   bool still_ = false;    ///< the images say that the camera has not moved since the keyframe
   bool rests_ = false;    ///< nor turned
