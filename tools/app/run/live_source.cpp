@@ -42,7 +42,7 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .code = &platform::compiled_code()};
 }
 
-/// With room for the frames whose poses may wait for the initialisation.
+/// With room for the frames whose poses may wait for the map to settle.
 vio::Profile with_delay(vio::Profile profile, double frames) {
   if (frames > 0) profile.initial_frames = static_cast<int>(std::ceil(frames));
   return profile;

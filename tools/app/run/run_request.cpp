@@ -165,7 +165,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   add("--deadline", options.deadline, "drop|queue",
       "closed loop: what becomes of a frame that finds the front end busy [drop]");
   add("--initial-delay", options.initial_delay, "S",
-      "seconds that the first poses may wait for the initialisation, which corrects them [0]");
+      "seconds that the first poses may wait for the map to settle, which corrects them [0]");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
   add_out_options(command, options);
   command.get_option("--out")->description(
