@@ -135,16 +135,13 @@ bool NextFrontEnd<P>::initialises() const {
   return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
 }
 
-/// Once the map is aligned, all poses since images were first seen in motion are corrected, again
-/// and again until it has settled.
+/// From where on the map tells how far the camera has gone, all poses since images were first seen
+/// in motion are corrected with every frame, until an aligned map has settled.
 template <class P>
 void NextFrontEnd<P>::correct_path(float dt, FrameReport& report) {
-  if (initialises()) {
-    settling_ = 0;
-    return;
-  }
+  if (initialises() && !map_.converged) return;
   report.earlier = path_.poses();
-  settling_ += dt;
+  settling_ = initialises() ? 0 : settling_ + dt;
   if (settling_ > state_.profile.settling_time) path_.clear();
 }
 
