@@ -218,7 +218,7 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
   if (!words_of(statistic_unit).empty()) return grade_of(limit, statistic_unit);
   const StatisticUnit* known = find_unit(statistic_unit);
   if (known == nullptr)
-    fail(limit, fmt::format("'{}': a statistic in {} can only be held against a baseline, in %",
+    fail(limit, fmt::format("'{}': a statistic in {} can only be compared with a baseline, in %",
                             limit.text, statistic_unit));
   for (const Unit& unit : known->units)
     if (unit.name == bound.unit) return bound.number * unit.factor / known->factor;

@@ -203,16 +203,15 @@ std::string TwoPrograms::split() const {
   if (!std::filesystem::exists(folders_[0] + '/' + kWorkTraceFile)) return {};
   const auto a = read_run_folder(folders_[0]).value(kFrameCycles);
   const auto b = read_run_folder(folders_[1]).value(kFrameCycles);
-  const auto priced = cycles_of_replay(folders_[0] + "/platform.yaml");
+  const auto timed = cycles_of_replay(folders_[0] + "/platform.yaml");
   const auto on_new_chip = cycles_of_replay(folders_[1] + "/platform.yaml");
-  if (!a || !b || !priced || !on_new_chip || *a == 0) return {};
+  if (!a || !b || !timed || !on_new_chip || *a == 0) return {};
   const auto percent = [&](double from, double to) {
     const std::string text = fmt::format("{:+.2f} %", 100 * (to - from) / *a);
     return from == to ? std::string("0") : text;
   };
-  return fmt::format("of {}: other work {}, price of the same {}, chip {}", percent(*a, *b),
-                     percent(*on_new_chip, *b), percent(*a, *priced),
-                     percent(*priced, *on_new_chip));
+  return fmt::format("of {}: other work {}, cost of the same {}, chip {}", percent(*a, *b),
+                     percent(*on_new_chip, *b), percent(*a, *timed), percent(*timed, *on_new_chip));
 }
 
 }  // namespace leviosim::tools

@@ -32,7 +32,7 @@ void check_same_chip(const RunRecord& a, const RunRecord& b, const Allowed& allo
 
 // Two builds of leviosim on the same input. What each leaves is compared as any two runs are; the
 // new build also times the work that the old one recorded, so that it is known what of a difference
-// is other work, another price of the same work, and another number of the chip.
+// is other work, another cost of the same work, and another number of the chip.
 
 /// `PROGRAM run ARGUMENTS --record --quiet --out FOLDER`, for each in a folder of its own.
 class TwoPrograms {

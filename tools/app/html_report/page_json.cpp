@@ -111,6 +111,14 @@ Json account_of(const Json& stages) {
   return list;
 }
 
+/// How frames get their poses, in the words of people.
+Json pose_sources_json() {
+  Json list = Json::array();
+  for (const vio::PoseSourceInfo& info : vio::kPoseSources)
+    list.push_back({{"name", info.name}, {"words", info.words}});
+  return list;
+}
+
 Json key_figures_json(const RunRecord& record, const std::string& protocol) {
   Json list = Json::array();
   for (const KeyFigure& figure : key_figures(record, protocol))
@@ -264,6 +272,7 @@ Json run_json(const RunRecord& record, const RunFiles& files) {
   json["name"] = record.name;
   json["facts"] = facts_of(record, manifest);
   json["tables"] = tables_of(record, files);
+  json["pose_sources"] = pose_sources_json();
   json["stages"] = stages_of(record, json["tables"]["stages"]);
   const std::optional<WorstFrame> worst =
       worst_frame(record, json["tables"]["frames"], json["stages"]);

@@ -44,7 +44,7 @@ std::optional<TimeFigure> time_figure(const RunFigures& run, const std::string& 
 /// What the band leaves open: whether it is the mean or the slowest frame that fits.
 std::string undecided(const TimeFigure& figure, double deadline) {
   if (!figure.band || !figure.band->holds(deadline)) return {};
-  return fmt::format(": cannot be told from {:.4g}", deadline * 1e-6);
+  return fmt::format(": the band includes {:.4g}", deadline * 1e-6);
 }
 
 /// Frames by what became of them: "3 of 400 frames late".
