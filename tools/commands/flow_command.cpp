@@ -36,7 +36,8 @@ flow::Options workload_of(const FlowOptions& options) {
 
 RunRequest request_of(const FlowOptions& options) {
   RunRequest request;
-  request.platform = platform::resolve_platform(options.platform, options.overrides);
+  request.overrides = options.overrides;
+  request.platform = platform::resolve_platform(options.platform, request.overrides);
   request.cores = cores_of(options, request.platform.config.cluster);
   if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
   return request;

@@ -295,8 +295,8 @@ RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& sett
   if (variation.gyro_bias != 0)
     request.disturbance =
         traces::parse_disturbance(fmt::format("gyro-bias={}", variation.gyro_bias));
-  request.platform = platform::resolve_platform(
-      plan.options.platform, split_overrides(overrides_at(plan, perturbed)).chip);
+  request.overrides = split_overrides(overrides_at(plan, perturbed)).chip;
+  request.platform = platform::resolve_platform(plan.options.platform, request.overrides);
   return request;
 }
 
