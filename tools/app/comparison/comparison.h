@@ -67,15 +67,6 @@ class TwoPrograms {
 // Cycles are those of a mean frame on N cores. They are split twice: by mechanism and kind of
 // operation, and by fork. A third split is by cause: work, its cost, and contention.
 
-/// A figure of a run as a whole, by which runs are compared.
-struct QuantityOfRuns {
-  const char* statistic;
-  const char* name;
-  const char* unit;
-  double scale;  ///< from the statistic's unit
-};
-std::span<const QuantityOfRuns> quantities_of_runs();
-
 struct ComparedQuantity {
   std::string name;
   std::string unit;

@@ -229,6 +229,20 @@ void add_time(std::vector<KeyFigure>& list, const RunRecord& run) {
                     "from the camera's frame to its pose, with waiting", *latency / deadline});
 }
 
+std::string capital(std::string_view text) {
+  std::string word(text);
+  if (!word.empty() && word[0] >= 'a' && word[0] <= 'z')
+    word[0] = static_cast<char>(word[0] - 'a' + 'A');
+  return word;
+}
+
+void add_figure_rows(std::vector<KeyFigure>& list, const RunRecord& run) {
+  for (const FigureRow& row : figure_rows())
+    if (const auto value = row.of ? run.value(row.statistic) : std::nullopt)
+      list.push_back({capital(row.title), fmt::format("{:.3g}", *value * row.scale),
+                      std::string(row.title_unit), std::string(row.meaning)});
+}
+
 void add_speedup(std::vector<KeyFigure>& list, const RunRecord& run) {
   const auto single = run.value("frame.cycles.single.mean");
   const auto parallel = run.value("frame.cycles.parallel.mean");
@@ -337,6 +351,7 @@ std::string reason_of(const WorstFrame& worst) {
 std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol) {
   std::vector<KeyFigure> list;
   add_time(list, run);
+  add_figure_rows(list, run);
   add_speedup(list, run);
   add_memory(list, run);
   add_energy(list, run);
