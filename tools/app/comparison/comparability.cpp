@@ -73,7 +73,7 @@ void note_difference(std::vector<std::string>& notes, const char* what, const st
 void note_measured(std::vector<std::string>& notes, const RunRecord& measured,
                    const RunRecord& other) {
   if (!other.facts.measured)
-    notes.push_back(fmt::format("nobody checks that {} was measured on the data of {}",
+    notes.push_back(fmt::format("it is not checked that {} was measured on the data of {}",
                                 measured.name, other.name));
   std::vector<std::string> known;
   for (const StageName& stage : other.stages) known.push_back(stage.name);

@@ -338,7 +338,8 @@ Json history_page(const std::string& title, const std::vector<PastRun>& runs,
   if (budget != nullptr)
     page.limits = limits_of(*budget, figures, runs.front().record, runs.back().record);
   show_points(shown, figures, page);
-  page.curves = StudyCurves{"run", "", {}, "A point a run, in the order of their commits.", false};
+  page.curves =
+      StudyCurves{"run", "", {}, "One point per run, in the order of their commits.", false};
   page.curves->names = "commit";
   page.curves->marks = marks_of(found, runs, shown);
   for (const PageFigure& q : figures) page.curves->y.emplace_back(q.statistic);
