@@ -69,10 +69,15 @@ PlatformFile PlatformFile::named(const std::string& text, const std::filesystem:
   unknown_platform(named.name);
 }
 
-std::vector<std::string> PlatformFile::with_own(const std::vector<std::string>& overrides) const {
+PlatformFile::Overridden PlatformFile::read_with(const std::vector<std::string>& overrides) {
   std::vector<std::string> all = overrides_;
   all.insert(all.end(), overrides.begin(), overrides.end());
-  return all;
+  const SplitOverrides split = split_overrides(all);
+  const Document& read = document(split.base);
+  Overridden overridden{read, read.settings, !all.empty()};
+  for (const std::string& override : split.parameters)
+    apply_override(schema_, overridden.settings, override);
+  return overridden;
 }
 
 const Document& PlatformFile::document(const std::optional<BaseOverride>& base) {
@@ -83,8 +88,7 @@ const Document& PlatformFile::document(const std::optional<BaseOverride>& base) 
 }
 
 ResolvedPlatform PlatformFile::resolve(const std::vector<std::string>& overrides) {
-  const Document& read = document(split_overrides(with_own(overrides)).base);
-  const Settings settings = settings_with(overrides);
+  const auto [read, settings, has_overrides] = read_with(overrides);
   ResolvedPlatform platform;
   platform.config = configure(schema_, read.name, settings);
   check_rules(schema_, settings, platform.config);
@@ -93,16 +97,13 @@ ResolvedPlatform PlatformFile::resolve(const std::vector<std::string>& overrides
   for (const auto& setting : settings)
     if (setting) platform.parameters.push_back(setting->parameter);
   std::map<std::string, std::string> sources = read.sources;
-  if (!with_own(overrides).empty()) sources[kOverrideKey] = kOverrideMeaning;
+  if (has_overrides) sources[kOverrideKey] = kOverrideMeaning;
   platform.sources = cited_only(sources, platform.parameters);
   return platform;
 }
 
 Settings PlatformFile::settings_with(const std::vector<std::string>& overrides) {
-  const SplitOverrides split = split_overrides(with_own(overrides));
-  Settings settings = document(split.base).settings;
-  for (const std::string& override : split.parameters) apply_override(schema_, settings, override);
-  return settings;
+  return read_with(overrides).settings;
 }
 
 const Parameter* PlatformFile::find(const std::string& path) {

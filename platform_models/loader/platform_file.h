@@ -45,7 +45,13 @@ class PlatformFile {
  private:
   /// As read with the instruction set that an override names, "" for the file's own.
   const Document& document(const std::optional<BaseOverride>& base);
-  std::vector<std::string> with_own(const std::vector<std::string>& overrides) const;
+  /// The file with its own overrides and these, before the rules are checked.
+  struct Overridden {
+    const Document& document;
+    Settings settings;
+    bool has_overrides;
+  };
+  Overridden read_with(const std::vector<std::string>& overrides);
 
   std::string file_;
   std::string text_;

@@ -157,8 +157,8 @@ double Contention::l1_delay(std::size_t i) const {
   const Runner& me = (*runners_)[i];
   const double scattered = all_scattered_ - me.scattered * rate_[i] + dma_words_;
   const double streamed = all_streamed_ - me.streamed * rate_[i];
-  const double met_by_streams = scattered + stream_conflicts_ * streamed;
-  return (me.scattered * (scattered + streamed) + me.streamed * met_by_streams) / (2.0 * banks_);
+  const double beside_streams = scattered + stream_conflicts_ * streamed;
+  return (me.scattered * (scattered + streamed) + me.streamed * beside_streams) / (2.0 * banks_);
 }
 
 double Contention::fetch_delay(std::size_t i) const {
@@ -166,13 +166,13 @@ double Contention::fetch_delay(std::size_t i) const {
   return me.fetches * (all_fetches_ - me.fetches * rate_[i]) / (2.0 * code_banks_);
 }
 
-void Contention::meet() {
+void Contention::collide() {
   if (collisions_ == 0) return;
   const std::vector<Runner>& runners = *runners_;
   const std::size_t n = runners.size();
   // What else slows a core down keeps it from asking as often.
-  for (std::size_t i = 0; i < n; ++i) pace_[i] = std::min(1.0, rate_[i] * (1 + met_[i]));
-  met_.assign(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) pace_[i] = std::min(1.0, rate_[i] * (1 + colliding_[i]));
+  colliding_.assign(n, 0.0);
   for (const Unit unit : {Unit::Fpu, Unit::Int64}) {
     const Pools& kind = pools_[index(unit)];
     if (kind.pools == 0 || kind.capacity != 1) continue;
@@ -180,18 +180,19 @@ void Contention::meet() {
     asked_.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       asked_[i] = std::min(1.0, runners[i].units[index(unit)].cycles * pace_[i]);
-    const auto met_by = [&](std::size_t i, std::size_t j) {
+    const auto collisions_of = [&](std::size_t i, std::size_t j) {
       const double run = runners[i].units[index(unit)].run;
       const double other_run = runners[j].units[index(unit)].run;
-      return run > 0 && other_run > 0 ? met_in_runs(asked_[i], run, asked_[j], other_run)
-                                      : met_by_chance(asked_[i], asked_[j]);
+      return run > 0 && other_run > 0 ? collisions_in_runs(asked_[i], run, asked_[j], other_run)
+                                      : collisions_by_chance(asked_[i], asked_[j]);
     };
     for (std::size_t i = 0; i < n; ++i) {
       if (asked_[i] == 0) continue;
-      double met = met_[i];
+      double colliding = colliding_[i];
       for (std::size_t j = 0; j < n; ++j)
-        if (pool_of[j] == pool_of[i] && j != i) met += collisions_ * met_by(i, j) / pace_[i];
-      met_[i] = met;
+        if (pool_of[j] == pool_of[i] && j != i)
+          colliding += collisions_ * collisions_of(i, j) / pace_[i];
+      colliding_[i] = colliding;
     }
   }
 }
@@ -227,11 +228,11 @@ void Contention::queue() {
 }
 
 /// Books the time that a runner loses on what it waits for.
-void Contention::blame(std::size_t i, Progress& p) const {
+void Contention::book_losses(std::size_t i, Progress& p) const {
   CoreCycles& on = p.lost;
   on[Mechanism::Banks] = p.rate * l1_delay(i);
   on[Mechanism::FetchContention] = p.rate * fetch_delay(i);
-  on[Mechanism::Fpu] = p.rate * met_[i];
+  on[Mechanism::Fpu] = p.rate * colliding_[i];
   on[Mechanism::Divider] = p.rate * queued_[i];
   const double lost =
       std::max(0.0, 1.0 - p.rate - on[Mechanism::Banks] - on[Mechanism::FetchContention] -
@@ -248,7 +249,7 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   rate_.assign(n, 1.0);
   for (const Unit unit : shared_) limits_[index(unit)].assign(n, kUnlimited);
   progress.assign(n, Progress{});
-  met_.assign(n, 0.0);
+  colliding_.assign(n, 0.0);
   queued_.assign(n, 0.0);
   waiting_.assign(n, 0.0);
   pace_.assign(n, 1.0);
@@ -271,10 +272,10 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0;
     sum_up(runners, dma_words);
-    meet();
+    collide();
     queue();
     for (std::size_t i = 0; i < n; ++i)
-      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + met_[i] + queued_[i]);
+      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + colliding_[i] + queued_[i]);
     // Each unit's limit is found with what the *other* limits leave of the demand.
     for (std::size_t k = 0; k < scarce_units; ++k) {
       const std::size_t unit = index(scarce[k]);
@@ -291,7 +292,7 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
     if (change < kSettled) break;
   }
   sum_up(runners, dma_words);
-  for (std::size_t i = 0; i < n; ++i) blame(i, progress[i]);
+  for (std::size_t i = 0; i < n; ++i) book_losses(i, progress[i]);
 }
 
 }  // namespace leviosim::sim

@@ -22,7 +22,7 @@
 // alternate with other instructions: cores that share it find their turns. Operations in a row do
 // not, and whether two cores collide depends on their phase. What cores lose on average over phases
 // has closed forms: for operations in runs, as loops have them that load their operands first
-// (met_in_runs), and in any order (met_by_chance).
+// (collisions_in_runs), and in any order (collisions_by_chance).
 //
 // A divider that is not saturated has a queue: a request waits for the rest of the one that is
 // served, and for those that wait already (queued_behind). Cores do not keep out of each other's
@@ -62,7 +62,7 @@ struct Runner {
 /// was served last: with probability mine / (mine + other). While it waits, the other core executes
 /// its next instruction and may have to wait in turn. This is the solution of that Markov chain.
 /// Two that ask in every cycle lose one cycle each.
-constexpr double met_by_chance(double mine, double other) {
+constexpr double collisions_by_chance(double mine, double other) {
   const double both = mine * other;
   return both == 0 ? 0
                    : mine * both * (1 + other) /
@@ -73,7 +73,7 @@ constexpr double met_by_chance(double mine, double other) {
 /// instructions that end with r operations each, the one d instructions ahead of the other, both
 /// lose r - d cycles a round if 0 < d < r, and r - 1 if d = 0: (r² - 1) / L² over all phases.
 /// Single operations find their turns.
-constexpr double met_in_runs(double mine, double my_run, double other, double other_run) {
+constexpr double collisions_in_runs(double mine, double my_run, double other, double other_run) {
   return mine * other * (1 - 1 / (my_run * other_run));
 }
 
@@ -126,9 +126,9 @@ class Contention {
   void sum_up(const std::vector<Runner>& runners, double dma_words);
   /// Sets what each runner loses per lone cycle by chance collisions at shared units, and in the
   /// queue of the dividers.
-  void meet();
+  void collide();
   void queue();
-  void blame(std::size_t runner, Progress& progress) const;
+  void book_losses(std::size_t runner, Progress& progress) const;
 
   std::array<Pools, kUnitCount> pools_;
   std::vector<Unit> shared_;  ///< kinds of units that there are
@@ -142,7 +142,7 @@ class Contention {
   double all_fetches_ = 0;
   double dma_words_ = 0;
   std::vector<double> rate_;                            ///< current estimate
-  std::vector<double> met_;                             ///< lost by chance per lone cycle
+  std::vector<double> colliding_;                       ///< lost by chance per lone cycle
   std::vector<double> queued_;                          ///< lost at dividers per lone cycle
   std::vector<double> waiting_;                         ///< … per request
   std::vector<double> pace_;                            ///< rate but for what is lost by chance

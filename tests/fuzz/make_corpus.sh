@@ -131,7 +131,7 @@ word() { printf "$(printf '\\x%02x' $(($1 >> 24 & 255)) $(($1 >> 16 & 255)) $(($
 =%%=
 {"format":"leviosim statistics","version":1,"statistics":[{"name":"frames.count","unit":"1","description":"d","value":1}]}
 =%%=
-frame,t_ns,source,keyframe,features,world_matches,frame_matches,inliers,landmarks,map_restarts,places,places_forgotten,loop_closures,arrival_ns,start_ns,end_ns,latency_ns,parallel_cycles,single_cycles,cycles_triangulation
+frame,t_ns,source,keyframe,features,world_matches,frame_matches,inliers,landmarks,map_restarts,places,places_removed,loop_closures,arrival_ns,start_ns,end_ns,latency_ns,parallel_cycles,single_cycles,cycles_triangulation
 0,1000000000000,first,1,0,0,0,0,0,0,0,0,0,0,0,179827,179827,66536,181157,33830
 =%%=
 stage,runs_on,where,mechanism,operation,cycles,count

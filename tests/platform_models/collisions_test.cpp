@@ -39,7 +39,7 @@ TEST(Collisions, OfTwoCoresInOneLoopAreThoseOfPairsSteppedThrough) {
       for (std::size_t phase = 0; phase < size; phase += 1 + size / 16) {
         const auto pair = leviosim::testing::step_pair(loop, loop, phase, 2000);
         lost += (pair[0] + pair[1]) / 2;
-        by_chance += sim::met_by_chance(density, density);
+        by_chance += sim::collisions_by_chance(density, density);
       }
     }
   EXPECT_NEAR(lost / by_chance, collisions, 0.1);
@@ -58,7 +58,8 @@ TEST(Collisions, OfTwoCoresWithRunsOfOperationsAreThoseOfPairsSteppedThrough) {
       lost += (pair[0] + pair[1]) / 2 / static_cast<double>(length);
     }
     const double share = run / static_cast<double>(length);
-    EXPECT_NEAR(lost, sim::met_in_runs(share, run, share, run), 0.01) << others << " and " << run;
+    EXPECT_NEAR(lost, sim::collisions_in_runs(share, run, share, run), 0.01)
+        << others << " and " << run;
   }
 }
 
@@ -89,7 +90,7 @@ TEST(Collisions, QueuesOfADividerAreThoseOfCoresSteppedThrough) {
 TEST(Collisions, ThePhaseDecidesWhatTheMeanLeavesOpen) {
   std::mt19937 random(5);
   const auto loop = leviosim::testing::draw_loop(random, 40, 19);
-  const double chance = sim::met_by_chance(19.0 / 40, 19.0 / 40);
+  const double chance = sim::collisions_by_chance(19.0 / 40, 19.0 / 40);
   double mean = 0;
   double least = 1;
   double most = 0;

@@ -91,8 +91,8 @@ TEST(Contention, ACoreThatIsHeldBackElsewhereCollidesLess) {
     Contention(with_collisions(1)).solve({asking(0, Unit::Fpu, 0.4, 1), other}, progress);
     return progress[0].rate;
   };
-  EXPECT_NEAR(rate_beside(1), 1 / (1 + met_by_chance(0.4, 0.4)), 0.02);
-  EXPECT_NEAR(rate_beside(0.5), 1 / (1 + met_by_chance(0.4, 0.2)), 0.01);
+  EXPECT_NEAR(rate_beside(1), 1 / (1 + collisions_by_chance(0.4, 0.4)), 0.02);
+  EXPECT_NEAR(rate_beside(0.5), 1 / (1 + collisions_by_chance(0.4, 0.2)), 0.01);
 }
 
 TEST(Contention, AnyUnitForAnyCoreLeavesChanceOut) {
@@ -119,12 +119,12 @@ TEST(Contention, ChanceIsThatOfCoresThatAreSteppedThrough) {
       lost_by_first += lost[0] / kLoops;
       lost_by_second += lost[1] / kLoops;
     }
-    EXPECT_NEAR(lost_by_first, met_by_chance(mine / 100.0, other / 100.0), 0.03) << mine;
-    EXPECT_NEAR(lost_by_second, met_by_chance(other / 100.0, mine / 100.0), 0.05) << mine;
-    EXPECT_NEAR(
-        lost_by_first + lost_by_second,
-        met_by_chance(mine / 100.0, other / 100.0) + met_by_chance(other / 100.0, mine / 100.0),
-        0.08 * (lost_by_first + lost_by_second))
+    EXPECT_NEAR(lost_by_first, collisions_by_chance(mine / 100.0, other / 100.0), 0.03) << mine;
+    EXPECT_NEAR(lost_by_second, collisions_by_chance(other / 100.0, mine / 100.0), 0.05) << mine;
+    EXPECT_NEAR(lost_by_first + lost_by_second,
+                collisions_by_chance(mine / 100.0, other / 100.0) +
+                    collisions_by_chance(other / 100.0, mine / 100.0),
+                0.08 * (lost_by_first + lost_by_second))
         << mine;
   }
 }

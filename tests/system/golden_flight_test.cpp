@@ -179,8 +179,8 @@ class GoldenFlight : public ::testing::TestWithParam<Case> {};
 
 TEST_P(GoldenFlight, ComputesWhatItDid) {
   vio::Profile profile = vio::profile_named(GetParam().profile, 1);
-  profile.imu_doubt.gyro_range = 0.9f;
-  profile.imu_doubt.accel_range = 11.0f;
+  profile.imu_uncertainty.gyro_range = 0.9f;
+  profile.imu_uncertainty.accel_range = 11.0f;
   const Figures figures = figures_of(GetParam().draw(), profile);
   const std::string key = fmt::format("{},{}", GetParam().flight, GetParam().profile);
   if (std::getenv("LEVIOSIM_RENEW_GOLDEN") != nullptr) renew(key, figures);

@@ -97,7 +97,8 @@ class HistoryCommand : public tests::ProgramSuite {
   static std::set<std::string> shapes_of(const std::string& text) {
     std::set<std::string> shapes;
     for (const std::string& line : lines_of(text))
-      shapes.insert(std::regex_replace(line, std::regex("\\b[0-9a-f]{40}\\b|[0-9]+([.][0-9]+)?"), "#"));
+      shapes.insert(
+          std::regex_replace(line, std::regex("\\b[0-9a-f]{40}\\b|[0-9]+([.][0-9]+)?"), "#"));
     return shapes;
   }
   static ProgramResult add(const std::string& commit, std::vector<std::string> further) {
@@ -148,7 +149,8 @@ TEST_F(HistoryCommand, ThirtyCommitsTellWhoMadeWhatSlower) {
 }
 
 TEST_F(HistoryCommand, TheTranscriptOfThePageIsThatOfTheStory) {
-  if (!fs::exists(path("bisect.txt"))) GTEST_SKIP() << "ThirtyCommitsTellWhoMadeWhatSlower did not run";
+  if (!fs::exists(path("bisect.txt")))
+    GTEST_SKIP() << "ThirtyCommitsTellWhoMadeWhatSlower did not run";
   const std::string page = tests::read_text(tests::source_folder() / "tools/app/history/BISECT.md");
   const std::string begin = "```text\n";
   const std::size_t at = page.find(begin) + begin.size();
@@ -287,7 +289,7 @@ TEST_F(HistoryCommand, TwoProgramsAreComparedOnTheSameInput) {
   const ProgramResult result = compare(path("bin/leviosim"), path("slower"));
   ASSERT_EQ(result.status, 0) << result.err;
   expect_holds(result.out, {path("bin/leviosim"), "isa.ops.popcount.issue=2", "the same operations",
-                            "note: of +", "other work 0, price of the same +"});
+                            "note: of +", "other work 0, cost of the same +"});
   expect_refused(compare("/bin/false", path("slower")), {"/bin/false: run ended with status 1"});
   expect_refused(program({"compare", "--programs", "a", "b"}), {"behind --"});
 }

@@ -50,8 +50,8 @@ TEST_P(NextRobustness, SaysWhenItIsLostAndFindsBack) {
   GetParam().spoil(flight);
   Profile profile = profile_named("next", 1);
   if (GetParam().range[0] > 0) {
-    profile.imu_doubt.gyro_range = GetParam().range[0];
-    profile.imu_doubt.accel_range = GetParam().range[1];
+    profile.imu_uncertainty.gyro_range = GetParam().range[0];
+    profile.imu_uncertainty.accel_range = GetParam().range[1];
   }
   const Flown flown = fly(flight, profile);
   EXPECT_TRUE(flown.finite);

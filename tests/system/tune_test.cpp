@@ -337,7 +337,7 @@ TEST_F(TuneCommand, HasThreeSeedsByDefaultAndHoldsTheChosenPointAgainstABudget) 
       run_program(folder_.path(), words({"--force", "--clock", "6", "--ate", "0.000001",
                                          "--miss-rate", "0", "--budget", path("budgets.yaml")}));
   EXPECT_EQ(none.status, 1) << none.err;
-  EXPECT_NE(none.out.find("no point to hold against the budget"), std::string::npos) << none.out;
+  EXPECT_NE(none.out.find("no point to check against the budget"), std::string::npos) << none.out;
 }
 
 TEST_F(TuneCommand, RunsRefuseContradictoryLoops) {

@@ -118,6 +118,26 @@ TEST(RunJson, HasATableForEveryFileAndNamesItsStages) {
   EXPECT_FALSE(run["tables"]["stages"].contains("f32_add_ops"));
 }
 
+TEST(RunJson, HasWordsForEverySourceOfAPose) {
+  const Json sources = json_of(example_run())["pose_sources"];
+  ASSERT_EQ(sources.size(), vio::kPoseSources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    EXPECT_EQ(sources[i]["name"], vio::kPoseSources[i].name);
+    EXPECT_FALSE(sources[i]["words"].get<std::string>().empty());
+  }
+}
+
+TEST(KeyFigures, ShowWhatRowsCompute) {
+  const RunRecord run = reported(example_run()).record;
+  for (const FigureRow& row : figure_rows()) {
+    if (row.of == nullptr) continue;
+    const std::vector<KeyFigure> figures = key_figures(run, "");
+    EXPECT_TRUE(std::any_of(figures.begin(), figures.end(), [&](const KeyFigure& f) {
+      return f.note == row.meaning && f.unit == row.title_unit;
+    })) << row.title;
+  }
+}
+
 TEST(RunJson, RefusesATableThatLacksAColumn) {
   ReportedRun run = reported(example_run());
   run.files[kMemoryFile] = "memory,owner\nL1,x\n";

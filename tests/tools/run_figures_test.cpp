@@ -1,6 +1,9 @@
 // Figures that are easily taken one for the other: percentiles, longest calls and sums.
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string_view>
+
 #include "platform_models/loader/loader.h"
 #include "sim/soc/account.h"
 #include "tests/tools/example_run.h"
@@ -32,6 +35,25 @@ TEST(RunFigures, EveryPercentileOfLatencyIsItsOwn) {
   EXPECT_EQ(value(document, "latency.all.p95"), 190'000);
   EXPECT_EQ(value(document, "latency.all.p99"), 198'000);
   EXPECT_EQ(value(document, "latency.all.worst"), 200'000);
+}
+
+TEST(FigureRows, DifferAndSayWhatTheyCompute) {
+  const RunResult run = testing::example_run();
+  const Json document = statistics(run);
+  std::set<std::string_view> statistics_of_rows, phrases, titles;
+  int computed = 0;
+  for (const FigureRow& row : figure_rows()) {
+    EXPECT_TRUE(statistics_of_rows.insert(row.statistic).second) << row.statistic;
+    EXPECT_TRUE(row.phrase.empty() || phrases.insert(row.phrase).second) << row.phrase;
+    EXPECT_TRUE(row.title.empty() || titles.insert(row.title).second) << row.title;
+    EXPECT_EQ(row.title.empty(), row.title_unit.empty()) << row.statistic;
+    if (row.of == nullptr) continue;
+    ++computed;
+    EXPECT_FALSE(row.title.empty() || row.meaning.empty()) << row.statistic;
+    const double of = row.of(run).value();
+    EXPECT_NEAR(value(document, std::string(row.statistic)).get<double>(), of, 1e-6 * of);
+  }
+  EXPECT_GT(computed, 0);
 }
 
 TEST(RunFigures, AnOpenLoopHasPercentilesOfLatencyToo) {

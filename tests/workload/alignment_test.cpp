@@ -214,7 +214,7 @@ TEST(Alignment, RefusesBiasesThatCannotBeTrue) {
 /// distance from the minimum decides, whatever else speaks for it.
 TEST(Alignment, HasNotConvergedFarFromItsMinimum) {
   MovingScene scene;
-  scene.alignment.max_surprise = 1e3f;
+  scene.alignment.max_prior_deviation = 1e3f;
   scene.alignment.min_explained = 0;
   scene.take_all();
   scene.iterate(1, false);

@@ -59,7 +59,7 @@ struct Overtaken {
     Profile profile = profile_named("next", 1);
     profile.optimiser.visual = scene.options.visual;
     profile.alignment.few_keyframes = few;
-    profile.alignment.max_surprise = profile.alignment.max_distance = 1e6f;
+    profile.alignment.max_prior_deviation = profile.alignment.max_distance = 1e6f;
     profile.alignment.min_explained = 0;
     map.aligned = aligned;
     BackEnd<Native> back_end(profile, Rig{}, scene.fc, scene.graph, map);

@@ -17,7 +17,7 @@ struct Ending {
   double error = 0;  ///< of the corrected pose at the end, m
   double worst = 0;  ///< of all corrected poses, m
   int closures = 0;
-  int forgotten = 0;
+  int removed = 0;
   int places = 0;
 };
 
@@ -44,7 +44,7 @@ Ending fly_laps(const HallOptions& hall, double metres, std::uint64_t seed,
     ending.worst = std::max(ending.worst, ending.error);
   }
   ending.closures = flight.closures;
-  ending.forgotten = flight.forgotten;
+  ending.removed = flight.removed;
   return ending;
 }
 
@@ -124,7 +124,7 @@ TEST(LoopCloser, IsTheSameUnderBothPolicies) {
     counting.machine().take_job();
   }
   EXPECT_GT(plain.closures, 0);
-  EXPECT_GT(plain.forgotten, 0);
+  EXPECT_GT(plain.removed, 0);
 }
 
 TEST(LoopCloser, ClosesNoLoopWhereFewTexturesRepeatAndNothingIsSeenTwice) {

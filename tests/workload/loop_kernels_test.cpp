@@ -61,7 +61,7 @@ TEST(PlaceStore, TakesNoMoreThan256kBAndAllOfItAtOnce) {
   Random random(1);
   for (double path = 0; path < 50; path += 0.31)
     flight.show(look(world, pose_on_lap(hall, path), random), pose_on_lap(hall, path));
-  EXPECT_GT(flight.forgotten, 0);
+  EXPECT_GT(flight.removed, 0);
   EXPECT_EQ(flight.memory().used(), before);
 }
 

@@ -253,7 +253,7 @@ class LoopFlight {
     const LoopOutcome outcome = closer_.visit(view);
     while (closer_.has_to_improve()) closer_.improve();
     closures += outcome.closures;
-    forgotten += outcome.forgotten;
+    removed += outcome.removed;
     return outcome;
   }
 
@@ -265,7 +265,7 @@ class LoopFlight {
   work::Machine& machine() { return machine_; }
   const work::Arena& memory() const { return memory_; }
 
-  int closures = 0, forgotten = 0;
+  int closures = 0, removed = 0;
 
  private:
   work::Machine machine_;

@@ -62,7 +62,7 @@ void run(const CLI::App& command, const BisectOptions& options) {
 
 Command add_bisect_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(
-      "bisect", "For git bisect run: build and run a commit, hold it against a budget");
+      "bisect", "For git bisect run: build and run a commit, check it against a budget");
   const auto options = std::make_shared<BisectOptions>();
   command->add_option("RUN", options->run,
                       "run folder that COMMAND leaves, or a work trace to replay");

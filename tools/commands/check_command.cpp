@@ -1,4 +1,4 @@
-// leviosim check: holds a run against a budget.
+// leviosim check: checks a run against a budget.
 #include "tools/commands/commands.h"
 
 #include <fmt/format.h>
@@ -114,7 +114,7 @@ void run(const CLI::App& command, const CheckOptions& options) {
 
 Command add_check_command(CLI::App& app, const Words&) {
   CLI::App* command =
-      app.add_subcommand("check", "Hold a run against a budget; status 1 if a limit is not met");
+      app.add_subcommand("check", "Check a run against a budget; status 1 if a limit is not met");
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("RUN", options->run,
                       "run folder, work trace to replay, or CSV file of measured cycles");

@@ -64,7 +64,7 @@ std::vector<ReportedRun> records(const CompareOptions& options) {
 }
 
 /// Two builds on the same input: their runs, by the names of the builds.
-/// @param note  gets what of the difference is work, price and chip
+/// @param note  gets what of the difference is work, cost and chip
 std::vector<ReportedRun> runs_of_programs(const CompareOptions& options, std::string& note) {
   if (options.names_chip())
     throw InputError(

@@ -36,7 +36,8 @@ flow::Options workload_of(const FlowOptions& options) {
 
 RunRequest request_of(const FlowOptions& options) {
   RunRequest request;
-  request.platform = platform::resolve_platform(options.platform, options.overrides);
+  request.overrides = options.overrides;
+  request.platform = platform::resolve_platform(options.platform, request.overrides);
   request.cores = cores_of(options, request.platform.config.cluster);
   if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
   return request;
@@ -105,7 +106,7 @@ Command add_flow_command(CLI::App& app, const Words& words) {
   add("--fps", options->fps, "F", "rate of the camera, for energy and power [the recorded one]");
   add("--grid", options->grid, "N", "N x N blocks [5]");
   add("--search", options->search, "PX", "search range to either side [4]");
-  command->add_flag("--gyro", options->gyro, "take off the rotation of the camera");
+  command->add_flag("--gyro", options->gyro, "subtract the rotation of the camera");
   command->add_flag("--quiet", options->quiet, "no progress");
   add_out_options(*command, *options);
   add_examples(*command,

@@ -30,9 +30,9 @@ void run(const CLI::App& command, RunCommandOptions options, const Words& words)
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   std::optional<outputs::OutputFile> page = claimed_report(options.report, options.force);
-  outputs::OutputFolder out(out_request(options));
-  std::optional<RequestedTimeline> timeline =
-      requested_timeline(options.timeline, out_request(options), request);
+  const outputs::OutputRequest wanted = out_request(options);
+  outputs::OutputFolder out(wanted);
+  std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);
   request.data = data_folder(options, style);
   out.reserve(expected_bytes(request, options.record));
   WorkRecording recording(request.cores);

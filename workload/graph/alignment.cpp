@@ -51,7 +51,7 @@ Vec3<P> mean_force_of(const CarriedPoses<P>& poses, const CarriedFrom<P>& from, 
 /// Nothing is known: no velocity, no biases but those of the prior, and gravity opposes the mean
 /// force.
 template <class P>
-CarriedFrom<P> forgotten(const Window<P>& window, const CarriedPoses<P>& scratch) {
+CarriedFrom<P> unknown_start(const Window<P>& window, const CarriedPoses<P>& scratch) {
   using F = typename P::F32;
   CarriedFrom<P> from = start_of<P>(window);
   from.velocity = {0.0f, 0.0f, 0.0f};
@@ -164,7 +164,7 @@ typename P::F32 length_of(const CarriedPoses<P>& poses, int keyframes) {
 template <class P>
 bool has_converged(const Window<P>& window, const AlignmentReport& report, float knowledge,
                    const AlignmentOptions& options) {
-  return 2 * knowledge < options.max_surprise * options.max_surprise &&
+  return 2 * knowledge < options.max_prior_deviation * options.max_prior_deviation &&
          static_cast<float>(report.explained) >=
              options.min_explained * static_cast<float>(window.landmarks) &&
          report.distance < options.max_distance;
@@ -212,7 +212,7 @@ AlignmentReport iterate(work::Machine& fc, Window<P>& window, AlignmentState<P>&
                                  first ? options.first_spread : options.spread);
   const auto trial = arena.alloc<Span>("trial landmarks", 3 * window.landmarks);
 
-  const CarriedFrom<P> from = afresh ? forgotten<P>(window, poses) : start_of<P>(window);
+  const CarriedFrom<P> from = afresh ? unknown_start<P>(window, poses) : start_of<P>(window);
   if (begin == Begin::here)
     landmarks.anchor(window);
   else
@@ -253,7 +253,7 @@ AlignmentReport iterate(work::Machine& fc, Window<P>& window, AlignmentState<P>&
   state.inverse_depth = landmarks.mean();
   const CarriedPoses<P>& best = report.accepted ? trial_poses : poses;
   const auto verdict = landmarks.judge(window, best);
-  report.landmarks = verdict.told;
+  report.landmarks = verdict.observable;
   report.explained = verdict.explained;
   landmarks.release(window);
   report.cost_before = work::value(cost);

@@ -44,9 +44,10 @@ struct AlignmentOptions {
   float max_distance = 3;         ///< from the minimum, in standard deviations of the unknowns
   float max_uncertainty = 0.05f;  ///< of positions, as a share of their distances
   float full_uncertainty = 4;     ///< times that, where the window has no room for more keyframes
-  float max_surprise = 2.5f;       ///< standard deviations of velocity, biases and gravity in all
-  float min_explained = 0.7f;     ///< share of the landmarks that agree with the alignment
-  int min_landmarks = 30;         ///< that do and whose distance is known
+  /// Standard deviations of velocity, biases and gravity in all.
+  float max_prior_deviation = 2.5f;
+  float min_explained = 0.7f;  ///< share of the landmarks that agree with the alignment
+  int min_landmarks = 30;      ///< that do and whose distance is known
   // Of the starts that are compared.
   float same_scale = 1.2f;  ///< ratio of the lengths of two paths below which they are one solution
   /// Half a chi-square: of two solutions whose costs differ by less, neither is known to be right.

@@ -268,13 +268,13 @@ typename AnchoredLandmarks<P>::Verdict AnchoredLandmarks<P>::judge(
     const Vec3<P> landmark = load_vec3<P>(all_, 3 * i);
     const Normal normal = normal_of(window, poses, i, landmark);
     Mat3<P> inverse;
-    const bool told = invert_spd3<P>(normal.H, inverse) &&
-                      landmark.z * landmark.z > F(kDistance * kDistance) * inverse.m[2][2];
+    const bool observable = invert_spd3<P>(normal.H, inverse) &&
+                            landmark.z * landmark.z > F(kDistance * kDistance) * inverse.m[2][2];
     const bool explained = bool(normal.worst_sq < limit);
-    const bool lost = !told || !explained;
+    const bool lost = !observable || !explained;
     window.lost[i] = work::narrow<typename P::Byte>(I32(lost ? 1 : 0));
     if (explained) ++verdict.explained;
-    if (!lost) ++verdict.told;
+    if (!lost) ++verdict.observable;
   }
   return verdict;
 }

@@ -60,7 +60,7 @@ class AnchoredLandmarks {
   /// Marks those as lost that do not explain their observations, or whose distance is unknown.
   /// @return the numbers of those that explain them, and of those whose distance is known as well
   struct Verdict {
-    int explained, told;
+    int explained, observable;
   };
   Verdict judge(const Window<P>& window, const CarriedPoses<P>& poses) const;
 

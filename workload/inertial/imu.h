@@ -42,7 +42,7 @@ struct ImuNoise {
 /// at the end of its range has seen less than there was, and of what happened between samples far
 /// apart the two ends tell little. Such errors keep their sign, so the densities are those that
 /// give what a small vehicle does unseen (1 rad/s, 3 m/s²) after some tenths of a second.
-struct ImuDoubt {
+struct ImuUncertainty {
   bool enabled = false;
   float gyro_range = 17.4f;    ///< of the sensor, ± rad/s: ADIS16448, 1000 °/s
   float accel_range = 176.0f;  ///< likewise, ± m/s²: 18 g

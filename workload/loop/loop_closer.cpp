@@ -77,7 +77,7 @@ LoopOutcome LoopCloser<P>::visit(const LoopView<P>& view) {
           signature);
     }
     query = query_of(view, signature);
-    if (is_new_place(places, view)) outcome.forgotten = remember(places, view, chosen, signature);
+    if (is_new_place(places, view)) outcome.removed = remember(places, view, chosen, signature);
     if (!has_to_improve())
       candidates = find_candidates(machine_, places, features_, query, options_.search);
   }
@@ -132,7 +132,7 @@ bool LoopCloser<P>::is_new_place(const PlaceList<P>& places, const LoopView<P>& 
                    options.min_turn);
 }
 
-/// @return whether another place was forgotten for it
+/// @return whether another place was removed for it
 template <class P>
 bool LoopCloser<P>::remember(PlaceList<P>& places, const LoopView<P>& view, Numbers chosen,
                              Words signature) {
@@ -298,7 +298,7 @@ void LoopCloser<P>::improve() {
 }
 
 template <class P>
-void LoopCloser<P>::doubt() {
+void LoopCloser<P>::expect_another_map() {
   travelled_ += F(options_.restart_travelled);
   recent_count_ = 0;
 }

@@ -41,9 +41,9 @@ struct LoopView {
 
 /// What a view came to.
 struct LoopOutcome {
-  int places = 0;     ///< that are kept
-  int forgotten = 0;  ///< 1 if a place was forgotten for this one
-  int closures = 0;   ///< 1 if a loop was closed
+  int places = 0;    ///< that are kept
+  int removed = 0;   ///< 1 if a place was removed for this one
+  int closures = 0;  ///< 1 if a loop was closed
 };
 
 template <class P>
@@ -64,7 +64,7 @@ class LoopCloser {
   bool has_to_improve() const { return steps_left_ > 0; }
   void improve();
   /// The odometry began another map: the path since then is uncertain.
-  void doubt();
+  void expect_another_map();
 
   /// Whether a loop was ever closed; until then there is no correction.
   bool has_closed() const { return closed_; }

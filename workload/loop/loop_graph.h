@@ -23,7 +23,7 @@ template <class P>
 typename P::F32 improve_nodes(work::Arena& local, PlaceList<P>& places,
                               const LoopGraphOptions& options);
 
-// What is forgotten when all places are taken: where places lie densest. Of the two places that are
+// What is removed when all places are taken: where places lie densest. Of the two places that are
 // nearest to each other, by position and by viewing direction, the later one goes. So what was seen
 // first stays, where drift is least, and the number of places is spread over the room that the
 // flight covers and does not grow with the time spent in it.
@@ -31,7 +31,7 @@ typename P::F32 improve_nodes(work::Arena& local, PlaceList<P>& places,
 // Closures of the place that goes are handed to the place visited before it, moved by the odometry
 // between the two, whose drift adds to their error. A closure whose ends meet is void.
 
-/// The place to forget, never the first or the newest. There must be three places.
+/// The place to remove, never the first or the newest. There must be three places.
 /// @param places  in L1
 template <class P>
 typename P::I32 densest_place(work::Machine& machine, const PlaceList<P>& places,

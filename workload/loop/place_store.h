@@ -1,6 +1,6 @@
 // The memory of loop closure in L2: places, which are keyframes kept to be recognised, with some of
 // their features, and closures found between them. All of it is allocated once; what does not fit
-// any more is forgotten (loop_graph.h).
+// any more is removed (loop_graph.h).
 //
 // A feature is a descriptor (32 B) and its point in the camera frame of the place, in whole
 // millimetres of 16 bits (6 B); points farther than 32 m are left out. A place has besides a

@@ -74,7 +74,7 @@ struct FrameFacts {
   int landmarks = 0;
   int map_restarts = 0;
   int places = 0;
-  int places_forgotten = 0;
+  int places_removed = 0;
   int loop_closures = 0;
   int health = 0;  ///< as Health numbers it
 };
@@ -97,8 +97,8 @@ inline constexpr std::array kFrameFacts{
     FrameFact{"map_restarts", "restarts of the map, since what it had become could not be true",
               &FrameFacts::map_restarts},
     FrameFact{"places", "places that loop closure keeps", &FrameFacts::places},
-    FrameFact{"places_forgotten", "places given up for this frame, where places lay densest",
-              &FrameFacts::places_forgotten},
+    FrameFact{"places_removed", "places given up for this frame, where places lay densest",
+              &FrameFacts::places_removed},
     FrameFact{"loop_closures", "loops closed with this frame", &FrameFacts::loop_closures},
     FrameFact{"health",
               "what the estimator knows of its map: 0 good, 1 unreliable, 2 lost, 3 nothing",

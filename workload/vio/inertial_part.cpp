@@ -62,16 +62,16 @@ void InertialPart<P>::integrate(const FrameInput& input) {
 template <class P>
 ImuNoise InertialPart<P>::noise_of(const ImuInput& sample) const {
   ImuNoise noise = state_.profile.imu_noise;
-  const ImuDoubt& doubt = state_.profile.imu_doubt;
-  if (!doubt.enabled) return noise;
+  const ImuUncertainty& uncertainty = state_.profile.imu_uncertainty;
+  if (!uncertainty.enabled) return noise;
   const auto at_end = [](const float(&axes)[3], float range) {
     F largest = work::abs(F(axes[0]));
     for (int a = 1; a < 3; ++a) largest = work::max(largest, F(work::abs(F(axes[a]))));
     return bool(largest >= F(range));
   };
-  const bool gap = bool(F(sample.dt) > F(doubt.longest_step));
-  if (gap || at_end(sample.gyro, doubt.gyro_range)) noise.gyro = doubt.gyro;
-  if (gap || at_end(sample.accel, doubt.accel_range)) noise.accel = doubt.accel;
+  const bool gap = bool(F(sample.dt) > F(uncertainty.longest_step));
+  if (gap || at_end(sample.gyro, uncertainty.gyro_range)) noise.gyro = uncertainty.gyro;
+  if (gap || at_end(sample.accel, uncertainty.accel_range)) noise.accel = uncertainty.accel;
   return noise;
 }
 

@@ -56,7 +56,7 @@ void make_next(Profile& p) {
   p.optimiser.prior.rest_gyro_bias = 0.002f;  // of a mean of 100 samples
   p.imu_noise = {
       .gyro = 3e-4f, .accel = 2e-2f, .gyro_bias = 1.9393e-5f, .accel_bias = 3e-3f, .gravity = 0.0f};
-  p.imu_doubt.enabled = true;
+  p.imu_uncertainty.enabled = true;
   p.optimiser.visual.sigma_px = 0.5f;
   p.optimiser.prior.velocity = 0.3f;  // as levio's anchor, and for the same reason
 }

@@ -138,7 +138,7 @@ struct Profile {
   bool use_epnp = true;
   bool gravity_updates = true;  ///< gravity is measured again whenever the vehicle stands still
   ImuNoise imu_noise;
-  ImuDoubt imu_doubt;
+  ImuUncertainty imu_uncertainty;
   StillnessOptions stillness;
   BiasOptions biases;
   OptimiserOptions optimiser;

@@ -88,7 +88,7 @@ std::string better_text(const CheckResult& result) {
   if (best == nullptr) return {};
   const std::size_t count = result.better();
   return fmt::format(
-      "{} than {} by more than limits allow for the worse: {}{} ({:.2f} %)",
+      "{} than {} by more than limits allow them to worsen: {}{} ({:.2f} %)",
       count == 1 ? "a figure is better" : fmt::format("{} figures are better", count),
       result.baseline, count == 1 ? "" : "most of all ", best->title(), *best->better());
 }
@@ -273,9 +273,9 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
           fmt::format("\n**✓ {}**: {}, {:.2f} % better than the baseline\n", markdown(f.title()),
                       figure_text(*f.value, f.unit, f.limit->bound), *f.better());
   if (result.better() > 0 && result.is_kept)
-    text += "\nThe baseline is stale: these limits do not hold what was won.\n";
+    text += "\nThe baseline is stale: its limits allow these figures to worsen again.\n";
   if (baseline != nullptr)
-    text += fmt::format("\n<details><summary>What moved against {}</summary>\n\n{}\n</details>\n",
+    text += fmt::format("\n<details><summary>What changed since {}</summary>\n\n{}\n</details>\n",
                         markdown(baseline->name),
                         comparison_report(compare_runs(*baseline, run), ReportFormat::markdown));
   TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"bound"}});

@@ -17,29 +17,6 @@ namespace {
 
 using platform::Unit;
 
-constexpr std::array kOfTheRun{
-    FigurePhrase{"frame latency mean", "frame.latency.mean", "ns"},
-    FigurePhrase{"frame latency p50", "frame.latency.p50", "ns"},
-    FigurePhrase{"frame latency p95", "frame.latency.p95", "ns"},
-    FigurePhrase{"frame latency p99", "frame.latency.p99", "ns"},
-    FigurePhrase{"frame latency worst", "frame.latency.worst", "ns"},
-    FigurePhrase{"frame time mean", "frame.time.mean", "ns"},
-    FigurePhrase{"frame time p99", "frame.time.p99", "ns"},
-    FigurePhrase{"frame time worst", "frame.time.worst", "ns"},
-    FigurePhrase{"sustainable rate", "frame.sustainable_rate", "1/s"},
-    FigurePhrase{"frame cycles", "frame.cycles.parallel.mean", "cycles"},
-    FigurePhrase{"frame cycles on one core", "frame.cycles.single.mean", "cycles"},
-    FigurePhrase{"missed", "frame.missed_share", "1"},
-    FigurePhrase{"L1 peak", "memory.l1.peak", "byte"},
-    FigurePhrase{"L2 peak", "memory.l2.peak", "byte"},
-    FigurePhrase{"energy per frame", "energy.frame", "mJ"},
-    FigurePhrase{"mean power", "energy.mean_power", "mW"},
-    FigurePhrase{"ATE", "accuracy.ate.rmse", "m"},
-    FigurePhrase{"completion", "accuracy.completion", "1"},
-    FigurePhrase{"time verdict", "verdict.time", "time verdict"},
-    FigurePhrase{"memory verdict", "verdict.memory", "memory verdict"},
-    FigurePhrase{"map verdict", "verdict.map", "map verdict"},
-};
 constexpr std::array kOfAStage{
     FigurePhrase{"cycles", "stages.{}.cycles.parallel.mean", "cycles"},
     FigurePhrase{"cycles on one core", "stages.{}.cycles.single.mean", "cycles"},
@@ -159,7 +136,15 @@ std::string stage_in(const std::string& statistic, const RunRecord& run) {
 
 }  // namespace
 
-std::span<const FigurePhrase> run_phrases() { return kOfTheRun; }
+std::span<const FigurePhrase> run_phrases() {
+  static const std::vector<FigurePhrase> all = [] {
+    std::vector<FigurePhrase> phrases;
+    for (const FigureRow& row : figure_rows())
+      if (!row.phrase.empty()) phrases.push_back({row.phrase, row.statistic, row.unit});
+    return phrases;
+  }();
+  return all;
+}
 std::span<const FigurePhrase> stage_phrases() { return kOfAStage; }
 
 void check_figure(const Limit& limit) {
@@ -218,7 +203,7 @@ double bound_in(const Limit& limit, std::string_view statistic_unit) {
   if (!words_of(statistic_unit).empty()) return grade_of(limit, statistic_unit);
   const StatisticUnit* known = find_unit(statistic_unit);
   if (known == nullptr)
-    fail(limit, fmt::format("'{}': a statistic in {} can only be held against a baseline, in %",
+    fail(limit, fmt::format("'{}': a statistic in {} can only be compared with a baseline, in %",
                             limit.text, statistic_unit));
   for (const Unit& unit : known->units)
     if (unit.name == bound.unit) return bound.number * unit.factor / known->factor;

@@ -73,7 +73,7 @@ void note_difference(std::vector<std::string>& notes, const char* what, const st
 void note_measured(std::vector<std::string>& notes, const RunRecord& measured,
                    const RunRecord& other) {
   if (!other.facts.measured)
-    notes.push_back(fmt::format("nobody checks that {} was measured on the data of {}",
+    notes.push_back(fmt::format("it is not checked that {} was measured on the data of {}",
                                 measured.name, other.name));
   std::vector<std::string> known;
   for (const StageName& stage : other.stages) known.push_back(stage.name);
@@ -203,16 +203,15 @@ std::string TwoPrograms::split() const {
   if (!std::filesystem::exists(folders_[0] + '/' + kWorkTraceFile)) return {};
   const auto a = read_run_folder(folders_[0]).value(kFrameCycles);
   const auto b = read_run_folder(folders_[1]).value(kFrameCycles);
-  const auto priced = cycles_of_replay(folders_[0] + "/platform.yaml");
+  const auto timed = cycles_of_replay(folders_[0] + "/platform.yaml");
   const auto on_new_chip = cycles_of_replay(folders_[1] + "/platform.yaml");
-  if (!a || !b || !priced || !on_new_chip || *a == 0) return {};
+  if (!a || !b || !timed || !on_new_chip || *a == 0) return {};
   const auto percent = [&](double from, double to) {
     const std::string text = fmt::format("{:+.2f} %", 100 * (to - from) / *a);
     return from == to ? std::string("0") : text;
   };
-  return fmt::format("of {}: other work {}, price of the same {}, chip {}", percent(*a, *b),
-                     percent(*on_new_chip, *b), percent(*a, *priced),
-                     percent(*priced, *on_new_chip));
+  return fmt::format("of {}: other work {}, cost of the same {}, chip {}", percent(*a, *b),
+                     percent(*on_new_chip, *b), percent(*a, *timed), percent(*timed, *on_new_chip));
 }
 
 }  // namespace leviosim::tools

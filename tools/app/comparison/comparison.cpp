@@ -10,40 +10,24 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr std::array kFigures{
-    QuantityOfRuns{"frame.time.mean", "frame time, mean", "ms", 1e-6},
-    QuantityOfRuns{"frame.time.p99", "frame time, 99 %", "ms", 1e-6},
-    QuantityOfRuns{"frame.time.worst", "frame time, worst", "ms", 1e-6},
-    QuantityOfRuns{"frame.sustainable_rate", "sustainable rate", "frames/s", 1},
-    QuantityOfRuns{"frame.missed_share", "frames that missed", "%", 100},
-    QuantityOfRuns{"frame.latency.p99", "latency, 99 %", "ms", 1e-6},
-    QuantityOfRuns{"frame.latency.worst", "latency, worst", "ms", 1e-6},
-    QuantityOfRuns{"frame.cycles.single.mean", "frame on one core", "kcycles", 1e-3},
-    QuantityOfRuns{"frame.cycles.parallel.mean", "frame on N cores", "kcycles", 1e-3},
-    QuantityOfRuns{"run.cluster_clock", "clock of the cluster", "MHz", 1e-6},
-    QuantityOfRuns{"memory.l1.peak", "L1 peak", "kB", 1e-3},
-    QuantityOfRuns{"memory.l2.peak", "L2 peak", "kB", 1e-3},
-    QuantityOfRuns{"energy.frame", "energy of a frame", "mJ", 1},
-    QuantityOfRuns{"energy.mean_power", "mean power", "mW", 1},
-    QuantityOfRuns{"accuracy.ate.rmse", "ATE (RMSE)", "m", 1},
-};
-
 class Comparer {
  public:
   Comparer(const RunRecord& a, const RunRecord& b) : a_(a), b_(b) {}
 
-  ComparedQuantity of(const std::string& name, const std::string& unit,
-                      const std::string& statistic, double scale = 1) const {
+  ComparedQuantity of(const std::string& name, const std::string& unit, std::string_view statistic,
+                      double scale = 1) const {
     return {name, unit, scaled(a_.value(statistic), scale), scaled(b_.value(statistic), scale)};
   }
 
   std::vector<ComparedQuantity> figures() const {
     std::vector<ComparedQuantity> list;
     const bool has_camera = a_.value("camera.arrived") || b_.value("camera.arrived");
-    for (const QuantityOfRuns& f : kFigures) {
+    for (const FigureRow& f : figure_rows()) {
+      if (f.title.empty()) continue;
       // Where no camera runs, frames queue as long as the flight is.
-      if (!has_camera && std::string_view(f.statistic).starts_with("frame.latency.")) continue;
-      ComparedQuantity q = of(f.name, f.unit, f.statistic, f.scale);
+      if (!has_camera && f.statistic.starts_with("frame.latency.")) continue;
+      ComparedQuantity q =
+          of(std::string(f.title), std::string(f.title_unit), f.statistic, f.scale);
       if (q.a || q.b) list.push_back(std::move(q));
     }
     return list;
@@ -309,8 +293,6 @@ Causes causes_of(double count_a, double cycles_a, double count_b, double cycles_
 }
 
 }  // namespace
-
-std::span<const QuantityOfRuns> quantities_of_runs() { return kFigures; }
 
 std::optional<double> ComparedQuantity::difference() const {
   if (!a || !b) return std::nullopt;

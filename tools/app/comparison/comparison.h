@@ -32,7 +32,7 @@ void check_same_chip(const RunRecord& a, const RunRecord& b, const Allowed& allo
 
 // Two builds of leviosim on the same input. What each leaves is compared as any two runs are; the
 // new build also times the work that the old one recorded, so that it is known what of a difference
-// is other work, another price of the same work, and another number of the chip.
+// is other work, another cost of the same work, and another number of the chip.
 
 /// `PROGRAM run ARGUMENTS --record --quiet --out FOLDER`, for each in a folder of its own.
 class TwoPrograms {
@@ -66,15 +66,6 @@ class TwoPrograms {
 //
 // Cycles are those of a mean frame on N cores. They are split twice: by mechanism and kind of
 // operation, and by fork. A third split is by cause: work, its cost, and contention.
-
-/// A figure of a run as a whole, by which runs are compared.
-struct QuantityOfRuns {
-  const char* statistic;
-  const char* name;
-  const char* unit;
-  double scale;  ///< from the statistic's unit
-};
-std::span<const QuantityOfRuns> quantities_of_runs();
 
 struct ComparedQuantity {
   std::string name;

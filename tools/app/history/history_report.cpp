@@ -66,14 +66,16 @@ std::vector<PageFigure> figures_of_page(const std::vector<Trend>& trends,
         trend.stage.empty() ? trend.limit->figure : trend.stage + ": " + trend.limit->figure;
     figures.push_back({trend.statistic, std::move(title), std::string(shown.name), 1 / shown.size});
   }
-  for (const QuantityOfRuns& q : quantities_of_runs()) {
+  for (const FigureRow& q : figure_rows()) {
+    if (q.title.empty()) continue;
     std::erase_if(figures, [&](const PageFigure& f) { return f.statistic == q.statistic; });
     const auto first = runs.front()->record.value(q.statistic);
     const bool has_changed = std::any_of(runs.begin(), runs.end(), [&](const PastRun* run) {
       return run->record.value(q.statistic) != first;
     });
-    if (has_changed || std::string_view(q.statistic) == kFrameCycles)
-      figures.push_back({q.statistic, q.name, q.unit, q.scale});
+    if (has_changed || q.statistic == kFrameCycles)
+      figures.push_back(
+          {std::string(q.statistic), std::string(q.title), std::string(q.title_unit), q.scale});
   }
   return figures;
 }
@@ -300,8 +302,9 @@ std::string history_document(const std::vector<PastRun>& runs) {
     entry["subject"] = run.origin.subject;
     entry["limits"] = run.limits.held;
     entry["missed"] = run.limits.missed;
-    for (const QuantityOfRuns& q : quantities_of_runs())
-      entry["figures"][q.statistic] = value_of(run.record.value(q.statistic));
+    for (const FigureRow& q : figure_rows())
+      if (!q.title.empty())
+        entry["figures"][std::string(q.statistic)] = value_of(run.record.value(q.statistic));
   }
   return json_text(document, 1) + '\n';
 }
@@ -309,11 +312,12 @@ std::string history_document(const std::vector<PastRun>& runs) {
 std::string exported(const PastRun& run, const std::string& format) {
   Json list = Json::array();
   Json map = Json::object();
-  for (const QuantityOfRuns& q : quantities_of_runs()) {
+  for (const FigureRow& q : figure_rows()) {
     const auto value = run.record.value(q.statistic);
-    if (!value) continue;
-    list.push_back({{"name", q.name}, {"unit", q.unit}, {"value", rounded(*value * q.scale)}});
-    map[q.name] = {{q.unit, {{"value", rounded(*value * q.scale)}}}};
+    if (!value || q.title.empty()) continue;
+    const Json shown = rounded(*value * q.scale);
+    list.push_back({{"name", q.title}, {"unit", q.title_unit}, {"value", shown}});
+    map[std::string(q.title)][std::string(q.title_unit)]["value"] = shown;
   }
   if (format == "github-action-benchmark") return json_text(list, 1) + '\n';
   if (format == "bencher") return json_text(map, 1) + '\n';
@@ -334,7 +338,8 @@ Json history_page(const std::string& title, const std::vector<PastRun>& runs,
   if (budget != nullptr)
     page.limits = limits_of(*budget, figures, runs.front().record, runs.back().record);
   show_points(shown, figures, page);
-  page.curves = StudyCurves{"run", "", {}, "A point a run, in the order of their commits.", false};
+  page.curves =
+      StudyCurves{"run", "", {}, "One point per run, in the order of their commits.", false};
   page.curves->names = "commit";
   page.curves->marks = marks_of(found, runs, shown);
   for (const PageFigure& q : figures) page.curves->y.emplace_back(q.statistic);

@@ -111,6 +111,14 @@ Json account_of(const Json& stages) {
   return list;
 }
 
+/// How frames get their poses, in the words of people.
+Json pose_sources_json() {
+  Json list = Json::array();
+  for (const vio::PoseSourceInfo& info : vio::kPoseSources)
+    list.push_back({{"name", info.name}, {"words", info.words}});
+  return list;
+}
+
 Json key_figures_json(const RunRecord& record, const std::string& protocol) {
   Json list = Json::array();
   for (const KeyFigure& figure : key_figures(record, protocol))
@@ -221,6 +229,20 @@ void add_time(std::vector<KeyFigure>& list, const RunRecord& run) {
                     "from the camera's frame to its pose, with waiting", *latency / deadline});
 }
 
+std::string capital(std::string_view text) {
+  std::string word(text);
+  if (!word.empty() && word[0] >= 'a' && word[0] <= 'z')
+    word[0] = static_cast<char>(word[0] - 'a' + 'A');
+  return word;
+}
+
+void add_figure_rows(std::vector<KeyFigure>& list, const RunRecord& run) {
+  for (const FigureRow& row : figure_rows())
+    if (const auto value = row.of ? run.value(row.statistic) : std::nullopt)
+      list.push_back({capital(row.title), fmt::format("{:.3g}", *value * row.scale),
+                      std::string(row.title_unit), std::string(row.meaning)});
+}
+
 void add_speedup(std::vector<KeyFigure>& list, const RunRecord& run) {
   const auto single = run.value("frame.cycles.single.mean");
   const auto parallel = run.value("frame.cycles.parallel.mean");
@@ -264,6 +286,7 @@ Json run_json(const RunRecord& record, const RunFiles& files) {
   json["name"] = record.name;
   json["facts"] = facts_of(record, manifest);
   json["tables"] = tables_of(record, files);
+  json["pose_sources"] = pose_sources_json();
   json["stages"] = stages_of(record, json["tables"]["stages"]);
   const std::optional<WorstFrame> worst =
       worst_frame(record, json["tables"]["frames"], json["stages"]);
@@ -328,6 +351,7 @@ std::string reason_of(const WorstFrame& worst) {
 std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& protocol) {
   std::vector<KeyFigure> list;
   add_time(list, run);
+  add_figure_rows(list, run);
   add_speedup(list, run);
   add_memory(list, run);
   add_energy(list, run);

@@ -56,10 +56,18 @@ std::string frame_time_line(const RunResult& run) {
     if (times->has_bands) words += fmt::format(" ({:.3g}–{:.3g})", ns.low * 1e-6, ns.high * 1e-6);
     return words;
   };
-  return fmt::format(
-      "frame time: mean {}, p99 {}, worst {} ms of {:.4g}, which sustains {:.3g} frames/s",
-      text(times->mean_ns), text(times->p99_ns), text(times->worst_ns), ms(run.frame_period_ns),
-      times->sustainable_rate());
+  return fmt::format("frame time: mean {}, p99 {}, worst {} ms of {:.4g}", text(times->mean_ns),
+                     text(times->p99_ns), text(times->worst_ns), ms(run.frame_period_ns));
+}
+
+/// "sustainable rate: 115 frames/s", and further figures that rows compute.
+std::string figure_line(const RunResult& run) {
+  std::vector<std::string> figures;
+  for (const FigureRow& row : figure_rows())
+    if (const auto value = row.of ? row.of(run) : std::nullopt)
+      figures.push_back(
+          fmt::format("{}: {:.3g} {}", row.title, *value * row.scale, row.title_unit));
+  return fmt::format("{}", fmt::join(figures, kComma));
 }
 
 /// What a pose takes with waiting, where a camera runs; else empty.
@@ -210,9 +218,10 @@ std::string verdict(const RunResult& run) { return "verdict: " + verdicts(figure
 std::string run_summary(const std::string& heading, const RunResult& run, int width, int others) {
   std::vector<std::string> below;
   if (run.timed)
-    below = {frame_time_line(run), latency_line(run), memory_line(run), energy_line(run)};
+    below = {frame_time_line(run), figure_line(run), latency_line(run), memory_line(run),
+             energy_line(run)};
   else
-    below = {frame_summary(run).substr(0, frame_summary(run).find('\n'))};
+    below = {frame_summary(run).substr(0, frame_summary(run).find('\n')), figure_line(run)};
   for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));
   std::string end;
   for (std::string& line : below) {

@@ -188,8 +188,15 @@ void add_frame_times(StatisticList& list, const RunResult& run) {
       times->mean_ns);
   add("frame.time.p99", "that 99 % of the frames do not exceed by themselves", times->p99_ns);
   add("frame.time.worst", "longest that a frame takes by itself", times->worst_ns);
-  list.add("frame.sustainable_rate", "1/s", "frames that the chip can process, by their mean time",
-           rounded(times->sustainable_rate()));
+}
+
+void add_figure_rows(StatisticList& list, const RunResult& run) {
+  for (const FigureRow& row : figure_rows())
+    if (const auto value = row.of ? row.of(run) : std::nullopt)
+      list.add(std::string(row.statistic), row.unit, row.meaning, rounded(*value));
+}
+
+void add_stage_bands(StatisticList& list, const RunResult& run) {
   if (!run.time_bands) return;
   for (const TimeBands::Stage& stage : run.time_bands->stages) {
     const std::string path = fmt::format("stages.{}.cycles.parallel.band.", key_of(stage.stage));
@@ -312,8 +319,10 @@ Json list_of(const RunResult& run) {
   if (run.timed)
     for (const StageResult& stage : run.stages) add_stage(list, run, stage);
   add_frames(list, run);
+  if (run.timed) add_frame_times(list, run);
+  add_figure_rows(list, run);
   if (run.timed) {
-    add_frame_times(list, run);
+    add_stage_bands(list, run);
     add_latencies(list, run);
     add_camera(list, run);
     add_latencies_of_all(list, run);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tools/app/result/summary.h"
@@ -10,6 +11,39 @@
 
 namespace leviosim::tools {
 namespace {
+
+std::optional<double> sustainable_rate(const RunResult& run) {
+  const std::optional<FrameTimes> times = frame_times(run);
+  return times ? std::optional(times->sustainable_rate()) : std::nullopt;
+}
+
+constexpr std::array kFigureRows{
+    FigureRow{"frame.time.mean", "ns", "frame time mean", "frame time, mean", "ms", 1e-6},
+    FigureRow{"frame.time.p99", "ns", "frame time p99", "frame time, 99 %", "ms", 1e-6},
+    FigureRow{"frame.time.worst", "ns", "frame time worst", "frame time, worst", "ms", 1e-6},
+    FigureRow{"frame.sustainable_rate", "1/s", "sustainable rate", "sustainable rate", "frames/s",
+              1, "frames that the chip can process, by their mean time", sustainable_rate},
+    FigureRow{"frame.missed_share", "1", "missed", "frames that missed", "%", 100},
+    FigureRow{"frame.latency.mean", "ns", "frame latency mean"},
+    FigureRow{"frame.latency.p50", "ns", "frame latency p50"},
+    FigureRow{"frame.latency.p95", "ns", "frame latency p95"},
+    FigureRow{"frame.latency.p99", "ns", "frame latency p99", "latency, 99 %", "ms", 1e-6},
+    FigureRow{"frame.latency.worst", "ns", "frame latency worst", "latency, worst", "ms", 1e-6},
+    FigureRow{"frame.cycles.single.mean", "cycles", "frame cycles on one core", "frame on one core",
+              "kcycles", 1e-3},
+    FigureRow{"frame.cycles.parallel.mean", "cycles", "frame cycles", "frame on N cores", "kcycles",
+              1e-3},
+    FigureRow{"run.cluster_clock", "Hz", "", "clock of the cluster", "MHz", 1e-6},
+    FigureRow{"memory.l1.peak", "byte", "L1 peak", "L1 peak", "kB", 1e-3},
+    FigureRow{"memory.l2.peak", "byte", "L2 peak", "L2 peak", "kB", 1e-3},
+    FigureRow{"energy.frame", "mJ", "energy per frame", "energy of a frame", "mJ", 1},
+    FigureRow{"energy.mean_power", "mW", "mean power", "mean power", "mW", 1},
+    FigureRow{"accuracy.ate.rmse", "m", "ATE", "ATE (RMSE)", "m", 1},
+    FigureRow{"accuracy.completion", "1", "completion"},
+    FigureRow{"verdict.time", "time verdict", "time verdict"},
+    FigureRow{"verdict.memory", "memory verdict", "memory verdict"},
+    FigureRow{"verdict.map", "map verdict", "map verdict"},
+};
 
 RecordedFrame recorded(const FrameResult& frame, bool timed) {
   RecordedFrame row;
@@ -137,6 +171,8 @@ void add_memory_statistics(RunFigures& run) {
 }
 
 }  // namespace
+
+std::span<const FigureRow> figure_rows() { return kFigureRows; }
 
 const Statistic* RunFigures::find(std::string_view statistic) const {
   const auto it = std::find_if(statistics.begin(), statistics.end(),

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,6 +22,23 @@ struct Statistic {
   std::string description;
   std::optional<double> value;  ///< absent where the run has none
 };
+
+/// A figure of a run as a whole that people name. Budgets, comparisons, the history, summaries and
+/// pages walk over the rows, so a further figure is a row with `of`.
+struct FigureRow {
+  std::string_view statistic;
+  std::string_view unit;             ///< of the statistic
+  std::string_view phrase = {};      ///< in budgets; empty: in none
+  std::string_view title = {};       ///< where runs are compared; empty: nowhere
+  std::string_view title_unit = {};  ///< there
+  double scale = 1;                  ///< to that unit
+  // Of a figure that is computed nowhere else; it stands in summaries and on pages by its title.
+  std::string_view meaning = {};
+  /// Absent if the run has none.
+  std::optional<double> (*of)(const RunResult& run) = nullptr;
+};
+/// In the order in which comparisons list them.
+std::span<const FigureRow> figure_rows();
 
 /// A stage, by its name for people and as statistics name it.
 struct StageName {

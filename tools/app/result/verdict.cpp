@@ -44,7 +44,7 @@ std::optional<TimeFigure> time_figure(const RunFigures& run, const std::string& 
 /// What the band leaves open: whether it is the mean or the slowest frame that fits.
 std::string undecided(const TimeFigure& figure, double deadline) {
   if (!figure.band || !figure.band->holds(deadline)) return {};
-  return fmt::format(": cannot be told from {:.4g}", deadline * 1e-6);
+  return fmt::format(": the band includes {:.4g}", deadline * 1e-6);
 }
 
 /// Frames by what became of them: "3 of 400 frames late".
@@ -188,7 +188,7 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
           fmt::format("the initialisation took {:.1f} s", signs.initialising_s));
   if (signs.restarts > 2 &&
       static_cast<double>(signs.restarts) > limits.restarts_per_s * signs.duration_s)
-    fault(false, fmt::format("the map was begun anew {} times", signs.restarts));
+    fault(false, fmt::format("the map was restarted {} times", signs.restarts));
   const auto health =
       static_cast<vio::Health>(signs.health.value_or(static_cast<int>(vio::Health::not_judged)));
   if (health == vio::Health::unreliable || health == vio::Health::lost)

@@ -31,13 +31,13 @@ void check_parameters(const RunRequest& request) {
 constexpr std::int64_t kLargestSide = 16384;
 
 /// A native run has no chip, so options about one are a misunderstanding.
-void refuse_chip_options(const CLI::App& command, const RunOptions& options) {
+void refuse_chip_options(const CLI::App& command, const RunRequest& request) {
   const auto refuse = [](const std::string& option) {
     throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
   };
   for (const char* option : {"--platform", "--cores", "--record", "--fps", "--deadline"})
     if (command.count(option) > 0) refuse(option);
-  for (const std::string& text : split_overrides(options.overrides).chip) refuse("--set " + text);
+  for (const std::string& text : request.overrides) refuse("--set " + text);
 }
 
 void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
@@ -65,30 +65,31 @@ RunRequest make_workload_request(const RunOptions& options) {
       parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
   request.profile = options.profile;
   vio::profile_named(options.profile, request.seed);  // refuses unknown names
-  request.workload = parse_workload_overrides(split_overrides(options.overrides).workload);
+  SplitOverrides overrides = split_overrides(options.overrides);
+  request.workload = parse_workload_overrides(overrides.workload);
+  request.overrides = std::move(overrides.chip);
   request.image_size = parse_size(options.size);
   if (!options.frames.empty()) request.frames = traces::parse_frame_range(options.frames);
   return request;
 }
 
 /// What waits is bounded by the memory for it.
-double parse_initial_delay(const std::string& text, const RunRequest& request) {
+double parse_initial_delay(const std::string& text, const vio::Profile& profile) {
   if (text.empty()) return 0;
   constexpr double kLongest = 10;
   const double seconds = parse_positive("--initial-delay", text);
   if (seconds > kLongest)
     throw InputError(fmt::format("--initial-delay '{}': expected at most {:g} s", text, kLongest));
-  if (!profile_of(request).alignment.enabled)
+  if (!profile.alignment.enabled)
     throw InputError(fmt::format(
         "--initial-delay: profile '{}' has no initialisation that would correct poses; expected "
         "--profile next",
-        request.profile));
+        profile.name));
   return seconds;
 }
 
 void resolve_chip(const RunOptions& options, RunRequest& request) {
-  request.platform =
-      platform::resolve_platform(options.platform, split_overrides(options.overrides).chip);
+  request.platform = platform::resolve_platform(options.platform, request.overrides);
   request.cores = cores_of(options, request.platform.config.cluster);
 }
 
@@ -208,13 +209,14 @@ traces::ImageSize parse_size(const std::string& text) {
 
 RunRequest make_request(const CLI::App& command, const RunOptions& options) {
   RunRequest request = make_workload_request(options);
-  request.initial_delay_s = parse_initial_delay(options.initial_delay, request);
+  const vio::Profile profile = profile_of(request);
+  request.initial_delay_s = parse_initial_delay(options.initial_delay, profile);
   if (options.native) {
-    refuse_chip_options(command, options);
+    refuse_chip_options(command, request);
   } else {
     resolve_chip(options, request);
     request.camera = parse_camera(options.camera_fps, options.deadline);
-    const bool waits = request.initial_delay_s > 0 || profile_of(request).initial_frames > 0;
+    const bool waits = request.initial_delay_s > 0 || profile.initial_frames > 0;
     if (waits && options.record)
       throw InputError(
           "run: --record keeps poses as they were when their frames were processed; leave out "

@@ -47,6 +47,7 @@ struct RunRequest {
   int cores = 8;
   std::uint32_t seed = 1;                 ///< of the workload's random draws
   std::vector<vio::Assignment> workload;  ///< parameters that differ from the profile's
+  std::vector<std::string> overrides;     ///< of the platform, as typed
   platform::ResolvedPlatform platform;    ///< unused if native
   /// The closed loop. Without, every recorded frame is delivered and waits until it is processed.
   std::optional<CameraRequest> camera;

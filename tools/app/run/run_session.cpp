@@ -110,7 +110,7 @@ Manifest make_manifest(const RunOptions& options, const RunRequest& request, con
   manifest.command_line = words;
   manifest.data = options.data;
   manifest.platform = options.platform;
-  manifest.overrides = split_overrides(options.overrides).chip;
+  manifest.overrides = request.overrides;
   return manifest;
 }
 

@@ -52,7 +52,7 @@ void LoopPart<P>::follow(const Frame<P>& frame, FrameReport& report) {
     if (is_due(frame)) {
       const LoopOutcome outcome = visit(frame);
       places_ = outcome.places;
-      report.places_forgotten = outcome.forgotten;
+      report.places_removed = outcome.removed;
       report.loop_closures = outcome.closures;
     } else if (closer_.has_to_improve()) {
       closer_.improve();

@@ -19,7 +19,7 @@ class LoopPart {
   /// Frames whose pose took the long way (EPnP, 8-point) have no time to spare.
   void follow(const Frame<P>& frame, FrameReport& report);
   /// The front end began another map.
-  void doubt() { closer_.doubt(); }
+  void expect_another_map() { closer_.expect_another_map(); }
   /// Moves the pose of the report from the odometry's world to the corrected one.
   void correct(const Frame<P>& frame, float dt, FrameReport& report);
 

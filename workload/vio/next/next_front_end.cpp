@@ -46,7 +46,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   } else if (!map_is_plausible(state_, prediction_, !initialises())) {
     start_anew(frame);
     report.map_restarts = 1;
-    if (loop_) loop_->doubt();
+    if (loop_) loop_->expect_another_map();
   } else {
     if (initialises())
       follow(frame, report);

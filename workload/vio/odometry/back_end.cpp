@@ -73,7 +73,7 @@ bool BackEnd<P>::is_settled() {
 }
 
 /// Marginalises the keyframes that have left the graph since the last snapshot, from which they
-/// have not gone yet. If none is left, which takes a queue of frames, the past is forgotten.
+/// have not gone yet. If none is left, which takes a queue of frames, the past is dropped.
 template <class P>
 void BackEnd<P>::update_prior() {
   if (prior_.keyframes == 0) return;

@@ -34,7 +34,7 @@ function checkSection(check) {
                   `All ${check.limits} limits are met.`),
           check.better > 0 ?
               element('p', {}, `${check.better} better than the baseline, by more than the limit ` +
-                  'allows for the worse.') :
+                  'allows it to worsen.') :
               null,
           element(
               'p', {class: 'hint'},

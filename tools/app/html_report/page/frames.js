@@ -1,35 +1,25 @@
 // The frames of a run: how long each took and with what, and single frames stage by stage.
 
-const kKinds = {
-  __proto__: null,
-  first: 'first frame',
-  epnp: 'EPnP',
-  eight_point: '8-point',
-  kept: 'pose kept',
-  initialising: 'initialising',
-  predicted: 'predicted',
-  tracked: 'tracked',
-  dropped: 'dropped'
-};
-const kKindColours = {
-  __proto__: null,
-  first: '#8c99a8',
-  epnp: '#ee7755',
-  eight_point: '#ddaa33',
-  kept: '#5f6b7a',
-  initialising: '#66ccee',
-  predicted: '#aa5588',
-  tracked: '#44aa88',
-  dropped: '#b3261e'
-};
+// Of the sources of poses, in the order in which a run lists them; what comes after has others.
+const kSourceColours =
+    ['#8c99a8', '#ee7755', '#ddaa33', '#5f6b7a', '#aa5588', '#44aa88', '#66ccee'];
+
+/** How a frame got its pose, or that it got none: name → {words, colour}. */
+function kindsOf(run) {
+  const kinds = new Map(run.pose_sources.map(
+      ({name, words}, i) => [name, {words, colour: kSourceColours[i] || paletteColour(i)}]));
+  return kinds.set('dropped', {words: 'dropped', colour: '#b3261e'});
+}
 
 /**
  * Frames with parts in ms that add up to the latency.
- * @returns null without times; {frames: [{number, kind, keyframe, begin, latency, parts}], names}
+ * @returns null without times; {frames: [{number, kind, keyframe, begin, latency, parts}], names,
+ *     wordsOf}
  */
 function framesOf(run) {
   const table = run.tables.frames;
   if (!table.latency_ns) return null;
+  const kinds = kindsOf(run);
   const perMs = run.facts.cluster_clock / 1e3;
   const stages = run.stages.filter((stage) => table[`cycles_${stage.key}`]);
   const names = [kWaiting, ...stages.map((s) => s.name), kOther];
@@ -54,7 +44,7 @@ function framesOf(run) {
       parts: [waiting, ...cycles, rest]
     };
   });
-  return {frames, names};
+  return {frames, names, kinds, wordsOf: ({kind}) => kinds.get(kind)?.words ?? kind};
 }
 
 function partColour(name) {
@@ -65,7 +55,7 @@ function latencyFigure(run, data, onpick) {
   const {frames, names} = data;
   const labels = frames.map((frame) => frame.number);
   const deadline = run.facts.deadline_ns / 1e6;
-  const kinds = Object.keys(kKinds).filter((kind) => frames.some((frame) => frame.kind === kind));
+  const kinds = [...data.kinds].filter(([kind]) => frames.some((frame) => frame.kind === kind));
   const bar = {
     barPercentage: 1,
     inflateAmount: 0.5,
@@ -91,14 +81,14 @@ function latencyFigure(run, data, onpick) {
                         backgroundColor: partColour(name),
                         data: frames.map((frame) => frame.parts[names.indexOf(name)])
                       })),
-          ...kinds.map((kind) => ({
+          ...kinds.map(([kind, {words, colour}]) => ({
                          ...bar,
-                         label: `pose: ${kKinds[kind]}`,
+                         label: `pose: ${words}`,
                          stack: 'kind',
                          grouped: false,
                          yAxisID: 'kind',
                          categoryPercentage: 1,
-                         backgroundColor: kKindColours[kind],
+                         backgroundColor: colour,
                          data: frames.map((frame) => (frame.kind === kind ? 1 : null))
                        })),
         ]
@@ -157,7 +147,7 @@ function latencyFigure(run, data, onpick) {
       ],
       rows: frames.map(
           (frame) =>
-              [frame.number, kKinds[frame.kind] || frame.kind, frame.keyframe ? 'yes' : '',
+              [frame.number, data.wordsOf(frame), frame.keyframe ? 'yes' : '',
                frame.latency, ...frame.parts]),
     }),
   });
@@ -244,7 +234,7 @@ function framesSection(run) {
     return section('frames', 'Frames', element('p', {class: 'card'}, 'No frame was processed.'));
   const describe = (what, frame) => frame.latency === null ?
       `Frame ${frame.number} was dropped` :
-      `${what} frame: number ${frame.number}, ${kKinds[frame.kind] || frame.kind}${
+      `${what} frame: number ${frame.number}, ${data.wordsOf(frame)}${
           frame.keyframe ? ', keyframe' : ''}, ${numberText(frame.latency)} ms`;
   const median = processed[Math.floor((processed.length - 1) / 2)];
   const worst = processed[processed.length - 1];

@@ -18,6 +18,16 @@ const kGroups = [
   ['accelerators', '#228833', ['accelerator', 'accelerator_contention']],
 ];
 
+/** The groups, and what the account of a run has beside them: each a group of its own. */
+function groupsOf(run) {
+  const grouped = new Set(kGroups.flatMap(([, , parts]) => parts));
+  const others = run.breakdown.filter(({key}) => !grouped.has(key));
+  return [
+    ...kGroups,
+    ...others.map(({key, group}, i) => [group || key, paletteColour(kGroups.length + i), [key]])
+  ];
+}
+
 /** Rows of stages.csv as objects with name, calls, and cycles. */
 function stageRows(run) {
   const table = run.tables.stages;
@@ -53,7 +63,7 @@ function breakdownFigure(run, rows) {
         {row, single: true, label: `${row.name}, 1 core`},
         {row, single: false, label: `${row.name}, ${run.facts.cores} cores`}
       ]);
-  const groups = kGroups.filter(
+  const groups = groupsOf(run).filter(
       ([, , parts]) =>
           bars.some((bar) => groupCycles(run, bar.row, parts, bar.single, frames) > 0));
   const valuesOf = (bar) =>

@@ -248,7 +248,7 @@ Json benchmark_manifest(const Benchmark& benchmark, const Measure& how, const Wo
   return document;
 }
 
-// `leviosim benchmark-flights`: how accurate the workload is on flights that chose nothing. Its
+// `leviosim benchmark-flights`: how accurate the workload is on flights not used for tuning. Its
 // folder:
 //
 //   manifest.json   what the benchmark was made from
@@ -428,8 +428,8 @@ Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
 
 Command add_benchmark_flights_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand("benchmark-flights",
-                                         "Accuracy on rendered flights in worlds that chose no "
-                                         "parameter, also from starts in mid-air");
+                                         "Accuracy on rendered flights, in worlds not used for "
+                                         "tuning and in others, also from starts in mid-air");
   const auto typed = std::make_shared<FlightWords>();
   const TextOptions add{*command};
   command->add_option("PLAN", typed->plan, fmt::format("a YAML file, or one of {}", plan_names()));

@@ -326,7 +326,7 @@ std::string expansion_text(const Expansion& expansion) {
   const std::size_t points = expansion.points.size();
   const std::size_t repeated = expansion.asked - points - expansion.impossible;
   std::string text = fmt::format("{} points", points);
-  if (repeated > 0) text += fmt::format(", {} more that are the same as one of them", repeated);
+  if (repeated > 0) text += fmt::format(", {} duplicates", repeated);
   if (expansion.impossible > 0)
     text += fmt::format(", {} left out as impossible, the first: {}", expansion.impossible,
                         printable(expansion.first_impossible));

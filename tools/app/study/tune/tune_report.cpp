@@ -347,7 +347,7 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
 void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
           const std::optional<ChosenRun>& again, const Words& command_line) {
   if (!again) {
-    print(Printout("no point to hold against the budget\n"));
+    print(Printout("no point to check against the budget\n"));
     throw LimitNotMet();
   }
   print_check(

@@ -89,9 +89,9 @@ double checked_recorded_rate(const RunRequest& request, const std::vector<double
 }
 
 /// As it is; from one frame and from two frames later; with a clock 2 % lower and 2 % higher; with
-/// a hair of gyro bias, either way.
+/// a small gyro bias, either way.
 std::vector<Variation> perturbations(std::uint32_t seed) {
-  constexpr double kHair = 1e-4;
+  constexpr double kSmallBias = 1e-4;
   const auto with = [&](const char* name, auto change) {
     Variation variation{.name = name, .seed = seed};
     change(variation);
@@ -102,8 +102,8 @@ std::vector<Variation> perturbations(std::uint32_t seed) {
           with("2 frames later", [](Variation& v) { v.later = 2; }),
           with("clock -2 %", [](Variation& v) { v.clock = 0.98; }),
           with("clock +2 %", [](Variation& v) { v.clock = 1.02; }),
-          with("gyro -0.0001 rad/s", [=](Variation& v) { v.gyro_bias = -kHair; }),
-          with("gyro +0.0001 rad/s", [=](Variation& v) { v.gyro_bias = kHair; })};
+          with("gyro -0.0001 rad/s", [=](Variation& v) { v.gyro_bias = -kSmallBias; }),
+          with("gyro +0.0001 rad/s", [=](Variation& v) { v.gyro_bias = kSmallBias; })};
 }
 
 /// Perturbations for workloads that draw nothing at random while they track, unless seeds are asked
@@ -208,10 +208,9 @@ void add_tune_options(CLI::App& command, TuneWords& words) {
       "what becomes of a frame that finds the front end busy [drop]");
   add("--miss-rate", words.miss_rate, "SHARE", "of frames that may be dropped or late [0.05]");
   add("--ate", words.ate, "M", "absolute trajectory error that is accepted, in metres [0.2]");
-  command.add_flag(
-      "--perturb", words.perturbs,
-      "in place of seeds: other starts, clocks 2 % off, a hair of gyro bias [where the "
-      "profile draws nothing at random and no seeds are given]");
+  command.add_flag("--perturb", words.perturbs,
+                   "in place of seeds: other starts, clocks 2 % off, a small gyro bias [where the "
+                   "profile draws nothing at random and no seeds are given]");
   add_runner_options(command, words.runner, "run");
   add_out_options(command, words.run);
 }
@@ -296,8 +295,8 @@ RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& sett
   if (variation.gyro_bias != 0)
     request.disturbance =
         traces::parse_disturbance(fmt::format("gyro-bias={}", variation.gyro_bias));
-  request.platform = platform::resolve_platform(
-      plan.options.platform, split_overrides(overrides_at(plan, perturbed)).chip);
+  request.overrides = split_overrides(overrides_at(plan, perturbed)).chip;
+  request.platform = platform::resolve_platform(plan.options.platform, request.overrides);
   return request;
 }
 
