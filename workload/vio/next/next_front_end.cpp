@@ -36,7 +36,6 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   if (repeats_last(frame) && !inertial_.rest()) frame.features.list.count = 0;
   report.keyframe = true;
   still_ = rests_ = false;
-  const bool waited = initialises();
   correct_path(input.dt, report);
   path_.take_motion();
   if (!state_.started) {
@@ -61,7 +60,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
       if (report.keyframe) insert_keyframe<P>(state_, frame, any_depth());
     }
   }
-  if (waited || initialises() || !path_.empty()) path_.remember();
+  if (initialises() || !path_.empty()) path_.remember();
   prediction_.remember(frame, report);
   if (initialises()) hold_position(frame);
   complete<P>(state_, frame, report);
@@ -104,6 +103,7 @@ void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& 
   state_.graph_in_l2.set_bias_prior(prior);
   map_.aligned = true;
   map_.fit = {};
+  path_.clear();  // what was reported is where it stands
 }
 
 /// What became of the map cannot be true: another one begins where the camera was seen last.
