@@ -61,7 +61,7 @@ std::string frame_time_line(const RunResult& run) {
 }
 
 /// "sustainable rate: 115 frames/s", and further figures that rows compute.
-std::string figure_line(const RunResult& run) {
+std::string row_figures(const RunResult& run) {
   std::vector<std::string> figures;
   for (const FigureRow& row : figure_rows())
     if (const auto value = row.of ? row.of(run) : std::nullopt)
@@ -218,10 +218,10 @@ std::string verdict(const RunResult& run) { return "verdict: " + verdicts(figure
 std::string run_summary(const std::string& heading, const RunResult& run, int width, int others) {
   std::vector<std::string> below;
   if (run.timed)
-    below = {frame_time_line(run), figure_line(run), latency_line(run), memory_line(run),
-             energy_line(run)};
+    below = {fmt::format("{}{}{}", frame_time_line(run), kComma, row_figures(run)),
+             latency_line(run), memory_line(run), energy_line(run)};
   else
-    below = {frame_summary(run).substr(0, frame_summary(run).find('\n')), figure_line(run)};
+    below = {frame_summary(run).substr(0, frame_summary(run).find('\n')), row_figures(run)};
   for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));
   std::string end;
   for (std::string& line : below) {
