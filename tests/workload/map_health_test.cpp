@@ -21,8 +21,21 @@ class MapHealthOf : public ::testing::Test {
     report.world_matches = 100;
     report.inliers = inliers_;
     report.map_restarts = restarts;
+    report.earlier = earlier_;
     report.p_world_camera = {0.1f * static_cast<float>(++frames_), 0, 0};
     return health_.after_frame(report, kFrame);
+  }
+  /// The same while the `number` frames before, 0.1 m apart, are corrected still.
+  Health correcting(int number) {
+    for (int ago = 1; ago <= number; ++ago) {
+      EarlierPose pose;
+      pose.frames_ago = ago;
+      pose.p_world_camera = {0.1f * static_cast<float>(frames_ + 1 - ago), 0, 0};
+      earlier_.push_back(pose);
+    }
+    const Health health = frame();
+    earlier_.clear();
+    return health;
   }
   Health frames(int number, PoseSource source = PoseSource::Tracked) {
     Health last = Health::good;
@@ -37,6 +50,7 @@ class MapHealthOf : public ::testing::Test {
   const Profile profile_ = profile_named("next", 1);
   MapStatus map_;
   MapHealth health_{profile_, map_};
+  std::vector<EarlierPose> earlier_;
   int inliers_ = 95;
   int frames_ = 0;
 };
@@ -56,27 +70,45 @@ TEST_F(MapHealthOf, AMapWithoutScaleIsUnreliable) {
 
 /// The path until the alignment has its scale, and images do not put it right later.
 TEST_F(MapHealthOf, AScaleThatIsKnownToAFifthMakesThePathSoFarUnreliable) {
-  const auto aligned_with = [&](float uncertainty) {
+  const auto aligned_with = [&](float sigma) {
     map_.aligned = false;
     frames(10, PoseSource::Initialising);
     map_.aligned = true;
-    window({.uncertainty = uncertainty});
+    window({.scale_sigma = sigma});
     return frame();
   };
   EXPECT_EQ(aligned_with(0.05f), Health::good);
   EXPECT_EQ(aligned_with(0.3f), Health::unreliable);  // of one of two metres
-  window({.uncertainty = 0.02f});
+  window({.scale_sigma = 0.02f});
   EXPECT_EQ(frames(5), Health::unreliable);
   EXPECT_EQ(frames(30), Health::good);  // of one of five
 }
 
 TEST_F(MapHealthOf, AWindowThatCannotBeSolvedAddsItsPath) {
   EXPECT_EQ(frames(10), Health::good);
-  window({.uncertainty = 0.09f});
+  window({.scale_sigma = 0.04f});
   EXPECT_EQ(frames(100), Health::good);
-  window({.uncertainty = 1});
-  EXPECT_EQ(frames(10), Health::good);
+  window({.scale_sigma = 0.04f, .solved = false});
+  EXPECT_EQ(frames(5), Health::good);
   EXPECT_EQ(frames(5), Health::unreliable);
+}
+
+/// Poses that wait are corrected with their map: they have its present scale, and length, however
+/// wrong those of the alignment were. After that nothing corrects them.
+TEST_F(MapHealthOf, PosesThatAreCorrectedStillHaveThePresentScale) {
+  map_.aligned = false;
+  frames(40, PoseSource::Initialising);
+  map_.aligned = true;
+  window({.scale_sigma = 0.15f});
+  EXPECT_EQ(correcting(20), Health::unreliable);
+  window({.scale_sigma = 0.05f});
+  EXPECT_EQ(correcting(20), Health::good);
+  window({.scale_sigma = 0.15f});
+  EXPECT_EQ(correcting(20), Health::unreliable);
+  EXPECT_EQ(frame(), Health::unreliable);
+  window({.scale_sigma = 0.0f});
+  EXPECT_EQ(frames(5), Health::unreliable);  // 15 % of two metres and a decimetre
+  EXPECT_EQ(frames(20), Health::good);
 }
 
 /// What the IMU alone found was wrong by as much.
@@ -135,6 +167,14 @@ TEST_F(MapHealthOf, PosesOfTheImuAloneAreUnreliableAfterAMomentAndLostInTheEnd) 
   EXPECT_EQ(frames(2, PoseSource::Predicted), Health::good);
   EXPECT_EQ(frames(20, PoseSource::Predicted), Health::unreliable);
   EXPECT_EQ(frames(45, PoseSource::Predicted), Health::lost);
+}
+
+/// They do not make those unreliable that follow, but for what they got wrong.
+TEST_F(MapHealthOf, ImagesThatReturnInTimeAreGoodAtOnce) {
+  EXPECT_EQ(frames(60), Health::good);
+  EXPECT_EQ(frames(9, PoseSource::Predicted), Health::good);
+  EXPECT_EQ(frames(6, PoseSource::Predicted), Health::unreliable);
+  EXPECT_EQ(frame(), Health::good);
 }
 
 TEST_F(MapHealthOf, MatchesThatDisagreeAreUnreliable) {

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "optimiser_scene.h"
@@ -98,6 +99,62 @@ TEST(Optimiser, MarksLandmarksItHasLost) {
   for (int i = 0; i < scene.window.landmarks; ++i) lost += scene.window.lost[i];
   EXPECT_EQ(scene.window.lost[7], 1);
   EXPECT_EQ(lost, 1);
+}
+
+/// What the first joint iterations say of the scale of a window whose first velocity is known that
+/// well, m/s.
+std::vector<std::optional<float>> scale_sigmas(float velocity, double interval_s = 0.2) {
+  GraphScene scene({.interval_s = interval_s});
+  scene.options.prior.velocity = velocity;
+  WindowPrior<Native> prior(scene.fc.local(), scene.graph.capacity.keyframes);
+  start_prior<Native>(scene.window, scene.options.prior, prior);
+  LmState<Native> lm(scene.options);
+  std::vector<std::optional<float>> sigmas;
+  for (int i = 0; i < 4; ++i) {
+    const auto stage = scene.fc.stage("optimiser");
+    sigmas.push_back(optimise_jointly_once<Native>(scene.fc, scene.window, prior, lm, scene.options)
+                         .scale_sigma);
+  }
+  return sigmas;
+}
+
+/// 1.4 s along a path of 0.4 m RMS about its centre. The accelerometer's noise moves its end by
+/// 0.1 m/s²/√Hz √((1.4 s)³ / 3) = 0.1 m if the velocity at its beginning is known, else by more.
+TEST(Optimiser, TheScaleIsAsUncertainAsTheImuLeavesIt) {
+  const std::vector<std::optional<float>> known = scale_sigmas(0.01f);
+  EXPECT_FALSE(known.front());  // damping would hide what is uncertain
+  ASSERT_TRUE(known.back());
+  EXPECT_GT(*known.back(), 0.05f);
+  EXPECT_LT(*known.back(), 0.15f);
+  const float unknown = scale_sigmas(1).back().value();
+  EXPECT_GT(unknown, 2 * *known.back());
+  EXPECT_NEAR(scale_sigmas(10).back().value(), unknown, 0.1f * unknown);
+  // A quarter of the time, and of the path: it bends by a sixteenth, and noise by an eighth.
+  EXPECT_GT(scale_sigmas(1, 0.05).back().value(), unknown);
+}
+
+/// What a joint iteration with that damping says of the scale, at the minimum.
+float sigma_of_damped(float lambda, double interval_s) {
+  GraphScene scene({.interval_s = interval_s});
+  WindowPrior<Native> prior(scene.fc.local(), scene.graph.capacity.keyframes);
+  start_prior<Native>(scene.window, scene.options.prior, prior);
+  LmState<Native> lm(scene.options);
+  std::optional<float> sigma;
+  for (int i = 0; i < 4; ++i) {
+    lm.lambda = i < 3 ? 1e-6f : lambda;
+    const auto stage = scene.fc.stage("optimiser");
+    sigma =
+        optimise_jointly_once<Native>(scene.fc, scene.window, prior, lm, scene.options).scale_sigma;
+  }
+  return sigma.value();
+}
+
+/// The damping of landmarks does, by a fifth at 1e-6.
+TEST(Optimiser, DampingOfKeyframesDoesNotMakeTheScaleMoreCertain) {
+  const float nearly_free = sigma_of_damped(1e-7f, 0.2);
+  EXPECT_GT(sigma_of_damped(1e-6f, 0.2), 0.8f * nearly_free);
+  EXPECT_LT(sigma_of_damped(1e-6f, 0.2), nearly_free);
+  EXPECT_GT(sigma_of_damped(2e-6f, 0.05), 0.28f);  // 0.24 with it
 }
 
 TEST(Optimiser, TheFirstVelocityOfAllHasAnAnchorOfItsOwn) {

@@ -5,6 +5,53 @@
 namespace leviosim::vio {
 namespace {
 
+/// From more damping on the scale looks too certain: that of landmarks is not undone. Of 1e-6 it
+/// hides a fifth of the deviation.
+constexpr float kHardlyDamped = 2e-6f;
+
+/// The variance of a linear function of the unknowns without the damping: along the direction in
+/// which they vary most the information that damping adds is subtracted.
+/// @param factor        of the damped system
+/// @param coefficients  overwritten
+template <class P>
+typename P::F32 undamped_variance(ConstMatrixView<P> factor, typename P::F32 lambda,
+                                  typename P::template Span<typename P::F32> coefficients) {
+  using F = typename P::F32;
+  const F variance = square_by_inverse<P>(factor, coefficients);
+  back_substitute<P>(factor, coefficients);
+  F added = 0.0f;
+  for (int i : P::range(0, factor.rows())) {
+    const F pivot = F(1.0f) / F(factor(i, i));
+    F diagonal = pivot * pivot;
+    for (int k : P::range(0, i)) diagonal += F(factor(i, k)) * F(factor(i, k));
+    added += diagonal * F(coefficients[i]) * F(coefficients[i]);
+  }
+  added = added * lambda / (F(1.0f) + lambda);
+  return variance * variance / work::max(F(variance - added), F(variance * F(0.01f)));
+}
+
+/// The variance of the scale of the keyframes' positions, as a share of it: that of the mean of
+/// their displacements along their distances from their centre, weighted with these.
+/// @param solved  its vector, the step, is overwritten
+template <class P>
+typename P::F32 scale_variance(const Window<P>& window, typename P::F32 lambda,
+                               const ReducedSystem<P>& solved) {
+  using F = typename P::F32;
+  Vec3<P> centre{0.0f, 0.0f, 0.0f};
+  for (int k : P::range(0, window.keyframes)) centre = centre + window.state.pose(k).t;
+  centre = centre * F(1.0f / static_cast<float>(window.keyframes));
+  const auto weights = solved.vector();
+  for (int i : P::range(0, solved.unknowns())) weights[i] = 0.0f;
+  F square = 0.0f;
+  for (int k : P::range(0, window.keyframes)) {
+    const Vec3<P> off = window.state.pose(k).t - centre;
+    store_vec3<P>(weights, k * solved.per_keyframe() + 3, off);
+    square += dot(off, off);
+  }
+  return undamped_variance<P>(solved.matrix(), lambda, weights) /
+         work::max(F(square * square), F(1e-12f));
+}
+
 // How an iteration takes IMU and past into account: one of the two structs below.
 
 /// Biases apart, anchor.
@@ -31,6 +78,7 @@ struct AnchoredTerms {
     return cost;
   }
   void step(const ReducedSystem<P>&) {}
+  void measure_scale(const ReducedSystem<P>&, F, IterationReport&) const {}
   F add_cost(const WindowState<P>& state, F cost) const {
     if (options.use_imu) cost += inertial_cost<P>(window, state, interval);
     cost += anchor_cost<P>(window, state, options.anchor, options.use_imu);
@@ -70,6 +118,11 @@ struct JointTerms {
     const auto step = solved.vector();
     trial_bias = {window.bias.gyro + load_vec3<P>(step, solved.shared()),
                   window.bias.accel + load_vec3<P>(step, solved.shared() + 3)};
+  }
+  void measure_scale(const ReducedSystem<P>& solved, F lambda, IterationReport& report) const {
+    const bool full = window.keyframes == window.capacity.keyframes;
+    if (!full || !(lambda <= kHardlyDamped)) return;
+    report.scale_sigma = work::value(work::sqrt(scale_variance<P>(window, lambda, solved)));
   }
   F add_cost(const WindowState<P>& state, F cost) const {
     cost += joint_inertial_cost<P>(window, state, trial_bias, interval);
@@ -185,6 +238,7 @@ IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
     step_keyframes<P>(window, memory.system, memory.trial);
     memory.terms.step(memory.system);
     step_points<P>(window, memory.records, memory.system, memory.trial.points);
+    memory.terms.measure_scale(memory.system, lm.lambda, report);
     trial_cost = cost_of_trial<P>(window, memory.trial, options, memory.terms);
   }
   // Not true either if a cost is not a number.

@@ -18,6 +18,8 @@
 //                            keyframes marginalised (marginalisation.h)
 #pragma once
 
+#include <optional>
+
 #include "sim/work/machine.h"
 #include "workload/graph/inertial_terms.h"
 #include "workload/graph/marginalisation.h"
@@ -59,6 +61,9 @@ struct IterationReport {
   float visual = 0;
   float inertial = 0;
   float prior = 0;  ///< of the past: the prior, or the anchor that stands in for it
+  /// Standard deviation of the scale of the keyframes' positions, as a share of it; known of joint
+  /// iterations that are hardly damped.
+  std::optional<float> scale_sigma;
 };
 
 /// One iteration; changes `window.state`. Must run in a stage of `fc`, whose local memory it uses

@@ -134,6 +134,18 @@ void forward_substitute(ConstMatrixView<P> l, typename P::template Span<typename
   }
 }
 
+/// Solves Lᵀ x = b for the factor of cholesky_factor; b becomes x.
+template <class P>
+void back_substitute(ConstMatrixView<P> l, typename P::template Span<typename P::F32> b) {
+  using F = typename P::F32;
+  const int n = l.rows();
+  for (int i : P::down_range(n - 1, 0)) {
+    F sum = b[i];
+    for (int k : P::range(i + 1, n)) sum -= l(k, i) * b[k];
+    b[i] = sum * F(l(i, i));
+  }
+}
+
 /// xᵀ A⁻¹ x = |L⁻¹ x|², for the factor L of A by cholesky_factor: of an information matrix, the
 /// variance of a linear function of the unknowns. Overwrites x.
 template <class P>
@@ -149,16 +161,11 @@ typename P::F32 square_by_inverse(ConstMatrixView<P> l,
 /// Solves L Lᵀ x = b for the factor of cholesky_factor; b becomes x.
 template <class P>
 void cholesky_solve(ConstMatrixView<P> l, typename P::template Span<typename P::F32> b) {
-  using F = typename P::F32;
   const typename P::Function function("cholesky_solve");
   const int n = l.rows();
   const typename P::OffloadRegion kernel(solve_of_size(n), substitution_items(n, n));
   forward_substitute<P>(l, b);
-  for (int i : P::down_range(n - 1, 0)) {
-    F sum = b[i];
-    for (int k : P::range(i + 1, n)) sum -= l(k, i) * b[k];
-    b[i] = sum * F(l(i, i));
-  }
+  back_substitute<P>(l, b);
 }
 
 /// Inverse of a symmetric positive definite 3×3 matrix (a landmark block), by cofactors.

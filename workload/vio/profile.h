@@ -85,7 +85,8 @@ struct HealthOptions {
   float memory_s = 1;    ///< for which an inconsistent window counts, and tracking is averaged
   float tracked = 0.7f;  ///< share of the matches that agree
   float drift = 0.1f;    ///< share of the path
-  // Of a pose that the IMU alone moves on: what velocity and tilt, with the bias, are wrong by.
+  float blind_s = 0.5f;  ///< for which the IMU alone may move the pose on
+  // Of such a pose: what velocity and tilt, with the bias, are wrong by.
   float blind_velocity = 0.05f;      ///< m/s
   float blind_acceleration = 0.05f;  ///< m/s²
 };

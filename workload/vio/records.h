@@ -57,9 +57,10 @@ struct WindowFit {
   float visual = 0;
   float inertial = 0;
   float prior = 0;  ///< of the past; less than nothing where the prior's minimum lies elsewhere
-  /// Of the positions, a standard deviation, as a share of their distances: as the alignment leaves
-  /// it; 1 of a window that could not be solved, else 0.
-  float uncertainty = 0;
+  /// Standard deviation of the scale of the positions, as a share of it: the alignment's, then that
+  /// of the last window whose damping leaves it as it is.
+  float scale_sigma = 0;
+  bool solved = true;    ///< the last iteration's system could be factored
   float accel_bias = 0;  ///< in standard deviations of what is known of it beforehand
 };
 

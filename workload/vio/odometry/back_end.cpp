@@ -59,6 +59,7 @@ bool BackEnd<P>::begin() {
                     map_.inverse_depth > 0 ? map_.inverse_depth : profile_.alignment.inverse_depth};
   }
   solved_ = false;
+  fit_.scale_sigma = map_.fit.scale_sigma;  // until an iteration measures it
   return true;
 }
 
@@ -102,7 +103,7 @@ OptimiserReport BackEnd<P>::optimise() {
     converged_ = report.converged;
     arrived_ = !compares && report.arrived;
     if (compares) ambiguous_ = report.ambiguous;
-    fit_.uncertainty = report.uncertainty;
+    fit_.scale_sigma = report.uncertainty;
     determined_ = report.determined && !ambiguous_;
     return {true, report.accepted, report.cost_before, report.cost_after};
   }
@@ -131,7 +132,8 @@ WindowFit BackEnd<P>::fit_of(const IterationReport& report) const {
   return {mean_square(report.visual, 2 * report.observations - 3 * report.landmarks),
           mean_square(report.inertial, 6 * (window_.keyframes - 1)),
           mean_square(report.prior, options_.joint ? prior_.unknowns() : 9),
-          report.positive_definite ? 0.0f : 1.0f,
+          report.scale_sigma.value_or(fit_.scale_sigma),
+          report.positive_definite,
           work::sqrt(dot(off, off)) / options_.prior.accel_bias};
 }
 
@@ -171,7 +173,7 @@ void BackEnd<P>::publish_alignment() {
   retire_unplaced();
   map_.aligned = true;
   map_.fit = {};
-  map_.fit.uncertainty = fit_.uncertainty;
+  map_.fit.scale_sigma = fit_.scale_sigma;
   newest_ = -1;
 }
 
@@ -256,6 +258,22 @@ bool is_blind(const FrameReport& report) {
   return report.source == PoseSource::Predicted || report.source == PoseSource::Kept;
 }
 
+float distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+  float square = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) square += (a[i] - b[i]) * (a[i] - b[i]);
+  return work::sqrt(square);
+}
+
+/// Length of the poses that are corrected still, from the oldest one to `now`, m.
+float length_of(const std::vector<EarlierPose>& earlier, std::array<float, 3> now) {
+  float length = 0;
+  for (const EarlierPose& pose : earlier) {  // the newest one first
+    length += distance(now, pose.p_world_camera);
+    now = pose.p_world_camera;
+  }
+  return length;
+}
+
 }  // namespace
 
 void MapHealth::take_window() { inconsistent_ = !fits(map_.fit, profile_.health.mean_square); }
@@ -284,43 +302,50 @@ Health MapHealth::after_frame(const FrameReport& report, float dt) {
   if (restarted_ || blind_s_ > profile_.recovery.max_blind_time ||
       !(map_.fit.accel_bias < limits.lost_accel_bias))
     return Health::lost;
-  const bool good = !waits() && doubted_s_ <= 0 && tracked_ > limits.tracked &&
-                    map_.fit.accel_bias < limits.accel_bias && drift_m_ <= limits.drift * path_m_;
+  const bool good = !waits() && doubted_s_ <= 0 && blind_s_ <= limits.blind_s &&
+                    tracked_ > limits.tracked && map_.fit.accel_bias < limits.accel_bias &&
+                    !drifts();
   return good ? Health::good : Health::unreliable;
 }
 
-/// A frame without a pose from landmarks has none that agree, unless it needs none.
+/// Frames without a pose from landmarks say nothing; what the IMU alone gets wrong is drift.
 void MapHealth::track(const FrameReport& report, float dt) {
-  const bool blind = is_blind(report);
   const bool by_landmarks =
       report.source == PoseSource::Tracked || report.source == PoseSource::Epnp;
-  if (!blind && !by_landmarks) return;
-  const float share =
-      blind || report.world_matches == 0
-          ? 0.0f
-          : static_cast<float>(report.inliers) / static_cast<float>(report.world_matches);
+  if (!by_landmarks || report.world_matches == 0) return;
+  const float share = static_cast<float>(report.inliers) / static_cast<float>(report.world_matches);
   tracked_ += (share - tracked_) * std::min(1.0f, dt / profile_.health.memory_s);
 }
 
+/// Adds what the path has grown by, and how far its end may be off.
 void MapHealth::add_drift(const FrameReport& report, float dt) {
   const HealthOptions& limits = profile_.health;
   const std::array<float, 3>& now = report.p_world_camera;
-  const std::array<float, 3> last = std::exchange(last_, now).value_or(now);
-  float square = 0;
-  for (std::size_t a = 0; a < now.size(); ++a) square += (now[a] - last[a]) * (now[a] - last[a]);
-  const float moved = work::sqrt(square);
+  const float moved = distance(now, std::exchange(last_, now).value_or(now));
   const bool blind = is_blind(report);
   // What images put right when they come back was wrong before, and no motion.
-  (!blind && blind_s_ > 0 ? drift_m_ : path_m_) += moved;
+  if (!blind && blind_s_ > 0)
+    drift_m_ += moved;
+  else
+    open_m_ += moved;
   blind_s_ = blind ? blind_s_ + dt : 0;
   if (blind) drift_m_ += (limits.blind_velocity + limits.blind_acceleration * blind_s_) * dt;
-  unaligned_m_ += moved;
-  if (!waits()) {
-    const float uncertain = contradicts_imu() ? 1 : map_.fit.uncertainty;
-    if (!was_aligned_ || !(uncertain <= limits.drift)) drift_m_ += uncertain * unaligned_m_;
-    unaligned_m_ = 0;
+  if (!report.earlier.empty()) {
+    open_m_ = length_of(report.earlier, now);
+  } else if (!waits()) {
+    drift_m_ += scale_sigma() * open_m_;
+    path_m_ += std::exchange(open_m_, 0.0f);
   }
   if (report.map_restarts > 0 && was_aligned_) drift_m_ += profile_.recovery.max_correction;
+}
+
+/// Whether how far the path's end may be off matters.
+bool MapHealth::drifts() const {
+  return !(drift_m_ + scale_sigma() * open_m_ <= profile_.health.drift * (path_m_ + open_m_));
+}
+
+float MapHealth::scale_sigma() const {
+  return map_.fit.solved && !contradicts_imu() ? map_.fit.scale_sigma : 1;
 }
 
 }  // namespace leviosim::vio

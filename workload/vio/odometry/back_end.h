@@ -65,14 +65,17 @@ class BackEnd {
 
 // What the odometry knows of its map without the truth, from numbers that its parts have anyway:
 //
-//   scale        is not known before the map is aligned, and then as well as the alignment has it
+//   scale        is not known before the map is aligned; then full windows say how uncertain it is
 //   consistency  residuals of images, IMU and past in the window, against the noise assumed of them
 //   bias         of the accelerometer: one that no sensor has explains a path that was not flown
-//   tracking     share of the matches with landmarks that agree with the pose, over a second
-//   drift        of poses that the IMU alone moved on, that come from a contradictory window or one
-//                that could not be solved, or from before the map was lost, and what images put
-//                right when they came back, as a share of the path. It stays, for nothing undoes
-//                it, and matters less the longer the path gets
+//   tracking     share of the matches with landmarks that agree with the pose, over a second of
+//                frames that have such a pose
+//   drift        as a share of the path: the uncertainty of the scale with which each part of it
+//                was flown, all of a part that contradicts the IMU or whose window could not be
+//                solved, what poses that the IMU alone moved on are wrong by, what images put right
+//                when they came back, and what may be missing where a map was lost. It stays, for
+//                nothing undoes it, and matters less the longer the path gets. Poses that wait for
+//                the alignment are corrected until the map has settled: they have its present scale
 //
 // A few operations a frame, which are not counted.
 
@@ -92,6 +95,8 @@ class MapHealth {
   void add_drift(const FrameReport& report, float dt);
   bool waits() const;
   bool contradicts_imu() const;
+  bool drifts() const;
+  float scale_sigma() const;
 
   const Profile& profile_;
   const MapStatus& map_;
@@ -102,8 +107,8 @@ class MapHealth {
   float doubted_s_ = 0;        ///< for which an inconsistent window still counts
   float blind_s_ = 0;          ///< that the IMU alone has carried the pose for
   float tracked_ = 1;          ///< share of the matches that agree, over a second
-  float path_m_ = 0;
-  float unaligned_m_ = 0;  ///< of the path, while the map waited
+  float open_m_ = 0;           ///< of the path, whose poses are corrected still
+  float path_m_ = 0;           ///< of the rest
   float drift_m_ = 0;
 };
 
