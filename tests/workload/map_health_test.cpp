@@ -108,7 +108,7 @@ TEST_F(MapHealthOf, PosesThatAreCorrectedStillHaveThePresentScale) {
   EXPECT_EQ(frame(), Health::unreliable);
   window({.scale_sigma = 0.0f});
   EXPECT_EQ(frames(5), Health::unreliable);  // 15 % of two metres and a decimetre
-  EXPECT_EQ(frames(20), Health::good);
+  EXPECT_EQ(frames(12), Health::good);
 }
 
 /// What the IMU alone found was wrong by as much.
@@ -172,8 +172,10 @@ TEST_F(MapHealthOf, PosesOfTheImuAloneAreUnreliableAfterAMomentAndLostInTheEnd) 
 /// They do not make those unreliable that follow, but for what they got wrong.
 TEST_F(MapHealthOf, ImagesThatReturnInTimeAreGoodAtOnce) {
   EXPECT_EQ(frames(60), Health::good);
+  inliers_ = 0;
   EXPECT_EQ(frames(9, PoseSource::Predicted), Health::good);
   EXPECT_EQ(frames(6, PoseSource::Predicted), Health::unreliable);
+  inliers_ = 95;
   EXPECT_EQ(frame(), Health::good);
 }
 
