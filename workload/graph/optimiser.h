@@ -62,7 +62,7 @@ struct IterationReport {
   float inertial = 0;
   float prior = 0;  ///< of the past: the prior, or the anchor that stands in for it
   /// Standard deviation of the scale of the keyframes' positions, as a share of it; known of joint
-  /// iterations that are hardly damped.
+  /// iterations of a full window that are hardly damped.
   std::optional<float> scale_sigma;
 };
 

@@ -58,7 +58,7 @@ struct WindowFit {
   float inertial = 0;
   float prior = 0;  ///< of the past; less than nothing where the prior's minimum lies elsewhere
   /// Standard deviation of the scale of the positions, as a share of it: the alignment's, then that
-  /// of the last window whose damping leaves it as it is.
+  /// of the last full window that was hardly damped.
   float scale_sigma = 0;
   bool solved = true;    ///< the last iteration's system could be factored
   float accel_bias = 0;  ///< in standard deviations of what is known of it beforehand
