@@ -25,12 +25,12 @@ class MapHealthOf : public ::testing::Test {
     report.p_world_camera = {0.1f * static_cast<float>(++frames_), 0, 0};
     return health_.after_frame(report, kFrame);
   }
-  /// The same while the `number` frames before, 0.1 m apart, are corrected still.
-  Health correcting(int number) {
+  /// The same while the `number` frames before, 0.1 m apart times `scale`, are corrected still.
+  Health correcting(int number, float scale = 1) {
     for (int ago = 1; ago <= number; ++ago) {
       EarlierPose pose;
       pose.frames_ago = ago;
-      pose.p_world_camera = {0.1f * static_cast<float>(frames_ + 1 - ago), 0, 0};
+      pose.p_world_camera = {0.1f * scale * static_cast<float>(frames_ + 1 - ago), 0, 0};
       earlier_.push_back(pose);
     }
     const Health health = frame();
@@ -109,6 +109,47 @@ TEST_F(MapHealthOf, PosesThatAreCorrectedStillHaveThePresentScale) {
   window({.scale_sigma = 0.0f});
   EXPECT_EQ(frames(5), Health::unreliable);  // 15 % of two metres and a decimetre
   EXPECT_EQ(frames(12), Health::good);
+}
+
+/// A map in a wrong minimum is sure of what it found, and wanders on.
+TEST_F(MapHealthOf, AScaleThatWindowsChangeAgainAndAgainIsUncertainForAWhile) {
+  window({.scale_sigma = 0.03f});
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(correcting(20, i % 2 == 0 ? 1 : 1.005f), Health::good);
+  float scale = 1.2f;
+  EXPECT_EQ(correcting(20, scale), Health::good);  // one correction comes to rest
+  for (int i = 0; i < 10; ++i) correcting(20, scale *= 0.95f);
+  EXPECT_EQ(correcting(20, scale), Health::unreliable);
+  for (int i = 0; i < 60; ++i) correcting(20, scale);
+  EXPECT_EQ(correcting(20, scale), Health::good);
+}
+
+/// What the alignment itself changes was a guess before.
+TEST_F(MapHealthOf, AnAlignmentMayChangeTheScale) {
+  map_.aligned = false;
+  for (int i = 0; i < 10; ++i) correcting(20, i % 2 == 0 ? 1 : 3);
+  map_.aligned = true;
+  window({.scale_sigma = 0.03f});
+  EXPECT_EQ(correcting(20), Health::good);
+  EXPECT_EQ(correcting(20), Health::good);
+}
+
+/// What it grows by at its end is no correction.
+TEST_F(MapHealthOf, APathThatGrowsFasterAndFasterIsNotCorrected) {
+  window({.scale_sigma = 0.03f});
+  for (int newest = 20; newest < 60; ++newest) {
+    for (int ago = 1; ago <= 20; ++ago) {
+      earlier_.emplace_back();
+      earlier_.back().p_world_camera[0] = std::pow(1.1f, static_cast<float>(newest - ago));
+    }
+    EXPECT_EQ(frame(), Health::good);
+    earlier_.clear();
+  }
+}
+
+/// Older poses are forgotten as new ones come.
+TEST_F(MapHealthOf, APathThatLosesItsOldestPoseIsAsLong) {
+  window({.scale_sigma = 0.03f});
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(correcting(i < 30 ? 20 : 3), Health::good);
 }
 
 /// What the IMU alone found was wrong by as much.

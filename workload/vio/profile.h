@@ -85,6 +85,9 @@ struct HealthOptions {
   float memory_s = 1;    ///< for which an inconsistent window counts, and tracking is averaged
   float tracked = 0.7f;  ///< share of the matches that agree
   float drift = 0.1f;    ///< share of the path
+  /// Share of what windows changed the path's length by in memory_s that the scale may be off by: a
+  /// single correction comes to rest, while a map in a wrong minimum wanders on.
+  float corrected = 0.3f;
   float blind_s = 0.5f;  ///< for which the IMU alone may move the pose on
   // Of such a pose: what velocity and tilt, with the bias, are wrong by.
   float blind_velocity = 0.05f;      ///< m/s

@@ -1,7 +1,9 @@
 #include "workload/vio/odometry/back_end.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 #include "sim/work/functions.h"
@@ -264,13 +266,11 @@ float distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
   return work::sqrt(square);
 }
 
-/// Length of the poses that are corrected still, from the oldest one to `now`, m.
-float length_of(const std::vector<EarlierPose>& earlier, std::array<float, 3> now) {
+/// Length of the path through `poses`, m.
+float length_of(std::span<const EarlierPose> poses) {
   float length = 0;
-  for (const EarlierPose& pose : earlier) {  // the newest one first
-    length += distance(now, pose.p_world_camera);
-    now = pose.p_world_camera;
-  }
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    length += distance(poses[i - 1].p_world_camera, poses[i].p_world_camera);
   return length;
 }
 
@@ -296,6 +296,7 @@ Health MapHealth::after_frame(const FrameReport& report, float dt) {
   const HealthOptions& limits = profile_.health;
   doubted_s_ = inconsistent_ ? limits.memory_s : doubted_s_ - dt;
   track(report, dt);
+  follow_corrections(report.earlier, dt);
   add_drift(report, dt);
   restarted_ = waits() && (restarted_ || (report.map_restarts > 0 && was_aligned_));
   was_aligned_ = !waits();
@@ -317,6 +318,18 @@ void MapHealth::track(const FrameReport& report, float dt) {
   tracked_ += (share - tracked_) * std::min(1.0f, dt / profile_.health.memory_s);
 }
 
+/// Compares the length of the earlier poses with what it was in the last frame, when all but the
+/// newest of them were there.
+void MapHealth::follow_corrections(const std::vector<EarlierPose>& earlier, float dt) {
+  corrections_ *= std::max(0.0f, 1 - dt / profile_.health.memory_s);
+  const std::vector<EarlierPose> last = std::exchange(earlier_, earlier);
+  if (!was_aligned_ || earlier.empty()) return;
+  const std::size_t both = std::min(last.size(), earlier.size() - 1);
+  const float before = length_of(std::span(last).first(both));
+  const float change = length_of(std::span(earlier).subspan(1, both)) - before;
+  if (before > 0) corrections_ += std::abs(change) / before;
+}
+
 /// Adds what the path has grown by, and how far its end may be off.
 void MapHealth::add_drift(const FrameReport& report, float dt) {
   const HealthOptions& limits = profile_.health;
@@ -331,7 +344,7 @@ void MapHealth::add_drift(const FrameReport& report, float dt) {
   blind_s_ = blind ? blind_s_ + dt : 0;
   if (blind) drift_m_ += (limits.blind_velocity + limits.blind_acceleration * blind_s_) * dt;
   if (!report.earlier.empty()) {
-    open_m_ = length_of(report.earlier, now);
+    open_m_ = length_of(report.earlier) + distance(report.earlier.front().p_world_camera, now);
   } else if (!waits()) {
     drift_m_ += scale_sigma() * open_m_;
     path_m_ += std::exchange(open_m_, 0.0f);
@@ -345,7 +358,9 @@ bool MapHealth::drifts() const {
 }
 
 float MapHealth::scale_sigma() const {
-  return map_.fit.solved && !contradicts_imu() ? map_.fit.scale_sigma : 1;
+  if (!map_.fit.solved || contradicts_imu()) return 1;
+  const float corrected = profile_.health.corrected * corrections_;
+  return work::sqrt(map_.fit.scale_sigma * map_.fit.scale_sigma + corrected * corrected);
 }
 
 }  // namespace leviosim::vio

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "sim/work/machine.h"
 #include "workload/graph/alignment.h"
@@ -65,7 +66,9 @@ class BackEnd {
 
 // What the odometry knows of its map without the truth, from numbers that its parts have anyway:
 //
-//   scale        is not known before the map is aligned; then full windows say how uncertain it is
+//   scale        is not known before the map is aligned; then full windows say how uncertain it is.
+//                They say it of the minimum that they are in, which may be a wrong one: so by how
+//                much they change the length of poses that are corrected still is added to it
 //   consistency  residuals of images, IMU and past in the window, against the noise assumed of them
 //   bias         of the accelerometer: one that no sensor has explains a path that was not flown
 //   tracking     share of the matches with landmarks that agree with the pose, over a second of
@@ -92,6 +95,7 @@ class MapHealth {
 
  private:
   void track(const FrameReport& report, float dt);
+  void follow_corrections(const std::vector<EarlierPose>& earlier, float dt);
   void add_drift(const FrameReport& report, float dt);
   bool waits() const;
   bool contradicts_imu() const;
@@ -110,6 +114,8 @@ class MapHealth {
   float open_m_ = 0;           ///< of the path, whose poses are corrected still
   float path_m_ = 0;           ///< of the rest
   float drift_m_ = 0;
+  std::vector<EarlierPose> earlier_;  ///< as the last frame found them
+  float corrections_ = 0;             ///< relative changes of their length, summed over a second
 };
 
 }  // namespace leviosim::vio
