@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "platform_models/loader/accelerator_fields.h"
-#include "platform_models/loader/energy_fields.h"
 #include "platform_models/loader/member_values.h"
 
 namespace leviosim::platform {

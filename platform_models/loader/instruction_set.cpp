@@ -8,7 +8,7 @@
 
 #include "platform_models/loader/builtin.h"
 #include "sim/base/input_file.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "platform_models/loader/instruction_set.h"
 #include "platform_models/loader/value.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 namespace {

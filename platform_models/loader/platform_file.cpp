@@ -15,7 +15,7 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 namespace {

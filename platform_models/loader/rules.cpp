@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform_models/loader/accelerator_fields.h"
-#include "platform_models/loader/energy_fields.h"
+#include "platform_models/loader/fields.h"
 #include "sim/base/error.h"
 #include "sim/energy/model.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 namespace {

@@ -9,7 +9,7 @@
 #include "platform_models/loader/rules.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/check.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 

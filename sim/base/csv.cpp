@@ -1,6 +1,7 @@
 #include "sim/base/csv.h"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -195,6 +196,26 @@ void RisingStamps::add(const CsvRow& row, std::int64_t t_ns) {
   empty_ = false;
   last_ns_ = t_ns;
   last_line_ = row.line();
+}
+
+Cell::Cell(std::string_view text) : text_(text) {
+  if (text.find_first_of(",\"\n\r") == std::string_view::npos) return;
+  text_ = '"';
+  for (const char c : text) text_ += c == '"' ? std::string("\"\"") : std::string(1, c);
+  text_ += '"';
+}
+
+Cell fixed(std::optional<double> value, int decimals) {
+  return value ? Cell(fmt::format("{:.{}f}", *value, decimals)) : Cell();
+}
+
+std::string csv_line(const std::vector<Cell>& cells) {
+  std::string line;
+  for (const Cell& cell : cells) {
+    if (&cell != &cells.front()) line += ',';
+    line += cell.text();
+  }
+  return line + '\n';
 }
 
 }  // namespace leviosim::base

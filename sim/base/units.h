@@ -52,3 +52,10 @@ constexpr Watts operator/(Joules energy, Seconds time) {
 }
 
 }  // namespace leviosim
+
+namespace leviosim::base {
+
+inline constexpr double kTwoPi = 6.283185307179586476925;
+inline constexpr double kDegreesPerRadian = 57.295779513082320876798;
+
+}  // namespace leviosim::base

@@ -7,7 +7,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::soc {
 namespace {

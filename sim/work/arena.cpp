@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "sim/base/check.h"
-#include "sim/work/memory_overflow.h"
 
 namespace leviosim::work {
 namespace {

@@ -9,9 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "sim/base/error.h"
 #include "sim/base/units.h"
 #include "sim/work/memory.h"
 
@@ -103,6 +106,19 @@ class Arena {
   std::byte* storage_;
   Bytes host_capacity_{0};
   Bytes host_used_{0};
+};
+
+/// Thrown where a block does not fit in an arena: what() names the stage, the block and the missing
+/// bytes.
+class MemoryOverflow : public InputError {
+ public:
+  /// @param memory  that is too small: "L1", "L2", or "scratch", a core's part of L1
+  MemoryOverflow(const std::string& what, std::string memory)
+      : InputError(what), memory_(std::move(memory)) {}
+  const std::string& memory() const { return memory_; }
+
+ private:
+  std::string memory_;
 };
 
 }  // namespace leviosim::work

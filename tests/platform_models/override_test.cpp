@@ -1,6 +1,6 @@
 // Overrides (-p): they change what they name and nothing else, under the checks of files.
 
-#include "platform_models/loader/energy_fields.h"
+#include "platform_models/loader/fields.h"
 #include "platform_models/loader/schema.h"
 #include "tests/platform_models/platform_test.h"
 

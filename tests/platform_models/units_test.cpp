@@ -7,7 +7,7 @@
 #include "platform_models/loader/schema.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 namespace {

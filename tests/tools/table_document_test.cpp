@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "tests/tools/example_run.h"
 #include "tools/app/run/run_folder.h"
 

@@ -1,4 +1,4 @@
-#include "traces/datasets/imu_batches.h"
+#include "traces/datasets/dataset.h"
 
 #include <gtest/gtest.h>
 

@@ -10,9 +10,9 @@
 #include "tests/support/image_files.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
+#include "traces/datasets/dataset.h"
 #include "traces/datasets/image_file.h"
 #include "traces/datasets/image_preparation.h"
-#include "traces/datasets/imu_batches.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/hall.h"
 
@@ -124,7 +124,7 @@ TEST(RenderedFlight, PixelsSeeTheHallFromTheRecordedPose) {
   for (int frame = 0; frame < AslFolder::kFrames; ++frame) {
     const cv::Mat image =
         tests::decoded(base::read_text_file(data.frames[static_cast<std::size_t>(frame)].path),
-                    {data.camera.width, data.camera.height});
+                       {data.camera.width, data.camera.height});
     const Eigen::Isometry3d& pose =
         data.ground_truth[static_cast<std::size_t>(10 + 10 * frame)].T_world_body;
     ASSERT_EQ(data.ground_truth[static_cast<std::size_t>(10 + 10 * frame)].t_ns,

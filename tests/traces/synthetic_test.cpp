@@ -10,8 +10,8 @@
 
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
+#include "traces/datasets/dataset.h"
 #include "traces/datasets/image_preparation.h"
-#include "traces/datasets/imu_batches.h"
 
 namespace leviosim::traces {
 namespace {

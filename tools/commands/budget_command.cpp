@@ -9,10 +9,10 @@
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/nearest.h"
-#include "tools/app/budget/gate.h"
+#include "sim/base/text.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
+#include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/run_record.h"
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/host.h"

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page.h"

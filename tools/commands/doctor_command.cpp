@@ -21,7 +21,6 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
-#include "sim/base/printable_text.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
@@ -57,8 +56,8 @@ void add_versions(Findings& all) {
   all.push_back({"program", "leviosim", true,
                  fmt::format("{} {}, compiled by C++ {}", version(), revision(), __VERSION__)});
   const std::vector<std::pair<const char*, std::string>> libraries{
-      {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-                          FMT_VERSION % 100)},
+      {"fmt",
+       fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
       {"SQLite", sqlite3_libversion()},
       {"zstd", ZSTD_versionString()},
       {"libpng", png_get_libpng_ver(nullptr)},
@@ -143,8 +142,7 @@ struct Tool {
 };
 constexpr std::array kTools{Tool{"riscv64-unknown-elf-g++", "gcc-riscv64-unknown-elf"},
                             Tool{"arm-none-eabi-g++", "gcc-arm-none-eabi"},
-                            Tool{"qemu-riscv32", "qemu-user"},
-                            Tool{"qemu-arm", "qemu-user"},
+                            Tool{"qemu-riscv32", "qemu-user"}, Tool{"qemu-arm", "qemu-user"},
                             Tool{"clang-query", "clang-tools"}};
 
 void add_tools(Findings& all) {

@@ -16,7 +16,7 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/run_summary.h"

@@ -10,8 +10,7 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
@@ -48,9 +47,10 @@ std::int64_t parse_time(const std::string& text) {
   std::int64_t seconds = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   if (error != std::errc() || end != text.data() + text.size() || seconds < 0)
-    throw InputError(fmt::format("--time '{}': expected seconds since 1970, as git log --format=%ct "
-                                 "prints them",
-                                 text));
+    throw InputError(
+        fmt::format("--time '{}': expected seconds since 1970, as git log --format=%ct "
+                    "prints them",
+                    text));
   return seconds;
 }
 
@@ -63,15 +63,14 @@ Origin origin_of(const HistoryOptions& options) {
     throw InputError("history add: no git repository here; expected --commit ID");
   if (origin.commit.size() > 64 ||
       !std::all_of(origin.commit.begin(), origin.commit.end(), is_plain))
-    throw InputError(
-        fmt::format("--commit '{}': expected letters and digits", origin.commit));
+    throw InputError(fmt::format("--commit '{}': expected letters and digits", origin.commit));
   if (origin.branch.empty()) origin.branch = git({"rev-parse", "--abbrev-ref", "HEAD"});
   if (origin.subject.empty()) origin.subject = git({"log", "-1", "--format=%s", origin.commit});
   const std::string time =
       options.time.empty() ? git({"log", "-1", "--format=%ct", origin.commit}) : options.time;
   if (time.empty())
-    throw InputError(fmt::format("history add: git knows no commit {}; expected --time T",
-                                 origin.commit));
+    throw InputError(
+        fmt::format("history add: git knows no commit {}; expected --time T", origin.commit));
   origin.time_s = parse_time(time);
   return origin;
 }
@@ -97,10 +96,12 @@ void add(const CLI::App& command, const HistoryOptions& options) {
       lines.empty() ? fmt::format("is in {} already", printable(options.file))
                     : fmt::format("is run {} of {}", history.size() + 1, printable(options.file));
   const std::string limits =
-      gate ? fmt::format("; {} of {} limits not met", run.limits.missed.size(), run.limits.held) : "";
-  print(Printout(std::string())
-            .ending(fmt::format("in short: {} {}{}", short_commit(run.origin.commit), place, limits),
-                    {fmt::format("leviosim history show --file {}", printable(options.file))}));
+      gate ? fmt::format("; {} of {} limits not met", run.limits.missed.size(), run.limits.held)
+           : "";
+  print(
+      Printout(std::string())
+          .ending(fmt::format("in short: {} {}{}", short_commit(run.origin.commit), place, limits),
+                  {fmt::format("leviosim history show --file {}", printable(options.file))}));
 }
 
 /// Runs like the newest of the branch and the profile.
@@ -126,8 +127,7 @@ void show(const HistoryOptions& options) {
   constexpr std::size_t kShown = 200;
   const std::optional<Budget> budget = budget_of(options);
   const std::vector<PastRun> runs = newest(options, kShown);
-  if (!options.format.empty())
-    return print(Printout(exported(runs.back(), options.format), true));
+  if (!options.format.empty()) return print(Printout(exported(runs.back(), options.format), true));
   print(printout(
       options.json,
       [&] {
@@ -145,9 +145,9 @@ void page(const CLI::App& command, const HistoryOptions& options) {
       claimed_report(options.page, options.force, {options.file}, "--out");
   const std::vector<PastRun> runs = newest(options, kAllRuns);
   const RunFacts& facts = runs.back().record.facts;
-  publish_report(file, history_page(fmt::format("{} on {} over commits", facts.profile,
-                                                facts.platform),
-                                    runs, budget ? &*budget : nullptr));
+  publish_report(
+      file, history_page(fmt::format("{} on {} over commits", facts.profile, facts.platform), runs,
+                         budget ? &*budget : nullptr));
   print(history_printout(runs, budget ? &*budget : nullptr, {}));
 }
 
@@ -156,8 +156,8 @@ void run(const CLI::App& command, const HistoryOptions& options) {
   const std::vector<std::string> actions{"add", "show", "page"};
   if (options.action == "add") return add(command, options);
   if (command.count("RUN") > 0)
-    throw InputError(fmt::format("history {}: takes no run; leave out {}", options.action,
-                                 options.run));
+    throw InputError(
+        fmt::format("history {}: takes no run; leave out {}", options.action, options.run));
   if (options.action == "show") return show(options);
   if (options.action == "page") return page(command, options);
   throw InputError(fmt::format("history: unknown action '{}'; expected add, show or page{}",
@@ -175,7 +175,9 @@ Command add_history_command(CLI::App& app, const Words&) {
   };
   command->add_option("ACTION", options->action,
                       "add: a run to the file; show: the newest; page: charts over commits");
-  command->add_option("RUN", options->run, "add: run folder, work trace to replay, baseline, or CSV file of measured cycles");
+  command->add_option(
+      "RUN", options->run,
+      "add: run folder, work trace to replay, baseline, or CSV file of measured cycles");
   add("--file", options->file, "FILE", "the history [history.jsonl]");
   add("--commit", options->commit, "ID", "of the run [git: HEAD]");
   add("--branch", options->branch, "NAME", "of the run [git]; show, page: only that [all]");

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "platform_models/loader/loader.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/validation/microbench/bench.h"

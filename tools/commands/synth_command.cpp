@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_request.h"

@@ -8,12 +8,11 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/run/trace_source.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/run/trace_source.h"
 
 namespace leviosim::tools {
 namespace {

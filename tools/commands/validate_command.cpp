@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"

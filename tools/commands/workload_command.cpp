@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"

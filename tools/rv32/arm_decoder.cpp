@@ -6,7 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "decoder.h"
+#include "instruction.h"
+#include "qemu_plugin.h"
 
 namespace leviosim::rv32 {
 namespace {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+struct qemu_plugin_insn;
+
 namespace leviosim::rv32 {
 
 enum class Kind : std::uint8_t {
@@ -47,11 +49,11 @@ enum class Kind : std::uint8_t {
   LoopCounter,  ///< of loops that were repeated
 };
 inline constexpr std::array kKindNames = {
-    "alu",          "move",          "mul",         "mul_high",    "div",           "load",
-    "store",        "float_load",    "float_store", "branch",      "jump",          "call",
-    "return",       "indirect_jump", "f32_add",     "f32_mul",     "f32_fma",       "f32_div",
-    "f32_sqrt",     "f32_compare",   "f32_convert", "f32_sign",    "f32_move",      "other",
-    "branch_taken", "branch_back",   "more_loaded", "more_stored", "more_restored", "more_saved",
+    "alu",          "move",          "mul",         "mul_high",     "div",           "load",
+    "store",        "float_load",    "float_store", "branch",       "jump",          "call",
+    "return",       "indirect_jump", "f32_add",     "f32_mul",      "f32_fma",       "f32_div",
+    "f32_sqrt",     "f32_compare",   "f32_convert", "f32_sign",     "f32_move",      "other",
+    "branch_taken", "branch_back",   "more_loaded", "more_stored",  "more_restored", "more_saved",
     "spared_move",  "spared_index",  "spared_sum",  "spared_shift", "loop_counter"};
 inline constexpr std::size_t kKinds = kKindNames.size();
 
@@ -66,7 +68,15 @@ struct Instruction {
   std::uint64_t reads = 0;      ///< registers, likewise
 
   // Of RV32 only. Registers are numbered as above; -1: none.
-  enum class Form : std::uint8_t { Other, Add, AddConstant, Subtract, Multiply, ShiftLeft, ShiftRight };
+  enum class Form : std::uint8_t {
+    Other,
+    Add,
+    AddConstant,
+    Subtract,
+    Multiply,
+    ShiftLeft,
+    ShiftRight
+  };
   Form form = Form::Other;
   std::int8_t written = -1, first = -1, second = -1;  ///< result and operands
   std::int8_t base = -1;                              ///< register of an access's address
@@ -78,5 +88,11 @@ struct Instruction {
   bool ends_block() const { return kind >= Kind::Branch && kind <= Kind::IndirectJump; }
   bool loads() const { return kind == Kind::Load || kind == Kind::FloatLoad; }
 };
+
+/// Decodes an instruction of the program that is traced. One plugin is built for each decoder.
+/// Instructions of a block come in order.
+/// @param thumb  of ARM: whether it is one of the short ones
+/// @throws std::runtime_error if the instruction is not known
+Instruction decode(const qemu_plugin_insn* insn, bool thumb);
 
 }  // namespace leviosim::rv32

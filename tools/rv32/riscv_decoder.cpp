@@ -8,7 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "decoder.h"
+#include "instruction.h"
+#include "qemu_plugin.h"
 
 namespace leviosim::rv32 {
 namespace {
@@ -37,11 +38,11 @@ Kind kind_of(const std::string& m) {
       for (const char* name : names) map[name] = kind;
     };
     add(Kind::Alu,
-        {"add",   "addi", "sub",  "neg",  "and",  "andi", "or",    "ori",    "xor",  "xori",
-         "not",   "sll",  "slli", "srl",  "srli", "sra",  "srai",  "slt",    "slti", "sltu",
-         "sltiu", "seqz", "snez", "sltz", "sgtz", "lui",  "auipc", "zext.b", "cpop", "min",
-         "max",   "minu", "maxu", "sext.b", "sext.h", "zext.h", "andn", "orn", "xnor", "rol",
-         "ror", "rori", "clz", "ctz", "rev8", "orc.b"});
+        {"add",   "addi", "sub",  "neg",    "and",    "andi",   "or",    "ori",    "xor",  "xori",
+         "not",   "sll",  "slli", "srl",    "srli",   "sra",    "srai",  "slt",    "slti", "sltu",
+         "sltiu", "seqz", "snez", "sltz",   "sgtz",   "lui",    "auipc", "zext.b", "cpop", "min",
+         "max",   "minu", "maxu", "sext.b", "sext.h", "zext.h", "andn",  "orn",    "xnor", "rol",
+         "ror",   "rori", "clz",  "ctz",    "rev8",   "orc.b"});
     add(Kind::Move, {"mv", "li", "nop"});
     add(Kind::Mul, {"mul"});
     add(Kind::MulHigh, {"mulh", "mulhu", "mulhsu"});

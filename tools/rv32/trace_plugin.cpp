@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis.h"
-#include "decoder.h"
+#include "instruction.h"
 #include "qemu_plugin.h"
 #include "xpulp.h"
 

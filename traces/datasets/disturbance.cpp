@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/rng.h"
 

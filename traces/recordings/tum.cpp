@@ -7,7 +7,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "traces/datasets/asl_reader.h"
-#include "traces/datasets/imu_batches.h"
+#include "traces/datasets/dataset.h"
 #include "traces/datasets/row_values.h"
 #include "traces/datasets/sensor_yaml.h"
 #include "traces/recordings/formats.h"
@@ -25,8 +25,8 @@ constexpr const char* kImu = "dso/imu_config.yaml";
 
 double rate_of(const std::vector<std::int64_t>& stamps_ns, const fs::path& file) {
   if (stamps_ns.size() < 2)
-    throw InputError(fmt::format("{}: one time stamp is no rate; expected at least 2 rows",
-                                 file.string()));
+    throw InputError(
+        fmt::format("{}: one time stamp is no rate; expected at least 2 rows", file.string()));
   std::vector<std::int64_t> periods;
   for (std::size_t i = 1; i < stamps_ns.size(); ++i)
     periods.push_back(stamps_ns[i] - stamps_ns[i - 1]);
@@ -124,8 +124,8 @@ void read_imu(const fs::path& folder, Dataset& data) {
                     read_samples(required(folder, kAccel, "expected beside gyroscope.txt"),
                                  kAccelBound, &ImuSample::accel));
   if (data.imu.empty())
-    throw InputError(fmt::format("{}: no sample within the times of {}", data.imu_csv.string(),
-                                 kAccel));
+    throw InputError(
+        fmt::format("{}: no sample within the times of {}", data.imu_csv.string(), kAccel));
 }
 
 }  // namespace
@@ -154,8 +154,7 @@ Dataset read_tum_rgbd(const fs::path& folder) {
       data.ground_truth.push_back(truth);
     }
   }
-  for (const char* name :
-       {"cam0/sensor.yaml", kFrames, "imu0/sensor.yaml", kGyro, kAccel, kTruth})
+  for (const char* name : {"cam0/sensor.yaml", kFrames, "imu0/sensor.yaml", kGyro, kAccel, kTruth})
     if (base::is_file(folder / name)) data.files.push_back({name, {folder / name}});
   return data;
 }

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/base/angles.h"
 #include "sim/base/check.h"
+#include "sim/base/units.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::traces {

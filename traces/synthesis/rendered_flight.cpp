@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/base/angles.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
+#include "sim/base/units.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/asl_writer.h"
 #include "traces/datasets/rng.h"

@@ -23,8 +23,8 @@
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_preparation.h"
-#include "traces/synthesis/flight_images.h"
 #include "traces/synthesis/place.h"
+#include "traces/synthesis/synthetic.h"
 
 namespace leviosim::traces {
 

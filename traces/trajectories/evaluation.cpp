@@ -1,16 +1,16 @@
 #include "traces/trajectories/evaluation.h"
 
-#include <Eigen/SVD>
 #include <fmt/core.h>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-#include "sim/base/angles.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/units.h"
 
 namespace leviosim::traces {
 namespace {
@@ -213,10 +213,10 @@ void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stam
   throw InputError(fmt::format(
       "{}: {} of the {} frames ({} to {} ns) {} a true pose within {:g} ms; expected at least {}, "
       "or no ground truth (it spans {} to {} ns)",
-      data.truth_csv.string(),
-      matched == 0 ? "none" : fmt::format("{}", matched), stamps_ns.size(), stamps_ns.front(),
-      stamps_ns.back(), matched > 1 ? "have" : "has", static_cast<double>(how.max_gap_ns) * 1e-6,
-      kFewest, data.ground_truth.front().t_ns, data.ground_truth.back().t_ns));
+      data.truth_csv.string(), matched == 0 ? "none" : fmt::format("{}", matched), stamps_ns.size(),
+      stamps_ns.front(), stamps_ns.back(), matched > 1 ? "have" : "has",
+      static_cast<double>(how.max_gap_ns) * 1e-6, kFewest, data.ground_truth.front().t_ns,
+      data.ground_truth.back().t_ns));
 }
 
 namespace {

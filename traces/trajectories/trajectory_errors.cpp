@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/base/angles.h"
 #include "sim/base/check.h"
+#include "sim/base/units.h"
 
 namespace leviosim::traces {
 namespace {

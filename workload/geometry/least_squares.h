@@ -5,10 +5,9 @@
 // Left out: a test whether the columns depend on each other; the result is then not a number.
 #pragma once
 
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
-#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 

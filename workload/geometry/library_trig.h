@@ -12,7 +12,7 @@
 #pragma once
 
 #include "sim/work/policy.h"
-#include "workload/math/target_call.h"
+#include "workload/math/compilers.h"
 
 namespace leviosim::vio::levio {
 

@@ -7,9 +7,8 @@
 
 #include <cstdint>
 
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 #include "workload/math/matrix.h"
-#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 

@@ -8,10 +8,9 @@
 
 #include "workload/geometry/library_trig.h"
 #include "workload/geometry/product.h"
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
-#include "workload/math/target_call.h"
 
 namespace leviosim::vio::levio {
 

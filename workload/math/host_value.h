@@ -15,7 +15,7 @@
 #include <type_traits>
 
 #include "sim/base/check.h"
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 
 namespace leviosim {
 

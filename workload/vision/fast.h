@@ -11,7 +11,7 @@
 #include <array>
 
 #include "sim/work/policy.h"
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 
 namespace leviosim::vio {
 

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "sim/work/policy.h"
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 
 namespace leviosim::vio {
 

@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 #include "workload/math/trig.h"
 
 namespace leviosim::vio {

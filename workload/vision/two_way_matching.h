@@ -10,7 +10,7 @@
 #pragma once
 
 #include "sim/base/check.h"
-#include "workload/math/host_hints.h"
+#include "workload/math/compilers.h"
 #include "workload/vision/matcher.h"
 #include "workload/vision/slices.h"
 

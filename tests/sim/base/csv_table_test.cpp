@@ -1,5 +1,5 @@
 // Tables of comma-separated values: one description per column, and the quoting of RFC 4180.
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 
 #include <gtest/gtest.h>
 

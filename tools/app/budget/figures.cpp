@@ -9,7 +9,7 @@
 #include "platform_models/loader/schema.h"
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {

@@ -11,7 +11,7 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
 

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "sim/base/error.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/terminal.h"
 

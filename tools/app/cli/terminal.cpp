@@ -17,7 +17,6 @@
 
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
-#include "sim/base/printable_text.h"
 #include "sim/base/text.h"
 
 namespace leviosim::tools {

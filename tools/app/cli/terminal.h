@@ -2,7 +2,7 @@
 // Results are kept until the command ends, and then shown as a screen of 24 lines,
 // or all of them with --all, or as many lines as LINES in the environment says (0: all).
 // They are coloured on a terminal only, and not where NO_COLOR is set (no-color.org). Nothing raw
-// leaves: control characters and bytes that are no UTF-8 are escaped (sim/base/printable_text.h).
+// leaves: control characters and bytes that are no UTF-8 are escaped (sim/base/text.h).
 // Newlines and tabs of results stay, so texts from outside are made printable() where they enter a
 // result. No line is a command for a server of CI.
 #pragma once

@@ -10,7 +10,6 @@
 #include <map>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/comparison/run_record.h"

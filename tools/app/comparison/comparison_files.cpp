@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/base/csv_table.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/csv.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/report/text_table.h"

@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {

@@ -8,7 +8,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "sim/outputs/output_record.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/comparison/comparison.h"

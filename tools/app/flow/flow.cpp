@@ -15,7 +15,7 @@
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/validation/references.h"
-#include "traces/datasets/imu_batches.h"
+#include "traces/datasets/dataset.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {

@@ -8,10 +8,9 @@
 #include <map>
 #include <utility>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "sim/base/builtin_file.h"
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"

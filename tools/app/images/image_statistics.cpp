@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/base/interruption.h"
 #include "tools/app/images/feature_tracks.h"
 #include "tools/app/report/text_table.h"

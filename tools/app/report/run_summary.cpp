@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/result/summary.h"

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <optional>
 
-#include "sim/base/csv_table.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/csv.h"
+#include "sim/base/text.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/result/summary.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "sim/base/check.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 
 namespace leviosim::tools {
 namespace {

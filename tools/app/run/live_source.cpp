@@ -9,7 +9,7 @@
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/result/summary.h"
-#include "traces/datasets/imu_batches.h"
+#include "traces/datasets/dataset.h"
 #include "traces/recordings/recording.h"
 #include "traces/trajectories/evaluation.h"
 

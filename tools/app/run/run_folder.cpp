@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "sim/base/sha256.h"

@@ -8,8 +8,6 @@
 
 #include "platform_models/loader/platform_file.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
-#include "sim/base/printable_text.h"
 #include "sim/base/text.h"
 #include "sim/energy/model.h"
 #include "tools/app/cli/host.h"

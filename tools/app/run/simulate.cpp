@@ -9,7 +9,7 @@
 
 #include "sim/base/error.h"
 #include "sim/soc/simulation.h"
-#include "sim/work/memory_overflow.h"
+#include "sim/work/arena.h"
 #include "tools/app/run/range_bands.h"
 #include "tools/app/run/trace_source.h"
 #include "tools/app/run/workload.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "sim/work/transfers.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/trace_source.h"

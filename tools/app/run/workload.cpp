@@ -10,7 +10,7 @@
 #include "platform_models/loader/schema.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/live_source.h"

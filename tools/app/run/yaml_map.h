@@ -13,7 +13,7 @@
 
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 
 namespace leviosim::tools {
 

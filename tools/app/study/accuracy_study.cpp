@@ -12,7 +12,7 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"

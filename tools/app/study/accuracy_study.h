@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/report/statistic_list.h"

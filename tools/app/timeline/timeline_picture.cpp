@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/result/summary.h"

@@ -1,6 +1,6 @@
 #include "tools/app/timeline/track_events.h"
 
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 
 namespace leviosim::tools {
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "sim/base/csv.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"

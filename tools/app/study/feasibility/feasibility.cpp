@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/base/interruption.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/report/text_table.h"

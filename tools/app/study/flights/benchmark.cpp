@@ -7,8 +7,8 @@
 #include <map>
 
 #include "sim/base/error.h"
-#include "sim/base/printable_text.h"
 #include "sim/base/sha256.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/run/flight_cache.h"

@@ -12,7 +12,7 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/nearest.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/workload.h"

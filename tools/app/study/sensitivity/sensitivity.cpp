@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/chip/accelerator.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/cli/outputs.h"

@@ -8,7 +8,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/figures.h"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "platform_models/loader/schema.h"
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"

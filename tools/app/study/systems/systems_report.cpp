@@ -7,7 +7,6 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/csv.h"
-#include "sim/base/csv_table.h"
 #include "tools/app/flow/flow.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/text_table.h"

@@ -9,10 +9,10 @@
 #include <memory>
 #include <utility>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/printable_text.h"
+#include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"

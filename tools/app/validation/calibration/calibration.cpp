@@ -10,7 +10,6 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
-#include "sim/base/nearest.h"
 #include "sim/base/text.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/validation/references.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/base/csv_table.h"
+#include "sim/base/csv.h"
 #include "sim/base/interruption.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/range_bands.h"

@@ -3,8 +3,7 @@
 #include <cstring>
 
 #include "workload/graph/landmark_records.h"
-#include "workload/math/host_hints.h"
-#include "workload/math/target_call.h"
+#include "workload/math/compilers.h"
 
 namespace leviosim::vio::levio {
 namespace {

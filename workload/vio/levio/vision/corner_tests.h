@@ -5,8 +5,7 @@
 
 #include <array>
 
-#include "workload/math/host_hints.h"
-#include "workload/math/target_call.h"
+#include "workload/math/compilers.h"
 #include "workload/vision/fast.h"
 #include "workload/vision/features.h"
 

@@ -1,6 +1,6 @@
 #include "workload/vio/levio/vision/matcher.h"
 
-#include "workload/math/target_call.h"
+#include "workload/math/compilers.h"
 #include "workload/vision/two_way_matching.h"
 
 namespace leviosim::vio::levio {
