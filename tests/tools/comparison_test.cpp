@@ -138,5 +138,27 @@ TEST(Comparison, RunsWithoutPartsSayThatTheirMechanismsAreUnknown) {
             std::string::npos);
 }
 
+TEST(Comparison, ARecordWithoutSumsHasSharesToo) {  // as baselines are
+  RunRecord a = record(example_run());
+  std::erase_if(a.statistics, [](const Statistic& s) { return s.name.ends_with(".sum"); });
+  const RunRecord b = record(example_run());
+  const RunComparison c = compare_runs(a, b);
+  ASSERT_TRUE(c.stages[0].share.a.has_value());
+  EXPECT_EQ(c.stages[0].share.a, c.stages[0].share.b);
+}
+
+TEST(Comparison, AStageThatDidNotRunHasNoRow) {
+  RunResult run = example_run();
+  const std::string name = "\nepnp_ransac ";
+  const RunRecord without = record(run);
+  run.stages[1].calls = 5;
+  const RunRecord with = record(run);
+  const auto report = [&](const RunRecord& b) {
+    return comparison_report(compare_runs(without, b), ReportFormat::text);
+  };
+  EXPECT_EQ(report(without).find(name), std::string::npos) << report(without);
+  EXPECT_NE(report(with).find(name), std::string::npos) << report(with);
+}
+
 }  // namespace
 }  // namespace leviosim::tools

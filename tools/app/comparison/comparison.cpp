@@ -145,10 +145,11 @@ class Comparer {
   }
 
   static std::optional<double> share(const RunRecord& run, const std::string& path) {
-    const auto stage = run.value(path + "cycles.parallel.sum");
+    const auto calls = run.value(path + "calls");
+    const auto call = run.value(path + "cycles.parallel.mean");
     const auto frame = run.value("frame.cycles.parallel.mean");
-    if (!stage || !frame || *frame == 0) return std::nullopt;
-    return 100 * *stage / frames(run) / *frame;
+    if (!calls || !call || !frame || *frame == 0) return std::nullopt;
+    return 100 * *calls * *call / frames(run) / *frame;
   }
 
   void compare_work(const std::string& path, StageComparison& c) const {

@@ -131,6 +131,7 @@ class Writer {
     TextTable one({{"stage on one core", kLeft}, {"A"}, {"B"}, {"change"}});
     bool any_single = false;
     for (const StageComparison& s : c_.stages) {
+      if (!s.parallel.a && !s.parallel.b) continue;  // it did not run
       const std::string name = shortened(s.stage.name, 20);
       all.add({name, pair(s.calls, 0), kilocycles(s.parallel.a), kilocycles(s.parallel.b),
                percent(s.parallel.percent()), figure_text(s.share.a, 1),
