@@ -253,6 +253,35 @@ TEST_F(SweepCommand, LivePointsHaveTheAccuracyOfTheirRun) {
     EXPECT_NE(compared.out.find(part), std::string::npos) << compared.out;
 }
 
+/// On a few frames of the synthetic flight, with one seed; and their recording lies beside the
+/// repository.
+TEST_F(SweepCommand, AllPointsOfTheExamplesCanRun) {
+  const fs::path root = leviosim::tests::source_folder();
+  int plans = 0;
+  for (const fs::directory_entry& file :
+       fs::directory_iterator(root / "tools/app/study/sweep/examples")) {
+    if (file.path().extension() != ".yaml") continue;
+    ++plans;
+    std::string text = base::read_text_file(file.path());
+    std::smatch data;
+    ASSERT_TRUE(std::regex_search(text, data, std::regex("data: (.*)\n"))) << file.path();
+    EXPECT_EQ((file.path().parent_path() / data[1].str()).lexically_normal(),
+              (root.parent_path() / "shared/data/euroc/MH_01_easy_t05_t20").lexically_normal());
+    text.replace(static_cast<std::size_t>(data.position()),
+                 static_cast<std::size_t>(data.length()),
+                 "data: synthetic\n  frames: '20:34'\n");
+    text = std::regex_replace(text, std::regex(R"(seed: \[1, [0-9, ]*\])"), "seed: [1]");
+    const std::string plan = path(file.path().filename().string());
+    outputs::write_file_atomically(plan, text);
+    const ProgramResult swept =
+        run_program(folder_, {"sweep", plan, "--out", path("of-" + file.path().stem().string()),
+                              "--quiet", "--cache", path("cache-examples")});
+    EXPECT_EQ(swept.status, 0) << swept.err;
+    EXPECT_NE(swept.out.find("0 of them cannot run"), std::string::npos) << swept.out;
+  }
+  EXPECT_GE(plans, 2);
+}
+
 /// Points are compared as the replays that they stand for are.
 /// To nine digits: a mean over milliseconds is not the last bit of one over nanoseconds.
 std::string rounded_numbers(const std::string& csv) {
