@@ -32,14 +32,17 @@ auto reading(const std::string& where, const char* what, F&& f) {
 /// JSON would round fractions and cut off digits.
 template <class Whole>
 void whole(const Json& number, Whole& value) {
+  if (!number.is_number_integer()) throw std::out_of_range("no whole number");
   number.get_to(value);
-  if (!number.is_number_integer() || number != value) throw std::out_of_range("no whole number");
+  if (number != value) throw std::out_of_range("too large");
 }
 
 void check_format(const std::string& where, const Json& document, const char* format, int known) {
   if (document.value("format", "") != format)
     throw InputError(fmt::format("{}: no {}", where, format));
-  const int version = document.value("version", 0);
+  int version = 0;
+  if (document.contains("version") && document.at("version").is_number_integer())
+    document.at("version").get_to(version);
   if (version != known)
     throw InputError(
         fmt::format("{}: {} of version {}; this leviosim reads version {}: run it again", where,
