@@ -147,6 +147,16 @@ TEST(Comparison, ARecordWithoutSumsHasSharesToo) {  // as baselines are
   EXPECT_EQ(c.stages[0].share.a, c.stages[0].share.b);
 }
 
+TEST(Comparison, CyclesMeasuredOfNoKnownNumberOfFramesHaveNoShares) {
+  RunRecord measured = record(example_run());
+  std::erase_if(measured.statistics, [](const Statistic& s) { return s.name == "frames.count"; });
+  measured.facts.frames = 0;
+  const RunRecord b = record(example_run());
+  const RunComparison c = compare_runs(measured, b);
+  EXPECT_FALSE(c.stages[0].share.a.has_value());
+  EXPECT_TRUE(c.stages[0].share.b.has_value());
+}
+
 TEST(Comparison, AStageThatDidNotRunHasNoRow) {
   RunResult run = example_run();
   const std::string name = "\nepnp_ransac ";

@@ -148,8 +148,9 @@ class Comparer {
     const auto calls = run.value(path + "calls");
     const auto call = run.value(path + "cycles.parallel.mean");
     const auto frame = run.value("frame.cycles.parallel.mean");
-    if (!calls || !call || !frame || *frame == 0) return std::nullopt;
-    return 100 * *calls * *call / frames(run) / *frame;
+    const double number = frames(run);  // 0 for cycles measured elsewhere
+    if (!calls || !call || !frame || *frame == 0 || number == 0) return std::nullopt;
+    return 100 * *calls * *call / number / *frame;
   }
 
   void compare_work(const std::string& path, StageComparison& c) const {

@@ -16,12 +16,12 @@ namespace leviosim::tools {
 /// Stages: calls, kilocycles of a mean call on one core and on N, speed-up, milliseconds.
 std::string stage_table(const RunResult& run, int width = table_width());
 
-/// The same for these stages, without a title. @param mark_of_controller  behind names of stages
-/// there
 /// A line that says of which stages a share worth mentioning has no measured code; empty if of
 /// none.
 std::string unmeasured_note(const RunResult& run);
 
+/// The stage table of these stages, without a title.
+/// @param mark_of_controller  behind names of stages there
 TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
                     std::string_view mark_of_controller);
 
