@@ -144,6 +144,8 @@ class InBrowser : public Report {
       unnamed: chartsOf("kind").reduce((sum, c) => sum + c.data.labels.length -
         c.data.datasets.filter((d) => d.yAxisID === "kind").flatMap((d) => d.data)
           .filter((v) => v).length, 0),
+      untrusted: chartsOf("map").flatMap((c) => c.data.datasets.filter((d) => d.yAxisID === "map"))
+        .flatMap((d) => d.data.map((v, i) => v ? `${i} ${d.label}` : null)).filter((v) => v),
       alike: chartsOf("").some((c) => {
         const names = new Map();
         return c.data.datasets.some((d) => {
@@ -290,6 +292,19 @@ TEST_F(InBrowser, APageOfAHistoryIsToo) {
   expect_done({"history", "page", "--file", path("history.jsonl"), "--budget", path("limits.yaml"),
                "--out", path("history.html")});
   expect_fine("history.html");
+}
+
+/// As the odometry of `next` knows it.
+TEST_F(InBrowser, FramesOfAMapThatIsNotTrustedAreMarked) {
+  expect_done({"run", "--profile", "next", "--data", path("flight"), "--out", path("next"),
+               "--quiet", "--report", path("next.html")});
+  const Json frames = csv_json("frames.csv", base::read_text_file(path("next/frames.csv")));
+  Json expected = Json::array();
+  for (std::size_t i = 0; i < frames["health"].size(); ++i)
+    if (frames["health"][i] == 1) expected.push_back(fmt::format("{} map: unreliable", i));
+  ASSERT_FALSE(expected.empty());
+  EXPECT_EQ(open("next.html", false).pages["1280"]["untrusted"], expected);
+  expect_fine("next.html");
 }
 
 TEST_F(InBrowser, FramesThatInitialiseHaveAColour) {

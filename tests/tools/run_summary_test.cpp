@@ -59,13 +59,35 @@ TEST(RunSummary, SaysAllThatMatters) {
   const std::string text = run_summary(kHeading, eventful_run(), 80);
   for (const char* part :
        {"verdict: map lost: the error is 92.6 % of the path",
-        "time fits on average: 1 of 5 frames late",
-        "frame time: mean 31.50, p99 60.00",
-        "memory: L1 64.0 kB (50.0 %) in optimiser iteration", "L2 794.5 kB (49.7 %)",
+        "time fits on average: 1 of 5 frames late", "frame time: mean 31.50, p99 60.00",
+        "memory: L1 64.0 of 131.1 kB in optimiser iteration", "L2 794.5 of 1638.4 kB",
         "energy: ", "mJ per frame", "trajectory: ATE 5.000 m RMSE, 0.470 m worst",
         "SE3-aligned, 5 of 5 poses matched, completion 100.0 %, 5.40 m of path",
         "restarts of the map 1", "the scale is 3.00", "--tables all"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
+}
+
+/// A filter that diverges may be a galaxy away.
+TEST(RunSummary, APathThatDivergedHasThreeDigits) {
+  RunResult run = eventful_run();
+  run.trajectory.back().T_world_body.translation().x() = 2.34165364300e20;
+  run.ate->translation.rmse = run.ate->translation.max = 1.2345e19;
+  run.ate->path_length_m = 5;
+  const std::string screen = run_summary(kHeading, run, 80);
+  EXPECT_NE(screen.find("trajectory: ATE 1.23e+19 m RMSE, 1.23e+19 m worst"), std::string::npos)
+      << screen;
+  EXPECT_NE(screen.find("the error is 2.47e+20 % of the path"), std::string::npos) << screen;
+  const std::string text = trajectory_summary(run);
+  EXPECT_NE(text.find("poses, 2.34e+20 m long"), std::string::npos) << text;
+}
+
+/// A memory of 128 KiB has room for 130.9 kB.
+TEST(RunSummary, AMemoryIsFullAtItsSizeAndNotAtItsNominalOne) {
+  RunResult run = testing::example_run();
+  run.stages.front().memory.parallel = Bytes(130'900);
+  const std::string text = run_summary(kHeading, run, 80);
+  EXPECT_NE(text.find("L1 130.9 of 131.1 kB"), std::string::npos) << text;
+  EXPECT_EQ(text.find("memory does not fit"), std::string::npos) << text;
 }
 
 /// Of the twenty stages those with the most cycles, in their order.

@@ -111,6 +111,15 @@ TEST(MapVerdict, BelievesAnEstimatorThatDoubtsItself) {
   EXPECT_EQ(map_verdict(signs).grade, Grade::bad);
 }
 
+TEST(MapVerdict, SaysWhyAnEstimatorDoubtsItself) {
+  MapSigns signs;
+  signs.health = 1;
+  EXPECT_EQ(map_verdict(signs).reason(), "the estimator ends with a map that is unreliable");
+  signs.health_reasons = bit(vio::HealthReason::FewInliers) | bit(vio::HealthReason::Drift);
+  EXPECT_EQ(map_verdict(signs).reason(),
+            "too few matches agree with the pose, too much of the path is uncertain");
+}
+
 TEST(MapVerdict, WithoutTruthAndWithoutHealthNothingIsJudged) {
   MapSigns signs;
   EXPECT_EQ(map_verdict(signs).word(), "not judged");

@@ -161,6 +161,50 @@ TEST_F(MapHealthOf, ACorrectionAfterBlindFramesIsDrift) {
   EXPECT_EQ(frames(60), Health::good);
 }
 
+/// Each sign by itself, and with it nothing else.
+TEST_F(MapHealthOf, SaysWhyItIsNotGood) {
+  using Reason = HealthReason;
+  frames(60);
+  EXPECT_EQ(health_.reasons(), 0);
+  window({.visual = 20});
+  frame();
+  EXPECT_EQ(health_.reasons(), bit(Reason::Inconsistent));
+  window({});
+  frames(21);
+  EXPECT_EQ(health_.reasons(), 0);
+  inliers_ = 5;
+  frames(40);
+  EXPECT_EQ(health_.reasons(), bit(Reason::FewInliers));
+  inliers_ = 95;
+  frames(60);
+  EXPECT_EQ(health_.reasons(), 0);
+  frames(12, PoseSource::Predicted);
+  EXPECT_EQ(health_.reasons(), bit(Reason::Blind));
+  window({.accel_bias = 6});
+  frame();
+  EXPECT_EQ(health_.reasons(), bit(Reason::AccelBias));
+}
+
+TEST_F(MapHealthOf, SaysThatTheScaleIsNotKnownOrTheMapBegunAgain) {
+  using Reason = HealthReason;
+  map_.aligned = false;
+  frame(PoseSource::Initialising);
+  EXPECT_EQ(health_.reasons() & ~bit(Reason::Drift), bit(Reason::NoScale));
+  map_.aligned = true;
+  frames(60);
+  map_.aligned = false;
+  EXPECT_EQ(frame(PoseSource::First, 1), Health::lost);
+  EXPECT_EQ(health_.reasons() & ~bit(Reason::Drift), bit(Reason::NoScale) | bit(Reason::Restarted));
+}
+
+/// A drift of a metre in two.
+TEST_F(MapHealthOf, SaysThatThePathIsUncertain) {
+  frames(20);
+  window({.scale_sigma = 0.5f});
+  frames(20);
+  EXPECT_EQ(health_.reasons(), bit(HealthReason::Drift));
+}
+
 /// levio has no windows that would tell.
 TEST(MapHealth, DoesNotJudgeWithoutTheJointOptimiser) {
   const Profile profile = profile_named("levio", 1);

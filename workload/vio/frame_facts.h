@@ -64,6 +64,29 @@ enum class Health : std::uint8_t { good, unreliable, lost, not_judged };
 inline constexpr std::array<std::string_view, 4> kHealthNames{"good", "unreliable", "lost",
                                                               "not_judged"};
 
+/// Why the odometry does not call its map good, numbered as kHealthReasons.
+enum class HealthReason : std::uint8_t {
+  NoScale,
+  Inconsistent,
+  Blind,
+  FewInliers,
+  AccelBias,
+  Drift,
+  Restarted
+};
+
+/// In what people read. Files have the sum of 1 << number over those that hold.
+inline constexpr std::array<std::string_view, 7> kHealthReasons{
+    "the scale is not known yet",
+    "images and IMU contradict each other in the window",
+    "no landmark has been seen for a while",
+    "too few matches agree with the pose",
+    "the accelerometer would have a bias that no sensor has",
+    "too much of the path is uncertain",
+    "the map was begun again"};
+
+constexpr int bit(HealthReason reason) { return 1 << static_cast<int>(reason); }
+
 struct FrameFacts {
   PoseSource source = PoseSource::First;
   bool keyframe = false;
@@ -76,7 +99,8 @@ struct FrameFacts {
   int places = 0;
   int places_removed = 0;
   int loop_closures = 0;
-  int health = 0;  ///< as Health numbers it
+  int health = 0;          ///< as Health numbers it
+  int health_reasons = 0;  ///< bits of HealthReason; 0 for a map that is good or not judged
 };
 
 /// A number that is never negative.
@@ -103,6 +127,11 @@ inline constexpr std::array kFrameFacts{
     FrameFact{"health",
               "what the estimator knows of its map: 0 good, 1 unreliable, 2 lost, 3 nothing",
               &FrameFacts::health, false},
+    FrameFact{
+        "health_reasons",
+        "why it is 1 or 2, summed: 1 no scale yet, 2 images and IMU contradict each other, 4 no "
+        "landmark seen, 8 few matches agree, 16 accelerometer bias, 32 drift, 64 begun again",
+        &FrameFacts::health_reasons, false},
 };
 
 }  // namespace leviosim::vio

@@ -81,13 +81,14 @@ struct Columns {
       : t_ns(table.column("t_ns")),
         source(table.column("source")),
         restarts(table.column("map_restarts")),
-        health(table.column("health")) {
+        health(table.column("health")),
+        health_reasons(table.column("health_reasons")) {
     if (table.has("latency_ns"))
       times = {table.column("latency_ns"), table.column("start_ns"), table.column("end_ns"),
                table.column("parallel_cycles"), table.column("single_cycles")};
   }
 
-  std::size_t t_ns, source, restarts, health;
+  std::size_t t_ns, source, restarts, health, health_reasons;
   std::optional<Times> times;
 };
 
@@ -110,6 +111,7 @@ void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& fram
     if (info.name == row.text(at.source)) frame.source = info.source;
   frame.map_restarts = whole(row, at.restarts);
   frame.health = whole(row, at.health);
+  frame.health_reasons = whole(row, at.health_reasons);
   if (at.times) frame.timing = timing_of(row, *at.times);
 }
 

@@ -119,6 +119,15 @@ Json pose_sources_json() {
   return list;
 }
 
+/// Of maps that are not good, by number, and why, by bit.
+Json health_json() {
+  Json names = Json::array();
+  for (const std::string_view name : vio::kHealthNames) names.push_back(name);
+  Json reasons = Json::array();
+  for (const std::string_view words : vio::kHealthReasons) reasons.push_back(words);
+  return {{"names", names}, {"reasons", reasons}};
+}
+
 Json key_figures_json(const RunRecord& record, const std::string& protocol) {
   Json list = Json::array();
   for (const KeyFigure& figure : key_figures(record, protocol))
@@ -158,7 +167,8 @@ Json tables_of(const RunRecord& record, const RunFiles& files) {
   tables["energy"] = table_of(record, files, kEnergyFile);
   tables["errors"] = table_of(record, files, kErrorsFile);
   const auto where = [&](const char* name) { return record.name + '/' + name; };
-  expect_columns(where(kFramesFile), tables["frames"], {"frame", "source"});
+  expect_columns(where(kFramesFile), tables["frames"],
+                 {"frame", "source", "health", "health_reasons"});
   expect_columns(where(kStagesFile), tables["stages"],
                  {"stage", "call", "runs_on", "calls", "single_cycles", "parallel_cycles"});
   expect_columns(where(kMemoryFile), tables["memory"],
@@ -189,10 +199,6 @@ struct MemoryUse {
   const char* name;
   double used;
   double size;
-
-  double percent() const {
-    return percent_of_nominal(Bytes(std::llround(used)), Bytes(std::llround(size)));
-  }
 };
 
 std::vector<MemoryUse> memories(const RunRecord& run) {
@@ -259,7 +265,7 @@ void add_memory(std::vector<KeyFigure>& list, const RunRecord& run) {
     const StageName* owner = memory.name == std::string("L1") ? fullest_stage(run) : nullptr;
     list.push_back({fmt::format("{} peak", memory.name), fmt::format("{:.1f}", memory.used * 1e-3),
                     "kB",
-                    fmt::format("{:.1f} % of {:.0f} KiB{}", memory.percent(), memory.size / 1024,
+                    fmt::format("of {:.1f} kB{}", memory.size * 1e-3,
                                 owner == nullptr ? "" : ", in " + owner->name),
                     memory.used / memory.size});
   }
@@ -287,6 +293,7 @@ Json run_json(const RunRecord& record, const RunFiles& files) {
   json["facts"] = facts_of(record, manifest);
   json["tables"] = tables_of(record, files);
   json["pose_sources"] = pose_sources_json();
+  json["health"] = health_json();
   json["stages"] = stages_of(record, json["tables"]["stages"]);
   const std::optional<WorstFrame> worst =
       worst_frame(record, json["tables"]["frames"], json["stages"]);

@@ -81,11 +81,6 @@ std::string latency_line(const RunResult& run) {
       camera->dropped, camera->late);
 }
 
-std::string occupied(Bytes used, Bytes size) {
-  return fmt::format("{:.1f} kB ({:.1f} %)", static_cast<double>(used.count()) * 1e-3,
-                     percent_of_nominal(used, size));
-}
-
 std::string memory_line(const RunResult& run) {
   const StageResult* worst = nullptr;
   for (const StageResult& stage : run.stages)
@@ -94,11 +89,11 @@ std::string memory_line(const RunResult& run) {
       worst = &stage;
   std::string text = "memory:";
   if (worst != nullptr)
-    text += fmt::format(" L1 {} in {},", occupied(worst->memory.parallel, run.l1_size),
+    text += fmt::format(" L1 {} in {},", of_memory(worst->memory.parallel, run.l1_size),
                         printable(worst->name));
   Bytes l2;
   for (const L2Row& row : run.l2) l2 += row.bytes;
-  return text + fmt::format(" L2 {}", occupied(l2, run.l2_size));
+  return text + fmt::format(" L2 {}", of_memory(l2, run.l2_size));
 }
 
 /// Empty where the platform has no energy figures.
@@ -127,13 +122,14 @@ std::vector<std::string> trajectory_lines(const RunResult& run) {
       run.frames.begin(), run.frames.end(),
       [](const FrameResult& frame) { return frame.source == PoseSource::Initialising; });
   if (initialising > 0) again += fmt::format(", initialising for {} frames", initialising);
-  const std::string length = fmt::format("trajectory: {} poses, {:.2f} m", run.trajectory.size(),
-                                         path_length(run.trajectory));
+  const std::string length = fmt::format("trajectory: {} poses, {} m", run.trajectory.size(),
+                                         readable(path_length(run.trajectory), 2));
   if (const std::string why = why_incomparable(run); !why.empty())
     return {length + again, "ATE: none: " + why};
   if (!run.ate) return {length + again + ", no ground truth in the data"};
-  std::string text = fmt::format("trajectory: ATE {:.3f} m RMSE, {:.3f} m worst",
-                                 run.ate->translation.rmse, run.ate->translation.max);
+  std::string text =
+      fmt::format("trajectory: ATE {} m RMSE, {} m worst", readable(run.ate->translation.rmse, 3),
+                  readable(run.ate->translation.max, 3));
   if (const auto attitude = traces::attitude_errors(*run.ate))
     text += fmt::format(", tilt {:.1f}°, heading {:.1f}°{}", attitude->tilt_rmse_deg,
                         attitude->heading_rmse_deg,
@@ -307,8 +303,8 @@ std::string frame_summary(const RunResult& run) {
 }
 
 std::string trajectory_summary(const RunResult& run) {
-  std::string text = fmt::format("trajectory: {} poses, {:.2f} m long\n", run.trajectory.size(),
-                                 path_length(run.trajectory));
+  std::string text = fmt::format("trajectory: {} poses, {} m long\n", run.trajectory.size(),
+                                 readable(path_length(run.trajectory), 2));
   if (run.poses_left_out > 0)
     text += fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
   if (const std::string why = why_incomparable(run); !why.empty())
@@ -334,9 +330,10 @@ std::string map_warning(const RunResult& run) {
 std::string ate_text(const Evaluation& evaluation) {
   const ErrorSummary& t = evaluation.translation;
   return fmt::format(
-             "ATE: {:.3f} m RMSE ({:.3f} mean, {:.3f} median, {:.3f} worst)\n"
+             "ATE: {} m RMSE ({} mean, {} median, {} worst)\n"
              "     {}\n",
-             t.rmse, t.mean, t.median, t.max, evaluation.protocol) +
+             readable(t.rmse, 3), readable(t.mean, 3), readable(t.median, 3), readable(t.max, 3),
+             evaluation.protocol) +
          attitude_text(evaluation);
 }
 

@@ -51,6 +51,7 @@ RecordedFrame recorded(const FrameResult& frame, bool timed) {
   row.source = frame.source;
   row.map_restarts = frame.map_restarts;
   row.health = frame.health;
+  row.health_reasons = frame.health_reasons;
   if (timed)
     row.timing = {frame.end_ns - frame.arrival_ns, frame.end_ns - frame.start_ns,
                   static_cast<double>(frame.cycles.count()),
@@ -236,6 +237,7 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames,
       last.source == PoseSource::Kept || last.source == PoseSource::Initialising;
   signs.duration_s = static_cast<double>(last.t_ns - processed.front().t_ns) * 1e-9;
   signs.health = last.health;
+  signs.health_reasons = last.health_reasons;
   for (const RecordedFrame& frame : processed) {
     signs.restarts += frame.map_restarts;
     signs.lost_frames += frame.health == static_cast<int>(vio::Health::lost) ? 1 : 0;

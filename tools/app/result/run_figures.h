@@ -60,6 +60,7 @@ struct RecordedFrame {
   std::optional<PoseSource> source;  ///< absent if it was dropped
   int map_restarts = 0;
   std::optional<int> health;     ///< of the map, as vio::Health numbers it; absent if not recorded
+  int health_reasons = 0;        ///< bits of vio::HealthReason
   std::optional<Timing> timing;  ///< absent if it was dropped, and in native runs
 };
 
@@ -77,6 +78,7 @@ struct MapSigns {
   double duration_s = 0;
   std::int64_t poses_left_out = 0;  ///< since they are NaN
   std::optional<int> health;        ///< of the last frame
+  int health_reasons = 0;           ///< likewise
   std::int64_t lost_frames = 0;     ///< of health 2
 };
 

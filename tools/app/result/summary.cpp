@@ -249,6 +249,17 @@ double percent_of_nominal(Bytes used, Bytes size) {
   return nominal > 0 ? 100.0 * static_cast<double>(used.count()) / nominal : 0;
 }
 
+std::string readable(double value, int decimals) {
+  constexpr double kMost = 1e6;
+  return std::abs(value) < kMost ? fmt::format("{:.{}f}", value, decimals)
+                                 : fmt::format("{:.3g}", value);
+}
+
+std::string of_memory(Bytes used, Bytes size) {
+  return fmt::format("{:.1f} of {:.1f} kB", static_cast<double>(used.count()) * 1e-3,
+                     static_cast<double>(size.count()) * 1e-3);
+}
+
 double path_length(const std::vector<traces::StampedPose>& trajectory) {
   double length = 0;
   for (std::size_t i = 1; i < trajectory.size(); ++i)

@@ -89,6 +89,13 @@ std::vector<BlockGroup> grouped(const std::vector<work::Block>& blocks);
 /// the memory's nominal size (128 kB for 131 072 bytes).
 double percent_of_nominal(Bytes used, Bytes size);
 
+/// "121.9 of 131.1 kB", for people: whether it fits is plain, which a share of the nominal size,
+/// that may be 102 % of a memory with room left, does not show.
+std::string of_memory(Bytes used, Bytes size);
+
+/// With so many decimals; of a path that diverged, which may have twenty digits, three digits.
+std::string readable(double value, int decimals);
+
 /// Length of the estimated path [m].
 double path_length(const std::vector<traces::StampedPose>& trajectory);
 

@@ -102,11 +102,21 @@ std::optional<RunVerdict> memory_verdict(const RunFigures& run) {
     if (!used || !size || *size <= 0) continue;
     if (!verdict) verdict = RunVerdict{"memory", Grade::good, {}};
     if (*used > *size) verdict->grade = Grade::bad;
-    verdict->reasons.push_back(
-        fmt::format("{} {:.1f} kB ({:.1f} %)", name, *used * 1e-3,
-                    percent_of_nominal(Bytes(std::llround(*used)), Bytes(std::llround(*size)))));
+    verdict->reasons.push_back(fmt::format(
+        "{} {}", name, of_memory(Bytes(std::llround(*used)), Bytes(std::llround(*size)))));
   }
   return verdict;
+}
+
+/// Why the estimator ends with a map that is not good.
+std::vector<std::string> reasons_of(vio::Health health, int bits) {
+  std::vector<std::string> reasons;
+  for (std::size_t i = 0; i < vio::kHealthReasons.size(); ++i)
+    if ((bits >> i & 1) != 0) reasons.emplace_back(vio::kHealthReasons[i]);
+  if (reasons.empty())  // replays of traces that do not have them
+    reasons.push_back(fmt::format("the estimator ends with a map that is {}",
+                                  vio::kHealthNames[static_cast<std::size_t>(health)]));
+  return reasons;
 }
 
 /// How far a scale is off, in either direction.
@@ -177,10 +187,10 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   };
   if (signs.error_share && *signs.error_share > limits.error_share)
     fault(*signs.error_share > limits.lost_error_share,
-          fmt::format("the error is {:.1f} % of the path", 100 * *signs.error_share));
+          fmt::format("the error is {} % of the path", readable(100 * *signs.error_share, 1)));
   if (signs.scale && !(off(*signs.scale) < limits.scale))
     fault(!(off(*signs.scale) < limits.lost_scale),
-          fmt::format("the scale is {:.2f}", *signs.scale));
+          fmt::format("the scale is {}", readable(*signs.scale, 2)));
   if (signs.kept_s > limits.kept_s)
     fault(signs.ends_without_pose, fmt::format("the pose was kept for {:.1f} s", signs.kept_s));
   if (signs.initialising_s > limits.initialising_s)
@@ -192,9 +202,8 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   const auto health =
       static_cast<vio::Health>(signs.health.value_or(static_cast<int>(vio::Health::not_judged)));
   if (health == vio::Health::unreliable || health == vio::Health::lost)
-    fault(health == vio::Health::lost,
-          fmt::format("the estimator ends with a map that is {}",
-                      vio::kHealthNames[static_cast<std::size_t>(health)]));
+    for (std::string& reason : reasons_of(health, signs.health_reasons))
+      fault(health == vio::Health::lost, std::move(reason));
   else if (signs.lost_frames > 0)
     fault(false, fmt::format("the estimator had lost its map in {} frames", signs.lost_frames));
   if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));

@@ -300,13 +300,21 @@ Health MapHealth::after_frame(const FrameReport& report, float dt) {
   add_drift(report, dt);
   restarted_ = waits() && (restarted_ || (report.map_restarts > 0 && was_aligned_));
   was_aligned_ = !waits();
+  using Reason = HealthReason;
+  reasons_ = 0;
+  for (const auto& [reason, holds] :
+       {std::pair{Reason::NoScale, waits()},
+        {Reason::Inconsistent, !(doubted_s_ <= 0)},
+        {Reason::Blind, !(blind_s_ <= limits.blind_s)},
+        {Reason::FewInliers, !(tracked_ > limits.tracked)},
+        {Reason::AccelBias, !(map_.fit.accel_bias < limits.accel_bias)},
+        {Reason::Drift, drifts()},
+        {Reason::Restarted, restarted_}})
+    if (holds) reasons_ |= bit(reason);
   if (restarted_ || blind_s_ > profile_.recovery.max_blind_time ||
       !(map_.fit.accel_bias < limits.lost_accel_bias))
     return Health::lost;
-  const bool good = !waits() && doubted_s_ <= 0 && blind_s_ <= limits.blind_s &&
-                    tracked_ > limits.tracked && map_.fit.accel_bias < limits.accel_bias &&
-                    !drifts();
-  return good ? Health::good : Health::unreliable;
+  return reasons_ == 0 ? Health::good : Health::unreliable;
 }
 
 /// Frames without a pose from landmarks say nothing; what the IMU alone gets wrong is drift.

@@ -92,6 +92,8 @@ class MapHealth {
   /// @param report  of a frame, health excepted
   /// @param dt      since the frame before [s]
   Health after_frame(const FrameReport& report, float dt);
+  /// Why it was not good: bits of HealthReason.
+  int reasons() const { return reasons_; }
 
  private:
   void track(const FrameReport& report, float dt);
@@ -105,6 +107,7 @@ class MapHealth {
   const Profile& profile_;
   const MapStatus& map_;
   std::optional<std::array<float, 3>> last_;  ///< position [m]
+  int reasons_ = 0;
   bool was_aligned_ = false;
   bool restarted_ = false;     ///< an aligned map was given up; the next one is not aligned yet
   bool inconsistent_ = false;  ///< the last window

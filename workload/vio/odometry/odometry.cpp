@@ -80,6 +80,7 @@ class OdometryOf : public Odometry {
   FrameReport process_frame(const FrameInput& input) override {
     FrameReport report = front_end_->process(input);
     report.health = static_cast<int>(health_.after_frame(report, input.dt));
+    report.health_reasons = health_.reasons();
     return report;
   }
   bool begin_optimisation() override { return back_end_.begin(); }

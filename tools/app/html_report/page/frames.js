@@ -11,9 +11,25 @@ function kindsOf(run) {
   return kinds.set('dropped', {words: 'dropped', colour: '#b3261e'});
 }
 
+/** Of grades of the map that the estimator does not trust. */
+const kMapColours = {
+  unreliable: '--warn',
+  lost: '--bad'
+};
+
+/**
+ * What the estimator does not trust its map for: {name, reasons}; null if it does, or does not
+ * judge it.
+ */
+function mapOf(run, health, bits) {
+  const name = health === null ? null : run.health.names[health];
+  if (!kMapColours[name]) return null;
+  return {name, reasons: run.health.reasons.filter((_, i) => (bits >> i) & 1)};
+}
+
 /**
  * Frames with parts in ms that add up to the latency.
- * @returns null without times; {frames: [{number, kind, keyframe, begin, latency, parts}], names,
+ * @returns null without times; {frames: [{number, kind, map, keyframe, latency, parts}], names,
  *     wordsOf}
  */
 function framesOf(run) {
@@ -28,6 +44,7 @@ function framesOf(run) {
       return {
         number,
         kind: 'dropped',
+        map: null,
         keyframe: false,
         latency: null,
         parts: names.map(() => null)
@@ -39,6 +56,7 @@ function framesOf(run) {
     return {
       number,
       kind: table.source[i],
+      map: mapOf(run, table.health[i], table.health_reasons[i]),
       keyframe: table.keyframe[i] === 1,
       latency,
       parts: [waiting, ...cycles, rest]
@@ -56,16 +74,28 @@ function latencyFigure(run, data, onpick) {
   const labels = frames.map((frame) => frame.number);
   const deadline = run.facts.deadline_ns / 1e6;
   const kinds = [...data.kinds].filter(([kind]) => frames.some((frame) => frame.kind === kind));
+  const grades =
+      Object.keys(kMapColours).filter((name) => frames.some(({map}) => map?.name === name));
   const bar = {
     barPercentage: 1,
     inflateAmount: 0.5,
     categoryPercentage: frames.length > 120 ? 1 : 0.9
   };
+  const strip = {
+    stacked: true,
+    stack: 's',
+    stackWeight: 1,
+    min: 0,
+    max: 1,
+    ticks: {display: false},
+    grid: {display: false, drawBorder: false}
+  };
   const seen = names.filter((_, i) => frames.some((frame) => frame.parts[i] > 1e-6));
   return chartFigure({
     title: 'Latency of every frame, by stage',
-    hint:
-        'From the camera\'s frame to its pose. The strip below says where the pose came from. A click shows the frame below, stage by stage.',
+    hint: 'From the camera\'s frame to its pose. The strip below says where the pose came from' +
+        (grades.length > 0 ? ', that under it where the estimator does not trust its map' : '') +
+        '. A click shows the frame below, stage by stage.',
     height: (width) => (width < 500 ? 300 : 340),
     onpick: (item) => onpick(item.index),
     config: () => ({
@@ -91,6 +121,16 @@ function latencyFigure(run, data, onpick) {
                          backgroundColor: colour,
                          data: frames.map((frame) => (frame.kind === kind ? 1 : null))
                        })),
+          ...grades.map((name) => ({
+                          ...bar,
+                          label: `map: ${name}`,
+                          stack: 'map',
+                          grouped: false,
+                          yAxisID: 'map',
+                          categoryPercentage: 1,
+                          backgroundColor: style(kMapColours[name]),
+                          data: frames.map(({map}) => (map?.name === name ? 1 : null))
+                        })),
         ]
       },
       options: {
@@ -102,15 +142,8 @@ function latencyFigure(run, data, onpick) {
             ticks: {maxRotation: 0, autoSkipPadding: 24},
             title: {display: true, text: 'frame'}
           },
-          kind: {
-            stacked: true,
-            stack: 's',
-            stackWeight: 1,
-            min: 0,
-            max: 1,
-            ticks: {display: false},
-            grid: {display: false, drawBorder: false}
-          },
+          ...(grades.length > 0 ? {map: strip} : {}),
+          kind: strip,
           y: {
             stacked: true,
             stack: 's',
@@ -129,7 +162,9 @@ function latencyFigure(run, data, onpick) {
               title: ([item]) => item ?
                   `frame ${item.label}${frames[item.dataIndex].keyframe ? ', keyframe' : ''}` :
                   '',
-              label: (item) => item.dataset.yAxisID === 'kind' ?
+              label: (item) => item.dataset.yAxisID === 'map' ?
+                  [item.dataset.label, ...frames[item.dataIndex].map.reasons].map((s) => ` ${s}`) :
+                  item.dataset.yAxisID === 'kind' ?
                   ` ${item.dataset.label}` :
                   ` ${item.dataset.label}: ${numberText(item.raw, 3)} ms`,
               footer: ([item]) => item && frames[item.dataIndex].latency !== null ?
@@ -142,13 +177,15 @@ function latencyFigure(run, data, onpick) {
     }),
     table: () => ({
       columns: [
-        {title: 'frame'}, {title: 'pose', text: true}, {title: 'keyframe', text: true},
-        {title: 'latency, ms'}, ...names.map((name) => ({title: `${name}, ms`}))
+        {title: 'frame'}, {title: 'pose', text: true}, {title: 'map', text: true},
+        {title: 'keyframe', text: true}, {title: 'latency, ms'},
+        ...names.map((name) => ({title: `${name}, ms`}))
       ],
       rows: frames.map(
           (frame) =>
-              [frame.number, data.wordsOf(frame), frame.keyframe ? 'yes' : '',
-               frame.latency, ...frame.parts]),
+              [frame.number, data.wordsOf(frame),
+               frame.map ? [frame.map.name, frame.map.reasons.join('; ')].join(': ') : '',
+               frame.keyframe ? 'yes' : '', frame.latency, ...frame.parts]),
     }),
   });
 }
