@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "platform_models/loader/member_values.h"
+#include "sim/work/op.h"
 
 namespace leviosim::platform {
 namespace {

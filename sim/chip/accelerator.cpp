@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sim/base/check.h"
+#include "sim/work/op.h"
 
 namespace leviosim::sim {
 

@@ -2,7 +2,15 @@
 
 #include <algorithm>
 
+#include "sim/work/op.h"
+
 namespace leviosim::sim {
+
+std::string_view operation_name(std::size_t operation) {
+  if (operation < kCodeOperation) return work::kOps[operation].name;
+  if (operation == kCodeOperation) return "code";
+  return work::kOffloadKinds[operation - kCodeOperation - 1].name;
+}
 
 ForkAccount& ForkAccount::operator+=(const ForkAccount& other) {
   cycles += other.cycles;

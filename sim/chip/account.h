@@ -155,11 +155,7 @@ constexpr std::size_t operation_of(work::OffloadKind kernel) {
   return kCodeOperation + 1 + work::index(kernel);
 }
 /// Name of a kind: "f32_add", "code", "eigen3".
-constexpr std::string_view operation_name(std::size_t operation) {
-  if (operation < kCodeOperation) return work::kOps[operation].name;
-  if (operation == kCodeOperation) return "code";
-  return work::kOffloadKinds[operation - kCodeOperation - 1].name;
-}
+std::string_view operation_name(std::size_t operation);
 
 /// The fork of what the master or the controller does alone.
 inline constexpr std::string_view kSerialFork = "serial";

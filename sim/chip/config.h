@@ -12,8 +12,8 @@
 
 #include "sim/base/units.h"
 #include "sim/work/compiled_work.h"
+#include "sim/work/counts.h"
 #include "sim/work/offload_regions.h"
-#include "sim/work/op.h"
 
 namespace leviosim::sim {
 
@@ -178,11 +178,7 @@ struct OpCost {
 };
 
 /// What operations cost that files leave out: those that are older than the operation.
-constexpr std::array<OpCost, work::kOpCount> default_costs() {
-  std::array<OpCost, work::kOpCount> costs{};
-  costs[work::index(work::Op::IntAddShift)].issue = 2;  // a sum and a shift
-  return costs;
-}
+std::array<OpCost, work::kOpCount> default_costs();
 
 /// How counted operations become instructions of one instruction set, and their latencies.
 struct CoreConfig {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sim/work/op.h"
+
 namespace leviosim::sim {
 namespace {
 
@@ -67,6 +69,23 @@ CompiledRatios::CompiledRatios(const work::CompiledWork& work)
       emitted_(ratio_of_others(work)),
       loads_measured_(work[static_cast<std::size_t>(Compiled::Loads)] > 0),
       used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
+
+OperationsOfKind CompiledRatios::apply(Op op, double count) const {
+  const bool repeats = op == Op::LoopIteration || op == Op::LoopJump;
+  const double emitted = count * (repeats ? emitted_loops_ : emitted_);
+  return {.count = count,
+          .stalled = measured_ && repeats ? emitted : count,
+          .emitted = measured_ ? emitted : 0,
+          .unmeasured = measured_ ? 0 : count,
+          .used_at_once = count * used_at_once_,
+          .unmeasured_loads = loads_measured_ ? 0 : count};
+}
+
+std::array<OpCost, work::kOpCount> default_costs() {
+  std::array<OpCost, work::kOpCount> costs{};
+  costs[work::index(Op::IntAddShift)].issue = 2;  // a sum and a shift
+  return costs;
+}
 
 OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operations,
                       const CoreConfig& core) {

@@ -10,6 +10,10 @@
 #include "sim/chip/instruction_cache.h"
 #include "sim/work/counts.h"
 
+namespace leviosim::work {
+struct OpInfo;
+}
+
 namespace leviosim::sim {
 
 /// What a segment asks of one kind of shared unit.
@@ -59,16 +63,7 @@ inline bool is_measured(const work::CompiledWork& work) {
 class CompiledRatios {
  public:
   CompiledRatios(const work::Counts& segment, work::CompiledFor code);
-  OperationsOfKind apply(work::Op op, double count) const {
-    const bool repeats = op == work::Op::LoopIteration || op == work::Op::LoopJump;
-    const double emitted = count * (repeats ? emitted_loops_ : emitted_);
-    return {.count = count,
-            .stalled = measured_ && repeats ? emitted : count,
-            .emitted = measured_ ? emitted : 0,
-            .unmeasured = measured_ ? 0 : count,
-            .used_at_once = count * used_at_once_,
-            .unmeasured_loads = loads_measured_ ? 0 : count};
-  }
+  OperationsOfKind apply(work::Op op, double count) const;
 
  private:
   explicit CompiledRatios(const work::CompiledWork& work);

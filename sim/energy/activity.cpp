@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/chip/accelerator.h"
+#include "sim/work/op.h"
 
 namespace leviosim::sim {
 namespace {

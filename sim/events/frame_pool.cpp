@@ -3,7 +3,7 @@
 #include <new>
 #include <utility>
 
-#include "sim/base/thread_end.h"
+#include "sim/base/threads.h"
 
 namespace leviosim::sim {
 namespace {

@@ -17,15 +17,9 @@
 #include "sim/base/error.h"
 #include "sim/base/units.h"
 #include "sim/work/memory.h"
+#include "sim/work/program.h"
 
 namespace leviosim::work {
-
-/// A live allocation. `name` must outlive the arena: a string literal.
-struct Block {
-  std::string_view name;
-  Bytes offset;
-  Bytes size;
-};
 
 class Arena {
  public:

@@ -15,6 +15,7 @@
 
 #include "sim/work/code_events.h"
 #include "sim/work/counts.h"
+#include "sim/work/op.h"
 
 namespace leviosim::work {
 

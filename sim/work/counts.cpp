@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "sim/work/op.h"
+
 namespace leviosim::work {
 
 Counts settled(const RawCounts& raw) {

@@ -2,13 +2,19 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "sim/work/code_reuse.h"
 #include "sim/work/compiled_work.h"
-#include "sim/work/op.h"
 
 namespace leviosim::work {
+
+/// Kind of operation. What only holds or adds counts need not know which there are: op.h.
+enum class Op : std::uint8_t;
+/// How many there are; op.h holds its list against it.
+inline constexpr std::size_t kOpCount = 48;
+constexpr std::size_t index(Op op) { return static_cast<std::size_t>(op); }
 
 /// Number of operations of each kind. A plain value: add two to merge two work segments.
 struct Counts {

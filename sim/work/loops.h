@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "sim/work/counts.h"
+#include "sim/work/op.h"
 
 namespace leviosim::work {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim/base/check.h"
-#include "sim/base/thread_end.h"
+#include "sim/base/threads.h"
 
 namespace leviosim::work {
 namespace {

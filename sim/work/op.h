@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sim/work/counts.h"
+
 namespace leviosim::work {
 
 enum class Op : std::uint8_t {
@@ -123,9 +125,7 @@ inline constexpr std::array kOps = {
     OpInfo{Op::Int64Mac, "int64_mac", "64-bit product of 32-bit integers added to a 64-bit value"},
 };
 
-inline constexpr std::size_t kOpCount = kOps.size();
-
-constexpr std::size_t index(Op op) { return static_cast<std::size_t>(op); }
+static_assert(kOps.size() == kOpCount, "counts.h says how many kinds of operation there are");
 
 constexpr bool ops_are_in_order() {
   for (std::size_t i = 0; i < kOpCount; ++i)

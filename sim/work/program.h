@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "sim/base/units.h"
-#include "sim/work/arena.h"
 #include "sim/work/offload_regions.h"
 
 namespace leviosim::work {
@@ -57,6 +56,13 @@ struct TransferWait {
 };
 
 using Step = std::variant<Serial, Fork, Transfer, TransferWait>;
+
+/// A live allocation in a memory. `name` must outlive its arena: a string literal.
+struct Block {
+  std::string_view name;
+  Bytes offset;
+  Bytes size;
+};
 
 /// Highest occupation of a memory during a stage.
 struct MemoryPeak {

@@ -20,6 +20,7 @@
 #include "tools/app/run/live_source.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/odometry/odometry.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim {
 namespace {

@@ -5,6 +5,8 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
+#include "sim/work/machine.h"
+#include "sim/work/op.h"
 #include "tests/examples/outside/exposure.h"
 #include "tests/support/paths.h"
 

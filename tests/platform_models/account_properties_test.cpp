@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "sim/work/op.h"
 #include "tests/platform_models/timing_jobs.h"
 #include "tests/support/account_checks.h"
 
@@ -130,10 +131,9 @@ TEST_P(Account, AForkRightAfterAnotherIsNeverSlower) {
 TEST_P(Account, WaitingForWhatHasArrivedTakesTheWaitAlone) {
   const Segment work = only(Op::IntAlu, 100'000);
   const sim::DmaConfig& dma = chip_.cluster.dma;
-  EXPECT_NEAR(static_cast<double>(time({transfer(64, true), serial(work), wait_for(0)})),
-              static_cast<double>(time({serial(work)})) + dma.programming + dma.call +
-                  dma.completion,
-              2);
+  EXPECT_NEAR(
+      static_cast<double>(time({transfer(64, true), serial(work), wait_for(0)})),
+      static_cast<double>(time({serial(work)})) + dma.programming + dma.call + dma.completion, 2);
 }
 
 TEST_P(Account, MoreTransfersInTheBackgroundAreNeverFaster) {

@@ -99,7 +99,8 @@ TEST(CompiledCode, OfAnotherNameIsRefusedWithThoseThatThereAre) {
   } catch (const InputError& error) {
     const std::string text = error.what();
     EXPECT_NE(text.find("'rv32imac'"), std::string::npos) << text;
-    EXPECT_NE(text.find("there is armv6, rv32imfc, rv32imfc_xpulp, thumb2"), std::string::npos) << text;
+    EXPECT_NE(text.find("there is armv6, rv32imfc, rv32imfc_xpulp, thumb2"), std::string::npos)
+        << text;
   }
 }
 

@@ -59,7 +59,8 @@ TEST(Extends, BareValuesNeedNoMoreThanTheOther) {
   expect_parts(fault_of([&] { extended("isa: { ops: { f32_add: 2 } }\n"); }),
                {"other.yaml:4: isa.ops.f32_add", "single value"});
   expect_parts(fault_of([&] {
-                 resolve_platform_text("alone.yaml", replaced(gap9_text(), "  workers: {", "  workers: 8 # {"));
+                 resolve_platform_text("alone.yaml",
+                                       replaced(gap9_text(), "  workers: {", "  workers: 8 # {"));
                }),
                {"cluster.workers", "expected a map"});
 }

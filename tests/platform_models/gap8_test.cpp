@@ -1,5 +1,6 @@
 // GAP8: what is known of the chip, and how its uncertain numbers are marked.
 #include "platform_models/loader/schema.h"
+#include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/work/op.h"
 #include "tests/platform_models/timing_jobs.h"
 
 namespace leviosim::platform::testing {

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "sim/chip/cost.h"
+#include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {

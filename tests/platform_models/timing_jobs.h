@@ -12,6 +12,7 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/chip/chip.h"
+#include "sim/work/op.h"
 #include "sim/work/program.h"
 
 namespace leviosim::platform::testing {

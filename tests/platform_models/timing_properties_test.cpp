@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "sim/work/op.h"
 #include "tests/platform_models/timing_jobs.h"
 
 namespace leviosim::platform::testing {

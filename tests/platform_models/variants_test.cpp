@@ -1,6 +1,7 @@
 // Changed platforms: the same as files and -p would give, and calibrations that say what they are.
 #include "platform_models/loader/variants.h"
 
+#include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 #include "tests/traces/test_folder.h"
 

@@ -6,6 +6,7 @@
 #include "sim/chip/chip.h"
 #include "sim/energy/model.h"
 #include "sim/events/process.h"
+#include "sim/work/op.h"
 #include "tests/sim/chip_test_config.h"
 #include "tests/sim/energy_test_config.h"
 

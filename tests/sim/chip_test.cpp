@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/work/op.h"
 #include "tests/sim/chip_test_config.h"
 
 namespace leviosim::sim {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/chip/config.h"
+#include "sim/work/op.h"
 
 namespace leviosim::sim {
 

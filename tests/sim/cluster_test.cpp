@@ -5,6 +5,7 @@
 
 #include "sim/base/error.h"
 #include "sim/chip/chip.h"
+#include "sim/work/op.h"
 #include "tests/sim/chip_test_config.h"
 
 namespace leviosim::sim {

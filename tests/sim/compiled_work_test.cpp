@@ -6,6 +6,7 @@
 
 #include "sim/chip/cost.h"
 #include "sim/work/code_tracker.h"
+#include "sim/work/op.h"
 
 namespace leviosim::sim {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sim/work/op.h"
 #include "tests/sim/energy_test_config.h"
 
 namespace leviosim::sim {

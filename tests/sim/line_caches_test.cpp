@@ -1,6 +1,7 @@
 // Instruction caches that are stepped line by line (tests/support/line_caches.h): what they say
 // about teams, and the model of sim/chip/instruction_cache.h against them on loops over functions.
 #include "tests/support/line_caches.h"
+#include "sim/work/op.h"
 
 #include <gtest/gtest.h>
 

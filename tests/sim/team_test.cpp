@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/work/op.h"
 #include "tests/sim/chip_test_config.h"
 
 namespace leviosim::sim {

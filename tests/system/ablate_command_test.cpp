@@ -9,6 +9,7 @@
 #include "tools/app/study/ablate/ablation.h"
 #include "tools/app/study/explore/exploration.h"
 #include "traces/synthesis/synthetic.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -8,8 +8,9 @@
 #include <set>
 
 #include "tests/traces/test_folder.h"
-#include "tools/app/study/engine.h"
 #include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/engine.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "platform_models/loader/loader.h"
+#include "sim/work/op.h"
 #include "tests/traces/test_folder.h"
 
 namespace leviosim::tools {

@@ -6,8 +6,10 @@
 #include <map>
 
 #include "platform_models/loader/compiled_code.h"
+#include "sim/work/machine.h"
 #include "tests/support/named_functions.h"
 #include "tests/workload/short_flight.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

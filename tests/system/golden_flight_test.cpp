@@ -14,9 +14,11 @@
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/loader.h"
 #include "sim/soc/job_timer.h"
+#include "sim/work/machine.h"
 #include "tests/support/paths.h"
 #include "tests/workload/short_flight.h"
 #include "tools/app/result/summary.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

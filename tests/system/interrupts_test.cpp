@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "sim/base/interruption.h"
-#include "sim/base/parallel_for.h"
+#include "sim/base/threads.h"
 #include "tests/support/run_program.h"
 #include "traces/synthesis/synthetic.h"
 

@@ -7,8 +7,10 @@
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/loader.h"
 #include "sim/soc/job_timer.h"
+#include "sim/work/machine.h"
 #include "tests/workload/short_flight.h"
 #include "workload/loop/loop_closer.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

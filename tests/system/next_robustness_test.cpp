@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/workload/short_flight.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::vio::test {
 namespace {

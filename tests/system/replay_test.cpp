@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/work/op.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"

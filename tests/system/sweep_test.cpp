@@ -10,6 +10,7 @@
 #include "tools/app/study/sweep/sweep_store.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

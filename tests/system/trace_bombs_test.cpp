@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include "platform_models/loader/loader.h"
+#include "sim/work/op.h"
 #include "tests/support/run_program.h"
 #include "traces/work_traces/work_memory.h"
 
@@ -84,7 +85,8 @@ std::string trace_of_frames(TraceParts parts, std::size_t number, const std::str
   return parts.file();
 }
 
-/// The system ends a program that takes much longer or more than the 2 s and 300 MB of a small file.
+/// The system ends a program that takes much longer or more than the 2 s and 300 MB of a small
+/// file.
 TEST(SlowTraces, AreRefusedSoon) {
   constexpr testing::ProgramLimits kLimits{.cpu_seconds = 5, .data_bytes = 300'000'000};
   const TempFolder folder;

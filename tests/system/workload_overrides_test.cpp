@@ -6,6 +6,7 @@
 #include "tests/support/run_program.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

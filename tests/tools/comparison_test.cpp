@@ -1,5 +1,6 @@
 // The arithmetic of comparisons on records made by hand.
 #include "tools/app/comparison/comparison.h"
+#include "sim/work/op.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sim/work/op.h"
 #include "tests/sim/chip_test_config.h"
 #include "tools/app/run/simulate.h"
 

@@ -2,6 +2,7 @@
 // statistics and files read it.
 #pragma once
 
+#include "sim/work/op.h"
 #include "tools/app/result/run_result.h"
 
 namespace leviosim::tools::testing {

@@ -1,5 +1,6 @@
 // Which parameters of a point act on a profile.
 #include "tools/app/study/explore/exploration.h"
+#include "workload/vio/profile.h"
 
 #include <gtest/gtest.h>
 

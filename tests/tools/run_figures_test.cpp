@@ -6,6 +6,7 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/soc/account.h"
+#include "sim/work/op.h"
 #include "tests/tools/example_run.h"
 #include "tests/tools/statistic_values.h"
 #include "tools/app/report/statistics.h"

@@ -1,5 +1,6 @@
 // Sweeps over tiny jobs whose times are closed formulas.
 #include "tools/app/study/sensitivity/sensitivity.h"
+#include "sim/work/op.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -125,7 +126,8 @@ TEST(Sensitivity, BandsOfStagesAreRootsOfSumsOfSquares) {
               1.044 + std::hypot(std::hypot(slow, later), std::hypot(programming, completion)),
               1e-9);
   EXPECT_NEAR(bands[2].kcycles.low, 1.044 - std::hypot(programming, earlier, completion), 1e-9);
-  EXPECT_NE(joined(sensitivity_tables(s, 8)).find("if all these numbers are uncertain"), std::string::npos);
+  EXPECT_NE(joined(sensitivity_tables(s, 8)).find("if all these numbers are uncertain"),
+            std::string::npos);
 }
 
 /// A sample that holds all jobs has the bands of the sweep over all; but of code that was not

@@ -7,6 +7,7 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/ablate/ablation.h"
 #include "tools/app/study/systems/systems_report.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,4 +1,5 @@
 // The timeline of work that is known: what lies where, what is joined, and what it costs.
+#include "sim/work/op.h"
 #include "tools/app/timeline/requested_timeline.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "sim/base/parallel_for.h"
+#include "sim/base/threads.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Series of counts come back as they were, whatever they are, and dependent counters cost nothing.
 #include "traces/work_traces/work_columns.h"
+#include "sim/work/op.h"
 
 #include <gtest/gtest.h>
 

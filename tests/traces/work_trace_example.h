@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/work/op.h"
 #include "traces/work_traces/work_frames.h"
 #include "traces/work_traces/work_trace.h"
 

@@ -11,6 +11,7 @@
 
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/loader.h"
+#include "sim/work/op.h"
 #include "tests/validation/int8_product.h"
 #include "tests/validation/int8_product_code.h"
 #include "tools/app/validation/microbench/bench.h"

@@ -10,6 +10,7 @@
 #include "platform_models/loader/loader.h"
 #include "sim/chip/chip.h"
 #include "sim/energy/model.h"
+#include "sim/work/op.h"
 #include "tests/validation/energy_reference.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/simulate.h"

@@ -1,6 +1,7 @@
 // A run as a frame log, made by hand: every kind of frame once or twice, with round numbers.
 #pragma once
 
+#include "sim/work/op.h"
 #include "tests/tools/example_run.h"
 #include "tools/app/validation/frame_log.h"
 

@@ -1,4 +1,5 @@
 // Distributions of a run's inputs, and of the iterations of its hypotheses.
+#include "sim/work/op.h"
 #include "tools/app/validation/validation.h"
 
 #include <gtest/gtest.h>

@@ -10,6 +10,7 @@
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/validation/validation.h"
+#include "workload/vio/profile.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::tools {

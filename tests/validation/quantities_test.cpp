@@ -5,6 +5,7 @@
 #include "tests/traces/test_folder.h"
 #include "tests/validation/example_log.h"
 #include "tools/app/validation/validation.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "eigen_conversions.h"
 #include "preintegration_motion.h"
+#include "sim/work/machine.h"
 #include "workload/graph/alignment.h"
 #include "workload/inertial/initialisation.h"
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/work/machine.h"
 #include "tests/workload/vision_test_images.h"
 #include "workload/flow/estimator.h"
 

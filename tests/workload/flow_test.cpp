@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/work/machine.h"
 #include "sim/work/transfers.h"
 #include "tests/workload/flow_reference.h"
 

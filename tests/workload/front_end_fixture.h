@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/work/machine.h"
 #include "tests/workload/preintegration_motion.h"
 #include "tests/workload/test_camera.h"
 #include "tests/workload/vision_runs.h"
 #include "workload/vio/levio/levio_front_end.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::vio::test {
 

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "tests/workload/front_end_fixture.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::vio::test {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "sim/work/machine.h"
 #include "tests/workload/epnp_scene.h"
 
 namespace leviosim::vio::levio {

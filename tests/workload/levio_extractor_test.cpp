@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/work/machine.h"
 #include "tests/workload/vision_runs.h"
 #include "workload/vio/levio/vision/blur.h"
 #include "workload/vio/levio/vision/corner_tests.h"

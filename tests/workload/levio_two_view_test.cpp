@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "sim/work/machine.h"
 #include "tests/support/dense_algebra.h"
 #include "workload/geometry/essential_ransac.h"
 #include "workload/geometry/pose_matrix.h"

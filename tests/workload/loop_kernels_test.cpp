@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "sim/work/machine.h"
 #include "tests/workload/loop_world.h"
 #include "workload/loop/loop_graph.h"
 #include "workload/loop/place_search.h"

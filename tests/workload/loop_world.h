@@ -13,6 +13,7 @@
 #include <numbers>
 #include <vector>
 
+#include "sim/work/machine.h"
 #include "tests/workload/epnp_scene.h"
 #include "workload/loop/loop_closer.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "sim/work/machine.h"
 #include "tests/support/dense_algebra.h"
 #include "tests/workload/epnp_scene.h"
 #include "workload/graph/marginalisation.h"

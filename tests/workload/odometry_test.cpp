@@ -1,5 +1,6 @@
 // What the odometry makes of a profile before it runs it.
 #include "workload/vio/odometry/odometry.h"
+#include "workload/vio/profile.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "preintegration_motion.h"
+#include "sim/work/machine.h"
 #include "workload/graph/optimiser.h"
 
 namespace leviosim::vio::test {

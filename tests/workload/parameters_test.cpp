@@ -1,5 +1,6 @@
 // Parameters by name: each reaches a field of its own, with a default within its range.
 #include "workload/vio/parameters.h"
+#include "workload/vio/profile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "workload/vision/patch_alignment.h"
+#include "sim/work/machine.h"
 
 #include <gtest/gtest.h>
 

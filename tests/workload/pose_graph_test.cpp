@@ -7,6 +7,7 @@
 #include <string>
 
 #include "pose_graph_fixture.h"
+#include "sim/work/machine.h"
 
 namespace leviosim::vio::test {
 namespace {

@@ -14,6 +14,7 @@
 #include "platform_models/loader/loader.h"
 #include "sim/base/csv.h"
 #include "sim/chip/chip.h"
+#include "sim/work/machine.h"
 #include "tests/support/code_lines.h"
 #include "tests/workload/two_view_scene.h"
 #include "workload/geometry/epnp_ransac.h"

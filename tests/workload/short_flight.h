@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim/work/machine.h"
 #include "traces/datasets/asl_writer.h"
 #include "traces/datasets/camera_model.h"
 #include "traces/datasets/image_preparation.h"
@@ -19,6 +20,7 @@
 #include "traces/synthesis/world.h"
 #include "traces/trajectories/evaluation.h"
 #include "workload/vio/odometry/odometry.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::vio::test {
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/work/machine.h"
 #include "tests/workload/loop_world.h"
 #include "workload/loop/upright_pose.h"
 

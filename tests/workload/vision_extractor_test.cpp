@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "sim/work/machine.h"
 #include "tests/workload/vision_runs.h"
 #include "workload/vision/fast.h"
 #include "workload/vision/harris.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <opencv2/features2d.hpp>
 
+#include "sim/work/machine.h"
 #include "tests/workload/vision_runs.h"
 #include "workload/vio/levio/vision/matcher.h"
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "sim/work/machine.h"
 #include "tests/workload/vision_test_images.h"
 #include "workload/vio/levio/vision/extractor.h"
 #include "workload/vision/extractor.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/base/error.h"
+#include "sim/work/machine.h"
 #include "tests/workload/vision_runs.h"
 #include "workload/vision/strip_extractor.h"
 

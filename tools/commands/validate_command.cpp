@@ -11,6 +11,7 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/validation/validation.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -11,6 +11,7 @@
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/base/parallel_for.h"
+#include "sim/base/threads.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/surface_painter.h"
 

@@ -15,8 +15,8 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/parallel_for.h"
 #include "sim/base/text.h"
+#include "sim/base/threads.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/hall.h"
 #include "traces/synthesis/surface_painter.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/base/error.h"
-#include "sim/base/parallel_for.h"
+#include "sim/base/threads.h"
 #include "traces/datasets/asl_writer.h"
 #include "traces/datasets/image_file.h"
 #include "traces/datasets/rng.h"

@@ -12,9 +12,12 @@
 // Left out: the distance sensor (metric flow), the low-pass over frames, rotation about the view.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
-#include "sim/work/machine.h"
+namespace leviosim::work {
+class Machine;
+}
 
 namespace leviosim::flow {
 

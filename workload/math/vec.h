@@ -4,6 +4,7 @@
 #pragma once
 
 #include "sim/work/policy.h"
+#include "workload/math/camera.h"
 
 namespace leviosim::vio {
 
@@ -104,10 +105,5 @@ Pose<P> inverse(const Pose<P>& T) {
   const Mat3<P> Rt = transpose(T.R);
   return {Rt, -(Rt * T.t)};
 }
-
-/// Pinhole camera without distortion (images arrive undistorted). Units: pixels.
-struct PinholeCamera {
-  float fx, fy, cx, cy;
-};
 
 }  // namespace leviosim::vio

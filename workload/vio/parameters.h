@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "workload/vio/profile.h"
-
 namespace leviosim::vio {
+
+struct Profile;
 
 /// Of all names below.
 inline constexpr std::string_view kParameterPrefix = "workload.";
@@ -55,6 +55,12 @@ void add_profile(OtherProfile profile);
 std::span<const OtherProfile> other_profiles();
 /// nullptr for profiles of the odometry, and for names that nobody knows.
 const OtherProfile* other_profile(std::string_view name);
+
+std::vector<std::string> profile_names();
+/// What distinguishes it, in a few words. The name must be known.
+std::string_view profile_description(std::string_view name);
+/// @throws InputError for an unknown name, with those that are known
+void expect_profile(std::string_view name);
 
 /// Whether the parameter is one of the workload that the profile is of.
 bool has_parameter(std::string_view profile, const Parameter& parameter);

@@ -8,6 +8,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/text.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::vio {
@@ -96,17 +97,20 @@ const NamedProfile* find(std::string_view name) {
 }  // namespace
 
 Profile profile_named(std::string_view name, std::uint32_t seed) {
-  const NamedProfile* const it = find(name);
-  const bool is_other = it == nullptr && other_profile(name) != nullptr;
-  if (it == nullptr && !is_other)
-    throw InputError(fmt::format("unknown profile '{}'; known profiles are {}", name,
-                                 fmt::join(profile_names(), ", ")));
+  expect_profile(name);
   Profile profile;
   profile.name = name;
   profile.optimiser.anchor = levio_anchor();
   profile.sampling_seed = seed * 0x9e3779b1u + 1;  // an odd factor keeps different seeds apart
-  if (!is_other) it->adjust(profile);
+  if (const NamedProfile* const it = find(name)) it->adjust(profile);
   return profile;
+}
+
+void expect_profile(std::string_view name) {
+  if (find(name) == nullptr && other_profile(name) == nullptr)
+    throw InputError(fmt::format("unknown profile '{}'; known profiles are {}{}", name,
+                                 fmt::join(profile_names(), ", "),
+                                 base::did_you_mean(name, profile_names())));
 }
 
 std::vector<std::string> profile_names() {

@@ -158,8 +158,5 @@ struct Profile {
 
 /// @throws InputError for an unknown name, with the nearest known one.
 Profile profile_named(std::string_view name, std::uint32_t seed);
-std::vector<std::string> profile_names();
-/// What distinguishes it, in a few words. The name must be known.
-std::string_view profile_description(std::string_view name);
 
 }  // namespace leviosim::vio

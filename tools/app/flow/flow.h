@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/work/machine.h"
 #include "tools/app/result/run_result.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "sim/energy/area.h"
+#include "sim/work/op.h"
 #include "tools/app/report/run_summary.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"

@@ -11,6 +11,7 @@
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_preparation.h"
 #include "workload/vio/odometry/odometry.h"
+#include "workload/vio/profile.h"
 #include "workload/vio/records.h"
 
 namespace leviosim::tools {

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "platform_models/loader/value.h"
-#include "sim/base/parallel_for.h"
+#include "sim/base/threads.h"
 #include "sim/soc/job_timer.h"
 #include "sim/work/op.h"
 

@@ -6,6 +6,7 @@
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
+#include "sim/work/op.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/result/summary.h"
 #include "traces/trajectories/trajectory.h"

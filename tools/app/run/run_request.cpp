@@ -64,7 +64,7 @@ RunRequest make_workload_request(const RunOptions& options) {
   request.seed = static_cast<std::uint32_t>(
       parse_whole("--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max()));
   request.profile = options.profile;
-  vio::profile_named(options.profile, request.seed);  // refuses unknown names
+  vio::expect_profile(options.profile);
   SplitOverrides overrides = split_overrides(options.overrides);
   request.workload = parse_workload_overrides(overrides.workload);
   request.overrides = std::move(overrides.chip);
@@ -135,6 +135,8 @@ vio::Profile profile_of(const RunRequest& request) {
   return profile;
 }
 
+void check_profile(const RunRequest& request) { profile_of(request); }
+
 void add_chip_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
   const TextOptions add{command};
   add("--platform", options.platform, "NAME|FILE",
@@ -151,8 +153,8 @@ void add_out_options(CLI::App& command, RunOptions& options) {
 int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster) {
   if (options.cores.empty()) return cluster.workers;
   return static_cast<int>(
-      parse_whole("--cores", options.cores, 1, cluster.max_workers,
-                  ", the chip's cluster.max_workers (-p cluster.max_workers=N sets it)"));
+      parse_whole("--cores", options.cores, 1, cluster.workers,
+                  ", the chip's cluster.workers (-p cluster.workers=N sets it)"));
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {

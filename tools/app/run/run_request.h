@@ -65,6 +65,9 @@ struct RunRequest {
 /// @throws InputError if they contradict each other
 void check_together(const vio::Profile& profile);
 
+/// @throws InputError as profile_of()
+void check_profile(const RunRequest& request);
+
 /// The profile with the parameters that were set; of another workload only the name.
 /// @throws InputError as check_together() does, and for parameters of another workload
 vio::Profile profile_of(const RunRequest& request);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "sim/base/text.h"
+#include "sim/work/op.h"
 #include "sim/work/transfers.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/trace_source.h"

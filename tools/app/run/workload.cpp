@@ -84,6 +84,14 @@ std::vector<std::string> names() {
   return all;
 }
 
+double value_in(const RunRequest& request, const vio::Profile& profile,
+                const vio::Parameter& parameter) {
+  if (!parameter.is_of_another()) return parameter.get(profile);
+  for (const vio::Assignment& a : request.workload)
+    if (a.parameter == &parameter) return a.value;
+  return parameter.initial;
+}
+
 }  // namespace
 
 }  // namespace leviosim::tools
@@ -122,10 +130,14 @@ std::unique_ptr<RunSource> make_source(const RunRequest& request) {
 }
 
 double value_of(const RunRequest& request, const vio::Parameter& parameter) {
-  if (!parameter.is_of_another()) return parameter.get(profile_of(request));
-  for (const vio::Assignment& a : request.workload)
-    if (a.parameter == &parameter) return a.value;
-  return parameter.initial;
+  return value_in(request, profile_of(request), parameter);
+}
+
+std::vector<double> parameter_values(const RunRequest& request) {
+  const vio::Profile profile = profile_of(request);
+  std::vector<double> values;
+  for (const vio::Parameter& p : vio::parameters()) values.push_back(value_in(request, profile, p));
+  return values;
 }
 
 double value_of(const RunRequest& request, std::string_view parameter) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "platform_models/loader/compiled_code.h"
-#include "sim/work/machine.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
 #include "workload/vio/odometry/odometry.h"
@@ -17,6 +16,10 @@
 #include "workload/vio/records.h"
 
 namespace leviosim {
+
+namespace work {
+class Machine;
+}
 
 /// What a run does with each frame: computes it on the cluster's machine, and may fill in the pose
 /// (else the body stays at the origin) and what else there is to say about the frame.
@@ -53,6 +56,9 @@ std::unique_ptr<RunSource> make_source(const RunRequest& request);
 double value_of(const RunRequest& request, const vio::Parameter& parameter);
 /// The same by name, which must be known: "workload.window".
 double value_of(const RunRequest& request, std::string_view parameter);
+
+/// The values of all parameters, in the order of vio::parameters().
+std::vector<double> parameter_values(const RunRequest& request);
 
 /// The stages of such a run, as far as they are known before.
 std::vector<vio::StageName> stages_of(const RunRequest& request);

@@ -313,7 +313,7 @@ std::vector<std::uint32_t> batch_seeds(const std::vector<std::string>& words) {
 }
 
 std::vector<std::string> known_profiles(const std::vector<std::string>& words) {
-  for (const std::string& word : words) vio::profile_named(word, 1);
+  for (const std::string& word : words) vio::expect_profile(word);
   return without_repetitions("--profile", words, words);
 }
 

@@ -14,8 +14,8 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
-#include "sim/base/parallel_for.h"
 #include "sim/base/sha256.h"
+#include "sim/base/threads.h"
 #include "sim/outputs/file_system.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/host.h"
@@ -32,10 +32,11 @@ namespace {
 std::string workload_lines(const RunRequest& request) {
   std::string text = fmt::format("size {}x{}\nseed {}\nprofile {}\n", request.image_size.width,
                                  request.image_size.height, request.seed, request.profile);
-  const vio::Profile profile = profile_of(request);
-  for (const vio::Parameter& p : vio::parameters())
-    text += fmt::format("{} {}\n", p.name,
-                        value_text(p, p.is_of_another() ? value_of(request, p) : p.get(profile)));
+  const std::vector<double> values = parameter_values(request);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const vio::Parameter& parameter = vio::parameters()[i];
+    text += fmt::format("{} {}\n", parameter.name, value_text(parameter, values[i]));
+  }
   return text;
 }
 

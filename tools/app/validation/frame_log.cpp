@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/base/check.h"
+#include "sim/work/op.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {

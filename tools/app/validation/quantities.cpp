@@ -9,6 +9,7 @@
 
 #include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -8,6 +8,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/text.h"
+#include "workload/vio/profile.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::tools {

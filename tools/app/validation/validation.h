@@ -11,7 +11,6 @@
 #include "tools/app/run/run_request.h"
 #include "tools/app/validation/frame_log.h"
 #include "tools/app/validation/references.h"
-#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 

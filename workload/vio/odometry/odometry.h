@@ -12,11 +12,16 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/work/machine.h"
-#include "workload/vio/profile.h"
 #include "workload/vio/records.h"
 
+namespace leviosim::work {
+class Arena;
+class Machine;
+}  // namespace leviosim::work
+
 namespace leviosim::vio {
+
+struct Profile;
 
 struct OptimiserReport {
   bool ran = false;  ///< false while there is nothing to optimise yet

@@ -247,7 +247,7 @@ PublishedAccuracy accuracy_from(const base::CsvRow& row) {
       std::string(row.text(kSource))};
   if (!row.text(kChosenBy).empty()) {
     entry.chosen_by = figure_in(row, kChosenBy);
-    vio::profile_named(entry.estimator, 1);
+    vio::expect_profile(entry.estimator);
   }
   const std::string_view unit = entry.figure == PaperFigure::ate ? "m" : "%";
   if (row.text(kUnit) != unit)

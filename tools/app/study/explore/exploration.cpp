@@ -19,6 +19,7 @@
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/study/sweep/points.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

@@ -182,7 +182,7 @@ class PlanReader {
   static void read_setting(const std::string& text, const std::string& key, const Place& at,
                            FlightVariant& variant) {
     if (key == "profile") {
-      read_at(at, [&] { vio::profile_named(text, 1); });
+      read_at(at, [&] { vio::expect_profile(text); });
       variant.profile = text;
       return;
     }
@@ -265,7 +265,7 @@ void check_variants(const FlightPlan& plan) {
       RunRequest request;
       request.profile = variant.profile;
       request.workload = variant.workload;
-      profile_of(request);
+      check_profile(request);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}: {}", plan.name, name, error.what()));
     }

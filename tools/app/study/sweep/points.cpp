@@ -66,7 +66,8 @@ class Resolver {
     point_.request.platform = file.resolve(point_.overrides);
     const sim::ClusterConfig& cluster = point_.request.platform.config.cluster;
     point_.request.cores =
-        has("cores") ? static_cast<int>(parse_whole("cores", text("cores"), 1, cluster.max_workers))
+        has("cores") ? static_cast<int>(parse_whole("cores", text("cores"), 1, cluster.workers,
+                                                    ", the chip's cluster.workers"))
                      : cluster.workers;
   }
 
@@ -96,7 +97,7 @@ class Resolver {
     request.seed = static_cast<std::uint32_t>(
         parse_whole("seed", text("seed", "1"), 0, std::numeric_limits<std::uint32_t>::max()));
     request.workload = parse_workload_overrides(with_prefix(vio::kParameterPrefix, true));
-    profile_of(request);  // refuses parameters that contradict each other
+    check_profile(request);
     point_.work = data.work;
     take_chip(inputs_.platform(text("platform"), place_));
   }

@@ -252,7 +252,7 @@ std::string normal_value(const SweepKey& key, const std::string& text,
     case Kind::cores:
       return number_of(key, value, reference, place).text();
     case Kind::profile:
-      read_at(place, [&] { vio::profile_named(value, 1); });
+      read_at(place, [&] { vio::expect_profile(value); });
       return value;
     case Kind::size:
       read_at(place, [&] { parse_size(value); });

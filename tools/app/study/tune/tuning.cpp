@@ -115,7 +115,8 @@ void choose_variations(const CLI::App& command, const TuneWords& words, TunePlan
     throw InputError("--perturb: perturbs runs of one seed; expected one, such as --seed 1");
   plan.options.seed = fmt::format("{}", seeds.front());
   plan.request = make_chip_request(plan.options);
-  plan.perturbs = words.perturbs || (!asks_for_seeds && profile_of(plan.request).guided.enabled);
+  plan.perturbs =
+      words.perturbs || (!asks_for_seeds && value_of(plan.request, "workload.guided") != 0);
   if (plan.perturbs) plan.variations = perturbations(seeds.front());
   if (!plan.perturbs)
     for (const std::uint32_t seed : seeds)

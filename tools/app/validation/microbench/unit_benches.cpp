@@ -6,6 +6,7 @@
 
 #include "sim/base/error.h"
 #include "sim/work/half.h"
+#include "sim/work/op.h"
 #include "sim/work/wide.h"
 #include "tools/app/validation/microbench/bench.h"
 #include "tools/app/validation/references.h"

@@ -1,9 +1,18 @@
-// What is given back when a thread of the host ends.
+// Threads of the host: independent jobs on several of them, and what is given back when one ends.
 #pragma once
 
 #include <pthread.h>
 
+#include <cstddef>
+#include <functional>
+
 namespace leviosim::base {
+
+/// Calls job(0) ... job(count - 1) on `threads` threads (0: as many as the host has) and returns
+/// when all are done. Which thread runs which job is left to chance, so jobs must not depend on it.
+/// The first exception stops the hand-out of jobs and is thrown again here, and
+/// so does Interrupted (sim/base/interruption.h), which is asked for before every job.
+void parallel_for(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& job);
 
 /// One place in each thread. A thread_local object with a destructor needs memory in each thread
 /// that uses it, without which the C library ends the program; this one does without.
