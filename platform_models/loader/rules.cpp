@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,7 +14,9 @@
 
 #include "platform_models/loader/fields.h"
 #include "sim/base/error.h"
+#include "sim/energy/area.h"
 #include "sim/energy/model.h"
+#include "sim/work/op.h"
 
 namespace leviosim::platform {
 namespace {
@@ -44,6 +47,19 @@ class Rules {
                       "without it and on: core",
                       state(count_path), state(field.path)));
     }
+  }
+
+  /// Lines of a cache are addressed by bits, and each way of a cache has at least one.
+  void require_lines(const std::string& path, const sim::InstructionCacheConfig& cache,
+                     const std::vector<std::pair<std::string, Bytes>>& sizes) const {
+    if (cache.line == Bytes(0)) return;
+    require(std::has_single_bit(static_cast<std::uint64_t>(cache.line.count())), path + ".line",
+            "a power of two");
+    for (const auto& [name, size] : sizes)
+      if (size != Bytes(0) && size.count() < cache.line.count() * cache.ways)
+        throw InputError(fmt::format("{}: expected at least {} B, a line for each of {} ways, or 0",
+                                     state(path + "." + name), cache.line.count() * cache.ways,
+                                     cache.ways));
   }
 
   /// A core that is alone never waits for itself: what an operation occupies its unit for must fit
@@ -93,8 +109,19 @@ void check_values(const Schema& schema, const Settings& settings, const sim::Chi
     throw InputError(fmt::format("{}, but {}: expected a chip with one core",
                                  rules.state("controller.runs_on"),
                                  rules.state("cluster.max_workers")));
+  if (chip.controller.shares_core && chip.controller.clock != cluster.clock)
+    throw InputError(fmt::format("{}, but {}: expected the same, for the chip has one core",
+                                 rules.state("controller.clock"), rules.state("cluster.clock")));
   rules.require(std::has_single_bit(static_cast<unsigned>(cluster.l1.banks)), "cluster.l1.banks",
                 "a power of two");
+  rules.require_lines("cluster.icache", cluster.icache,
+                      {{"size", cluster.icache.worker},
+                       {"master_size", cluster.icache.master},
+                       {"shared_size", cluster.icache.shared}});
+  rules.require_lines("controller.icache", chip.controller.icache,
+                      {{"size", chip.controller.icache.worker}});
+  if (settings[schema.find("area.gate")])
+    rules.require(sim::knows_area(chip), "area.gate", "more than 0");
   rules.require_units("fpu", "cluster.fpu.units", cluster.fpu.units);
   rules.require_units("divider", "cluster.fpu.dividers", cluster.fpu.dividers);
   rules.require_units("int64", "cluster.fpu.int64_units", cluster.fpu.int64_units);

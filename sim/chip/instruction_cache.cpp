@@ -10,11 +10,11 @@
 namespace leviosim::sim {
 namespace {
 
-/// Adjacent lines among those that a loop over functions executes. On RV32, over as many fetches as
-/// a hypothesis of EPnP has, the two RANSACs have 31 (tests/workload/ransac_code_test.cpp), and two
-/// others of the same purpose had 24. Other instruction sets are not measured.
-constexpr double kStretch = 29;
-constexpr double kLineOfTable = 16;
+/// Adjacent lines of 16 bytes among those that a loop over functions executes. On RV32, over as
+/// many fetches as a hypothesis of EPnP has, the two RANSACs have 31
+/// (tests/workload/ransac_code_test.cpp), and two others of the same purpose had 24. Other
+/// instruction sets are not measured.
+constexpr double kStretch = 29 * 16;  // bytes
 /// Of an instruction; compressed ones have half of it, which is left out.
 constexpr double kInstructionBytes = 4;
 /// Share of what a cache holds that is of use while it gets new code.
@@ -44,12 +44,12 @@ double misses_of_stretches(int stretches, double share, int ways) {
   return mean;
 }
 
-LoopMisses new_loop_misses(int lines, int ways) {
+LoopMisses new_loop_misses(int lines, int ways, double line) {
   const double sets = static_cast<double>(lines) / ways;
-  const double stretch = std::min(kStretch, sets);
+  const double stretch = std::min(kStretch / line, sets);
   LoopMisses misses{};
   for (std::size_t k = 0; k < misses.size(); ++k) {
-    const double stretches = std::max(1.0, work::kReuseDistances[k] / kLineOfTable / stretch);
+    const double stretches = std::max(1.0, work::kReuseDistances[k] / line / stretch);
     const int fewer = static_cast<int>(stretches);
     const double rest = stretches - fewer;
     misses[k] = (1 - rest) * misses_of_stretches(fewer, stretch / sets, ways) +
@@ -62,7 +62,7 @@ CodeFetcher::Level level_of(Bytes size, Bytes line, int ways) {
   if (size == Bytes(0) || line == Bytes(0)) return {};
   const auto bytes = static_cast<double>(size.count());
   const auto lines = static_cast<int>(std::max<std::int64_t>(size.count() / line.count(), ways));
-  return {bytes, kOfUse / bytes, &loop_misses(lines, ways)};
+  return {bytes, kOfUse / bytes, &loop_misses(lines, ways, static_cast<int>(line.count()))};
 }
 
 using OfClasses = LoopMisses;
@@ -184,12 +184,12 @@ double misses_of(const Walk& walk, const CodeFetcher::Level& cache, OfClasses& m
 
 }  // namespace
 
-const LoopMisses& loop_misses(int lines, int ways) {
+const LoopMisses& loop_misses(int lines, int ways, int line) {
   static std::mutex mutex;
-  static std::map<std::pair<int, int>, LoopMisses> known;
+  static std::map<std::array<int, 3>, LoopMisses> known;
   const std::scoped_lock lock(mutex);
-  const auto [found, is_new] = known.try_emplace({lines, ways});
-  if (is_new) found->second = new_loop_misses(lines, ways);
+  const auto [found, is_new] = known.try_emplace({lines, ways, line});
+  if (is_new) found->second = new_loop_misses(lines, ways, line);
   return found->second;
 }
 

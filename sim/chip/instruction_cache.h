@@ -36,8 +36,8 @@ namespace leviosim::sim {
 
 /// Share of its lines that a loop misses which is alone in a cache, by the class of its size.
 using LoopMisses = std::array<double, work::kReuseDistances.size()>;
-/// Stays valid. @param lines  of the cache, a multiple of `ways`
-const LoopMisses& loop_misses(int lines, int ways);
+/// Stays valid. @param lines  of the cache, a multiple of `ways`; of `line` bytes each
+const LoopMisses& loop_misses(int lines, int ways, int line);
 
 /// What a work segment fetches from beyond a core's private cache.
 struct CodeFetch {

@@ -2,6 +2,7 @@
 
 #include "platform_models/loader/fields.h"
 #include "platform_models/loader/schema.h"
+#include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {
@@ -179,6 +180,21 @@ TEST(Override, RulesBetweenParametersNameBothSides) {
                 "isa.ops.f32_div.stall is 12 cycles (-p isa.ops.f32_div.stall=12)"});
   expect_parts(fault("cluster.fpu.int64_units=0"), {"isa.ops.int64_add.on is int64"});
   expect_parts(fault("cluster.fpu.dividers=0"), {"isa.ops.f32_div.on is divider"});
+}
+
+TEST(Override, CachesHaveALineForEachWay) {
+  expect_parts(fault("cluster.icache.line=3"), {"cluster.icache.line is 3 B", "a power of two"});
+  expect_parts(
+      fault("cluster.icache.line=1024"),
+      {"cluster.icache.size is 512 B", "at least 4096 B, a line for each of 4 ways, or 0"});
+  expect_parts(fault("controller.icache.size=8B"), {"controller.icache.size is 8 B", "at least"});
+  EXPECT_EQ(with({"cluster.icache.size=64"}).cluster.icache.worker, Bytes(64));
+  EXPECT_EQ(with({"cluster.icache.size=0"}).cluster.icache.worker, Bytes(0));
+}
+
+/// Areas would be taken for unknown, and with them leakage and the energy of clocks.
+TEST(Override, GatesHaveAnArea) {
+  expect_parts(fault("area.gate=0"), {"area.gate is 0 um2", "more than 0"});
 }
 
 // The cluster may do without a unit that only the controller's operations use.

@@ -1,6 +1,7 @@
 // Chips with one core besides the STM32F405: what is known of them, and how the rest is marked.
 #include "platform_models/loader/schema.h"
 #include "sim/chip/cost.h"
+#include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {
@@ -15,6 +16,11 @@ TEST_P(SingleCoreChip, DoesAllTheWorkOnOneCore) {
   EXPECT_EQ(chip.cluster.clock, chip.controller.clock);
   for (const work::OpInfo& info : work::kOps)
     EXPECT_EQ(chip.cluster.core[info.op].unit, sim::Unit::Core) << info.name;
+}
+
+TEST_P(SingleCoreChip, HasOneClock) {
+  EXPECT_THROW(resolve_platform(GetParam(), {"controller.clock=1MHz"}), InputError);
+  EXPECT_NO_THROW(resolve_platform(GetParam(), {"controller.clock=1MHz", "cluster.clock=1MHz"}));
 }
 
 TEST_P(SingleCoreChip, EveryUncertainNumberHasARangeThatCanBeRun) {

@@ -281,7 +281,7 @@ TEST(InstructionCache, SmallLoopsAreNotMissed) {
 }
 
 TEST(InstructionCache, LoopsInOneSetSatisfyTheirEquation) {
-  const LoopMisses& misses = loop_misses(512, 512);
+  const LoopMisses& misses = loop_misses(512, 512, 16);
   for (std::size_t k = 0; k < misses.size(); ++k) {
     const double ratio = work::kReuseDistances[k] / 8192.0;
     if (ratio <= 1)
@@ -291,12 +291,22 @@ TEST(InstructionCache, LoopsInOneSetSatisfyTheirEquation) {
   }
 }
 
+/// A loop fills a cache by its bytes, whatever the lines that they come in.
+TEST(InstructionCache, LoopsAreMissedAlikeWithLinesOfAnySize) {
+  const LoopMisses& of_16 = loop_misses(256, 4, 16);
+  for (const int line : {8, 32}) {
+    const LoopMisses& misses = loop_misses(4096 / line, 4, line);
+    for (std::size_t k = 0; k < misses.size(); ++k) EXPECT_NEAR(misses[k], of_16[k], 1e-9) << k;
+  }
+}
+
 TEST(InstructionCache, LargerLoopsAreMissedMoreAndMoreWaysHelpSmallOnes) {
   for (const int ways : {1, 2, 4, 8}) {
-    const LoopMisses& misses = loop_misses(256, ways);
+    const LoopMisses& misses = loop_misses(256, ways, 16);
     EXPECT_TRUE(std::is_sorted(misses.begin(), misses.end()));
     EXPECT_LE(misses.back(), 1);
-    EXPECT_GE(misses[work::reuse_class(3444)], loop_misses(256, 2 * ways)[work::reuse_class(3444)]);
+    EXPECT_GE(misses[work::reuse_class(3444)],
+              loop_misses(256, 2 * ways, 16)[work::reuse_class(3444)]);
   }
 }
 

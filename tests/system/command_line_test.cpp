@@ -174,7 +174,9 @@ TEST_F(CommandLine, RefusesNumbersOutOfRange) {
   for (const char* cores : {"0", "99", "-1", "four", "2.5"})
     expect_run_refused({"--cores", cores},
                        {std::string("--cores '") + cores + "': expected a whole number from 1 to"});
-  expect_run_refused({"--cores", "16"}, {"from 1 to 8, the chip's cluster.max_workers"});
+  expect_run_refused({"--cores", "16"}, {"from 1 to 8, the chip's cluster.workers"});
+  expect_run_refused({"--cores", "8", "-p", "cluster.workers=4"},
+                     {"from 1 to 4, the chip's cluster.workers"});
   expect_run_refused({"--seed", "-1"}, {"--seed '-1'"});
   expect_refusal({"synth", "--out", out(), "--duration", "0"}, {"--duration '0'"});
 }

@@ -1,7 +1,7 @@
 // `leviosim platforms feasibility`: the verdicts follow from the recorded work and the chips'
 // numbers.
-#include "tools/app/run/simulate.h"
 #include "tools/app/study/feasibility/feasibility.h"
+#include "tools/app/run/simulate.h"
 
 #include <gtest/gtest.h>
 
@@ -67,6 +67,13 @@ TEST_F(Feasible, OneCoreTakesLongerAndAChipWithOneCoreDoesOneAfterTheOther) {
   const Feasibility m7 = on("cortex-m7-h7a3", 1);
   EXPECT_DOUBLE_EQ(m7.frame_ms(), m7.front_end_ms + m7.optimiser_ms);
   EXPECT_NEAR(m7.power->value.count(), 0.154, 0.002);  // whatever it does
+}
+
+/// A core that is busy all the time takes what a busy core takes: no work is left out.
+TEST_F(Feasible, AChipThatIsBusyAllTheTimeTakesItsHighestPower) {
+  const Feasibility pi = on("arm1176", 1);
+  ASSERT_GT(pi.frame_ms(), 50);
+  EXPECT_NEAR(pi.power->value.count(), 0.85, 0.002);  // 540 mW, and 310 mW of a busy core
 }
 
 TEST_F(Feasible, NamesTheBlockThatDoesNotFitAndGivesTheTimeAllTheSame) {

@@ -136,6 +136,19 @@ TEST_F(WhatIfCommand, AdvisesTheLargestLever) {
   EXPECT_LT(at("cluster.icache.shared_size="), at("By time gained per area")) << result.out;
   EXPECT_LT(at("waiting for code -"), at("By time gained per area")) << result.out;
   EXPECT_LT(at("Cannot run:"), static_cast<std::ptrdiff_t>(lines.size())) << result.out;
+  // A larger memory is no gain, and not nothing either.
+  const std::size_t costs = result.out.find("Gains no time, but costs:");
+  ASSERT_NE(costs, std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("% energy)", costs), std::string::npos) << result.out;
+}
+
+TEST_F(WhatIfCommand, NamesAllAcceleratorsThatTakeOver) {
+  const Json table = rows({"gap9-eigen", "cluster.fpu.units=8"});
+  EXPECT_NE(table[1].at("why").get<std::string>().find("offloaded to eigen3, eigen9"),
+            std::string::npos)
+      << table[1];
+  const ProgramResult same = what_if({"cluster.l1.size=256KiB"});
+  EXPECT_NE(same.out.find("in short: no variant is faster than"), std::string::npos) << same.out;
 }
 
 TEST_F(WhatIfCommand, TableAndPageHoldAllRows) {

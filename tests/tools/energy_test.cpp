@@ -1,4 +1,5 @@
 // Energy of a run: every joule once, per frame, over time, at other points, and in the files.
+#include "sim/work/op.h"
 #include "tools/app/result/summary.h"
 
 #include <gtest/gtest.h>
@@ -7,8 +8,8 @@
 
 #include "tests/sim/energy_test_config.h"
 #include "tests/tools/example_run.h"
-#include "tools/app/report/tables.h"
 #include "tools/app/report/statistics.h"
+#include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {
@@ -77,6 +78,26 @@ TEST(RunEnergy, AFrontEndThatIsTooSlowHasNoIdleTime) {
   EXPECT_DOUBLE_EQ(energy.time.count(), 0.5);
   EXPECT_EQ(energy.rows.back().time, Seconds(0));
   EXPECT_EQ(total(energy.rows.back()), 0);
+}
+
+/// Its core does one after the other: the run takes as long as both, with no time left.
+TEST(RunEnergy, OfAChipWithOneCoreTakesTheTimeOfBothItsJobs) {
+  RunResult run = example_with_energy();
+  for (FrameResult& frame : run.frames) frame.cycles = Cycles(10'000'000);
+  run.stages[0].parallel = Cycles(50'000'000);
+  run.chip.controller.shares_core = true;
+  const RunEnergy energy = energy_of(run).value();
+  EXPECT_DOUBLE_EQ(energy.time.count(), 0.5 + energy.rows[2].time.count());
+  EXPECT_GT(energy.rows[2].time.count(), 0);
+}
+
+TEST(RunEnergy, TakesAnotherTimeThanTheRuns) {
+  const RunResult run = example_with_energy();
+  const RunEnergy longer = energy_of(run, Seconds(1)).value();
+  EXPECT_EQ(longer.time, Seconds(1));
+  EXPECT_EQ(longer.rows[0].energy.total().value, energy_of(run)->rows[0].energy.total().value);
+  EXPECT_NEAR(longer.rows.back().time.count() - energy_of(run)->rows.back().time.count(), 0.75,
+              1e-12);
 }
 
 TEST(RunEnergy, AtItsOwnPointIsTheRunsAndAtHalfTheClockStagesTakeTwiceAsLong) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
@@ -141,16 +142,25 @@ class CauseSum {
     if (ms != 0) causes_[what][stage] += ms;
   }
 
+  /// "eigen3, eigen9": those of one set that the other lacks.
+  static std::string those_beside(const std::set<std::string>& kernels,
+                                  const std::set<std::string>& others) {
+    std::vector<std::string> names;
+    std::set_difference(kernels.begin(), kernels.end(), others.begin(), others.end(),
+                        std::back_inserter(names));
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+
   /// What a difference at a place is called: that of its mechanism, unless work moved.
   std::string cause_of(const std::string& where, const std::string& mechanism,
                        const StageParts& in_a, const StageParts& in_b) const {
     if (!where.empty()) {
       const std::set<std::string> before = kernels_at(in_a, where);
       const std::set<std::string> after = kernels_at(in_b, where);
-      for (const std::string& kernel : after)
-        if (before.count(kernel) == 0) return "offloaded to " + kernel;
-      for (const std::string& kernel : before)
-        if (after.count(kernel) == 0) return "no longer offloaded to " + kernel;
+      if (const std::string more = those_beside(after, before); !more.empty())
+        return "offloaded to " + more;
+      if (const std::string fewer = those_beside(before, after); !fewer.empty())
+        return "no longer offloaded to " + fewer;
     }
     return name_of_mechanism(mechanism);
   }

@@ -89,21 +89,29 @@ Seconds duration(const CameraRecord& camera, const RunResult& run) {
   return Seconds(static_cast<double>(end_ns) * 1e-9);
 }
 
-Seconds duration(const RunResult& run, const sim::ChipConfig& chip) {
+/// For which the camera sends frames, or longer if the chip works longer. Of a chip with one core
+/// front end and optimiser take turns.
+Seconds duration(const RunResult& run, const sim::ChipConfig& chip,
+                 const std::vector<EnergyRow>& rows) {
   if (run.camera) return duration(*run.camera, run);
   if (run.frames.empty()) return Seconds(0);
   const auto camera_ns = static_cast<double>(run.frames.back().arrival_ns + run.frame_period_ns);
   Cycles front_end;
   for (const FrameResult& frame : run.frames) front_end += frame.cycles;
-  return std::max(Seconds(camera_ns * 1e-9),
-                  sim::seconds(static_cast<double>(front_end.count()), chip.cluster.clock));
+  Seconds work = sim::seconds(static_cast<double>(front_end.count()), chip.cluster.clock);
+  if (chip.controller.shares_core)
+    for (const EnergyRow& row : rows)
+      if (row.on_controller) work += row.time;
+  return std::max(Seconds(camera_ns * 1e-9), work);
 }
 
-RunEnergy energy_on(const RunResult& run, const sim::ChipConfig& chip) {
+/// @param time  of the run; as long as it takes if absent
+RunEnergy energy_on(const RunResult& run, const sim::ChipConfig& chip,
+                    std::optional<Seconds> time = {}) {
   RunEnergy energy;
   energy.frames = static_cast<std::int64_t>(run.frames.size());
-  energy.time = duration(run, chip);
   for (const StageResult& stage : run.stages) energy.rows.push_back(row_of(run, stage, chip));
+  energy.time = time ? *time : duration(run, chip, energy.rows);
   const Seconds idle = std::max(energy.time - cluster_time(energy.rows), Seconds(0));
   energy.rows.push_back({kIdle, "frame", false, energy.frames, idle,
                          sim::energy_of(sim::idle_activity(chip, run.cores, idle), chip)});
@@ -341,9 +349,9 @@ std::optional<Estimate<Watts>> RunEnergy::power_of_controller() const {
   return power_of_stages(*this, true);
 }
 
-std::optional<RunEnergy> energy_of(const RunResult& run) {
+std::optional<RunEnergy> energy_of(const RunResult& run, std::optional<Seconds> time) {
   if (!run.timed || !sim::knows_energy(run.chip)) return std::nullopt;
-  return energy_on(run, run.chip);
+  return energy_on(run, run.chip, time);
 }
 
 std::optional<RunEnergy> energy_at(const RunResult& run, const sim::OperatingPoint& point) {

@@ -176,7 +176,8 @@ struct RunEnergy {
 };
 
 /// Absent if the run was not timed, or its platform has no energy figures.
-std::optional<RunEnergy> energy_of(const RunResult& run);
+/// @param time  that it takes, if that is not the time of the run
+std::optional<RunEnergy> energy_of(const RunResult& run, std::optional<Seconds> time = {});
 
 /// The same cycles at another operating point: the faster of the two clocks runs at the clock of
 /// the point, the other one in proportion. What another speed changes in the computation (a

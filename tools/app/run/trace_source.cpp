@@ -110,10 +110,10 @@ void TraceSource::describe(RunResult& result) const {
 
 void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
   const int recorded = trace.info().cores;
-  const int most = request.platform.config.cluster.max_workers;
+  const int most = request.platform.config.cluster.workers;
   if (recorded > most)
-    throw InputError(fmt::format("{}: its work was divided among {} cores; {} serves {} at most",
-                                 trace.name(), recorded, request.platform.name, most));
+    throw InputError(fmt::format("{}: its work was divided among {} cores; {} has {}", trace.name(),
+                                 recorded, request.platform.name, most));
   if (request.cores != recorded)
     throw InputError(fmt::format(
         "{}: its work was divided among {} cores, and how a program divides its work among {} is "

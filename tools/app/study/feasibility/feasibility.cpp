@@ -25,27 +25,18 @@ constexpr const char* kRecordedOn = "gap9";
 constexpr std::int64_t kLeisurelyNs = 20'000'000'000;
 constexpr Bytes kUnlimited{std::int64_t{1} << 40};
 
-/// Recorded frames that arrive at another pace, in memories that hold everything.
-class PacedSource : public TraceSource {
+/// Recorded frames of which each has all the time that it needs, in memories that hold everything.
+class LeisurelySource : public TraceSource {
  public:
-  PacedSource(const traces::WorkTrace& work, const sim::ChipConfig& chip, std::int64_t period_ns)
-      : TraceSource(work, kUnlimited, kUnlimited, sim::has_accelerators(chip)),
-        period_ns_(period_ns) {}
+  LeisurelySource(const traces::WorkTrace& work, const sim::ChipConfig& chip)
+      : TraceSource(work, kUnlimited, kUnlimited, sim::has_accelerators(chip)) {}
 
-  std::int64_t arrival_ns(int frame) const override { return frame * period_ns_; }
+  std::int64_t arrival_ns(int frame) const override { return frame * kLeisurelyNs; }
   void describe(RunResult& result) const override {
     TraceSource::describe(result);
-    result.frame_period_ns = period_ns_;
+    result.frame_period_ns = kLeisurelyNs;
   }
-
- private:
-  std::int64_t period_ns_;
 };
-
-RunResult paced(const traces::WorkTrace& work, const RunRequest& request, std::int64_t period_ns) {
-  PacedSource source(work, request.platform.config, period_ns);
-  return simulate_source(request, source, [](const Progress&) { throw_if_interrupted(); });
-}
 
 /// The block at which blocks, one after the other, exceed the memory.
 std::string first_beyond(const std::vector<work::Block>& blocks, Bytes size, Bytes& used) {
@@ -174,13 +165,16 @@ Feasibility FeasibilityStudy::on(const FeasibilityPoint& point) {
   found.cores = point.cores;
   found.clock = point.platform.config.cluster.clock;
   found.shares_core = point.platform.config.controller.shares_core;
-  const RunResult leisurely = paced(work, request, kLeisurelyNs);
+  LeisurelySource source(work, request.platform.config);
+  const RunResult leisurely =
+      simulate_source(request, source, [](const Progress&) { throw_if_interrupted(); });
   add_times(leisurely, found);
   found.l1 = verdict_of_l1(leisurely);
   found.l2 = verdict_of_l2(leisurely);
-  const auto needed_ns = static_cast<std::int64_t>(std::ceil(found.frame_ms() * 1e6));
-  const std::int64_t period_ns = std::max(work.info().frame_period_ns, needed_ns);
-  if (const auto energy = energy_of(paced(work, request, period_ns))) {
+  const double period_ms =
+      std::max(static_cast<double>(work.info().frame_period_ns) * 1e-6, found.frame_ms());
+  const Seconds time(period_ms * 1e-3 * static_cast<double>(leisurely.frames.size()));
+  if (const auto energy = energy_of(leisurely, time)) {
     found.energy_per_frame = energy->per_frame();
     found.power = energy->mean_power();
   }

@@ -106,7 +106,7 @@ StudyBox sweep_box(SweepStore& store) {
     box.lines.push_back(
         fmt::format("point {} ({}): {}", o.point, store.settings_of(o.point), o.failure));
   }
-  box.sentence = fmt::format("{} of them cannot run, and no other point beats {}.",
+  box.sentence = fmt::format("{} of them cannot run. Points on the Pareto front: {}.",
                              box.lines.size(), pareto_front(outcomes).size());
   if (box.lines.size() > kMostFailures) {
     box.lines.resize(kMostFailures);

@@ -135,6 +135,8 @@ std::string whatif_conclusion(const std::vector<VariantResult>& results) {
     if (fastest == nullptr || results[i].mean_ms() < fastest->mean_ms()) fastest = &results[i];
   }
   if (fastest == nullptr) return "verdict: none of the variants can run";
+  if (changes_of(results.front(), *fastest).time > -kNoChange)
+    return fmt::format("in short: no variant is faster than {:.2f} ms", results.front().mean_ms());
   return fmt::format("in short: fastest is {}: {:.2f} ms instead of {:.2f}",
                      printable(fastest->name), fastest->mean_ms(), results.front().mean_ms());
 }
@@ -146,11 +148,19 @@ std::string whatif_table(const std::vector<VariantResult>& results) {
   return table_of(results.front(), rows);
 }
 
+/// " (+1.4 % area, +5.5 % energy)"; what is not known is left out.
+std::string price_text(const Changes& changes) {
+  std::vector<std::string> parts;
+  if (changes.area) parts.push_back(fmt::format("{:+.1f} % area", *changes.area));
+  if (changes.energy) parts.push_back(fmt::format("{:+.1f} % energy", *changes.energy));
+  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, ", "));
+}
+
 /// The same ranked: time gained per area and per energy; what changes nothing, and what cannot be.
 std::string advice_text(const std::vector<VariantResult>& results) {
   const VariantResult& base = results.front();
   std::vector<const VariantResult*> gains;
-  std::vector<std::string> spared, same, slower, impossible;
+  std::vector<std::string> spared, same, wasted, slower, impossible;
   for (std::size_t i = 1; i < results.size(); ++i) {
     const VariantResult& result = results[i];
     if (!result.failure.empty()) {
@@ -164,7 +174,9 @@ std::string advice_text(const std::vector<VariantResult>& results) {
     else if (changes.time >= kNoChange)
       slower.push_back(fmt::format("{} {:+.1f} %", result.name, changes.time));
     else if (changes.area.value_or(0) < 0)
-      spared.push_back(fmt::format("{} ({:+.1f} % area)", result.name, *changes.area));
+      spared.push_back(result.name + price_text(changes));
+    else if (changes.area.value_or(0) > 0 || changes.energy.value_or(0) >= kNoChange)
+      wasted.push_back(result.name + price_text(changes));
     else
       same.push_back(result.name);
   }
@@ -186,6 +198,7 @@ std::string advice_text(const std::vector<VariantResult>& results) {
       least.push_back(fmt::format("{} {:+.1f} %", r->name, *energy));
   text += list_of("\nBy time gained per area, unknown areas last. Least energy per frame:", least);
   text += list_of("Costs no time:", spared);
+  text += list_of("Gains no time, but costs:", wasted);
   text += list_of("Changes nothing:", same);
   text += list_of("Takes longer:", slower);
   return text + list_of("Cannot run:", impossible);
