@@ -336,9 +336,41 @@ TEST_F(HistoryCommand, BisectSkipsWhatDoesNotRunAndStopsForABadBudget) {
   };
   EXPECT_EQ(bisect(path("run"), path("all.yaml"), "true"), 0);
   EXPECT_EQ(bisect(path("run"), path("all.yaml"), "false"), 125);
-  EXPECT_EQ(bisect(path("run"), path("all.yaml"), path("no-such-program")), 2);
+  EXPECT_EQ(bisect(path("run"), path("all.yaml"), path("no-such-program")), 128);
+  EXPECT_EQ(bisect(path("run"), path("all.yaml"), path("all.yaml")), 128);  // not executable
   EXPECT_EQ(bisect(path("nowhere"), path("all.yaml"), "true"), 125);
   EXPECT_EQ(bisect(path("run"), path("none.yaml"), "true"), 128);
+}
+
+TEST_F(HistoryCommand, BisectNeverBlamesACommitForTheCommandLine) {
+  const auto bisect = [](const std::vector<std::string>& words) {
+    std::vector<std::string> all{"bisect", path("run")};
+    all.insert(all.end(), words.begin(), words.end());
+    return program(all);
+  };
+  const auto with = [&](const std::string& limits) {
+    write("limits.yaml", "budgets:\n" + limits);
+    return bisect({"--budget", path("limits.yaml"), "--", "true"});
+  };
+  EXPECT_EQ(bisect({"--budgt", path("all.yaml"), "--", "true"}).status, 128);
+  EXPECT_EQ(bisect({"--", "true"}).status, 128);
+  EXPECT_EQ(bisect({"--budget"}).status, 128);
+  const std::vector<std::string> usable{"--budget", path("all.yaml"), "--baseline",
+                                        path("baseline.json"), "--"};
+  EXPECT_EQ(bisect(usable).status, 128);
+  EXPECT_EQ(with("  - limits: [{ stage: no such, limit: cycles <= 1 kcycles }]\n").status, 128);
+  EXPECT_EQ(with("  - limits: [no.such.statistic <= 1]\n").status, 128);
+  EXPECT_EQ(with("  - { profile: none, limits: [missed <= 1 %] }\n").status, 128);
+  EXPECT_EQ(with("  - { platform: none, limits: [frame cycles <= +1 %] }\n"
+                 "  - limits: [missed <= 100 %]\n")
+                .status,
+            0);
+  // Known before anything is built.
+  const ProgramResult relative =
+      bisect({"--budget", path("all.yaml"), "--", "touch", path("built")});
+  EXPECT_EQ(relative.status, 128);
+  EXPECT_NE(relative.err.find("expected --baseline"), std::string::npos) << relative.err;
+  EXPECT_FALSE(fs::exists(path("built")));
 }
 
 }  // namespace

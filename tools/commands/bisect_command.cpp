@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <memory>
 
 #include "sim/base/error.h"
@@ -15,9 +16,9 @@
 namespace leviosim::tools {
 namespace {
 
-/// What `git bisect run` reads: this commit cannot be tested, and stop altogether.
+/// What `git bisect run` reads: this commit cannot be tested. What is wrong for every commit is an
+/// error, at which it stops (main_with.cpp).
 constexpr int kSkip = 125;
-constexpr int kAbort = 128;
 
 struct BisectOptions : RecordOptions {
   std::string run;
@@ -25,15 +26,17 @@ struct BisectOptions : RecordOptions {
   std::vector<std::string> command;
 };
 
-/// What is wrong with the budget or the baseline is wrong for every commit.
-Gate gate_of(const BisectOptions& options) {
-  try {
-    return {options.gate, options};
-  } catch (const InputError& error) {
-    print(Printout(fmt::format("{}\n", error.what()))
-              .ending("verdict: none: bisecting stops here", {"git bisect reset"}));
-    throw EndsWith(kAbort);
+/// What is known before the first build. Of several sections, one may be for other chips.
+void expect_baseline(const Gate& gate) {
+  if (gate.baseline() != nullptr) return;
+  const Limit* found = nullptr;
+  for (const BudgetSection& section : gate.budget().sections) {
+    const auto limit = std::find_if(section.limits.begin(), section.limits.end(),
+                                    [](const Limit& l) { return l.bound.relative; });
+    if (limit == section.limits.end()) return;
+    found = &*limit;
   }
+  fail_without_baseline(*found);
 }
 
 [[noreturn]] void skip(const std::string& why) {
@@ -41,26 +44,30 @@ Gate gate_of(const BisectOptions& options) {
   throw EndsWith(kSkip);
 }
 
-void run(const CLI::App& command, const BisectOptions& options) {
-  require(command, "RUN", "the folder with a run that the command leaves");
-  require(command, "--budget", "a file with limits (leviosim budget init writes a first one)");
-  const Gate gate = gate_of(options);
-  if (!options.command.empty())
-    if (const int status = run_child(options.command); status != 0)
-      skip(fmt::format("{} ended with status {}", options.command.front(), status));
-  std::optional<CheckResult> result;
+RunRecord record_of(const BisectOptions& options) {
   try {
-    result = gate.check(read_record(options.run, options));
+    return read_record(options.run, options);
   } catch (const InputError& error) {
     skip(error.what());
   }
-  print(check_printout(*result, {}));
-  if (result->missed() > 0) throw LimitNotMet();
+}
+
+void run(const CLI::App& command, const BisectOptions& options, bool ends_with_dashes) {
+  require(command, "RUN", "the folder with a run that the command leaves");
+  require(command, "--budget", "a file with limits (leviosim budget init writes a first one)");
+  if (ends_with_dashes && options.command.empty())
+    throw InputError("bisect: nothing stands after --; expected what builds and runs a commit");
+  const Gate gate(options.gate, options);
+  expect_baseline(gate);
+  if (!options.command.empty())
+    if (const int status = run_child(options.command); status != 0)
+      skip(fmt::format("{} ended with status {}", options.command.front(), status));
+  print_check(gate.check(record_of(options)));
 }
 
 }  // namespace
 
-Command add_bisect_command(CLI::App& app, const Words&) {
+Command add_bisect_command(CLI::App& app, const Words& words) {
   CLI::App* command = app.add_subcommand(
       "bisect", "For git bisect run: build and run a commit, check it against a budget");
   const auto options = std::make_shared<BisectOptions>();
@@ -72,7 +79,8 @@ Command add_bisect_command(CLI::App& app, const Words&) {
   add_gate_options(*command, options->gate);
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim bisect recorded --budget budgets.yaml -- true"});
-  return {command, [=] { run(*command, *options); }};
+  const bool ends_with_dashes = !words.empty() && words.back() == "--";
+  return {command, [=] { run(*command, *options, ends_with_dashes); }};
 }
 
 }  // namespace leviosim::tools

@@ -27,6 +27,7 @@ namespace leviosim::tools {
 namespace {
 
 constexpr int kBadInput = 2;
+constexpr int kStopsBisecting = 128;
 constexpr int kSignalled = 128;  // and its number; seen if the signal does not end the process
 
 int fail(const std::exception& error) {
@@ -154,6 +155,12 @@ int run_program(const Words& typed) {
   }
 }
 
+/// `git bisect run` takes 2 for a bad commit, and stops at others.
+int status_for_git(const Words& typed, int status) {
+  const bool is_asked = !typed.empty() && typed.front() == "bisect";
+  return is_asked && status == kBadInput ? kStopsBisecting : status;
+}
+
 void add(std::vector<Workload> workloads) {
   for (Workload& workload : workloads) add_workload(std::move(workload));
 }
@@ -166,7 +173,7 @@ int begin(const Words& typed, std::vector<Workload> workloads) {
   } catch (const InputError& error) {
     return fail(error);
   }
-  return run_program(typed);
+  return status_for_git(typed, run_program(typed));
 }
 
 }  // namespace

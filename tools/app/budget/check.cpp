@@ -53,8 +53,7 @@ Finding hold(const Limit& limit, const FigureOf& figure, const RunRecord* baseli
   f.value = figure.statistic->value;
   if (limit.bound.relative) {
     const platform::Place place = platform::place_of(limit.file, limit.line, "");
-    if (baseline == nullptr)
-      place.fail(fmt::format("'{}' is relative to a baseline; expected --baseline", limit.text));
+    if (baseline == nullptr) fail_without_baseline(limit);
     if (baseline->find(f.statistic) == nullptr && !is_new_stage(figure, *baseline))
       place.fail(
           fmt::format("{} has no {}; record it with this budget: leviosim budget record RUN "
@@ -329,6 +328,11 @@ std::size_t CheckResult::warned() const {
 std::size_t CheckResult::better() const {
   return static_cast<std::size_t>(
       std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.better(); }));
+}
+
+void fail_without_baseline(const Limit& limit) {
+  platform::place_of(limit.file, limit.line, "")
+      .fail(fmt::format("'{}' is relative to a baseline; expected --baseline", limit.text));
 }
 
 CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline) {

@@ -61,6 +61,8 @@ struct CheckResult {
 /// @param baseline  comparable with the run; may be null if no limit is relative
 /// @throws InputError for limits that cannot be held: unknown figures, units, a missing baseline
 CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline);
+/// @throws InputError at a limit that is relative
+[[noreturn]] void fail_without_baseline(const Limit& limit);
 
 // Where a limit was missed, and why: the stage, what its cores did and by which mechanism, or the
 // blocks of a memory; against the baseline if there is one, else what weighs most in the run.
