@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <thread>
 
 #include "sim/base/error.h"
+#include "sim/base/input_file.h"
 #include "tests/support/scratch.h"
 #include "tools/app/history/history.h"
 #include "tools/app/html_report/page.h"
@@ -65,7 +67,8 @@ TEST(Trends, SmallChangesAreADriftOnceTheyAreBeyondTheLimitTogether) {
     cycles.push_back(cycles.back());
     const Trend trend = trends(budget, runs_of(cycles)).front();
     EXPECT_TRUE(trend.steps.empty());
-    EXPECT_EQ(trend.drift.size(), std::pow(1.002, n) > 1.01 ? static_cast<std::size_t>(n) : 0u) << n;
+    EXPECT_EQ(trend.drift.size(), std::pow(1.002, n) > 1.01 ? static_cast<std::size_t>(n) : 0u)
+        << n;
   }
 }
 
@@ -186,7 +189,8 @@ TEST(History, WorkDoesNotGrowWithWhatIsNotShown) {
 
   // One of another profile before them all: only the newest of those is parsed on the way to it.
   const std::size_t of_other = others.rfind("{\"run\"");
-  const History mixed = history_of(damaged(others.substr(of_other) + text, 1) + others.substr(0, of_other));
+  const History mixed =
+      history_of(damaged(others.substr(of_other) + text, 1) + others.substr(0, of_other));
   EXPECT_THROW((void)mixed.like(other.record, "", 1), InputError) << "itself is damaged";
   const History behind = history_of(others + damaged(text, 1));
   EXPECT_EQ(behind.like(other.record, "", 1).size(), 1u);
@@ -246,6 +250,27 @@ TEST(History, IsAddedToAllOrNothing) {
   EXPECT_THROW((void)GrowingHistory(file), InputError);
   EXPECT_EQ(tests::read_text(file), "a letter");
   EXPECT_THROW((void)GrowingHistory(folder.path().string()), InputError);
+}
+
+/// The first runs of a history, by jobs that end together.
+TEST(History, IsBegunByManyAtOnce) {
+  const tests::Scratch folder;
+  for (int round = 0; round < 10; ++round) {
+    const std::string file = (folder / fmt::format("{}.jsonl", round)).string();
+    std::vector<std::thread> jobs;
+    for (int n = 0; n < 4; ++n)
+      jobs.emplace_back([=] {
+        EXPECT_NO_THROW({
+          GrowingHistory growing(file);
+          if (n > 0) growing.append(growing.history().lines_for(run_of(n, 1000)));
+        });
+      });
+    for (std::thread& job : jobs) job.join();
+    EXPECT_EQ(History::read(file).size(), 3u);
+  }
+  const std::string none = (folder / "none.jsonl").string();
+  GrowingHistory{none};
+  EXPECT_FALSE(base::exists(none)) << "nothing was added";
 }
 
 /// Runs of one second, such as a script adds without git, are told apart as quickly.

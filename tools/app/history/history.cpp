@@ -279,27 +279,36 @@ std::string History::lines_for(const PastRun& run) const {
 }
 
 GrowingHistory::GrowingHistory(const std::string& file) : name_(file) {
-  if (base::exists(file)) {
-    open(0);
-    history_ = History::read(file);
-  } else {
-    history_.emplace(file, Pieces(std::string()));
-  }
+  constexpr std::chrono::seconds kPatience{30};
+  // Others that wait for a new file see it go if nothing is added.
+  do {
+    open();
+    if (!outputs::lock(file_.get(), kPatience))
+      throw InputError(fmt::format("{}: another program adds to it; try again later", name_));
+  } while (is_gone());
+  history_ = History::read(file);
 }
 
-void GrowingHistory::open(int more_flags) {
-  constexpr std::chrono::seconds kPatience{30};
+GrowingHistory::~GrowingHistory() {
+  if (is_made_ && history_->whole_size() == 0) ::unlink(name_.c_str());
+}
+
+void GrowingHistory::open() {
   constexpr int kFlags = O_WRONLY | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
-  file_ = outputs::Descriptor(::open(name_.c_str(), kFlags | more_flags, 0666));
+  file_ = outputs::Descriptor(::open(name_.c_str(), kFlags | O_CREAT | O_EXCL, 0666));
+  is_made_ = static_cast<bool>(file_);
+  if (errno == EEXIST && !file_)
+    file_ = outputs::Descriptor(::open(name_.c_str(), kFlags | O_CREAT, 0666));
   if (!file_)
     throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(errno)));
-  if (!outputs::lock(file_.get(), kPatience))
-    throw InputError(fmt::format("{}: another program adds to it; try again later", name_));
+}
+
+bool GrowingHistory::is_gone() const {
+  struct stat status {};
+  return ::fstat(file_.get(), &status) == 0 && status.st_nlink == 0;
 }
 
 void GrowingHistory::append(std::string lines) {
-  const bool is_new = !file_;
-  if (is_new) open(O_CREAT | O_EXCL);
   if (!history_->ends_a_line()) lines.insert(0, 1, '\n');
   const auto whole = static_cast<off_t>(history_->whole_size());
   int error = ::ftruncate(file_.get(), whole) == 0 ? 0 : errno;
@@ -308,9 +317,9 @@ void GrowingHistory::append(std::string lines) {
     if (error != 0 && ::ftruncate(file_.get(), whole) != 0) error = errno;
   }
   if (const int closed = file_.close(); error == 0) error = closed;
-  if (error == 0) return;
-  if (is_new) ::unlink(name_.c_str());
-  throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(error)));
+  if (error != 0)
+    throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(error)));
+  is_made_ = false;
 }
 
 }  // namespace leviosim::tools

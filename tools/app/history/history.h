@@ -127,22 +127,27 @@ class History {
   mutable std::size_t lines_parsed_ = 0;
 };
 
-/// The file while a run is added to it. Others that add wait.
+/// The file while a run is added to it, made if there is none. Others that add wait.
 class GrowingHistory {
  public:
   /// @throws InputError if there is another thing of that name, or if others add all the time;
   ///         Interrupted
   explicit GrowingHistory(const std::string& file);
+  ~GrowingHistory();  ///< leaves no new file to which nothing was added
+  GrowingHistory(const GrowingHistory&) = delete;
+  GrowingHistory& operator=(const GrowingHistory&) = delete;
 
   const History& history() const { return *history_; }
-  /// At the end, all or nothing; makes the file if there is none. Nothing else of it is touched, so
-  /// that what is written does not grow with the file. @throws InputError if that fails
+  /// At the end, all or nothing, and once. Nothing else of it is touched, so that what is written
+  /// does not grow with the file. @throws InputError if that fails
   void append(std::string lines);
 
  private:
-  void open(int more_flags);
+  void open();
+  bool is_gone() const;
 
   std::string name_;
+  bool is_made_ = false;  ///< by this one, and nothing was added yet
   outputs::Descriptor file_;
   std::optional<History> history_;
 };
