@@ -6,8 +6,8 @@
 #include "tests/support/paths.h"
 #include "tests/support/program_suite.h"
 #include "tests/tools/junit_schema.h"
-#include "tools/app/budget/gate.h"
 #include "tools/app/budget/budget.h"
+#include "tools/app/budget/gate.h"
 #include "tools/app/report/statistic_list.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -107,7 +107,8 @@ TEST_F(Check, JUnitIsAsItsSchemaSays) {
     EXPECT_EQ(schema_fault(junit), "") << base::read_text_file(junit);
     EXPECT_EQ(junit_fault(base::read_text_file(junit)), "");
   }
-  expect_holds(base::read_text_file(junit), {"a&amp;b &lt;c&gt; &quot;d&quot; &#39;e&#39; \\x07\\x1b[1m"});
+  expect_holds(base::read_text_file(junit),
+               {"a&amp;b &lt;c&gt; &quot;d&quot; &#39;e&#39; \\x07\\x1b[1m"});
   const std::string good = base::read_text_file(junit);
   for (const auto& [before, after] :
        std::vector<std::pair<std::string, std::string>>{{" skipped=\"0\"", ""},
@@ -203,12 +204,12 @@ TEST_F(Check, TightenTakesBackUnusedRoom) {
   expect_holds(tight.out, {"# ours\n", "kB  # of 128 KiB", "frame latency p99 <= +3 %"});
   EXPECT_EQ(tight.out.find("90 Mcycles"), std::string::npos) << tight.out;
   const std::string file = write("tight2.yaml", tight.out);
-  const std::string again = program({"budget", "tighten", path("run"), "--budget", file,
-                                     "--slack", "2 %", "--baseline", path("baseline.json")})
+  const std::string again = program({"budget", "tighten", path("run"), "--budget", file, "--slack",
+                                     "2 %", "--baseline", path("baseline.json")})
                                 .out;
   EXPECT_EQ(again, tight.out) << "a second time changes nothing";
-  const std::vector<std::string> check{"check", path("run"), "--budget", file, "--baseline",
-                                       path("baseline.json"), "--quiet"};
+  const std::vector<std::string> check{"check",      path("run"),           "--budget", file,
+                                       "--baseline", path("baseline.json"), "--quiet"};
   EXPECT_EQ(program(check).status, 0);
   std::vector<std::string> slower = check;
   slower.insert(slower.end(), {"-p", "isa.instruction_overhead=1.4"});
@@ -218,8 +219,8 @@ TEST_F(Check, TightenTakesBackUnusedRoom) {
 TEST_F(Check, AnAcceptedMissPassesUntilItsDay) {
   const std::string tight = write("miss.yaml", "budgets:\n  - limits: [L1 peak <= 1 kB]\n");
   const auto accept = [&](const std::string& until) {
-    return program({"budget", "accept", path("run"), "--budget", tight, "--reason", "the radio moves",
-                    "--until", until});
+    return program({"budget", "accept", path("run"), "--budget", tight, "--reason",
+                    "the radio moves", "--until", until});
   };
   const ProgramResult accepted = accept("2099-12-31");
   ASSERT_EQ(accepted.status, 0) << accepted.err;
@@ -258,35 +259,48 @@ TEST_F(Check, AWarningDoesNotFail) {
 TEST_F(Check, WhatBecameBetterIsSaidAndThatTheBaselineIsStale) {
   const std::string budget = write(
       "better.yaml", "budgets:\n  - limits: [{ stage: frame matching, limit: cycles <= +1 % }]\n");
-  const ProgramResult result =
-      program({"check", path("run/work.trace"), "-p", "isa.ops.popcount.issue=0.5", "--budget", budget,
-               "--baseline", path("baseline.json"), "--markdown", path("better.md"), "--quiet"});
+  const ProgramResult result = program(
+      {"check", path("run/work.trace"), "-p", "isa.ops.popcount.issue=0.5", "--budget", budget,
+       "--baseline", path("baseline.json"), "--markdown", path("better.md"), "--quiet"});
   ASSERT_EQ(result.status, 0) << result.err;
   expect_holds(result.out, {"better  frame matching: cycles <= +1 %", "a figure is better than ",
                             "budget record", "stale"});
-  expect_holds(base::read_text_file(path("better.md")),
-               {"**✓ frame matching: cycles", "% better than the baseline", "The baseline is stale"});
+  expect_holds(
+      base::read_text_file(path("better.md")),
+      {"**✓ frame matching: cycles", "% better than the baseline", "The baseline is stale"});
 }
 
 TEST_F(Check, ABaselineOfAnotherChipIsRefusedUnlessAllowed) {
-  const std::string budget =
-      write("chip.yaml", "budgets:\n  - limits: [frame cycles <= +900 %]\n");
-  std::vector<std::string> words{"check",    path("run/work.trace"), "--platform", "gap9-hamming",
-                                 "--budget", budget,                 "--baseline", path("baseline.json"),
-                                 "--quiet"};
+  const std::string budget = write("chip.yaml", "budgets:\n  - limits: [frame cycles <= +900 %]\n");
+  std::vector<std::string> words{
+      "check", path("run/work.trace"), "--platform",          "gap9-hamming", "--budget",
+      budget,  "--baseline",           path("baseline.json"), "--quiet"};
   expect_refused(program(words), {"other chip (gap9 and gap9-hamming)", "--allow chip"});
   words.insert(words.end(), {"--allow", "chip"});
   const ProgramResult allowed = program(words);
   EXPECT_EQ(allowed.status, 0) << allowed.err;
 }
 
-/// A stage that the baseline ran without has no bound, and one that neither ran is not asked for.
+/// It has its name in run folders, too.
+TEST_F(Check, AStageWithoutCallsIsNamedLikeOthers) {
+  for (const char* stage : {"EPnP RANSAC", "epnp_ransac", "EPnP*"}) {
+    const std::string budget = write(
+        "epnp.yaml", fmt::format("budgets:\n  - limits:\n      - stage: {}\n        limit: cycles "
+                                 "<= 1 Mcycles\n",
+                                 stage));
+    const ProgramResult result = program({"check", path("run"), "--budget", budget});
+    EXPECT_EQ(result.status, 1) << result.err << result.out;
+    expect_holds(result.out, {"EPnP RANSAC: cycles <= 1 Mcycles", "the run has no such value"});
+  }
+}
+
+/// A stage that the baseline ran without has no bound; of one that neither ran, nothing changed.
 TEST_F(Check, AStageWithoutCallsIsNoMissAgainstAHistory) {
   const std::string budget =
       write("every.yaml", "budgets:\n  - limits: [{ stage: \"*\", limit: cycles <= +1 % }]\n");
   const std::string file = path("every.jsonl");
-  ASSERT_EQ(program({"history", "add", path("run"), "--file", file, "--commit", "a1", "--branch", "main",
-                     "--time", "1", "--subject", "s"})
+  ASSERT_EQ(program({"history", "add", path("run"), "--file", file, "--commit", "a1", "--branch",
+                     "main", "--time", "1", "--subject", "s"})
                 .status,
             0);
   const ProgramResult result =
@@ -299,16 +313,17 @@ TEST_F(Check, ItsOwnCommitIsNoHistory) {
   const std::string budget = write(
       "again.yaml", "budgets:\n  - limits: [{ stage: frame matching, limit: cycles <= +1 % }]\n");
   const std::string file = path("again.jsonl");
-  const auto add = [&](const std::string& commit, const std::string& time, const std::string& popcount) {
-    EXPECT_EQ(program({"history", "add", path("run/work.trace"), "-p", "isa.ops.popcount.issue=" + popcount,
-                       "--file", file, "--commit", commit, "--branch", "main", "--time", time,
-                       "--subject", "s", "--quiet"})
+  const auto add = [&](const std::string& commit, const std::string& time,
+                       const std::string& popcount) {
+    EXPECT_EQ(program({"history", "add", path("run/work.trace"), "-p",
+                       "isa.ops.popcount.issue=" + popcount, "--file", file, "--commit", commit,
+                       "--branch", "main", "--time", time, "--subject", "s", "--quiet"})
                   .status,
               0);
   };
   const auto check = [&](const std::string& commit) {
-    return program({"check", path("run/work.trace"), "-p", "isa.ops.popcount.issue=2", "--budget", budget,
-                    "--history", file, "--commit", commit, "--quiet"})
+    return program({"check", path("run/work.trace"), "-p", "isa.ops.popcount.issue=2", "--budget",
+                    budget, "--history", file, "--commit", commit, "--quiet"})
         .status;
   };
   add("a1", "1", "1");
@@ -324,8 +339,8 @@ std::string commands_of(const std::string& file) {
   std::string commands;
   for (std::string line; std::getline(lines, line);)
     if (const auto begin = line.find_first_not_of(' ');
-        begin != std::string::npos && (line.compare(begin, 9, "leviosim ") == 0 ||
-                                       line.compare(begin, 6, "touch ") == 0))
+        begin != std::string::npos &&
+        (line.compare(begin, 9, "leviosim ") == 0 || line.compare(begin, 6, "touch ") == 0))
       commands += line.substr(begin) + '\n';
   return commands;
 }

@@ -9,8 +9,8 @@
 #include "tests/tools/example_run.h"
 #include "tests/tools/junit_schema.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/budget/gate.h"
 #include "tools/app/budget/check.h"
+#include "tools/app/budget/gate.h"
 #include "tools/app/report/text_table.h"
 
 namespace leviosim::tools {
@@ -65,9 +65,23 @@ TEST(Budget, LimitsOfStagesTakePatterns) {
   EXPECT_TRUE(met(of_stage("feature_extraction", "cycles <= 1 Mcycles")));
   EXPECT_FALSE(met(of_stage("feat*", "cycles <= 999999 cycles")));
   EXPECT_FALSE(met(of_stage("*", "cycles on one core <= 3 Mcycles")));
-  // EPnP has no calls and so no cycles of a call: nothing that a pattern could hold.
-  EXPECT_TRUE(met(of_stage("*", "cycles <= 1 Mcycles")));
-  EXPECT_FALSE(met(of_stage("epnp_ransac", "cycles <= 1 Mcycles")));
+}
+
+TEST(Budget, AStageWithoutCallsIsTheSameByNameKeyAndPattern) {
+  const RunRecord run = record_of();
+  for (const char* stage : {"EPnP RANSAC", "epnp_ransac", "*RANSAC", "*"}) {
+    const Budget absolute = of_stage(stage, "cycles <= 1 Mcycles");
+    const CheckResult result = check_budget(run, absolute, nullptr);
+    ASSERT_EQ(result.missed(), 1u) << stage;
+    for (const Finding& finding : result.findings)
+      if (finding.fails()) {
+        EXPECT_EQ(finding.title(), "EPnP RANSAC: cycles <= 1 Mcycles");
+        EXPECT_EQ(finding.excess(), "the run has no such value");
+      }
+    // Nor did the baseline call it.
+    const Budget relative = of_stage(stage, "cycles <= +1 %");
+    EXPECT_EQ(check_budget(run, relative, &run).missed(), 0u) << stage;
+  }
 }
 
 TEST(Budget, RelativeLimitsAreHeldAgainstTheBaseline) {
@@ -298,8 +312,16 @@ TEST(Baseline, NoTextIsTooBroken) {
 TEST(BudgetShares, AreShownAsTheirLimitIs) {
   Limit limit;
   limit.bound = {.at_most = true, .relative = false, .number = 3.5, .unit = "%"};
-  Finding finding{.limit = &limit, .section = nullptr, .statistic = "frame.missed_share", .stage = "",
-                  .unit = "1", .value = 0.1033, .bound = 0.035, .baseline = {}, .where = "", .why = {}};
+  Finding finding{.limit = &limit,
+                  .section = nullptr,
+                  .statistic = "frame.missed_share",
+                  .stage = "",
+                  .unit = "1",
+                  .value = 0.1033,
+                  .bound = 0.035,
+                  .baseline = {},
+                  .where = "",
+                  .why = {}};
   EXPECT_EQ(finding.excess(), "10.33 %, 195.14 % above 3.50 %");
   limit.bound.unit = "";
   EXPECT_EQ(finding.excess(), "0.1033, 195.14 % above 0.0350");

@@ -160,7 +160,7 @@ TEST(Comparison, CyclesMeasuredOfNoKnownNumberOfFramesHaveNoShares) {
 
 TEST(Comparison, AStageThatDidNotRunHasNoRow) {
   RunResult run = example_run();
-  const std::string name = "\nepnp_ransac ";
+  const std::string name = "\nEPnP RANSAC ";
   const RunRecord without = record(run);
   run.stages[1].calls = 5;
   const RunRecord with = record(run);

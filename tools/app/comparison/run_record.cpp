@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
@@ -84,10 +85,23 @@ RunFacts facts_of_manifest(const Json& m) {
   return facts;
 }
 
-void name_stages(RunRecord& record) {
+/// @param names  of all stages; those of cycles.csv prevail
+void name_stages(RunRecord& record, std::vector<std::string> names) {
+  for (const StageParts& parts : record.cycles) names.push_back(parts.stage);
   for (StageName& stage : record.stages)
-    for (const StageParts& parts : record.cycles)
-      if (key_of(parts.stage) == stage.key) stage.name = parts.stage;
+    for (const std::string& name : names)
+      if (key_of(name) == stage.key) stage.name = name;
+}
+
+/// Of all stages, also of those that were never called.
+std::vector<std::string> names_in(const std::string& file, const std::string& stages_csv) {
+  constexpr const char* kTitle = "stage";
+  const Json table =
+      csv_json(file, stages_csv, [](const std::string& title) { return title == kTitle; });
+  std::vector<std::string> names;
+  for (const Json& name : table.value(kTitle, Json::array()))
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  return names;
 }
 
 /// @param bytes  of the file; null if it is missing
@@ -193,7 +207,9 @@ RunRecord make_record(std::string name, const Manifest& manifest, const RunResul
                       std::vector<StageParts> cycles) {
   RunRecord record{figures_of(run), std::move(name),
                    facts_of_manifest(manifest_json(manifest, run)), std::move(cycles)};
-  name_stages(record);
+  std::vector<std::string> names;
+  for (const StageResult& stage : run.stages) names.emplace_back(stage.name);
+  name_stages(record, std::move(names));
   return record;
 }
 
@@ -236,7 +252,9 @@ RunRecord record_of_files(const std::string& where, const RunFiles& files) {
     check_format(statistics_file, statistics, "leviosim statistics", kStatisticsVersion);
     add_statistics(statistics, record);
   });
-  name_stages(record);
+  const auto stages = files.find(kStagesFile);
+  name_stages(record, stages == files.end() ? std::vector<std::string>()
+                                            : names_in(at(kStagesFile), stages->second));
   const std::vector<RecordedFrame> frames = read_frames(at(kFramesFile), files.at(kFramesFile));
   if (std::ssize(frames) != record.facts.frames)
     throw InputError(fmt::format("{}/frames.csv: has {} frames; expected {}, as manifest.json says",

@@ -42,7 +42,7 @@ std::span<const FigureRow> figure_rows();
 
 /// A stage, by its name for people and as statistics name it.
 struct StageName {
-  std::string name;  ///< "EPnP RANSAC"; the key where cycles.csv is missing
+  std::string name;  ///< "EPnP RANSAC"; the key where stages.csv is missing
   std::string key;   ///< "epnp_ransac"
   bool on_controller = false;
 };
