@@ -164,9 +164,11 @@ TEST_F(WhatIfCommand, TableAndPageHoldAllRows) {
 }
 
 TEST_F(WhatIfCommand, TypingErrorsAreRefusedBeforeWork) {
-  expect_refused(what_if({"cluster.fpu.unit=2"}), {"cluster.fpu.unit", "cluster.fpu.units"});
+  expect_refused(what_if({"cluster.fpu.unit=2"}),
+                 {"cluster.fpu.unit=2", "did you mean 'cluster.fpu.units'?"});
   expect_refused(what_if({"gap9-eign"}), {"gap9-eign", "gap9-eigen"});
-  expect_refused(what_if({"cluster.fpu.units="}), {"expected a value"});
+  expect_refused(what_if({"cluster.fpu.units="}),
+                 {": cluster.fpu.units is empty", "expected a value"});
   expect_refused(what_if({"gap9:cluster.fpu.unit=2"}), {"cluster.fpu.unit", "cluster.fpu.units"});
   expect_refused(program({"whatif", path("flight")}), {"flight", "run with --record"});
 }

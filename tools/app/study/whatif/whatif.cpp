@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "platform_models/loader/instruction_set.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/error.h"
 #include "sim/base/text.h"
@@ -169,13 +170,18 @@ WhatIf::WhatIf(SweepInputs& inputs, std::string trace, SweepRow again)
 }
 
 void WhatIf::expect_known(const std::string& change, const SweepRow& settings) {
+  const platform::Schema& schema = plan_.reference->schema();
   for (const auto& [name, value] : settings) {
     if (name == "platform") {
       inputs_.platform(value, {change});
-    } else if (const SweepKey key = find_key(name, plan_.reference->schema(), {change});
-               value.empty()) {
-      throw InputError(fmt::format("{}: {} is empty; expected a value", change, key.name));
+      continue;
     }
+    const std::string path = name.substr(kChipSettings.size());  // as it was typed
+    if (schema.find(path) == platform::Schema::kNone && path != platform::kBasePath)
+      throw InputError(fmt::format("{}: unknown key{}", change,
+                                   base::did_you_mean(path, schema.paths())));
+    if (value.empty())
+      throw InputError(fmt::format("{}: {} is empty; expected a value", change, path));
   }
 }
 
