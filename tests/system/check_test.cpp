@@ -228,9 +228,19 @@ TEST_F(Check, AnAcceptedMissPassesUntilItsDay) {
       program({"check", path("run"), "--budget", write("accepted.yaml", accepted.out)});
   EXPECT_EQ(passes.status, 0) << passes.out;
   expect_holds(passes.out, {"warning", "accepted until 2099-12-31: the radio"});
-  const ProgramResult over =
-      program({"check", path("run"), "--budget", write("over.yaml", accept("2001-01-01").out)});
+  const auto checked = [&](const std::string& from, const std::string& to) {
+    std::string text = accepted.out;
+    text.replace(text.find(from), from.size(), to);
+    return program({"check", path("run"), "--budget", write("over.yaml", text)});
+  };
+  const ProgramResult over = checked("2099-12-31", "2001-01-01");
   EXPECT_EQ(over.status, 1) << over.out;
+  expect_holds(over.out, {"was accepted until 2001-01-01"});
+  expect_refused(checked("2099-12-31", "2027-02-30"),
+                 {"over.yaml:", "2027-02-30", "a day such as"});
+  expect_refused(checked("limit: \"L1 peak", "limit: \"L1 peek"),
+                 {"over.yaml:", "'L1 peek <= 1 kB'", "did you mean 'L1 peak <= 1 kB'?"});
+  expect_refused(accept("2001-01-01"), {"--until '2001-01-01'", "is over"});
   expect_refused(accept("soon"), {"--until 'soon'", "2026-12-24"});
   expect_refused(program({"budget", "accept", path("run"), "--budget", path("budgets.yaml"),
                           "--reason", "r", "--until", "2099-12-31"}),

@@ -164,6 +164,24 @@ TEST(Budget, WhatARunDoesNotHaveIsNotMet) {
   EXPECT_EQ(result.findings[0].excess(), "the run has no such value");
 }
 
+/// What a check may find by them: also by stages and statistics that a pattern stands for.
+TEST(Budget, AcceptsMissesOfItsLimitsOnly) {
+  const auto parse = [](const std::string& title) {
+    return parse_budget(
+        "b.yaml",
+        "budgets:\n  - limits:\n      - { stage: \"*ransac\", limit: cycles <= +3 % }\n"
+        "      - L1 peak <= 1 kB\n      - stages.*.calls <= 3\n"
+        "accepted:\n  - { limit: \"" +
+            title + "\", reason: r, until: 2099-12-31 }\n");
+  };
+  for (const char* title : {"EPnP RANSAC: cycles <= +3 %", "L1 peak <= 1 kB",
+                            "stages.epnp_ransac.calls <= 3", "time verdict <= fits on average"})
+    EXPECT_EQ(parse(title).accepted.size(), 1u) << title;
+  for (const char* title :
+       {"EPnP: cycles <= +3 %", "EPnP RANSAC: cycles <= +4 %", "L1 peak <= 2 kB", "cycles <= +3 %"})
+    expect_input_error([&] { parse(title); }, {"b.yaml:7", title});
+}
+
 TEST(Budget, SaysByHowMuchWhereAndWhy) {
   RunRecord before = record_of();
   before.cycles[0].cycles -= 3e5;

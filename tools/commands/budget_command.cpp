@@ -39,7 +39,9 @@ std::string edited(const CLI::App& command, const BudgetOptions& options) {
                      parse_share("--slack", options.slack));
   require(command, "--reason", "why the limit may be missed");
   require(command, "--until", "the last day, such as 2026-12-24");
-  parse_day("--until", options.until);
+  if (parse_day("--until", options.until) < today())
+    throw InputError(
+        fmt::format("--until '{}': is over; expected {} or a later day", options.until, today()));
   return with_accepted(text, gate.check(read_record(options.run, options)), options.reason,
                        options.until);
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
@@ -15,7 +16,9 @@
 #include "platform_models/loader/schema.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "sim/base/text.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 #include "tools/app/run/yaml_map.h"
 
@@ -73,6 +76,7 @@ class BudgetReader {
     if (const YamlMap::Entry* until = map.find("until"))
       miss.until =
           parse_day(fmt::format("{}:{}: until", budget_.file, until->line), map.text(*until));
+    miss.line = node.line();
     if (miss.limit.empty() || miss.reason.empty() || miss.until.empty())
       platform::place_of(budget_.file, node.line(), "accepted")
           .fail("expected limit, reason and until");
@@ -107,6 +111,37 @@ class BudgetReader {
 
   Budget budget_;
 };
+
+/// Whether a finding of the limit may have that title (Finding::title()).
+bool is_title_of(const Limit& limit, const std::string& title) {
+  const bool has_stage = !limit.stage.empty();
+  const std::string end = has_stage ? ": " + limit.text : limit.text.substr(limit.figure.size());
+  if (!title.ends_with(end)) return false;
+  const std::string about = title.substr(0, title.size() - end.size());
+  return has_stage ? matches(limit.stage, about) || matches(limit.stage, key_of(about))
+                   : matches(limit.figure, about);
+}
+
+void check_accepted(const Budget& budget) {
+  std::vector<std::string> titles;
+  const auto add = [&](const BudgetSection& section) {
+    for (const Limit& limit : section.limits)
+      titles.push_back(limit.stage.empty() ? limit.text : limit.stage + ": " + limit.text);
+  };
+  const auto is_known = [](const BudgetSection& section, const std::string& title) {
+    return std::any_of(section.limits.begin(), section.limits.end(),
+                       [&](const Limit& limit) { return is_title_of(limit, title); });
+  };
+  for (const BudgetSection& section : budget.sections) add(section);
+  add(budget.verdicts);
+  for (const AcceptedMiss& miss : budget.accepted)
+    if (!is_known(budget.verdicts, miss.limit) &&
+        std::none_of(budget.sections.begin(), budget.sections.end(),
+                     [&](const BudgetSection& s) { return is_known(s, miss.limit); }))
+      platform::place_of(budget.file, miss.line, "accepted")
+          .fail(fmt::format("'{}' is no limit of this budget{}", miss.limit,
+                            base::did_you_mean(miss.limit, titles)));
+}
 
 constexpr std::string_view kAccepted = "accepted:\n";
 
@@ -171,6 +206,7 @@ Budget parse_budget(const std::string& file, const std::string& text) {
         parse_limit(text_of_limit, platform::place_of(file, 1, "")));
     limit.file = file;
   }
+  check_accepted(budget);
   return budget;
 }
 
@@ -276,7 +312,11 @@ std::string tightened(const Budget& budget, const std::string& text, const RunRe
 std::string parse_day(const std::string& where, const std::string& text) {
   std::tm day{};
   const char* const end = ::strptime(text.c_str(), "%Y-%m-%d", &day);
-  if (end == nullptr || *end != '\0' || text.size() != 10)
+  const auto number = [](int value) { return static_cast<unsigned>(value); };
+  const std::chrono::year_month_day date(std::chrono::year(day.tm_year + 1900),
+                                         std::chrono::month(number(day.tm_mon + 1)),
+                                         std::chrono::day(number(day.tm_mday)));
+  if (end == nullptr || *end != '\0' || text.size() != 10 || !date.ok())  // February has no 30th
     throw InputError(fmt::format("{} '{}': expected a day such as 2026-12-24", where, text));
   return text;
 }

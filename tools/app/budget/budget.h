@@ -18,7 +18,7 @@ struct Bound {
   bool at_most = true;    ///< "<=", else ">="
   bool relative = false;  ///< to the baseline: the text has a sign
   double number = 0;
-  std::string unit;  ///< as written; empty: none
+  std::string unit;       ///< as written; empty: none
   std::string word = {};  ///< of a limit on a verdict, "fits on average"; has no number
 };
 
@@ -52,6 +52,7 @@ struct AcceptedMiss {
   std::string limit;  ///< title of what is held: "EPnP RANSAC: cycles <= +3 %"
   std::string reason;
   std::string until;  ///< the last day, "2026-12-24"
+  int line = 0;
 };
 
 struct Budget {

@@ -297,7 +297,7 @@ std::optional<double> Finding::better() const {
   return percent > allowed + kRounding ? std::optional(percent) : std::nullopt;
 }
 
-std::string Finding::excess() const {
+std::string Finding::distance() const {
   if (!value) return "the run has no such value";
   const std::string found = figure_text(*value, unit, limit->bound);
   if (!bound) return found + ", but the baseline has no value of it";
@@ -312,7 +312,13 @@ std::string Finding::excess() const {
     text +=
         fmt::format("; {:+.2f} % of {} {}", 100 * (*value - *baseline) / *baseline,
                     since.empty() ? "the baseline's" : since + "'s", figure_text(*baseline, unit));
-  if (!accepted.empty()) text += "; " + accepted;
+  return text;
+}
+
+std::string Finding::excess() const {
+  std::string text = distance();
+  if (const std::string& words = accepted.empty() ? expired : accepted; !words.empty())
+    text += "; " + words;
   return was_over() ? text + "; was over before this change" : text;
 }
 
@@ -356,8 +362,12 @@ CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRe
   add_bad_verdicts(result, run, budget);
   for (Finding& finding : result.findings)
     for (const AcceptedMiss& miss : budget.accepted)
-      if (!finding.met && finding.title() == miss.limit && today() <= miss.until)
-        finding.accepted = fmt::format("accepted until {}: {}", miss.until, miss.reason);
+      if (!finding.met && finding.title() == miss.limit) {
+        if (today() <= miss.until)
+          finding.accepted = fmt::format("accepted until {}: {}", miss.until, miss.reason);
+        else
+          finding.expired = fmt::format("was accepted until {}: {}", miss.until, miss.reason);
+      }
   if (result.missed() + result.warned() > 0) explain(result, run, baseline);
   return result;
 }

@@ -26,6 +26,7 @@ struct Finding {
   std::string since = {};  ///< the run that it is relative to, where that is not the baseline's
   std::optional<double> before = {};  ///< of what is not met: in the run before, where one is known
   std::string accepted = {};          ///< why it may be missed, and until when
+  std::string expired = {};           ///< why it might be, until a day that is over
   bool met = false;
   std::string where;             ///< stage, fork, block; of what is not met
   std::vector<std::string> why;  ///< parts that explain it, the largest first
@@ -39,8 +40,11 @@ struct Finding {
   bool was_over() const;
   /// Whether it is not met and fails the check; else a warning is all that it is.
   bool fails() const { return !met && !limit->warns && accepted.empty() && !was_over(); }
-  /// By how much: "10259.8 kcycles, 5.84 % above 9693.3 kcycles".
+  /// By how much, and why it may or might be: "10259.8 kcycles, 5.84 % above 9693.3 kcycles".
   std::string excess() const;
+
+ private:
+  std::string distance() const;
 };
 
 struct CheckResult {
