@@ -172,7 +172,7 @@ TEST_F(Check, RefusesBadInput) {
   expect_refused(program({"check", path("run"), "--budget", budget, "--annotations", "gitea"}),
                  {"--annotations 'gitea'", "github or gitlab"});
   expect_refused(program({"check", path("run"), "--budget", budget, "--baseline", budget}),
-                 {"budgets.yaml"});
+                 {"budgets.yaml", "a run folder, a work trace, or a JSON file", "budget record"});
   expect_refused(
       program({"check", path("run"), "--budget", budget, "--baseline", write("no.json", "{}")}),
       {"no.json", "no baseline"});

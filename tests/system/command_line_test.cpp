@@ -123,6 +123,9 @@ TEST_F(CommandLine, SuggestsCommandsAndOptions) {
   expect_refusal({"--verison"}, {"did you mean '--version'?"});
   expect_refusal({"compar"}, {"did you mean 'compare'?"});
   expect_refusal({"hepl", "run"}, {"did you mean 'help'?"});
+  expect_refusal({"run", "--frames", "0:3", "--frames", "0:5"},
+                 {"--frames is given more than once; expected it once"});
+  expect_refusal({"run", "--seed"}, {"--seed: has no value; expected N"});
 }
 
 TEST_F(CommandLine, OptionsHaveOneNameEach) {

@@ -354,6 +354,9 @@ TEST(Budget, HoldsVerdictsByTheirWords) {
   EXPECT_NE(result.findings[0].excess().find("fits on average"), std::string::npos)
       << result.findings[0].excess();
   EXPECT_THROW(one("time verdict <= lost"), InputError);
+  expect_input_error(
+      [] { one("time verdict <= fits on averge"); },
+      {"b.yaml:4", "fits, fits on average, too slow", "did you mean 'fits on average'"});
   EXPECT_THROW(one("L1 peak <= lost"), InputError);
 }
 

@@ -245,12 +245,13 @@ Limit parse_limit(const std::string& text, const platform::Place& place) {
   std::string_view value = platform::trim(std::string_view(text).substr(at + 2));
   limit.bound.relative = !value.empty() && (value.front() == '+' || value.front() == '-');
   if (!value.empty() && value.front() == '+') value.remove_prefix(1);
-  if (std::any_of(verdict_words().begin(), verdict_words().end(),
-                  [&](const VerdictWord& w) { return w.word == value; })) {
-    limit.bound.word = value;
+  const auto measure = platform::split_measure(value);
+  const bool is_of_verdict = limit.figure.ends_with(" verdict") && !value.empty() && !measure;
+  if (is_of_verdict || std::any_of(verdict_words().begin(), verdict_words().end(),
+                                   [&](const VerdictWord& w) { return w.word == value; })) {
+    limit.bound.word = value;  // which check_figure() looks up
     return limit;
   }
-  const auto measure = platform::split_measure(value);
   if (limit.figure.empty() || !measure || !(measure->number >= -1e18 && measure->number <= 1e18))
     place.fail(
         fmt::format("'{}': expected FIGURE <= NUMBER UNIT, such as 'L1 peak <= 110 kB'", text));

@@ -240,6 +240,11 @@ Gate::Gate(const GateOptions& options, const RecordOptions& chip)
   is_kept_ = true;
   if (base::is_folder(options.baseline) || is_measured(options.baseline))
     baseline_ = read_record(options.baseline, {});
+  else if (options.baseline.ends_with(".yaml") && base::is_file(options.baseline))
+    throw InputError(fmt::format(
+        "--baseline {}: is no baseline; expected a run folder, a work trace, or a JSON file that "
+        "'leviosim budget record' printed",
+        options.baseline));
   else
     baseline_ = read_run_or_baseline(options.baseline, chip);
 }

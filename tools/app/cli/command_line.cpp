@@ -64,6 +64,21 @@ void refuse_empty_values(const Words& words) {
   }
 }
 
+/// CLI11's "--frames: At Most 1 required but received 2" and "--seed: 1 required N missing".
+std::string about_count(const CLI::ArgumentMismatch& error) {
+  constexpr std::string_view kRequired = " required ";
+  constexpr std::string_view kMissing = " missing";
+  const std::string text = error.what();
+  const std::string name = text.substr(0, text.find(':'));
+  if (text.find(": At Most ") != std::string::npos)
+    return name + " is given more than once; expected it once";
+  const std::size_t at = text.find(kRequired);
+  if (at == std::string::npos || !text.ends_with(kMissing)) return text;
+  const std::string rest = text.substr(at + kRequired.size());
+  return fmt::format("{}: has no value; expected {}", name,
+                     rest.substr(0, rest.size() - kMissing.size()));
+}
+
 [[noreturn]] void fail_unknown_command(const std::vector<Command>& commands,
                                        const std::string& word) {
   std::vector<std::string> names = names_of(commands);
@@ -299,6 +314,8 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands, const 
     const int status = app.exit(help_or_version, text, text);
     print_piece(ScreenPiece::Kind::document, text.str());
     return status;
+  } catch (const CLI::ArgumentMismatch& error) {
+    throw InputError(about_count(error));
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
