@@ -352,12 +352,15 @@ TEST_F(HistoryCommand, BisectNeverBlamesACommitForTheCommandLine) {
     write("limits.yaml", "budgets:\n" + limits);
     return bisect({"--budget", path("limits.yaml"), "--", "true"});
   };
+  EXPECT_EQ(with("  - limits: [missed <= 100 %]\n").status, 0);
   EXPECT_EQ(bisect({"--budgt", path("all.yaml"), "--", "true"}).status, 128);
   EXPECT_EQ(bisect({"--", "true"}).status, 128);
   EXPECT_EQ(bisect({"--budget"}).status, 128);
   const std::vector<std::string> usable{"--budget", path("all.yaml"), "--baseline",
                                         path("baseline.json"), "--"};
   EXPECT_EQ(bisect(usable).status, 128);
+  EXPECT_EQ(bisect({"--budget", path("limits.yaml"), "--platform", "gap99", "--", "true"}).status,
+            128);
   EXPECT_EQ(with("  - limits: [{ stage: no such, limit: cycles <= 1 kcycles }]\n").status, 128);
   EXPECT_EQ(with("  - limits: [no.such.statistic <= 1]\n").status, 128);
   EXPECT_EQ(with("  - { profile: none, limits: [missed <= 1 %] }\n").status, 128);

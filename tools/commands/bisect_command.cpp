@@ -59,6 +59,8 @@ void run(const CLI::App& command, const BisectOptions& options, bool ends_with_d
     throw InputError("bisect: nothing stands after --; expected what builds and runs a commit");
   const Gate gate(options.gate, options);
   expect_baseline(gate);
+  if (!options.platform.empty())
+    (void)platform::resolve_platform(options.platform, options.overrides);
   if (!options.command.empty())
     if (const int status = run_child(options.command); status != 0)
       skip(fmt::format("{} ended with status {}", options.command.front(), status));
