@@ -165,6 +165,7 @@ TEST_F(Outputs, AFolderMadeMeanwhileStaysAndTheResultsGoBeside) {
     EXPECT_EQ(result.status, 2);
     EXPECT_NE(result.err.find("toc-2"), std::string::npos) << result.err;
     EXPECT_NE(result.out.find("results: " + path("toc-2")), std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("next: "), std::string::npos) << result.out;
     EXPECT_EQ(read_text(folder_ / "toc/precious"), "x");
     EXPECT_TRUE(fs::exists(folder_ / "toc-2/stats.json"));
     fs::remove_all(folder_ / "toc");

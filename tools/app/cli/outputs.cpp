@@ -33,7 +33,9 @@ void publish(outputs::OutputFolder& out, const Printout& report, const std::func
     is_written = true;
     return elsewhere;
   });
-  print(report,
+  Printout shown = report;
+  if (fault) shown.next.clear();  // what it names is not there
+  print(shown,
         is_written ? std::vector<ShownPath>{{label, out.shown_path()}} : std::vector<ShownPath>());
   if (fault) throw InputError(*fault);
 }
