@@ -154,4 +154,14 @@ std::string escaped(std::string_view text, std::string_view kept) {
 std::string printable(std::string_view text) { return escaped(text, ""); }
 std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }
 
+std::string shell_word(std::string_view word) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:=,@%";
+  const std::string plain = printable(word);
+  if (!plain.empty() && plain.find_first_not_of(kPlain) == std::string::npos) return plain;
+  std::string text = "'";
+  for (const char c : plain) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 }  // namespace leviosim

@@ -47,4 +47,7 @@ std::string printable(std::string_view text);
 /// Printable form of a text of several lines, such as tables: newlines and tabs stay.
 std::string printable_lines(std::string_view text);
 
+/// Printable form of one word of a command line, in quotes where a shell would read it otherwise.
+std::string shell_word(std::string_view word);
+
 }  // namespace leviosim

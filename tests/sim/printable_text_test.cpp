@@ -113,5 +113,12 @@ TEST(PrintableText, GivesPlainTextForAnyBytesAndChangesItNoMore) {
   }
 }
 
+TEST(PrintableText, OneWordOfAShellStaysOne) {
+  for (const auto& [word, typed] :
+       {std::pair{"a/b-1.yaml", "a/b-1.yaml"}, std::pair{"a b", "'a b'"}, std::pair{"", "''"},
+        std::pair{"it's", "'it'\\''s'"}, std::pair{"~", "'~'"}, std::pair{"a\nb", "'a\\nb'"}})
+    EXPECT_EQ(shell_word(word), typed);
+}
+
 }  // namespace
 }  // namespace leviosim

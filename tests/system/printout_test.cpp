@@ -81,6 +81,18 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
   EXPECT_EQ(lines.back(), "next: leviosim whatif " + path("run"));
 }
 
+TEST_F(PrintoutTest, WhatToTryNextIsTypedAsItStands) {
+  ::setenv("L", leviosim::tests::program_path().c_str(), 1);
+  ::setenv("IN", folder_.c_str(), 1);
+  const std::string last = lines_of(replay("it's mine", {}).out).back();
+  const std::string begin = "next: leviosim ";
+  ASSERT_TRUE(last.starts_with(begin)) << last;
+  const std::string line = "cd $IN && $L " + last.substr(begin.size()) + " >pasted";
+  EXPECT_EQ(std::system(line.c_str()), 0) << line;  // NOLINT: the line is the program's
+  EXPECT_EQ(lines_of(run({"platforms", "diff", "gap9", "gap8"}).out).back(),
+            begin + "platforms stages gap9 gap8");
+}
+
 /// Every run that a test makes through the program is held to this.
 TEST_F(PrintoutTest, AGreenVerdictOverAWrongMapOrALatePoseIsAFault) {
   fs::create_directories(path("verdicts"));

@@ -50,12 +50,13 @@ void check_options(const CLI::App& command, const CheckOptions& options) {
 Printout text_report(const CheckOptions& options, const CheckResult& result) {
   if (options.annotations == "gitlab") return Printout(gitlab_report(result), true);
   if (is_measured(options.run) && !options.gate.baseline.empty())
-    return check_printout(result, {fmt::format("leviosim compare {} {}", printable(options.run),
-                                               printable(options.gate.baseline))});
-  std::string page = fmt::format("leviosim check {} --budget {}", options.run, options.gate.budget);
-  if (!options.gate.baseline.empty()) page += " --baseline " + options.gate.baseline;
-  for (const std::string& set : options.overrides) page += " -p " + set;
-  return check_printout(result, {printable(page) + " --report check.html"});
+    return check_printout(result, {fmt::format("leviosim compare {} {}", shell_word(options.run),
+                                               shell_word(options.gate.baseline))});
+  std::string page = fmt::format("leviosim check {} --budget {}", shell_word(options.run),
+                                 shell_word(options.gate.budget));
+  if (!options.gate.baseline.empty()) page += " --baseline " + shell_word(options.gate.baseline);
+  for (const std::string& set : options.overrides) page += " -p " + shell_word(set);
+  return check_printout(result, {page + " --report check.html"});
 }
 
 /// Runs like this one before its commit: a check that is run again compares with what it did.

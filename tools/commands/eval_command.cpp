@@ -282,9 +282,9 @@ std::string conclusion(const std::vector<Evaluated>& all) {
 
 std::string after(const EvalOptions& options) {
   std::string also;
-  for (const std::string& estimate : options.also) also += " --also " + estimate;
-  return printable(fmt::format("leviosim eval {} {}{} --report errors.html", options.estimate,
-                               options.truth, also));
+  for (const std::string& estimate : options.also) also += " --also " + shell_word(estimate);
+  return fmt::format("leviosim eval {} {}{} --report errors.html", shell_word(options.estimate),
+                     shell_word(options.truth), also);
 }
 
 /// One estimate: its figures. Several: a list of such documents.

@@ -101,7 +101,7 @@ void add(const CLI::App& command, const HistoryOptions& options) {
   print(
       Printout(std::string())
           .ending(fmt::format("in short: {} {}{}", short_commit(run.origin.commit), place, limits),
-                  {fmt::format("leviosim history show --file {}", printable(options.file))}));
+                  {fmt::format("leviosim history show --file {}", shell_word(options.file))}));
 }
 
 /// Runs like the newest of the branch and the profile.
@@ -133,7 +133,7 @@ void show(const HistoryOptions& options) {
       [&] {
         return history_printout(runs, budget ? &*budget : nullptr,
                                 {fmt::format("leviosim history page --file {} --out trend.html",
-                                             printable(options.file))});
+                                             shell_word(options.file))});
       },
       [&] { return history_document(runs); }));
 }

@@ -63,7 +63,7 @@ void run(const CLI::App& command, const ImageStatisticsOptions& options) {
       [&] {
         return Printout(image_statistics_table(all))
             .ending(conclusion(all), {fmt::format("leviosim image-statistics {} --json",
-                                                  printable(options.folders.front()))});
+                                                  shell_word(options.folders.front()))});
       },
       [&] { return table_document("image statistics", image_statistics_csv(all)); }));
 }

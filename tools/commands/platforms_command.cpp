@@ -98,7 +98,9 @@ std::vector<Difference> differences(const platform::ResolvedPlatform& a,
   return all;
 }
 
-void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform& b, bool json) {
+/// @param typed  their names on command lines
+void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform& b,
+          const std::vector<std::string>& typed, bool json) {
   const std::vector<Difference> all = differences(a, b);
   const auto lines = [&] {
     TextTable table({{"parameter", TextTable::Align::Left}, {a.name}, {b.name}});
@@ -106,7 +108,8 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
     return Printout(all.empty() ? std::string() : table.str())
         .ending(fmt::format("in short: {} of {} parameters differ", all.size(),
                             std::max(a.parameters.size(), b.parameters.size())),
-                {fmt::format("leviosim platforms stages {} {}", a.name, b.name)});
+                {fmt::format("leviosim platforms stages {} {}", shell_word(typed[0]),
+                             shell_word(typed[1]))});
   };
   const auto document = [&] {
     using D = Difference;
@@ -151,7 +154,7 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
 /// The workload on a chip.
 std::string run_on(const std::string& platform, const RunOptions& options) {
   return fmt::format("leviosim run --platform {} --profile {} --data {} --out mine",
-                     printable(platform), options.profile, printable(options.data));
+                     shell_word(platform), options.profile, shell_word(options.data));
 }
 
 void feasibility(const PlatformsOptions& options) {
@@ -296,7 +299,7 @@ void show(const PlatformsOptions& options) {
     return Printout(fmt::format("{}: {}\n\n{}", printable(chip.name), printable(chip.description),
                                 table.str()))
         .ending(fmt::format("in short: {} numbers, each with its source", chip.parameters.size()),
-                {fmt::format("leviosim platforms show {} --yaml", options.names[0])});
+                {fmt::format("leviosim platforms show {} --yaml", shell_word(options.names[0]))});
   };
   if (options.yaml && !options.run.json)
     print(Printout(platform::to_yaml(chip), true));
@@ -307,7 +310,8 @@ void show(const PlatformsOptions& options) {
 /// Changes are of the second: what a chip would differ in from itself can be asked too.
 void show_differences(const PlatformsOptions& options) {
   diff(platform::resolve_platform(options.names[0]),
-       platform::resolve_platform(options.names[1], options.run.overrides), options.run.json);
+       platform::resolve_platform(options.names[1], options.run.overrides), options.names,
+       options.run.json);
 }
 
 /// A file to begin a chip with, in this folder or where the name says.

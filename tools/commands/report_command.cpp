@@ -41,9 +41,9 @@ void run(const CLI::App& command, const ReportOptions& options) {
   publish_report(page, runs_report(runs, comparisons, nullptr));
   print(Printout(std::string())
             .ending("verdict: " + verdicts(first).text(),
-                    {runs.size() > 1 ? fmt::format("leviosim compare {} {}", printable(first.name),
-                                                   printable(runs[1].record.name))
-                                     : fmt::format("leviosim whatif {}", printable(first.name))}));
+                    {runs.size() > 1 ? fmt::format("leviosim compare {} {}", shell_word(first.name),
+                                                   shell_word(runs[1].record.name))
+                                     : fmt::format("leviosim whatif {}", shell_word(first.name))}));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ traces::RenderedFlightOptions rendered_options(const CLI::App& command,
 
 /// @param has_size  the images are prepared for that size only
 std::string after(const SynthOptions& options, bool has_size) {
-  return fmt::format("leviosim run --data {}{} --record --out mine", printable(options.out),
+  return fmt::format("leviosim run --data {}{} --record --out mine", shell_word(options.out),
                      has_size ? " --size " + options.size : "");
 }
 

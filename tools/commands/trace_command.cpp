@@ -47,7 +47,7 @@ std::string trace_document(const traces::WorkTrace& trace) {
 }
 
 std::string after(const traces::WorkTrace& trace) {
-  return fmt::format("leviosim whatif {}", printable(trace.name()));
+  return fmt::format("leviosim whatif {}", shell_word(trace.name()));
 }
 
 void show_trace(const traces::WorkTrace& trace, bool json) {

@@ -49,7 +49,7 @@ void validate(const RunOptions& given, const Words& words) {
     return Printout(std::move(parts))
         .ending(validation_conclusion(validation),
                 {fmt::format("leviosim run --platform {} --data {} --out mine",
-                             printable(options.platform), printable(options.data))});
+                             shell_word(options.platform), shell_word(options.data))});
   };
   const Printout text = printout(options.json, lines,
                                  [&] { return json_text(validation_json(validation), 2) + '\n'; });

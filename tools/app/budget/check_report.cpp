@@ -181,10 +181,10 @@ std::string message(const Finding& f) {
 Printout check_printout(const CheckResult& result, std::vector<std::string> next) {
   if (result.missed() == 0 && result.better() > 0 && result.is_kept)
     next = {fmt::format("leviosim budget record {} --budget {} >BASELINE, which is stale",
-                        printable(result.run), printable(result.budget))};
+                        shell_word(result.run), shell_word(result.budget))};
   else if (result.missed() == 0)
-    next = {fmt::format("leviosim history add {} --budget {}", printable(result.run),
-                        printable(result.budget))};
+    next = {fmt::format("leviosim history add {} --budget {}", shell_word(result.run),
+                        shell_word(result.budget))};
   return Printout({table_of(result), misses_of(result)})
       .ending(verdict_of(result), std::move(next));
 }

@@ -201,7 +201,7 @@ Printout run_printout(const RunOptions& options, const RunResult& run, const std
     const std::string summary = run_summary(title.substr(0, title.find('\n')), run, width, others);
     return Printout({summary, remarks})
         .ending("", {fmt::format("leviosim {} {}", options.record ? "whatif" : "report",
-                                 printable(options.out)) +
+                                 shell_word(options.out)) +
                      (options.record ? "" : " --out report.html")});
   };
   return printout(options.json, lines, [&] { return statistics_text(run); });

@@ -421,7 +421,7 @@ Json batch_manifest(const BatchPlan& plan, const Words& command_line) {
 
 std::vector<std::string> after_batch(const BatchPlan& plan) {
   return {fmt::format("leviosim run --profile {} --data {} --record --out mine",
-                      plan.profiles.front(), printable(plan.sequences.front().folder))};
+                      plan.profiles.front(), shell_word(plan.sequences.front().folder))};
 }
 
 std::string measure_text(const Measure& how) {

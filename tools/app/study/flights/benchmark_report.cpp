@@ -327,7 +327,7 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
   const std::vector<std::string> next{
       fmt::format("leviosim run --profile {} --data {} --record --out mine",
                   benchmark.plan.variants.front().profile,
-                  printable(benchmark.motions.front().sequence.folder))};
+                  shell_word(benchmark.motions.front().sequence.folder))};
   const Printout text = printout(
       words.json,
       [&] {

@@ -127,7 +127,7 @@ std::string sweep_conclusion(SweepStore& store) {
 std::vector<std::string> after_sweep(SweepStore& store, const std::string& folder) {
   for (const SweepOutcome& best : pareto_front(store.outcomes()))
     if (best.point != 1)
-      return {fmt::format("leviosim compare {0}:1 {0}:{1}", printable(folder), best.point)};
+      return {fmt::format("leviosim compare {0}:1 {0}:{1}", shell_word(folder), best.point)};
   return {};
 }
 

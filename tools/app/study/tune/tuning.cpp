@@ -129,16 +129,6 @@ std::vector<std::string> overrides_at(const TunePlan& plan, const ClockSetting& 
   return all;
 }
 
-/// As a shell takes it for one word.
-std::string quoted(const std::string& word) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:=,@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 }  // namespace
 
 std::vector<Hertz> parse_clocks(const std::string& text) {
@@ -373,11 +363,11 @@ RunOptions run_options_of(const TunePlan& plan, const TunePoint& point) {
 std::string run_command_text(const TunePlan& plan, const TunePoint& point) {
   const RunOptions options = run_options_of(plan, point);
   const RunOptions defaults;
-  std::vector<std::string> words{"leviosim", "run", "--platform", quoted(options.platform)};
+  std::vector<std::string> words{"leviosim", "run", "--platform", shell_word(options.platform)};
   const auto add = [&](const char* name, const std::string& value, const std::string& by_default) {
     if (value == by_default) return;
     words.emplace_back(name);
-    words.push_back(quoted(value));
+    words.push_back(shell_word(value));
   };
   for (const std::string& text : options.overrides) add("-p", text, "");
   add("--data", options.data, "");

@@ -178,8 +178,8 @@ void WhatIf::expect_known(const std::string& change, const SweepRow& settings) {
     }
     const std::string path = name.substr(kChipSettings.size());  // as it was typed
     if (schema.find(path) == platform::Schema::kNone && path != platform::kBasePath)
-      throw InputError(fmt::format("{}: unknown key{}", change,
-                                   base::did_you_mean(path, schema.paths())));
+      throw InputError(
+          fmt::format("{}: unknown key{}", change, base::did_you_mean(path, schema.paths())));
     if (value.empty())
       throw InputError(fmt::format("{}: {} is empty; expected a value", change, path));
   }

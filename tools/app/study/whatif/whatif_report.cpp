@@ -361,8 +361,8 @@ std::vector<std::string> after(const std::string& run, const std::vector<std::st
   if (run.empty()) return {"leviosim run --record --out mine", "leviosim whatif mine"};
   for (const std::string& change : changes)
     if (change.find('=') != std::string::npos && change.find_first_of(",:") == std::string::npos)
-      return {fmt::format("leviosim compare {} -p {}", printable(run), printable(change))};
-  return {fmt::format("leviosim whatif {} --report whatif.html", printable(run))};
+      return {fmt::format("leviosim compare {} -p {}", shell_word(run), shell_word(change))};
+  return {fmt::format("leviosim whatif {} --report whatif.html", shell_word(run))};
 }
 
 void run(const WhatIfWords& typed, const Words& words) {
