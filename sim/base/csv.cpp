@@ -156,6 +156,15 @@ void CsvReader::split(std::string_view line) {
   }
 }
 
+std::vector<std::string_view> CsvReader::heading() {
+  const auto end = std::min(text_.find('\n', position_), text_.size());
+  std::string_view line = trim(std::string_view(text_).substr(position_, end - position_));
+  if (!line.starts_with('#')) return {};
+  line.remove_prefix(1);
+  split(line);
+  return row_.cells_;
+}
+
 bool CsvReader::advance() {
   while (position_ < text_.size()) {
     if (line_ % kLinesPerPoll == 0) throw_if_interrupted();

@@ -79,6 +79,9 @@ class CsvReader {
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
 
+  /// The cells of the first line without its '#', if it begins with one; else none. To be asked
+  /// before the first row, and valid until then.
+  std::vector<std::string_view> heading();
   /// The next row, or nullptr at the end. Throws InputError for a row of another width.
   const CsvRow* next();
   const std::filesystem::path& file() const { return file_; }

@@ -224,6 +224,55 @@ TEST(AslReader, QuaternionNorm) {
   expect_broken(folder, {std::string(kTruth) + " line 3", "norm 1.001100"});
 }
 
+/// Names of another column, or of another unit, are those of a table that is read wrongly.
+TEST(AslReader, HeadingsThatContradictTheirColumns) {
+  struct Case {
+    const char* file;
+    std::string heading;
+    std::string place;
+    std::string found;
+    std::string expected;
+  };
+  const std::string gyro = "w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]";
+  const std::string accel = "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]";
+  const std::string position = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m]";
+  for (const auto& [file, heading, place, found, expected] :
+       {Case{kImu, "#timestamp [ns]," + accel + "," + gyro, "column 2", "a_RS_S_x [m s^-2]",
+             "w_RS_S_x [rad s^-1]"},
+        Case{kImu, "#timestamp [s]," + gyro + "," + accel, "column 1", "timestamp [s]",
+             "timestamp [ns]"},
+        Case{kImu, "# timestamp [ns],w_x,w_y,w_RS_S_z [deg s^-1]," + accel, "column 4",
+             "w_RS_S_z [deg s^-1]", "w_RS_S_z [rad s^-1]"},
+        Case{kTruth, position + ", q_x, q_y, q_z, q_w", "column 5", "q_x", "q_RS_w"},
+        Case{kTruth, position + ", q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], v_RS_R_x [km s^-1]",
+             "column 9", "v_RS_R_x [km s^-1]", "v_RS_R_x [m s^-1]"},
+        Case{kFrames, "#filename,timestamp [ns]", "column 1", "filename", "timestamp [ns]"}}) {
+    const AslFolder folder;
+    folder.set_line(file, 1, heading);
+    expect_broken(folder, {std::string(file) + " line 1, " + place, "found '" + found + "'",
+                           "expected '" + expected + "'"});
+  }
+}
+
+TEST(AslReader, HeadingsThatSayTheSameOrNothing) {
+  for (const char* heading : {"#foo,bar,baz", "# IMU of a flight", "#timestamp", "#",
+                              "#timestamp[ns],w.x [rad/s],w.y [rad/sec],w.z [],a.x [m/s^2],a.y,a.z "
+                              "[m/s2],temperature [K]",
+                              "#t [s],gyro x [deg/s],gyro y,gyro z,acc x [g],acc y,acc z"}) {
+    const AslFolder folder;
+    folder.set_line(kImu, 1, heading);
+    EXPECT_EQ(open_asl(folder.root()).imu.size(), 71u) << heading;
+  }
+  const AslFolder none;
+  none.remove_lines(kImu, 1, 1);
+  EXPECT_EQ(open_asl(none.root()).imu.size(), 71u);
+  const AslFolder of_tum_vi;
+  of_tum_vi.set_line(kTruth, 1,
+                     "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], "
+                     "q_RS_x [], q_RS_y [], q_RS_z []");
+  EXPECT_EQ(open_asl(of_tum_vi.root()).ground_truth.size(), 71u);
+}
+
 TEST(AslReader, RecordedFlight) {
   const fs::path folder = testing::recorded_data() / "euroc" / "MH_01_easy_t05_t20";
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not here";

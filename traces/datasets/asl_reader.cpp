@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "sim/base/csv.h"
@@ -51,10 +53,86 @@ void require_smooth_truth(const std::vector<GroundTruthPose>& poses, const fs::p
           poses[i].t_ns, kLongestTruthGapS));
 }
 
+/// What headings call a column, without the frames of its name: "w_RS_S_x" is "wx".
+struct Quantity {
+  std::string_view name;
+  std::string_view unit;  ///< as EuRoC writes it
+  bool has_axes = true;
+};
+constexpr Quantity kQuantities[] = {{"timestamp", "ns", false},
+                                    {"filename", "", false},
+                                    {"w", "rad s^-1"},
+                                    {"a", "m s^-2"},
+                                    {"p", "m"},
+                                    {"q", ""},
+                                    {"v", "m s^-1"},
+                                    {"b_w", "rad s^-1"},
+                                    {"b_a", "m s^-2"}};
+
+/// "q_RS_w" and "q.w" to "qw".
+std::string short_name(std::string_view name) {
+  std::string all;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of("_. ", begin), name.size());
+    const std::string_view part = name.substr(begin, end - begin);
+    if (part == "b")
+      all += "b_";  // a "baz" is no bias
+    else if (part != "RS" && part != "R" && part != "S")
+      all += part;
+    begin = end + 1;
+  }
+  return all;
+}
+
+const Quantity* quantity_of(std::string_view short_name) {
+  const auto is_it = [&](const Quantity& q) {
+    if (!q.has_axes || short_name.empty()) return short_name == q.name;
+    const bool has_axis = std::string_view("xyzw").find(short_name.back()) != std::string::npos;
+    return has_axis && short_name.substr(0, short_name.size() - 1) == q.name;
+  };
+  const auto found = std::find_if(std::begin(kQuantities), std::end(kQuantities), is_it);
+  return found == std::end(kQuantities) ? nullptr : found;
+}
+
+/// "m s^-2" and "m/sec^2" to the same text, which is empty for numbers without a unit.
+std::string plain_unit(std::string_view unit) {
+  std::string text;
+  for (const char c : unit)
+    if (std::string_view(" ^*1").find(c) == std::string_view::npos) text += c;
+  for (const auto& [from, to] : {std::pair{"sec", "s"}, {"s-", "/s"}})
+    for (std::size_t at; (at = text.find(from)) != std::string::npos;)
+      text.replace(at, std::string_view(from).size(), to);
+  return text;
+}
+
+/// A heading that names a known column in the place of another one, or with another unit, is of a
+/// table that would be read wrongly. Other words say nothing.
+void require_heading(base::CsvReader& csv, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> heading = csv.heading();
+  for (std::size_t i = 0; i < std::min(heading.size(), names.size()); ++i) {
+    const std::string_view cell = heading[i];
+    const std::size_t bracket = std::min(cell.find('['), cell.size());
+    const std::string found = short_name(cell.substr(0, bracket));
+    if (quantity_of(found) == nullptr) continue;
+    const std::string_view name = std::string_view(names[i]).substr(0, names[i].find(" ["));
+    const std::string_view unit = quantity_of(short_name(name))->unit;
+    const std::string_view inside = cell.substr(std::min(bracket + 1, cell.size()));
+    const std::string found_unit = plain_unit(inside.substr(0, inside.find(']')));
+    if (found == short_name(name) && (found_unit.empty() || found_unit == plain_unit(unit)))
+      continue;
+    constexpr std::size_t kLongest = 40;
+    throw InputError(fmt::format("{}, column {}: found '{}'; expected '{}{}'",
+                                 base::at_line(csv.file(), 1), i + 1, cell.substr(0, kLongest),
+                                 name, unit.empty() ? "" : fmt::format(" [{}]", unit)));
+  }
+}
+
 }  // namespace
 
 std::vector<FrameRef> read_frames_csv(const fs::path& data_csv) {
-  base::CsvReader csv(data_csv, base::Separator::comma, {"timestamp [ns]", "filename"});
+  const std::vector<std::string> names{"timestamp [ns]", "filename"};
+  base::CsvReader csv(data_csv, base::Separator::comma, names);
+  require_heading(csv, names);
   base::RisingStamps stamps;
   std::vector<FrameRef> frames;
   while (const base::CsvRow* row = csv.next()) {
@@ -68,9 +146,10 @@ std::vector<FrameRef> read_frames_csv(const fs::path& data_csv) {
 }
 
 std::vector<ImuSample> read_imu_csv(const fs::path& data_csv) {
-  base::CsvReader csv(
-      data_csv, base::Separator::comma,
-      {"timestamp [ns]", "w_RS_S_x", "w_RS_S_y", "w_RS_S_z", "a_RS_S_x", "a_RS_S_y", "a_RS_S_z"});
+  const std::vector<std::string> names{"timestamp [ns]", "w_RS_S_x", "w_RS_S_y", "w_RS_S_z",
+                                       "a_RS_S_x",       "a_RS_S_y", "a_RS_S_z"};
+  base::CsvReader csv(data_csv, base::Separator::comma, names);
+  require_heading(csv, names);
   base::RisingStamps stamps;
   std::vector<ImuSample> samples;
   while (const base::CsvRow* row = csv.next()) {
@@ -90,7 +169,8 @@ std::vector<GroundTruthPose> read_ground_truth_csv(const fs::path& data_csv) {
   constexpr std::size_t kOfPose = 8;
   const bool only_poses = base::first_row(data_csv).columns == kOfPose;
   if (only_poses) names.resize(kOfPose);
-  base::CsvReader csv(data_csv, base::Separator::comma, std::move(names));
+  base::CsvReader csv(data_csv, base::Separator::comma, names);
+  require_heading(csv, names);
   base::RisingStamps stamps;
   std::vector<GroundTruthPose> poses;
   while (const base::CsvRow* row = csv.next()) {
