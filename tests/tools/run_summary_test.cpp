@@ -67,6 +67,19 @@ TEST(RunSummary, SaysAllThatMatters) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
 }
 
+/// A number without its first digits is another number.
+TEST(RunSummary, NarrowScreensCutNoNumbers) {
+  RunResult run = eventful_run();
+  for (FrameResult& frame : run.frames) frame.end_ns = frame.start_ns + 1'336'000'000;
+  ASSERT_NE(verdict(run).find("1336 ms"), std::string::npos) << verdict(run);
+  for (const int width : {24, 40, 60, 80}) {
+    std::string text = run_summary(kHeading, run, width);
+    for (std::size_t at; (at = text.find("\n  ")) != std::string::npos;) text.replace(at, 3, " ");
+    for (const std::string& part : {verdict(run), std::string("energy: "), std::string("worst ")})
+      EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
+  }
+}
+
 /// A filter that diverges may be a galaxy away.
 TEST(RunSummary, APathThatDivergedHasThreeDigits) {
   RunResult run = eventful_run();

@@ -33,15 +33,20 @@ std::string without_middle(const std::string& text, int width) {
   return text.substr(0, at(head)) + "…" + text.substr(at(display_width(text) - (width - 1 - head)));
 }
 
-/// The text, broken behind commas where it exceeds the width.
-std::string wrapped(const std::string& text, int width) {
+/// The text, broken behind commas where it exceeds the width, and at blanks where a part is still
+/// too wide; words stay whole. @param has_path  such a part loses its middle instead
+std::string wrapped(const std::string& text, int width, bool has_path = false) {
   constexpr int kIndent = 2;
   std::vector<std::string> items;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(kComma, begin), text.size());
     const bool last = end == text.size();
-    items.push_back(
-        without_middle(text.substr(begin, end - begin) + (last ? "" : ","), width - kIndent));
+    std::string item = text.substr(begin, end - begin) + (last ? "" : ",");
+    if (has_path) item = without_middle(item, width - kIndent);
+    if (display_width(item) <= width - kIndent)
+      items.push_back(std::move(item));
+    else
+      for (std::string& word : base::split(item, ' ')) items.push_back(std::move(word));
     begin = last ? end : end + kComma.size();
   }
   return wrap(items, " ", kIndent, width) + '\n';
@@ -225,7 +230,7 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
     if (!line.empty()) end += wrapped(line, width);
   }
   end += "more: --tables all, or some of them\n";
-  std::string text = wrapped(heading, width) + '\n';
+  std::string text = wrapped(heading, width, true) + '\n';
   text += wrapped(verdict(run), width);
   if (!run.timed) return text + end;
   constexpr int kTitleRuleFolderAndNext = 4;
