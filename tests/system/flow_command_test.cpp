@@ -99,6 +99,7 @@ TEST_F(FlowCommand, RefusesWhatItCannotDo) {
   refused({"--platform", "gap8", "--data", data, "--grid", "50"}, {"grid is 50", "1 to 47"});
   refused({"--platform", "gap8", "--data", data, "--search", "17"}, {"--search '17'", "16"});
   refused({"--platform", "gap8", "--data", data, "--fps", "no"}, {"--fps 'no'"});
+  refused({"--platform", "gap8", "--data", data, "--fps", "1e-10"}, {"from 0.001 to 100000"});
   refused({"--platform", "gap8", "--data", data, "--cores", "9"}, {"--cores '9'"});
   refused({"--platform", "gap8", "--data", data, "--girth", "9"}, {"--girth", "--grid"});
   refused({"--platform", "gap8", "--data", path("nowhere")}, {"nowhere"});

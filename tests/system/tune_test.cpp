@@ -53,7 +53,7 @@ TEST(TuneOptions, SeedsAreAList) {
 
 TEST(TuneOptions, RatesAreAbove0) {
   EXPECT_EQ(parse_rates("20,10,7.5"), (std::vector<double>{7.5, 10, 20}));
-  for (const char* text : {"", "0", "-1", "10,", "ten"})
+  for (const char* text : {"", "0", "-1", "10,", "ten", "10,1e-10"})
     expect_input_error([&] { parse_rates(text); }, {"--fps", "above 0"});
   expect_input_error([] { parse_rates("10,10"); }, {"--fps '10,10'", "every value once"});
 }
@@ -361,8 +361,8 @@ TEST(RunOptions, AskForALoopByRateOrDeadline) {
   EXPECT_EQ(parse_camera("12.5", "")->deadline, Deadline::Drop);
   EXPECT_FALSE(parse_camera("", "queue")->fps);
   EXPECT_EQ(parse_camera("", "queue")->deadline, Deadline::Queue);
-  for (const char* fps : {"0", "-1", "fast", "nan"})
-    expect_input_error([&] { parse_camera(fps, ""); }, {"--fps", "above 0"});
+  for (const char* fps : {"0", "-1", "fast", "nan", "1e-10", "1e6"})
+    expect_input_error([&] { parse_camera(fps, ""); }, {"--fps", "above 0, from 0.001 to 100000"});
   expect_input_error([] { parse_camera("", "late"); }, {"--deadline 'late'", "drop or queue"});
 }
 

@@ -46,7 +46,7 @@ RunRequest request_of(const FlowOptions& options) {
 FlowRun run_flow(const FlowOptions& options, const RunRequest& request, ProgressLine::Style style) {
   FlowSource source(request, workload_of(options));
   FlowRun flow;
-  if (!options.fps.empty()) flow.rate = parse_positive("--fps", options.fps);
+  if (!options.fps.empty()) flow.rate = parse_frame_rate(options.fps);
   flow.run = simulate_with_progress(request, source, style);
   flow.flows = source.flows();
   flow.platform = request.platform.name;
@@ -73,7 +73,7 @@ void run(const CLI::App& command, const FlowOptions& options, const Words& words
   require(command, "--data", "an ASL folder or 'synthetic'");
   require(command, "--out", "a folder for the results");
   workload_of(options);
-  if (!options.fps.empty()) parse_positive("--fps", options.fps);
+  if (!options.fps.empty()) parse_frame_rate(options.fps);
   RunRequest request = request_of(options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   outputs::OutputFolder out(out_request(options));

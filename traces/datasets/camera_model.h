@@ -14,6 +14,9 @@
 
 namespace leviosim::traces {
 
+/// Rates of cameras and IMUs that are read.
+inline constexpr double kLeastHz = 1e-3, kMostHz = 1e5;
+
 enum class Lens { radial_tangential, equidistant };
 
 struct CameraModel {

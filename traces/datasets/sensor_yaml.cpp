@@ -1,9 +1,9 @@
 #include "traces/datasets/sensor_yaml.h"
 
-#include <Eigen/LU>
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,6 @@ namespace {
 constexpr double kRotationTolerance = 1e-4;
 
 // Far beyond what is built, and small enough that periods, pixels and variances stay numbers.
-constexpr double kLeastHz = 1e-3, kMostHz = 1e5;
 constexpr double kMostFocalPixels = 1e6;  // of the image centre, too
 constexpr double kMostDistortion = 1e3;
 constexpr double kMostArmM = 1e3;   // from the body to a sensor

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "platform_models/loader/schema.h"
+#include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "tools/app/cli/command_line.h"
@@ -191,10 +192,18 @@ void add_chip_run_options(CLI::App& command, RunOptions& options) {
   add_workload_options(command, options, " [synthetic]");
 }
 
+double parse_frame_rate(const std::string& text) {
+  double rate = 0;
+  if (!base::parse_number(text, rate) || rate < traces::kLeastHz || rate > traces::kMostHz)
+    throw InputError(fmt::format("--fps '{}': expected a number above 0, from {} to {}", text,
+                                 traces::kLeastHz, traces::kMostHz));
+  return rate;
+}
+
 std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline) {
   if (fps.empty() && deadline.empty()) return std::nullopt;
   CameraRequest camera;
-  if (!fps.empty()) camera.fps = parse_positive("--fps", fps);
+  if (!fps.empty()) camera.fps = parse_frame_rate(fps);
   if (!deadline.empty()) camera.deadline = soc::parse_deadline(deadline);
   return camera;
 }

@@ -121,6 +121,8 @@ RunRequest make_chip_request(const RunOptions& options);
 /// @throws InputError for more cores than the chip serves
 int cores_of(const RunOptions& options, const sim::ClusterConfig& cluster);
 
+/// Frames per second of a camera, within what sensor.yaml may say. @throws InputError
+double parse_frame_rate(const std::string& text);
 /// The closed loop that --fps and --deadline ask for, if one of them is given; the other
 /// is then the recorded rate or `drop`. @throws InputError
 std::optional<CameraRequest> parse_camera(const std::string& fps, const std::string& deadline);

@@ -159,8 +159,7 @@ std::vector<std::uint32_t> parse_seed_list(const std::string& text) {
 
 std::vector<double> parse_rates(const std::string& text) {
   std::vector<double> rates;
-  for (const std::string& item : base::split(text, ','))
-    rates.push_back(parse_positive("--fps", item));
+  for (const std::string& item : base::split(text, ',')) rates.push_back(parse_frame_rate(item));
   sort_and_refuse_repetitions("--fps", text, rates);
   return rates;
 }
