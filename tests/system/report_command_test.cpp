@@ -76,6 +76,20 @@ TEST_F(Report, OfACheckHasItsLimits) {
   EXPECT_NE(base::read_text_file(path("c.html")).find("\"leviosim check\""), std::string::npos);
 }
 
+/// Points that are done say nothing of a budget that they do not meet.
+TEST_F(Report, OfASweepThatMissesItsBudgetSaysSo) {
+  std::ofstream(path("missed.yaml")) << "base: { trace: a/work.trace }\npoints: { grid: { "
+                                        "platform.cluster.fpu.units: [1, 4] } }\n";
+  std::ofstream(path("small.yaml")) << "budgets:\n  - limits: [L1 peak <= 1 kB]\n";
+  const ProgramResult missed =
+      program({"sweep", path("missed.yaml"), "--out", path("missed"), "--quiet", "--cache",
+               path("cache"), "--budget", path("small.yaml"), "--report", path("missed.html")});
+  ASSERT_EQ(missed.status, 1) << missed.err;
+  const std::string page = base::read_text_file(path("missed.html"));
+  EXPECT_NE(page.find("NOT met by 2 of 2 points, first point 1"), std::string::npos);
+  EXPECT_EQ(page.find("\"good\":true"), std::string::npos) << "a box in green";
+}
+
 /// Stages add up to the frame but for the call of the cluster and its answer; on one core, the
 /// breakdown of a stage to its cycles.
 TEST_F(Report, CyclesOfTheTablesAddUp) {
@@ -140,6 +154,8 @@ class InBrowser : public Report {
       tables: document.querySelectorAll("figure details").length,
       verdict: document.querySelectorAll(".verdict, [aria-label=Runs]").length,
       colours: [...document.querySelectorAll("i")].every((i) => i.style.length > 0),
+      marks: [...document.querySelectorAll(".verdict, [class^=status-]")]
+        .map((e) => e.classList.contains("verdict") ? e.className : e.className + e.textContent),
       evil: document.title === "evil",
       unnamed: chartsOf("kind").reduce((sum, c) => sum + c.data.labels.length -
         c.data.datasets.filter((d) => d.yAxisID === "kind").flatMap((d) => d.data)
@@ -260,6 +276,15 @@ TEST_F(InBrowser, APageOfABudgetThatIsNotMetIsToo) {
       {"check", path("a"), "--budget", path("strict.yaml"), "--report", path("strict.html")});
   ASSERT_EQ(check.status, 1) << check.err;
   expect_fine("strict.html", 2);
+}
+
+TEST_F(InBrowser, LimitsThatOnlyWarnHaveTheirOwnMark) {
+  std::ofstream(path("mild.yaml"))
+      << "budgets:\n  - limits:\n      - { limit: L1 peak <= 1 kB, level: warn }\n";
+  expect_done({"check", path("a"), "--budget", path("mild.yaml"), "--report", path("mild.html")});
+  Json marks = open("mild.html", false).pages["1280"]["marks"];
+  marks.erase(0);  // of the run
+  EXPECT_EQ(marks, Json({"card verdict doubtful", "status-warn! ", "status-warn! warning"}));
 }
 
 TEST_F(InBrowser, APageOfATuningIsToo) {

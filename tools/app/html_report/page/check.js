@@ -1,9 +1,16 @@
 // What a budget says of the run: each limit, and of those that are not met where and why.
 
 function checkSection(check) {
-  const status = (word) => element(
-      'span', {class: word === 'not met' ? 'status-bad' : 'status-good'},
-      {'met': '✓ met', 'warning': '! warning', 'not met': '✗ not met'}[word]);
+  const words = ['not met', 'warning', 'met'];  // the worst first
+  const signs = {
+    'not met': ['status-bad', '✗ '],
+    'warning': ['status-warn', '! '],
+    'met': ['status-good', '✓ ']
+  };
+  const wordOf = (finding) =>
+      finding.met ? 'met' : finding.level === 'warn' ? 'warning' : 'not met';
+  const status = (word, text = word) =>
+      element('span', {class: signs[word][0]}, signs[word][1] + text);
   const margin = (finding) => {
     if (finding.value === null || !finding.bound) return null;
     const atMost = !finding.limit.includes('>=');
@@ -11,27 +18,29 @@ function checkSection(check) {
         Math.abs(finding.bound);
   };
   const columns = [
-    {title: '', text: true, node: status},
+    {title: '', text: true, node: (word) => status(word)},
     {title: 'limit', text: true, wrap: true}, {title: 'stage', text: true},
     {title: 'margin, %', node: (value) => signed(value)}, {title: 'found'}, {title: 'bound'},
     {title: 'statistic', text: true}
   ];
   const rows = check.findings.map(
       (f) =>
-          [f.met ? 'met' : f.level === 'warn' ? 'warning' : 'not met', f.limit, f.stage || '',
-           margin(f), f.shown.value, f.shown.bound, f.statistic]);
-  rows.sort((a, b) => (a[0] === b[0] ? 0 : a[0] === 'met' ? 1 : -1));
+          [wordOf(f), f.limit, f.stage || '', margin(f), f.shown.value, f.shown.bound,
+           f.statistic]);
+  rows.sort((a, b) => words.indexOf(a[0]) - words.indexOf(b[0]));
+  const kind = check.not_met > 0 ? 'fails' : check.warnings > 0 ? 'doubtful' : 'fits';
   const missed = check.findings.filter((finding) => !finding.met);
   return section(
       'budget', 'Budget',
       element(
-          'div', {class: `card verdict ${check.not_met > 0 ? 'fails' : 'fits'}`},
+          'div', {class: `card verdict ${kind}`},
           element(
               'p', {class: 'sentence'},
               check.not_met > 0 ?
                   `${check.not_met} of ${check.limits} limits ${
                       check.not_met === 1 ? 'is' : 'are'} not met.` :
-                  `All ${check.limits} limits are met.`),
+                  `All ${check.limits} limits are met${
+                      check.warnings > 0 ? `, but ${check.warnings} with a warning` : ''}.`),
           check.better > 0 ?
               element('p', {}, `${check.better} better than the baseline, by more than the limit ` +
                   'allows it to worsen.') :
@@ -44,7 +53,7 @@ function checkSection(check) {
           (finding) => element(
               'div', {class: 'card'},
               element(
-                  'h3', {}, element('span', {class: 'status-bad'}, '✗ '),
+                  'h3', {}, status(wordOf(finding), ''),
                   `${finding.stage ? `${finding.stage}: ` : ''}${finding.limit}`),
               element('p', {}, finding.excess),
               element(

@@ -173,13 +173,25 @@ std::string title_of(const std::string& parameter) {
   return parameter.rfind(kPlatform, 0) == 0 ? parameter.substr(kPlatform.size()) : parameter;
 }
 
+/// Whether the points meet a budget. That they are done is then no good news of its own.
+void add_check(const SweepCheck& check, std::vector<StudyBox>& boxes) {
+  constexpr std::string_view kPrefix = "verdict: ";
+  const bool is_met = check.missed == 0;
+  if (!is_met && boxes.front().good == true) boxes.front().good.reset();
+  boxes.insert(boxes.begin(), {.good = is_met,
+                               .mark = is_met ? "budget met" : "budget NOT met",
+                               .sentence = check.verdict.substr(kPrefix.size()),
+                               .lines = {}});
+}
+
 /// The data of the page, after the store has been published.
-Json sweep_page(SweepStore& store) {
+Json sweep_page(SweepStore& store, const std::optional<SweepCheck>& check) {
   constexpr double kNsToMs = 1e-6;
   const std::vector<std::string> parameters = store.parameter_names();
   StudyPage page;
   page.title = "A sweep";
   page.boxes = {sweep_box(store)};
+  if (check) add_check(*check, page.boxes);
   page.best = sweep_front(store);
   page.points = store.csv();
   page.columns = {{"point", "point", "", true}};
@@ -380,13 +392,14 @@ void run_plan(const SweepWords& words) {
         store, words.out);
   };
   print(printout(words.json, lines, [&] { return document(out.csv()); }), {{"results", words.out}});
-  if (page) publish_report(page, sweep_page(store), !words.json);
+  std::optional<SweepCheck> check;
+  if (budget) check = check_sweep(*budget, plan, expansion.points, inputs, store);
+  if (page) publish_report(page, sweep_page(store, check), !words.json);
   if (elsewhere) throw InputError(*elsewhere);
   bool is_met = !has_failures(store);
-  if (budget) {
-    const SweepCheck check = check_sweep(*budget, plan, expansion.points, inputs, store);
-    print(Printout(check.text).ending(check.verdict, after_sweep(store, words.out)));
-    is_met = is_met && check.missed == 0;
+  if (check) {
+    print(Printout(check->text).ending(check->verdict, after_sweep(store, words.out)));
+    is_met = is_met && check->missed == 0;
   }
   if (!is_met) throw LimitNotMet();
 }
