@@ -156,6 +156,26 @@ TEST(SweepStore, AMergeRefusesAnotherPlan) {
   EXPECT_TRUE(ours.finished().empty());
 }
 
+/// Points that several jobs compute are finished in any order, and have figures of their own.
+TEST(SweepStore, TheFileDoesNotDependOnTheOrderInWhichPointsWereFinished) {
+  std::map<int, Outcome> results{
+      {1, result_of(5)}, {2, {"too little L1", {}}}, {3, result_of(3)}, {4, result_of(4, 900)}};
+  results[3].figures.insert(results[3].figures.begin(), {"accuracy.tilt", "deg", "of it", 0.5});
+  results[4].figures.push_back({"accuracy.ate", "m", "of it", 0.25});
+  const std::vector<int> clocks{100, 200, 300, 400};
+  std::set<std::string> files;
+  for (const std::vector<int>& order : {std::vector{1, 2, 3, 4}, {4, 3, 2, 1}, {3, 1, 4, 2}}) {
+    const TempFolder folder;
+    SweepStore store(folder.path(), "plan", plan_of(clocks));
+    for (const int point : order) store.put(point, results[point]);
+    publish(store, folder);
+    for (const auto& [point, result] : results)
+      EXPECT_EQ(to_text(*store.result_of(point)), to_text(result)) << point;
+    files.insert(base::read_text_file(folder / kSweepFile));
+  }
+  EXPECT_EQ(files.size(), 1u);
+}
+
 TEST(SweepStore, TheFrontIsThatOfTheLastPublication) {
   const TempFolder folder;
   SweepStore store(folder.path(), "plan", plan_of({100, 200, 300}));

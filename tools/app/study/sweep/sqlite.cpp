@@ -131,6 +131,12 @@ void Database::run(const std::string& sql) {
     fail_with_reason();
 }
 
+void Database::rewrite() {
+  sqlite3_limit(handle_, SQLITE_LIMIT_ATTACHED, 1);  // the copy that VACUUM makes
+  run("PRAGMA temp_store = MEMORY; VACUUM");
+  sqlite3_limit(handle_, SQLITE_LIMIT_ATTACHED, 0);
+}
+
 Statement::Statement(Database& database, const std::string& sql) : database_(database) {
   if (sqlite3_prepare_v2(database.handle_, sql.c_str(), -1, &handle_, nullptr) != SQLITE_OK)
     database.fail_with_reason();

@@ -378,6 +378,22 @@ void SweepStore::write_front() {
     insert.bind(1, std::int64_t{o.point}).run();
 }
 
+void SweepStore::number_figures() {
+  database_.run(R"(
+CREATE TEMP TABLE ranks AS
+  SELECT figure, ROW_NUMBER() OVER (ORDER BY MIN(point * 1000000 + place)) AS rank
+  FROM figure_values GROUP BY figure;
+CREATE UNIQUE INDEX temp.by_figure ON ranks(figure))");
+  const bool is_right =
+      !Statement(database_, "SELECT 1 FROM temp.ranks WHERE rank <> figure").step();
+  if (!is_right)  // by way of numbers that no figure has
+    for (const char* rank :
+         {"-(SELECT rank FROM temp.ranks r WHERE r.figure = t.figure)", "-figure"})
+      for (const char* table : {"figures", "figure_values"})
+        database_.run(fmt::format("UPDATE {} AS t SET figure = {}", table, rank));
+  database_.run("DROP TABLE temp.ranks");
+}
+
 std::set<int> SweepStore::front() {
   std::set<int> points;
   Statement select(database_, "SELECT point FROM front");
@@ -387,10 +403,12 @@ std::set<int> SweepStore::front() {
 
 std::optional<std::string> SweepStore::publish(outputs::OutputFile& file) {
   Transaction transaction(database_);  // of several processes, the last sees what all have done
+  number_figures();
   make_views(parameter_names(), figure_names());
   write_front();
   std::optional<std::string> elsewhere = file.publish(csv());
   transaction.commit();
+  database_.rewrite();
   return elsewhere;
 }
 

@@ -45,6 +45,8 @@ class Database {
 
   /// Statements without values, separated by semicolons.
   void run(const std::string& sql);
+  /// Puts the pages of the file into an order that follows from the rows.
+  void rewrite();
   [[noreturn]] void fail(std::string_view message) const;
   /// With what SQLite says of the last statement. @throws Interrupted if that was stopped
   [[noreturn]] void fail_with_reason() const;
@@ -163,7 +165,7 @@ class SweepStore {
   std::set<int> front();
 
   /// Brings views, front and sweep.csv up to date: a row per finished point, a column per parameter
-  /// and figure, in an order that does not depend on which was finished first.
+  /// and figure. Neither file depends on which point was finished first.
   /// @returns nothing, or why sweep.csv has another name now
   [[nodiscard]] std::optional<std::string> publish(outputs::OutputFile& file);
   /// The text of sweep.csv as of the last publish().
@@ -181,6 +183,8 @@ class SweepStore {
   void write(int point, const Outcome& result);
   std::vector<std::string> figure_names();
   void write_front();
+  /// Numbers figures as the points of the plan have them, whichever was finished first.
+  void number_figures();
   void make_views(const std::vector<std::string>& parameters,
                   const std::vector<std::string>& figures);
 
