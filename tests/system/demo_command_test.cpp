@@ -26,8 +26,9 @@ TEST(DemoCommand, ShowsBothProfilesOnAScreenAndLeavesThemWithAReport) {
     EXPECT_TRUE(line.find(folder.path().string()) != std::string::npos || display_width(line) <= 80)
         << line;
   EXPECT_LE(lines, 24) << shown.out;
-  for (const char* part : {"levio: 1", "next: 1", "feature extraction", "optimiser iteration",
-                           "L1 and L2", "one FPU", "240 MHz", "█", "leviosim replay"})
+  for (const char* part :
+       {"levio: 1", "next: 1", "feature extraction", "optimiser iteration", "L1 and L2", "one FPU",
+        "240 MHz", "█", "leviosim replay", "30 frames on GAP9"})
     EXPECT_NE(shown.out.find(part), std::string::npos) << part << " is not in:\n" << shown.out;
   for (const char* file : {"demo/report.html", "demo/next/stats.json"})
     EXPECT_TRUE(fs::exists(folder.path() / file)) << file;

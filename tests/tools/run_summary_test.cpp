@@ -80,6 +80,18 @@ TEST(RunSummary, NarrowScreensCutNoNumbers) {
   }
 }
 
+/// Data of one or two frames may well have a ground truth.
+TEST(RunSummary, SaysWhyThereIsNoError) {
+  RunResult run = testing::example_run();
+  run.ate.reset();
+  for (const std::size_t poses : {3u, 2u}) {
+    run.trajectory.resize(poses);
+    const std::string why = poses == 3 ? "no ground truth in the data" : "too few poses to align";
+    for (const std::string& text : {run_summary(kHeading, run, 80), trajectory_summary(run)})
+      EXPECT_NE(text.find(why), std::string::npos) << why << " is not in:\n" << text;
+  }
+}
+
 /// A filter that diverges may be a galaxy away.
 TEST(RunSummary, APathThatDivergedHasThreeDigits) {
   RunResult run = eventful_run();

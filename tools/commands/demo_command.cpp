@@ -150,8 +150,9 @@ std::string what_ifs(const std::string& trace, ProgressLine::Style style) {
 std::string screen(const Flown& levio, const Flown& next, const std::string& what_ifs,
                    const RunOptions& options, const std::string& out) {
   const RunResult &a = levio.result, &b = next.result;
-  std::string text = fmt::format("{} drawn frames on GAP9: ms of a call on one core and on {}\n",
-                                 a.frames.size(), a.cores);
+  std::string text =
+      fmt::format("{} {}frames on GAP9: ms of a call on one core and on {}\n", a.frames.size(),
+                  options.data == "synthetic" ? "drawn " : "", a.cores);
   text += fmt::format("{:<22}{:>9}{:>9}{:>8}   {:>10}{:>9}{:>8}\n", "", "levio: 1", a.cores,
                       "ratio", "next: 1", b.cores, "ratio");
   for (const std::string_view stage : longest_stages(a, b))

@@ -120,6 +120,12 @@ std::string short_protocol(const traces::Evaluation& ate) {
                      100 * ate.completion, ate.path_length_m);
 }
 
+/// Why there is no ATE, where nothing made the poses incomparable.
+std::string_view without_ate(const RunResult& run) {
+  return run.trajectory.size() < kFewestPoses ? "too few poses to align"
+                                              : "no ground truth in the data";
+}
+
 std::vector<std::string> trajectory_lines(const RunResult& run) {
   const std::int64_t restarts = map_restarts(run);
   std::string again = restarts > 0 ? fmt::format(", restarts of the map {}", restarts) : "";
@@ -131,7 +137,7 @@ std::vector<std::string> trajectory_lines(const RunResult& run) {
                                          readable(path_length(run.trajectory), 2));
   if (const std::string why = why_incomparable(run); !why.empty())
     return {length + again, "ATE: none: " + why};
-  if (!run.ate) return {length + again + ", no ground truth in the data"};
+  if (!run.ate) return {fmt::format("{}{}, {}", length, again, without_ate(run))};
   std::string text =
       fmt::format("trajectory: ATE {} m RMSE, {} m worst", readable(run.ate->translation.rmse, 3),
                   readable(run.ate->translation.max, 3));
@@ -314,7 +320,7 @@ std::string trajectory_summary(const RunResult& run) {
     text += fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
   if (const std::string why = why_incomparable(run); !why.empty())
     return text + "ATE: none: " + why + '\n';
-  if (!run.ate) return text + "ATE: no ground truth in the data\n";
+  if (!run.ate) return text + fmt::format("ATE: {}\n", without_ate(run));
   return text + ate_text(*run.ate);
 }
 

@@ -32,6 +32,8 @@ double milliseconds(double cycles, Hertz clock);
 std::size_t expected_poses(const RunResult& run);
 /// Why the run has no error that could be compared with another's; empty if it may have one.
 std::string why_incomparable(const RunResult& run);
+/// Poses that an alignment takes at least.
+inline constexpr std::size_t kFewestPoses = 3;
 
 /// Frames of one kind and how long they took.
 struct Scenario {

@@ -188,12 +188,11 @@ RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory&
 }
 
 RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, const Measure& how) {
-  constexpr std::size_t kFewest = 3;
   const std::size_t expected = expected_poses(run);
   RunOutcome outcome;
   if (std::string why = why_incomparable(run); !why.empty())
     outcome.failure = std::move(why);
-  else if (run.camera && run.trajectory.size() < kFewest)
+  else if (run.camera && run.trajectory.size() < kFewestPoses)
     outcome.failure = "fewer than three frames were processed";
   else
     outcome = measure(run.trajectory, truth, how, expected);
