@@ -154,6 +154,23 @@ TEST(AslReader, BlankLineBetweenRows) {
   expect_broken(folder, {"imu0/data.csv line 7", "blank line"});
 }
 
+/// Deadlines and energy follow from the rate.
+TEST(AslReader, ARateThatContradictsTheStamps) {
+  for (const char* rate : {"30", "22.1", "17.9", "10"}) {
+    const AslFolder folder;
+    folder.replace("cam0/sensor.yaml", "rate_hz: 20", fmt::format("rate_hz: {}", rate));
+    expect_broken(folder, {"cam0/sensor.yaml line 13, key 'rate_hz'",
+                           fmt::format("is {}; expected 20,", rate), "data.csv are 50 ms apart"});
+  }
+  const AslFolder near;
+  near.replace("cam0/sensor.yaml", "rate_hz: 20", "rate_hz: 21.9");
+  near.remove_lines(kFrames, 4, 1);
+  EXPECT_EQ(open_asl(near.root()).frames.size(), 5u);
+  const AslFolder two_frames;
+  two_frames.remove_lines(kFrames, 3, 4);
+  EXPECT_EQ(open_asl(two_frames.root()).frames.size(), 2u);
+}
+
 TEST(AslReader, ImuGapAboveTheLimit) {
   const AslFolder two_missing;
   two_missing.remove_lines(kImu, 30, 2);  // 15 ms, the default limit

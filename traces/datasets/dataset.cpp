@@ -69,6 +69,24 @@ void require_no_gaps(const Dataset& data, double longest_s) {
 
 }  // namespace
 
+double rate_of(const std::vector<std::int64_t>& stamps_ns, const fs::path& file) {
+  if (stamps_ns.size() < 2)
+    throw InputError(
+        fmt::format("{}: one time stamp is no rate; expected at least 2 rows", file.string()));
+  std::vector<std::int64_t> periods;
+  for (std::size_t i = 1; i < stamps_ns.size(); ++i)
+    periods.push_back(stamps_ns[i] - stamps_ns[i - 1]);
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return 1e9 / static_cast<double>(*middle);
+}
+
+std::vector<std::int64_t> stamps_of(const std::vector<FrameRef>& frames) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const FrameRef& frame : frames) stamps_ns.push_back(frame.t_ns);
+  return stamps_ns;
+}
+
 Dataset opened(Dataset data, const OpenOptions& options) {
   if (options.frames) select_frames(data.frames, *options.frames, data.frames_csv);
   require_images(data.frames, data.frames_csv);

@@ -96,6 +96,10 @@ struct OpenOptions {
   Disturbance disturbance{};  ///< made after everything has been checked
 };
 
+/// From the median period of stamps, of which there are at least two. [Hz]
+double rate_of(const std::vector<std::int64_t>& stamps_ns, const std::filesystem::path& file);
+std::vector<std::int64_t> stamps_of(const std::vector<FrameRef>& frames);
+
 /// What was read, with the frames that were asked for and the disturbance made. Throws InputError
 /// if images are missing or the IMU, where there is one, does not cover the frames.
 Dataset opened(Dataset data, const OpenOptions& options);

@@ -132,6 +132,19 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
   return camera;
 }
 
+void expect_camera_rate(const std::filesystem::path& sensor_yaml, const Dataset& data) {
+  constexpr std::size_t kFewestFrames = 3;
+  constexpr double kMostOff = 0.1;
+  if (data.frames.size() < kFewestFrames) return;
+  const double found = rate_of(stamps_of(data.frames), data.frames_csv);
+  if (std::abs(data.camera.rate_hz / found - 1) <= kMostOff) return;
+  YamlMap::load(sensor_yaml)
+      .fail("rate_hz",
+            fmt::format("is {:g}; expected {:.4g}, since frames of {} are {:.4g} ms "
+                        "apart, most of them",
+                        data.camera.rate_hz, found, data.frames_csv.string(), 1e3 / found));
+}
+
 ImuModel read_imu_model(const std::filesystem::path& sensor_yaml) {
   const YamlMap sensor = YamlMap::load(sensor_yaml);
   const ImuModel imu = read_noise(sensor, "rate_hz");

@@ -2,9 +2,7 @@
 // recording.cpp names them. All throw InputError with file, line, column or key.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <vector>
 
 #include "traces/datasets/dataset.h"
 
@@ -35,9 +33,5 @@ Dataset read_kitti_odometry(const std::filesystem::path& folder);
 /// sixth-order term.
 bool is_kitti_raw(const std::filesystem::path& folder);
 Dataset read_kitti_raw(const std::filesystem::path& folder);
-
-/// From the median period of stamps, of which there are at least two. [Hz]
-double rate_of(const std::vector<std::int64_t>& stamps_ns, const std::filesystem::path& file);
-std::vector<std::int64_t> stamps_of(const std::vector<FrameRef>& frames);
 
 }  // namespace leviosim::traces

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "sim/base/csv.h"
@@ -22,24 +21,6 @@ constexpr const char* kCameras = "dso/camchain.yaml";
 constexpr const char* kImu = "dso/imu_config.yaml";
 
 }  // namespace
-
-double rate_of(const std::vector<std::int64_t>& stamps_ns, const fs::path& file) {
-  if (stamps_ns.size() < 2)
-    throw InputError(
-        fmt::format("{}: one time stamp is no rate; expected at least 2 rows", file.string()));
-  std::vector<std::int64_t> periods;
-  for (std::size_t i = 1; i < stamps_ns.size(); ++i)
-    periods.push_back(stamps_ns[i] - stamps_ns[i - 1]);
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return 1e9 / static_cast<double>(*middle);
-}
-
-std::vector<std::int64_t> stamps_of(const std::vector<FrameRef>& frames) {
-  std::vector<std::int64_t> stamps_ns;
-  for (const FrameRef& frame : frames) stamps_ns.push_back(frame.t_ns);
-  return stamps_ns;
-}
 
 bool is_tum_vi(const fs::path& folder) {
   return base::is_folder(folder / "mav0") && base::is_file(folder / kCameras) &&
@@ -140,6 +121,7 @@ Dataset read_tum_rgbd(const fs::path& folder) {
       required(folder, "cam0/sensor.yaml",
                "TUM RGB-D folders hold no calibration: expected one as in ASL folders"));
   data.frames = read_frames(data.frames_csv);
+  expect_camera_rate(folder / "cam0/sensor.yaml", data);
   if (base::is_file(folder / kGyro))
     read_imu(folder, data);
   else
