@@ -134,6 +134,8 @@ TEST_F(CommandLine, OptionsHaveOneNameEach) {
   };
   for (const char* command : {"run", "tune", "flow"})
     EXPECT_NE(help(command).find("  --fps F"), std::string::npos) << command;
+  for (const char* command : {"run", "replay"})
+    EXPECT_NE(help(command).find(".pftrace"), std::string::npos) << command;
   for (const char* command : {"sensitivity", "microbench", "platforms", "calibrate"})
     EXPECT_EQ(help(command).find("  --out"), std::string::npos) << command;
   for (const char* command :
@@ -189,8 +191,16 @@ TEST_F(CommandLine, RefusesSizes) {
     return {"run", "--native", "--data", data_.root().string(), "--size", size, "--out", out()};
   };
   for (const char* size : {"160", "x", "160x", "0x120", "160x-1", "160x120x3"})
-    expect_refusal(words(size), {"--size"});
+    expect_refusal(words(size), {fmt::format("--size '{}'", size)});
   expect_refusal(words("64x48"), {"64"});  // larger than the camera's 32x24
+}
+
+/// What the help says that an option is without it may be said.
+TEST_F(CommandLine, AnInitialDelayMayBe0) {
+  const ProgramResult run =
+      run_program(folder_.path(), {"run", "--native", "--data", data_.root().string(), "--size",
+                                   "32x24", "--initial-delay", "0", "--out", out()});
+  EXPECT_EQ(run.status, 0) << run.err;
 }
 
 TEST_F(CommandLine, ANativeRunTakesNoOptionsOfAChip) {

@@ -202,6 +202,10 @@ std::string document(const Findings& all) {
 }
 
 void run(const DoctorOptions& options) {
+  for (const std::string& folder : options.folders)
+    if (!base::is_folder(folder))
+      throw InputError(fmt::format("doctor: {}: {}; expected a folder with recordings", folder,
+                                   base::exists(folder) ? "is no folder" : "does not exist"));
   Findings all;
   add_versions(all);
   add_cache(all);

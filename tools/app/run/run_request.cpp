@@ -78,10 +78,11 @@ RunRequest make_workload_request(const RunOptions& options) {
 double parse_initial_delay(const std::string& text, const vio::Profile& profile) {
   if (text.empty()) return 0;
   constexpr double kLongest = 10;
-  const double seconds = parse_positive("--initial-delay", text);
-  if (seconds > kLongest)
-    throw InputError(fmt::format("--initial-delay '{}': expected at most {:g} s", text, kLongest));
-  if (!profile.alignment.enabled)
+  double seconds = 0;
+  if (!base::parse_number(text, seconds) || seconds < 0 || seconds > kLongest)
+    throw InputError(fmt::format("--initial-delay '{}': expected a number from 0 to {:g}, in s",
+                                 text, kLongest));
+  if (seconds > 0 && !profile.alignment.enabled)
     throw InputError(fmt::format(
         "--initial-delay: profile '{}' has no initialisation that would correct poses; expected "
         "--profile next",
@@ -210,12 +211,17 @@ std::optional<CameraRequest> parse_camera(const std::string& fps, const std::str
 
 traces::ImageSize parse_size(const std::string& text) {
   const auto x = text.find('x');
-  if (x == std::string::npos)
-    throw InputError(fmt::format("--size '{}': expected WxH, e.g. 160x120", text));
   const auto side = [](const std::string& digits) {
     return static_cast<int>(parse_whole("--size", digits, 1, kLargestSide));
   };
-  return {side(text.substr(0, x)), side(text.substr(x + 1))};
+  try {
+    if (x != std::string::npos) return {side(text.substr(0, x)), side(text.substr(x + 1))};
+  } catch (const InputError&) {
+    // names one side alone
+  }
+  throw InputError(
+      fmt::format("--size '{}': expected WxH, two whole numbers from 1 to {}, e.g. 160x120", text,
+                  kLargestSide));
 }
 
 RunRequest make_request(const CLI::App& command, const RunOptions& options) {

@@ -80,8 +80,8 @@ std::optional<Watts> power_in(const std::optional<RunEnergy>& energy, std::strin
 void add_timeline_options(CLI::App& command, TimelineOptions& options) {
   const TextOptions add{command};
   add("--timeline", options.file, "FILE",
-      "when everything happened, for ui.perfetto.dev, which opens the file locally; as "
-      "a picture if the name ends in .svg");
+      "when everything happened: for ui.perfetto.dev, which opens the file locally, if the "
+      "name ends in .pftrace; as a picture if it ends in .svg");
   add("--timeline-frames", options.frames, "A:B",
       "frames of the timeline as frames.csv numbers them, B exclusive [all; of a "
       "picture two in the middle]");
