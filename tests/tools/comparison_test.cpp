@@ -127,9 +127,9 @@ TEST(Comparison, NamesBlocksThatGrewOrAppeared) {
   const RunRecord b = record(more);
   const RunComparison c = compare_runs(a, b);
   ASSERT_EQ(c.blocks.size(), 2u);
-  EXPECT_EQ(c.blocks[0].name, "feature_extraction: image");
+  EXPECT_EQ(c.blocks[0].name, "feature extraction: image");
   EXPECT_EQ(c.blocks[0].difference(), 800);
-  EXPECT_EQ(c.blocks[1].name, "feature_extraction: table");
+  EXPECT_EQ(c.blocks[1].name, "feature extraction: table");
   EXPECT_FALSE(c.blocks[1].a.has_value());
 }
 

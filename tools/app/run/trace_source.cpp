@@ -112,8 +112,9 @@ void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
   const int recorded = trace.info().cores;
   const int most = request.platform.config.cluster.workers;
   if (recorded > most)
-    throw InputError(fmt::format("{}: its work was divided among {} cores; {} has {}", trace.name(),
-                                 recorded, request.platform.name, most));
+    throw InputError(fmt::format(
+        "{}: its work was divided among {} cores; {} has {}, expected as many (cluster.workers={})",
+        trace.name(), recorded, request.platform.name, most, recorded));
   if (request.cores != recorded)
     throw InputError(fmt::format(
         "{}: its work was divided among {} cores, and how a program divides its work among {} is "
