@@ -10,10 +10,6 @@
 #include "sim/chip/instruction_cache.h"
 #include "sim/work/counts.h"
 
-namespace leviosim::work {
-struct OpInfo;
-}
-
 namespace leviosim::sim {
 
 /// What a segment asks of one kind of shared unit.

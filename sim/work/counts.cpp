@@ -6,6 +6,8 @@
 
 namespace leviosim::work {
 
+std::span<const OpInfo> op_list() { return kOps; }
+
 Counts settled(const RawCounts& raw) {
   Counts taken{raw.n, {}, {}};
   for (const Op op : {Op::LoadStream, Op::LoadIndexed, Op::StoreStream, Op::StoreIndexed,

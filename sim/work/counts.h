@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string_view>
 
 #include "sim/work/code_reuse.h"
 #include "sim/work/compiled_work.h"
@@ -15,6 +17,14 @@ enum class Op : std::uint8_t;
 /// How many there are; op.h holds its list against it.
 inline constexpr std::size_t kOpCount = 48;
 constexpr std::size_t index(Op op) { return static_cast<std::size_t>(op); }
+
+struct OpInfo {
+  Op op;
+  std::string_view name;         ///< key in platform files, statistics and work traces
+  std::string_view description;  ///< what one count means
+};
+/// All of them, by number: kOps of op.h.
+std::span<const OpInfo> op_list();
 
 /// Number of operations of each kind. A plain value: add two to merge two work segments.
 struct Counts {

@@ -67,12 +67,6 @@ enum class Op : std::uint8_t {
   Int64Mac,
 };
 
-struct OpInfo {
-  Op op;
-  std::string_view name;         ///< key in platform files, statistics and work traces
-  std::string_view description;  ///< what one count means
-};
-
 inline constexpr std::array kOps = {
     OpInfo{Op::IntAlu, "int_alu", "integer add, subtract, logic, shift, negate"},
     OpInfo{Op::IntAddShift, "int_add_shift", "integer sum or difference that is shifted right"},

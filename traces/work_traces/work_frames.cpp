@@ -7,7 +7,6 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
-#include "sim/work/op.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_memory.h"
 

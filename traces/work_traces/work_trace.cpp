@@ -8,7 +8,6 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/work/op.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_frames.h"
@@ -32,7 +31,7 @@ void write_texts(ByteWriter& out, const std::vector<std::string>& texts) {
 /// What the counters are called, and which code distances they mean.
 void write_fields(ByteWriter& out) {
   out.whole(work::kOpCount);
-  for (const work::OpInfo& op : work::kOps) out.text(op.name);
+  for (const work::OpInfo& op : work::op_list()) out.text(op.name);
   out.whole(work::kReuseDistances.size());
   for (const std::uint32_t end : work::kReuseDistances) out.whole(end);
   out.whole(work::kCompiledFor.size());
@@ -136,7 +135,7 @@ void read_compiled_fields(ByteReader& in, FileFields& fields) {
 /// Which counter each field of the file is.
 FileFields read_fields(ByteReader& in) {
   std::vector<std::string_view> known;
-  for (const work::OpInfo& op : work::kOps) known.emplace_back(op.name);
+  for (const work::OpInfo& op : work::op_list()) known.emplace_back(op.name);
   FileFields fields;
   for (std::uint64_t i = in.whole_below(work::kOpCount + 1, "operations"); i > 0; --i)
     fields.push_back(number_of(in, known, "operation"));

@@ -61,6 +61,8 @@ std::vector<std::string> profile_names();
 std::string_view profile_description(std::string_view name);
 /// @throws InputError for an unknown name, with those that are known
 void expect_profile(std::string_view name);
+/// Whether the optimiser has inertial terms. The name must be known.
+bool uses_imu(std::string_view profile);
 
 /// Whether the parameter is one of the workload that the profile is of.
 bool has_parameter(std::string_view profile, const Parameter& parameter);

@@ -106,6 +106,8 @@ Profile profile_named(std::string_view name, std::uint32_t seed) {
   return profile;
 }
 
+bool uses_imu(std::string_view profile) { return profile_named(profile, 1).use_imu; }
+
 void expect_profile(std::string_view name) {
   if (find(name) == nullptr && other_profile(name) == nullptr)
     throw InputError(fmt::format("unknown profile '{}'; known profiles are {}{}", name,

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "sim/energy/area.h"
-#include "sim/work/op.h"
+#include "sim/work/counts.h"
 #include "tools/app/report/run_summary.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
@@ -105,7 +105,7 @@ void add_stage(StatisticList& list, const RunResult& run, const StageResult& sta
   add_cycles(list, path, run, stage);
   add_breakdown(list, path, run, stage);
   add_served(list, path, stage);
-  for (const work::OpInfo& op : work::kOps)
+  for (const work::OpInfo& op : work::op_list())
     list.add(fmt::format("{}ops.{}", path, op.name), "1", op.description, stage.counts[op.op]);
   add_code(list, path, stage);
   list.add(path + "memory.single", "byte", "peak in its memory on one core",

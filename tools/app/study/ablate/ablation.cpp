@@ -13,7 +13,6 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/report/text_table.h"
 #include "tools/app/validation/references.h"
-#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

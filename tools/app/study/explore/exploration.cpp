@@ -19,7 +19,6 @@
 #include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/study/sweep/points.h"
-#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {
@@ -52,11 +51,18 @@ std::size_t point_of_row(const BatchPlan& plan, std::size_t row) {
   return row / (plan.profiles.size() * sequence_names(plan).size());
 }
 
-/// The value of a dimension with this profile.
-std::string value_of(const Dimension& d, const vio::Profile& profile) {
-  return d.parameter->needs_imu && !profile.use_imu
+RunRequest request_of(const std::string& profile, const std::vector<vio::Assignment>& set) {
+  RunRequest request;
+  request.profile = profile;
+  request.workload = set;
+  return request;
+}
+
+/// The value of a dimension in a run; empty where the profile has no use for it.
+std::string value_of(const Dimension& d, const RunRequest& request) {
+  return d.parameter->needs_imu && !vio::uses_imu(request.profile)
              ? std::string()
-             : vio::value_text(*d.parameter, d.parameter->get(profile));
+             : vio::value_text(*d.parameter, value_of(request, *d.parameter));
 }
 
 /// By point, then profile. @param runs  exploration_runs()
@@ -73,9 +79,8 @@ std::vector<ExploredPoint> explored_points(const BatchPlan& plan,
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const std::string& profile : plan.profiles) {
       ExploredPoint point{i, profile, effective(points[i], profile), {}, {}, {}, {}};
-      vio::Profile with = vio::profile_named(profile, 1);
-      vio::set_parameters(point.set, with);
-      for (const Dimension& d : dimensions) point.values.push_back(value_of(d, with));
+      const RunRequest request = request_of(profile, point.set);
+      for (const Dimension& d : dimensions) point.values.push_back(value_of(d, request));
       for (const std::string& name : names) {
         point.sequences.push_back({name, spread_of(values_of(*row, &RunOutcome::ate_m)),
                                    spread_of(values_of(*row, &RunOutcome::relative_percent))});
@@ -238,17 +243,16 @@ RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& di
   using R = const FinishedRun&;
   RunColumns columns{{"point", [&plan](R r) { return point_of_row(plan, r.point.row); }}};
   for (const Dimension& d : dimensions)
-    columns.add(std::string(d.parameter->name),
-                [&d](R r) { return value_of(d, profile_of(r.point.request)); });
+    columns.add(std::string(d.parameter->name), [&d](R r) { return value_of(d, r.point.request); });
   return columns;
 }
 
 /// From a quarter to four times the profile's, which has three digits.
-Dimension around(const char* name, const vio::Profile& profile) {
+Dimension around(const char* name, const RunRequest& profile) {
   const vio::Parameter* const parameter = vio::find_parameter(name);
   check(parameter != nullptr, name);
   double value = 0;
-  check(base::parse_number(fmt::format("{:.3g}", parameter->get(profile)), value), name);
+  check(base::parse_number(fmt::format("{:.3g}", value_of(profile, *parameter)), value), name);
   return {parameter, std::max(parameter->low, value / 4), std::min(parameter->high, value * 4)};
 }
 
@@ -380,7 +384,7 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
 
 std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point,
                                        const std::string& profile) {
-  const bool use_imu = vio::profile_named(profile, 1).use_imu;
+  const bool use_imu = vio::uses_imu(profile);
   std::vector<vio::Assignment> set;
   for (const vio::Assignment& a : point)
     if (use_imu || !a.parameter->needs_imu) set.push_back(a);
@@ -388,7 +392,7 @@ std::vector<vio::Assignment> effective(const std::vector<vio::Assignment>& point
 }
 
 std::vector<Dimension> paper_dimensions() {
-  const vio::Profile levio = vio::profile_named("levio", 1);
+  const RunRequest levio = request_of("levio", {});
   return {{vio::find_parameter("workload.window"), 4, 16},
           around("workload.keyframe_parallax", levio),
           around("workload.reprojection_noise", levio),
