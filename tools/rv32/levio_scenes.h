@@ -62,7 +62,7 @@ class LevioScenes {
                                         random_, {});
     }
     const Span<F> a = load<F>(inputs.next()), b = load<F>(inputs.next());
-    const vio::TwoViewMatches<P> matches{a, b, a.size() / 2};
+    const vio::levio::TwoViewMatches<P> matches{a, b, a.size() / 2};
     const Span<F> pixels_a = pixels_of(a), pixels_b = pixels_of(b);
     const auto essential = vio::alloc_matrix<P>(data_, "essential matrix", 3, 3);
     {
@@ -118,7 +118,7 @@ class LevioScenes {
 
   /// Scores a hypothesis that most matches support, as the best one of the released program.
   /// @param true_essential  nine elements, row by row
-  void sampson_scoring(const Inputs::Block& true_essential, const vio::TwoViewMatches<P>& matches) {
+  void sampson_scoring(const Inputs::Block& true_essential, const vio::levio::TwoViewMatches<P>& matches) {
     const Span<F> E = load<F>(true_essential);
     const Span<Byte> mask = data_.alloc<Span<Byte>>("scored mask", matches.n);
     const auto inliers = data_.alloc<Span<typename P::I32>>("scored inliers", 1);

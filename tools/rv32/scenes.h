@@ -17,6 +17,7 @@
 #include "workload/math/inverse_power.h"
 #include "workload/math/solve.h"
 #include "workload/vio/odometry/odometry.h"
+#include "workload/vio/profile.h"
 #include "workload/vio/triangulation.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/matcher.h"
