@@ -118,7 +118,8 @@ class LevioScenes {
 
   /// Scores a hypothesis that most matches support, as the best one of the released program.
   /// @param true_essential  nine elements, row by row
-  void sampson_scoring(const Inputs::Block& true_essential, const vio::levio::TwoViewMatches<P>& matches) {
+  void sampson_scoring(const Inputs::Block& true_essential,
+                       const vio::levio::TwoViewMatches<P>& matches) {
     const Span<F> E = load<F>(true_essential);
     const Span<Byte> mask = data_.alloc<Span<Byte>>("scored mask", matches.n);
     const auto inliers = data_.alloc<Span<typename P::I32>>("scored inliers", 1);

@@ -7,8 +7,9 @@ function checkSection(check) {
     'warning': ['status-warn', '! '],
     'met': ['status-good', '✓ ']
   };
-  const wordOf = (finding) =>
-      finding.met ? 'met' : finding.level === 'warn' ? 'warning' : 'not met';
+  const wordOf = (finding) => finding.met ? 'met' :
+      finding.level === 'warn'            ? 'warning' :
+                                            'not met';
   const status = (word, text = word) =>
       element('span', {class: signs[word][0]}, signs[word][1] + text);
   const margin = (finding) => {
@@ -18,10 +19,9 @@ function checkSection(check) {
         Math.abs(finding.bound);
   };
   const columns = [
-    {title: '', text: true, node: (word) => status(word)},
-    {title: 'limit', text: true, wrap: true}, {title: 'stage', text: true},
-    {title: 'margin, %', node: (value) => signed(value)}, {title: 'found'}, {title: 'bound'},
-    {title: 'statistic', text: true}
+    {title: '', text: true, node: (word) => status(word)}, {title: 'limit', text: true, wrap: true},
+    {title: 'stage', text: true}, {title: 'margin, %', node: (value) => signed(value)},
+    {title: 'found'}, {title: 'bound'}, {title: 'statistic', text: true}
   ];
   const rows = check.findings.map(
       (f) =>
@@ -42,8 +42,10 @@ function checkSection(check) {
                   `All ${check.limits} limits are met${
                       check.warnings > 0 ? `, but ${check.warnings} with a warning` : ''}.`),
           check.better > 0 ?
-              element('p', {}, `${check.better} better than the baseline, by more than the limit ` +
-                  'allows it to worsen.') :
+              element(
+                  'p', {},
+                  `${check.better} better than the baseline, by more than the limit ` +
+                      'allows it to worsen.') :
               null,
           element(
               'p', {class: 'hint'},
