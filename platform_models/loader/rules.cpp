@@ -57,7 +57,7 @@ class Rules {
             "a power of two");
     for (const auto& [name, size] : sizes)
       if (size != Bytes(0) && size.count() < cache.line.count() * cache.ways)
-        throw InputError(fmt::format("{}: expected at least {} B, a line for each of {} ways, or 0",
+        throw InputError(fmt::format("{}: expected at least {} B, a line for each of {} ways",
                                      state(path + "." + name), cache.line.count() * cache.ways,
                                      cache.ways));
   }

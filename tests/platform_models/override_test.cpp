@@ -186,7 +186,7 @@ TEST(Override, CachesHaveALineForEachWay) {
   expect_parts(fault("cluster.icache.line=3"), {"cluster.icache.line is 3 B", "a power of two"});
   expect_parts(
       fault("cluster.icache.line=1024"),
-      {"cluster.icache.size is 512 B", "at least 4096 B, a line for each of 4 ways, or 0"});
+      {"cluster.icache.size is 512 B", "at least 4096 B, a line for each of 4 ways"});
   expect_parts(fault("cluster.icache.size=32"), {"cluster.icache.size is 32 B", "at least 64 B"});
   expect_parts(fault("controller.icache.size=8B"), {"controller.icache.size is 8 B", "at least"});
   EXPECT_EQ(with({"cluster.icache.size=64"}).cluster.icache.worker, Bytes(64));

@@ -194,23 +194,6 @@ bool is_empty(const Json& cells) {
 
 std::string ms(double ns) { return fmt::format("{:.4g} ms", ns * 1e-6); }
 
-/// A memory, its highest occupation and who occupies it.
-struct MemoryUse {
-  const char* name;
-  double used;
-  double size;
-};
-
-std::vector<MemoryUse> memories(const RunRecord& run) {
-  std::vector<MemoryUse> list;
-  for (const auto& [name, key] : {std::pair{"L1", "l1"}, {"L2", "l2"}}) {
-    const auto used = run.value(fmt::format("memory.{}.peak", key));
-    const auto size = run.value(fmt::format("run.{}_size", key));
-    if (used && size && *size > 0) list.push_back({name, *used, *size});
-  }
-  return list;
-}
-
 /// "; between 48.1 and 62.0 ms"; empty without a band.
 std::string between(const RunRecord& run, const std::string& name) {
   const auto low = run.value(name + ".low");
@@ -260,14 +243,17 @@ void add_speedup(std::vector<KeyFigure>& list, const RunRecord& run) {
                    *parallel * 1e-6, *single * 1e-6)});
 }
 
+/// The highest occupation of a memory and who occupies it.
 void add_memory(std::vector<KeyFigure>& list, const RunRecord& run) {
-  for (const MemoryUse& memory : memories(run)) {
-    const StageName* owner = memory.name == std::string("L1") ? fullest_stage(run) : nullptr;
-    list.push_back({fmt::format("{} peak", memory.name), fmt::format("{:.1f}", memory.used * 1e-3),
-                    "kB",
-                    fmt::format("of {:.1f} kB{}", memory.size * 1e-3,
-                                owner == nullptr ? "" : ", in " + owner->name),
-                    memory.used / memory.size});
+  for (const auto& [name, key] : {std::pair{"L1", "l1"}, {"L2", "l2"}}) {
+    const auto used = run.value(fmt::format("memory.{}.peak", key));
+    const auto size = run.value(fmt::format("run.{}_size", key));
+    if (!used || !size || *size <= 0) continue;
+    const StageName* owner = name == std::string_view("L1") ? fullest_stage(run) : nullptr;
+    list.push_back(
+        {fmt::format("{} peak", name), fmt::format("{:.1f}", *used * 1e-3), "kB",
+         fmt::format("of {:.1f} kB{}", *size * 1e-3, owner == nullptr ? "" : ", in " + owner->name),
+         *used / *size});
   }
 }
 

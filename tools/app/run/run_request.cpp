@@ -107,8 +107,7 @@ double factor_of(std::string_view unit) {
   return large == kLargeUnits.end() ? 0 : large->factor;
 }
 
-}  // namespace
-
+/// What must hold between parameters of the workload, whatever each may be on its own.
 void check_together(const vio::Profile& profile) {
   if (profile.extractor.subpixel_steps > 1 && !profile.optimiser.joint)
     throw InputError(
@@ -128,6 +127,8 @@ void check_together(const vio::Profile& profile) {
         "known; expected workload.guided=on and workload.joint=on, as next has them, or "
         "workload.loop=off");
 }
+
+}  // namespace
 
 vio::Profile profile_of(const RunRequest& request) {
   check_parameters(request);

@@ -61,15 +61,11 @@ struct RunRequest {
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
 };
 
-/// What must hold between parameters of the workload, whatever each may be on its own.
-/// @throws InputError if they contradict each other
-void check_together(const vio::Profile& profile);
-
 /// @throws InputError as profile_of()
 void check_profile(const RunRequest& request);
 
 /// The profile with the parameters that were set; of another workload only the name.
-/// @throws InputError as check_together() does, and for parameters of another workload
+/// @throws InputError if parameters contradict each other, and for those of another workload
 vio::Profile profile_of(const RunRequest& request);
 
 // The options of `leviosim run` as typed, and what they ask for once checked.
