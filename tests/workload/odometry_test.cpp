@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 namespace leviosim::vio {
 namespace {
 
@@ -35,6 +38,61 @@ TEST(Odometry, ItsOptimiserHasTheCameraOfLargerImages) {
   EXPECT_EQ(fitted.camera.cx, 155.61f);
   EXPECT_EQ(fitted.camera.cy, 124.19f);
   EXPECT_EQ(fitted.lost_px, 80);
+}
+
+/// In the order in which a frame passes them; those of the controller end with a star.
+std::vector<std::string> stages_of(const Profile& profile) {
+  std::vector<std::string> names;
+  for (const StageName& stage : stage_names(profile))
+    names.push_back(std::string(stage.name) + (stage.on_controller ? "*" : ""));
+  return names;
+}
+
+using Stages = std::vector<std::string>;
+
+TEST(Odometry, StagesOfLevioAreThoseOfThePaper) {
+  const Stages expected = {"IMU pre-integration", "feature extraction", "world matching",
+                           "EPnP RANSAC",         "frame matching",     "8-point RANSAC",
+                           "keyframe selection",  "triangulation",      "optimiser update*",
+                           "optimiser iteration*"};
+  EXPECT_EQ(stages_of(profile_named("levio", 1)), expected);
+  EXPECT_EQ(stages_of(profile_named("levio-no-imu", 1)), expected);
+  EXPECT_EQ(stages_of(profile_named("levio-no-imu-no-epnp", 1)), expected);
+}
+
+TEST(Odometry, LevioHasNoStagesOfNextWhateverItsOptionsSay) {
+  Profile profile = profile_named("levio", 1);
+  const Stages before = stages_of(profile);
+  profile.patches.enabled = profile.alignment.enabled = profile.loop.enabled = true;
+  EXPECT_EQ(stages_of(profile), before);
+}
+
+TEST(Odometry, NextAddsItsStagesWhereAFramePassesThem) {
+  EXPECT_EQ(stages_of(profile_named("next", 1)),
+            (Stages{"IMU pre-integration", "feature extraction", "guided matching",
+                    "world matching", "EPnP RANSAC", "pose refinement", "frame matching",
+                    "patch alignment", "8-point RANSAC", "keyframe selection", "triangulation",
+                    "initialisation*", "optimiser update*", "optimiser iteration*"}));
+}
+
+TEST(Odometry, LoopClosureIsTheLastOfTheCluster) {
+  EXPECT_EQ(stages_of(profile_named("next-loop", 1)),
+            (Stages{"IMU pre-integration", "feature extraction", "guided matching",
+                    "world matching", "EPnP RANSAC", "pose refinement", "frame matching",
+                    "patch alignment", "8-point RANSAC", "keyframe selection", "triangulation",
+                    "place recognition", "loop verification", "loop correction", "initialisation*",
+                    "optimiser update*", "optimiser iteration*"}));
+}
+
+TEST(Odometry, NextHasNoStagesOfWhatIsOff) {
+  Profile profile = profile_named("next-loop", 1);
+  profile.patches.enabled = profile.alignment.enabled = false;
+  EXPECT_EQ(
+      stages_of(profile),
+      (Stages{"IMU pre-integration", "feature extraction", "guided matching", "world matching",
+              "EPnP RANSAC", "pose refinement", "frame matching", "8-point RANSAC",
+              "keyframe selection", "triangulation", "place recognition", "loop verification",
+              "loop correction", "optimiser update*", "optimiser iteration*"}));
 }
 
 }  // namespace

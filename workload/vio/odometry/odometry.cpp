@@ -1,7 +1,5 @@
 #include "workload/vio/odometry/odometry.h"
 
-#include <algorithm>
-
 #include "workload/loop/loop_closer.h"
 #include "workload/vio/levio/levio_front_end.h"
 #include "workload/vio/next/next_front_end.h"
@@ -106,32 +104,42 @@ class OdometryOf : public Odometry {
   MapHealth health_{profile_, map_};
 };
 
+struct StageRow {
+  StageName stage;
+  bool (*runs)(const Profile&);
+};
+
+bool always(const Profile&) { return true; }
+bool in_next(const Profile& p) { return p.guided.enabled; }
+bool with_patches(const Profile& p) { return in_next(p) && p.patches.enabled; }
+bool with_alignment(const Profile& p) { return in_next(p) && p.alignment.enabled; }
+bool with_loops(const Profile& p) { return in_next(p) && p.loop.enabled; }
+
+/// In the order in which a frame passes them; the last ones run on the controller.
+constexpr StageRow kStages[] = {{{stages::kImu, "sample", false}, always},
+                                {{stages::kExtraction, "frame", false}, always},
+                                {{stages::kGuided, "frame", false}, in_next},
+                                {{stages::kWorldMatching, "frame", false}, always},
+                                {{stages::kEpnp, "frame", false}, always},
+                                {{stages::kRefinement, "frame", false}, in_next},
+                                {{stages::kFrameMatching, "frame", false}, always},
+                                {{stages::kPatches, "frame", false}, with_patches},
+                                {{stages::kEightPoint, "frame", false}, always},
+                                {{stages::kKeyframeSelection, "frame", false}, always},
+                                {{stages::kTriangulation, "keyframe", false}, always},
+                                {{stages::kPlaceRecognition, "keyframe", false}, with_loops},
+                                {{stages::kLoopVerification, "keyframe", false}, with_loops},
+                                {{stages::kLoopCorrection, "frame", false}, with_loops},
+                                {{stages::kInitialisation, "iteration", true}, with_alignment},
+                                {{stages::kOptimiserUpdate, "update", true}, always},
+                                {{stages::kOptimiser, "iteration", true}, always}};
+
 }  // namespace
 
 std::vector<StageName> stage_names(const Profile& profile) {
-  std::vector<StageName> names = {{stages::kImu, "sample", false},
-                                  {stages::kExtraction, "frame", false},
-                                  {stages::kWorldMatching, "frame", false},
-                                  {stages::kEpnp, "frame", false},
-                                  {stages::kFrameMatching, "frame", false},
-                                  {stages::kEightPoint, "frame", false},
-                                  {stages::kKeyframeSelection, "frame", false},
-                                  {stages::kTriangulation, "keyframe", false},
-                                  {stages::kOptimiserUpdate, "update", true},
-                                  {stages::kOptimiser, "iteration", true}};
-  if (!profile.guided.enabled) return names;
-  if (profile.patches.enabled) names.insert(names.begin() + 5, {stages::kPatches, "frame", false});
-  if (profile.alignment.enabled)
-    names.insert(names.end() - 2, {stages::kInitialisation, "iteration", true});
-  const auto epnp = names.begin() + 3;
-  names.insert(epnp + 1, {stages::kRefinement, "frame", false});
-  names.insert(names.begin() + 2, {stages::kGuided, "frame", false});
-  if (!profile.loop.enabled) return names;
-  const auto controller =
-      std::find_if(names.begin(), names.end(), [](const StageName& n) { return n.on_controller; });
-  names.insert(controller, {{stages::kPlaceRecognition, "keyframe", false},
-                            {stages::kLoopVerification, "keyframe", false},
-                            {stages::kLoopCorrection, "frame", false}});
+  std::vector<StageName> names;
+  for (const StageRow& row : kStages)
+    if (row.runs(profile)) names.push_back(row.stage);
   return names;
 }
 
