@@ -31,12 +31,6 @@ class Channel {
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return slots_.size(); }
 
-  /// Puts a value in if there is room (or someone waiting for it); returns whether it did.
-  bool try_push(T value) {
-    const bool room = size_ < capacity();
-    if (room) put(std::move(value));
-    return room;
-  }
   /// Takes the oldest value, if there is one.
   std::optional<T> try_pop() {
     if (size_ == 0) return std::nullopt;

@@ -48,7 +48,6 @@ Timer::~Timer() {
 void Timer::arm(Time time, Phase phase) {
   check(time >= kernel_.now(), "a timer is armed for the past");
   kernel_.future_.set({time, kernel_.next_rank(phase, slot_)});
-  expiry_ = time;
   armed_ = true;
   expired_ = false;
   if (waiter_ != nullptr) waiter_->waits_for = nullptr;

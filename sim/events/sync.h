@@ -107,7 +107,6 @@ class Semaphore {
  public:
   Semaphore(Kernel& kernel, std::string name, std::int64_t permits);
 
-  std::int64_t available() const { return available_; }
   /// Gives permits back (>= 0) and wakes those whose requests they satisfy.
   void release(std::int64_t permits = 1);
 
@@ -151,8 +150,6 @@ class Timer {
   /// Makes the timer not expire until it is armed again; who awaits it goes on waiting.
   void cancel();
   bool armed() const { return armed_; }
-  /// When it will expire, while armed.
-  Time expiry() const { return expiry_; }
 
   struct Awaiter {
     Timer& timer;
@@ -179,7 +176,6 @@ class Timer {
   bool armed_ = false;
   bool expired_ = false;  // with nobody waiting
   ProcessState* waiter_ = nullptr;
-  Time expiry_;
   std::string name_;
 };
 

@@ -80,11 +80,6 @@ Cycles ClockDomain::whole_cycles(Duration duration) const {
   return Cycles(duration.count() / period_.count());
 }
 
-Cycles ClockDomain::cycles_covering(Duration duration) const {
-  const Cycles whole = whole_cycles(duration);
-  return this->duration(whole) == duration ? whole : whole + Cycles(1);
-}
-
 Timebase::Timebase(const std::vector<ClockSpec>& clocks) : ticks_per_second_(0) {
   refuse_bad_clocks(clocks);
   ticks_per_second_ = common_ticks_per_second(clocks);

@@ -49,8 +49,6 @@ class ClockDomain {
   Duration duration(Cycles cycles) const;
   /// Whole cycles contained in a duration >= 0: rounded down.
   Cycles whole_cycles(Duration duration) const;
-  /// Fewest cycles that last at least a duration >= 0: rounded up.
-  Cycles cycles_covering(Duration duration) const;
 
  private:
   std::string name_;
@@ -74,7 +72,6 @@ class Timebase {
   /// the common tick of all clocks would exceed kMaxTicksPerSecond.
   explicit Timebase(const std::vector<ClockSpec>& clocks);
 
-  std::int64_t ticks_per_second() const { return ticks_per_second_; }
   const std::vector<ClockDomain>& clocks() const { return clocks_; }
   /// Throws InputError for an unknown name, listing the known ones.
   const ClockDomain& clock(std::string_view name) const;

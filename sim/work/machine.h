@@ -91,7 +91,8 @@ class Machine {
     end_fork();
   }
 
-  /// The same; the program of one core has another order of allocations, in which no word straddles.
+  /// The same; the program of one core has another order of allocations, in which no word
+  /// straddles.
   template <class Body>
   void fork_aligned_on_one_core(std::string_view name, Body&& body) {
     begin_fork(name);
@@ -146,10 +147,6 @@ class Machine {
   template <class To, class From>
   void load_external(To to, From from) {
     copy(Direction::ExternalToL2, to, from, false);
-  }
-  template <class To, class From>
-  void store_external(To to, From from) {
-    copy(Direction::L2ToExternal, to, from, false);
   }
 
   /// What was recorded since the last call.

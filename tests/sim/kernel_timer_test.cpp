@@ -30,7 +30,6 @@ class KernelTimer : public ::testing::Test {
 TEST_F(KernelTimer, OneTickEarlierIsTooEarly) {
   timer.arm(Time{100});
   EXPECT_TRUE(timer.armed());
-  EXPECT_EQ(timer.expiry(), Time{100});
   kernel.run_until(Time{99});
   EXPECT_TRUE(expiries.empty());
   kernel.run_until(Time{100});

@@ -105,26 +105,6 @@ void multiply_int16(In<P, work::I16x2<P>> a, In<P, work::I16x2<P>> b, Out<P, typ
   }
 }
 
-/// The same of floats in blocks of 2x4: an inner step loads six and has eight products in a row.
-template <class P>
-void multiply_float(In<P, typename P::F32> a, In<P, typename P::F32> b, Out<P, typename P::F32> c,
-                    int n, const work::Core& core) {
-  using F = typename P::F32;
-  for (int column = 4 * core.id; column < n; column += 4 * core.cores)
-    for (const int row : P::range(0, n / 2)) {
-      F sums[2][4] = {};
-      for (const int k : P::range(0, n)) {
-        const F left[2] = {a[2 * row * n + k], a[(2 * row + 1) * n + k]};
-        for (int j = 0; j < 4; ++j) {
-          const F right = b[k * n + column + j];
-          for (int i = 0; i < 2; ++i) sums[i][j] += left[i] * right;
-        }
-      }
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 4; ++j) c[(2 * row + i) * n + column + j] = sums[i][j];
-    }
-}
-
 /// out[t] = sum of x[t - j] taps[j]: the full convolution. Four results at a time: what the four
 /// have in common in steps of four taps, and the rest of each by itself.
 template <class P>
