@@ -167,17 +167,8 @@ template <class P>
 void step_keyframes(const Window<P>& window, const ReducedSystem<P>& solved,
                     const WindowState<P>& to) {
   const typename P::Function function("step_keyframes");
-  const bool with_velocity = solved.per_keyframe() == ReducedSystem<P>::kPoseAndVelocityUnknowns;
-  for (int k : P::range(0, window.keyframes)) {
-    const auto step = solved.vector();
-    const int at = k * solved.per_keyframe();
-    KeyframeState<P> state = window.state.keyframe(k);
-    Pose<P>& T = state.T_world_camera;
-    T.R = orthonormalised<P>(T.R * so3_exp<P>(load_vec3<P>(step, at)));
-    T.t = T.t + load_vec3<P>(step, at + 3);
-    if (with_velocity) state.velocity = state.velocity + load_vec3<P>(step, at + 6);
-    to.set_keyframe(k, state);
-  }
+  for (int k : P::range(0, window.keyframes))
+    to.set_keyframe(k, solved.moved(window.state.keyframe(k), k));
 }
 
 /// Linearises everything at the window's state.
@@ -209,15 +200,6 @@ typename P::F32 cost_of_trial(const Window<P>& window, const WindowState<P>& sta
   return terms.add_cost(state, cost);
 }
 
-template <class P>
-void adopt(const WindowState<P>& trial, const Window<P>& window) {
-  using F = typename P::F32;
-  const WindowState<P> state = window.state;
-  for (int i : P::range(0, kPoseFloats * window.keyframes)) state.poses[i] = F(trial.poses[i]);
-  for (int i : P::range(0, 3 * window.keyframes)) state.velocities[i] = F(trial.velocities[i]);
-  for (int i : P::range(0, 3 * window.landmarks)) state.points[i] = F(trial.points[i]);
-}
-
 /// @param prepare  completes the terms
 template <class P, class Terms, class Prepare>
 IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
@@ -243,7 +225,7 @@ IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   }
   // Not true either if a cost is not a number.
   if (trial_cost < cost) {
-    adopt<P>(memory.trial, window);
+    window.adopt(memory.trial);
     memory.terms.adopt(window);
     lm.lambda = work::max(F(lm.lambda * options.lambda_down), F(options.min_lambda));
     report.accepted = true;

@@ -3,6 +3,8 @@
 // 3, position 3, velocity 3 each; without IMU there are no velocities and 48 unknowns.
 #pragma once
 
+#include "workload/inertial/record.h"
+#include "workload/inertial/residual.h"
 #include "workload/math/matrix.h"
 #include "workload/math/solve.h"
 
@@ -68,6 +70,17 @@ class ReducedSystem {
     if (!cholesky_factor<P>(matrix_)) return false;
     cholesky_solve<P>(matrix_, vector_);
     return true;
+  }
+
+  /// The state of keyframe k, moved by its part of the step.
+  KeyframeState<P> moved(KeyframeState<P> state, int k) const {
+    const int at = k * per_keyframe_;
+    Pose<P>& T = state.T_world_camera;
+    T.R = orthonormalised<P>(T.R * so3_exp<P>(load_vec3<P>(vector_, at)));
+    T.t = T.t + load_vec3<P>(vector_, at + 3);
+    if (per_keyframe_ == kPoseAndVelocityUnknowns)
+      state.velocity = state.velocity + load_vec3<P>(vector_, at + 6);
+    return state;
   }
 
  private:

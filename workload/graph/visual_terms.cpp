@@ -195,12 +195,6 @@ Vec3<P> landmark_step(const Window<P>& window, const LandmarkRecords<P>& records
   return records.inverse(i) * b;
 }
 
-template <class P>
-struct LandmarkCost {
-  typename P::F32 cost;
-  bool lost;  ///< an observation is
-};
-
 /// Cost of landmark i at `point`, seen from the keyframes of `state`.
 template <class P>
 LandmarkCost<P> landmark_cost(const Window<P>& window, const WindowState<P>& state, int i,
@@ -264,23 +258,10 @@ void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
 template <class P>
 typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& trial,
                               const PixelModel<P>& model) {
-  using F = typename P::F32;
   const typename P::Function function("settle_points");
-  F cost = 0.0f;
-  for (int i : P::range(0, window.landmarks)) {
-    LandmarkCost<P> at =
-        landmark_cost<P>(window, trial, i, load_vec3<P>(trial.points, 3 * i), model);
-    if (at.lost) {
-      const Vec3<P> before = load_vec3<P>(window.state.points, 3 * i);
-      const LandmarkCost<P> unmoved = landmark_cost<P>(window, trial, i, before, model);
-      if (unmoved.cost < at.cost) {
-        store_vec3<P>(trial.points, 3 * i, before);
-        at = unmoved;
-      }
-    }
-    cost += at.cost;
-  }
-  return cost;
+  return settle_by_cost<P>(window, trial, [&](int i, const Vec3<P>& point) {
+    return landmark_cost<P>(window, trial, i, point, model);
+  });
 }
 
 #define LEVIOSIM_INSTANTIATE(P)                                                                   \

@@ -59,4 +59,32 @@ template <class P>
 typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& trial,
                               const PixelModel<P>& model);
 
+template <class P>
+struct LandmarkCost {
+  typename P::F32 cost;
+  bool lost;  ///< an observation is
+};
+
+/// settle_points(), with what a landmark costs.
+/// @param cost_at  (landmark, point) -> LandmarkCost, seen from the keyframes of `trial`
+template <class P, class CostAt>
+inline typename P::F32 settle_by_cost(const Window<P>& window, const WindowState<P>& trial,
+                                      const CostAt& cost_at) {
+  using F = typename P::F32;
+  F cost = 0.0f;
+  for (int i : P::range(0, window.landmarks)) {
+    LandmarkCost<P> at = cost_at(i, load_vec3<P>(trial.points, 3 * i));
+    if (at.lost) {
+      const Vec3<P> before = load_vec3<P>(window.state.points, 3 * i);
+      const LandmarkCost<P> unmoved = cost_at(i, before);
+      if (unmoved.cost < at.cost) {
+        store_vec3<P>(trial.points, 3 * i, before);
+        at = unmoved;
+      }
+    }
+    cost += at.cost;
+  }
+  return cost;
+}
+
 }  // namespace leviosim::vio

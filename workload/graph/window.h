@@ -54,6 +54,13 @@ struct Window {
     return Preintegration<P>(intervals.subspan(k * kFloats, kFloats));
   }
 
+  /// Makes what it holds of a trial its own state.
+  void adopt(const WindowState<P>& trial) const {
+    for (int i : P::range(0, kPoseFloats * keyframes)) state.poses[i] = F(trial.poses[i]);
+    for (int i : P::range(0, 3 * keyframes)) state.velocities[i] = F(trial.velocities[i]);
+    for (int i : P::range(0, 3 * landmarks)) state.points[i] = F(trial.points[i]);
+  }
+
   GraphCapacity capacity;
   int keyframes = 0;  ///< oldest first
   int landmarks = 0;  ///< each seen by two keyframes at least

@@ -15,6 +15,20 @@ namespace leviosim::vio {
 /// The 7×7 window and its Sobel gradients read this far from the centre.
 inline constexpr int kHarrisReach = 4;
 
+/// The response of a window with these sums of gx², gy² and gx gy.
+template <class P>
+LEVIOSIM_HOST_INLINE typename P::I32 response_of_sums(typename P::I32 a, typename P::I32 b,
+                                                      typename P::I32 c) {
+  using I = typename P::I32;
+  constexpr int kSumShift = 11;
+  a >>= kSumShift;
+  b >>= kSumShift;
+  c >>= kSumShift;
+  const I trace = a + b;
+  const I trace_squared = trace * trace;
+  return a * b - c * c - trace_squared / I(25);
+}
+
 /// Response at column x, row y; the window must lie inside the image. Positive for corners.
 template <class P>
 LEVIOSIM_HOST_INLINE typename P::I32 harris_response(
@@ -22,7 +36,6 @@ LEVIOSIM_HOST_INLINE typename P::I32 harris_response(
   using I = typename P::I32;
   const typename P::Function function("harris_response");
   constexpr int kWindowRadius = 3;
-  constexpr int kSumShift = 11;
   I a = 0;  // sum of gx²
   I b = 0;  // sum of gy²
   I c = 0;  // sum of gx gy
@@ -40,12 +53,7 @@ LEVIOSIM_HOST_INLINE typename P::I32 harris_response(
       b += gy * gy;
       c += gx * gy;
     }
-  a >>= kSumShift;
-  b >>= kSumShift;
-  c >>= kSumShift;
-  const I trace = a + b;
-  const I trace_squared = trace * trace;
-  return a * b - c * c - trace_squared / I(25);
+  return response_of_sums<P>(a, b, c);
 }
 
 }  // namespace leviosim::vio

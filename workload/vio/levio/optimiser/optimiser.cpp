@@ -165,26 +165,8 @@ template <class P>
 void step_keyframes(const Window<P>& window, const ReducedSystem<P>& solved,
                     const WindowState<P>& to) {
   const typename P::Function function("levio_step_keyframes");
-  const bool with_velocity = solved.per_keyframe() == ReducedSystem<P>::kPoseAndVelocityUnknowns;
-  const auto step = solved.vector();
-  for (int k : P::range(0, window.keyframes)) {
-    const int at = k * solved.per_keyframe();
-    KeyframeState<P> state = window.state.keyframe(k);
-    Pose<P>& T = state.T_world_camera;
-    T.R = orthonormalised<P>(T.R * so3_exp<P>(load_vec3<P>(step, at)));
-    T.t = T.t + load_vec3<P>(step, at + 3);
-    if (with_velocity) state.velocity = state.velocity + load_vec3<P>(step, at + 6);
-    to.set_keyframe(k, state);
-  }
-}
-
-template <class P>
-void adopt(const WindowState<P>& trial, const Window<P>& window) {
-  using F = typename P::F32;
-  const WindowState<P> state = window.state;
-  for (int i : P::range(0, kPoseFloats * window.keyframes)) state.poses[i] = F(trial.poses[i]);
-  for (int i : P::range(0, 3 * window.keyframes)) state.velocities[i] = F(trial.velocities[i]);
-  for (int i : P::range(0, 3 * window.landmarks)) state.points[i] = F(trial.points[i]);
+  for (int k : P::range(0, window.keyframes))
+    to.set_keyframe(k, solved.moved(window.state.keyframe(k), k));
 }
 
 }  // namespace
@@ -210,7 +192,7 @@ IterationReport optimise_once(work::Machine& machine, Window<P>& window, LmState
   const F trial_cost = add_other_costs<P>(window, memory.trial, options, memory, visual_cost);
   // Not true either if a cost is not a number.
   if (report.positive_definite && trial_cost < cost) {
-    adopt<P>(memory.trial, window);
+    window.adopt(memory.trial);
     lm.lambda = work::max(F(lm.lambda * options.lambda_down), F(options.min_lambda));
     report.accepted = true;
   } else {

@@ -8,6 +8,7 @@
 #include "workload/math/compilers.h"
 #include "workload/vision/fast.h"
 #include "workload/vision/features.h"
+#include "workload/vision/harris.h"
 
 namespace leviosim::vio::levio {
 
@@ -88,7 +89,6 @@ LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL typename P::I32 corner_response(
     const OffsetTables<P>& tables) {
   using I = typename P::I32;
   const typename P::Function function("levio_corner_response");
-  constexpr int kSumShift = 11;
   const auto offsets = tables.harris();
   I a = 0;  // sum of gx²
   I b = 0;  // sum of gy²
@@ -105,12 +105,7 @@ LEVIOSIM_HOST_INLINE LEVIOSIM_TARGET_CALL typename P::I32 corner_response(
     b += gy * gy;
     c += gx * gy;
   }
-  a >>= kSumShift;
-  b >>= kSumShift;
-  c >>= kSumShift;
-  const I trace = a + b;
-  const I trace_squared = trace * trace;
-  return a * b - c * c - trace_squared / I(25);
+  return response_of_sums<P>(a, b, c);
 }
 
 }  // namespace leviosim::vio::levio
