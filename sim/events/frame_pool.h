@@ -4,12 +4,12 @@
 // that general-purpose malloc would cost more than the event itself. Frames of the same size class
 // are recycled instead.
 //
-// The lists are thread_local, the one segment of mutable state outside objects: several simulations
-// may run in several host threads, a frame's operator new has no place to carry a pool in, and
-// nothing simulated can observe which block a frame gets. A frame freed in another thread than it
-// was allocated in joins the lists of the thread that frees it. Each thread returns its lists to
-// the system when it ends. With AddressSanitizer nothing is recycled, so that it sees every use
-// after free.
+// The lists are thread_local and lie outside objects, as the tally of counted operations does
+// (sim/work/counts.h): several simulations may run in several host threads, a frame's operator new
+// has no place to carry a pool in, and nothing simulated can observe which block a frame gets. A
+// frame freed in another thread than it was allocated in joins the lists of the thread that frees
+// it. Each thread returns its lists to the system when it ends. With AddressSanitizer nothing is
+// recycled, so that it sees every use after free.
 #pragma once
 
 #include <array>

@@ -53,8 +53,9 @@ struct Counts {
 /// * `branch_not_taken` counts all branches, since those of a loop are often known before it runs;
 /// * of conditions that seldom hold, `branch_taken` counts all too, and the others are subtracted.
 ///
-/// This is the one piece of ambient state in the project: an overloaded operator has no other place
-/// to find its counter. It is thread-local, so simulations on several host threads do not meet, and
+/// This is ambient state, as is what else is recorded while a kernel runs (code_events.h,
+/// code_tracker.h, loops.h, offload_regions.h): an overloaded operator has no other place to find
+/// its counter. It is thread-local, so simulations on several host threads do not meet, and
 /// constant-initialised, so an access is one addition that the optimiser can fold over a loop.
 inline constinit thread_local Counts tally{};
 inline constinit thread_local std::uint64_t branches_not_taken_after_all = 0;
