@@ -45,7 +45,8 @@ class LoopScope<true> {
   /// A number that differs if something has jumped in between. Branches are all counted as not
   /// taken at first (counts.h).
   static std::uint64_t jumps() {
-    return tally[Op::BranchNotTaken] + tally[Op::Call] + tally[Op::F64Add] + tally[Op::F64Mul];
+    return tally[Op::BranchNotTaken] + tally[Op::Call] + tally[Op::F64Add] + tally[Op::F64Mul] +
+           tally[Op::F64Div] + tally[Op::F64Compare] + tally[Op::F64Convert];
   }
 
   int siblings_;  ///< loops_within of the loop around this one so far

@@ -69,6 +69,12 @@ TEST(Loops, SoDoCallsAndEmulatedArithmetic) {
   EXPECT_EQ(counts_of_body([&] { repeat(7, call); })[Op::LoopJump], 7u);
   F64 sum(1.0);
   EXPECT_EQ(counts_of_body([&] { repeat(7, [&] { sum += F64(0.5); }); })[Op::LoopJump], 7u);
+  EXPECT_EQ(counts_of_body([&] { repeat(7, [&] { sum *= F64(0.5); }); })[Op::LoopJump], 7u);
+  EXPECT_EQ(counts_of_body([&] { repeat(7, [&] { sum /= F64(0.5); }); })[Op::LoopJump], 7u);
+  const auto compare = [&] { static_cast<void>(sum < F64(0.5)); };
+  EXPECT_EQ(counts_of_body([&] { repeat(7, compare); })[Op::LoopJump], 7u);
+  const auto narrow = [&] { static_cast<void>(to_f32(sum)); };
+  EXPECT_EQ(counts_of_body([&] { repeat(7, narrow); })[Op::LoopJump], 7u);
   F32 single(1.0F);
   EXPECT_EQ(counts_of_body([&] { repeat(7, [&] { single += F32(0.5F); }); })[Op::LoopJump], 0u);
 }
