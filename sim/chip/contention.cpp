@@ -94,10 +94,12 @@ Contention::Contention(const ClusterConfig& config)
   pools_[index(Unit::Bank)] = {1, 1.0};
   pools_[index(Unit::Refill)] = {1, config.icache.refills};
   shared_ = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::L1, Unit::Refill};
+  if (fpu.dividers > 0) queues_.push_back(Unit::Divider);
   for (const work::OffloadKindInfo& info : work::kOffloadKinds) {
     const int units = config.accelerators[work::index(info.kernel)].units;
     if (units == 0) continue;
     shared_.push_back(accelerator_of(info.kernel));
+    queues_.push_back(shared_.back());
     pools_[index(shared_.back())] = {1, static_cast<double>(units)};
   }
 }
@@ -198,33 +200,46 @@ void Contention::collide() {
 }
 
 void Contention::queue() {
-  constexpr std::size_t kUnit = index(Unit::Divider);
-  const double units = pools_[kUnit].capacity;
-  if (collisions_ == 0 || units == 0) return;
+  if (collisions_ == 0) return;
+  for (const Unit unit : queues_) queue_at(unit);
+}
+
+void Contention::queue_at(Unit unit) {
+  const std::size_t k = index(unit);
+  const double units = pools_[k].capacity;
   const std::vector<Runner>& runners = *runners_;
   const std::size_t n = runners.size();
   double asking = 0;
   double busy = 0;  // units, on average
   for (std::size_t i = 0; i < n; ++i) {
-    asking += runners[i].units[kUnit].requests > 0 ? 1 : 0;
-    busy += runners[i].units[kUnit].cycles * rate_[i];
+    asking += runners[i].units[k].requests > 0 ? 1 : 0;
+    busy += runners[i].units[k].cycles * rate_[i];
   }
   if (asking <= units) return;
+  std::vector<double>& waiting = waiting_[k];
   // With several units a request waits only while all are busy, and for the first that ends.
   const double all_busy = std::pow(std::min(1.0, busy / units), units - 1) / units;
   for (std::size_t i = 0; i < n; ++i) {
-    const UnitDemand& mine = runners[i].units[kUnit];
-    if (mine.requests == 0) continue;
+    if (runners[i].units[k].requests == 0) continue;
     double behind = 0;
     for (std::size_t j = 0; j < n; ++j) {
-      const UnitDemand& other = runners[j].units[kUnit];
+      const UnitDemand& other = runners[j].units[k];
       if (j != i && other.requests > 0)
         behind +=
-            queued_behind({other.requests * rate_[j], other.cycles / other.requests, waiting_[j]});
+            queued_behind({other.requests * rate_[j], other.cycles / other.requests, waiting[j]});
     }
-    waiting_[i] = (waiting_[i] + collisions_ * all_busy * behind) / 2;  // damped
-    queued_[i] = mine.requests * waiting_[i];
+    waiting[i] = (waiting[i] + collisions_ * all_busy * behind) / 2;  // damped
   }
+}
+
+double Contention::queued(Unit unit, std::size_t i) const {
+  return (*runners_)[i].units[index(unit)].requests * waiting_[index(unit)][i];
+}
+
+double Contention::queued(std::size_t i) const {
+  double cycles = 0;
+  for (const Unit unit : queues_) cycles += queued(unit, i);
+  return cycles;
 }
 
 /// Books the time that a runner loses on what it waits for.
@@ -233,14 +248,17 @@ void Contention::book_losses(std::size_t i, Progress& p) const {
   on[Mechanism::Banks] = p.rate * l1_delay(i);
   on[Mechanism::FetchContention] = p.rate * fetch_delay(i);
   on[Mechanism::Fpu] = p.rate * colliding_[i];
-  on[Mechanism::Divider] = p.rate * queued_[i];
-  const double lost =
-      std::max(0.0, 1.0 - p.rate - on[Mechanism::Banks] - on[Mechanism::FetchContention] -
-                        on[Mechanism::Fpu] - on[Mechanism::Divider]);
+  double lost =
+      1.0 - p.rate - on[Mechanism::Banks] - on[Mechanism::FetchContention] - on[Mechanism::Fpu];
+  for (const Unit unit : queues_) {
+    const double waited = p.rate * queued(unit, i);
+    on[mechanism_of(unit)] += waited;
+    lost -= waited;
+  }
   const auto tightest = std::min_element(shared_.begin(), shared_.end(), [&](Unit a, Unit b) {
     return limits_[index(a)][i] < limits_[index(b)][i];
   });
-  on[mechanism_of(*tightest)] += lost;
+  on[mechanism_of(*tightest)] += std::max(0.0, lost);
 }
 
 void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
@@ -250,8 +268,7 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
   for (const Unit unit : shared_) limits_[index(unit)].assign(n, kUnlimited);
   progress.assign(n, Progress{});
   colliding_.assign(n, 0.0);
-  queued_.assign(n, 0.0);
-  waiting_.assign(n, 0.0);
+  for (const Unit unit : queues_) waiting_[index(unit)].assign(n, 0.0);
   pace_.assign(n, 1.0);
   if (n < 2 && dma_words == 0) return;
 
@@ -275,7 +292,7 @@ void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>
     collide();
     queue();
     for (std::size_t i = 0; i < n; ++i)
-      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + colliding_[i] + queued_[i]);
+      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + colliding_[i] + queued(i));
     // Each unit's limit is found with what the *other* limits leave of the demand.
     for (std::size_t k = 0; k < scarce_units; ++k) {
       const std::size_t unit = index(scarce[k]);

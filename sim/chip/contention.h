@@ -24,9 +24,9 @@
 // has closed forms: for operations in runs, as loops have them that load their operands first
 // (collisions_in_runs), and in any order (collisions_by_chance).
 //
-// A divider that is not saturated has a queue: a request waits for the rest of the one that is
-// served, and for those that wait already (queued_behind). Cores do not keep out of each other's
-// way, since what each waits for elsewhere differs.
+// A divider or an accelerator that is not saturated has a queue: a request waits for the rest of
+// the one that is served, and for those that wait already (queued_behind). Cores do not keep out of
+// each other's way, since what each does between its requests differs.
 //
 // Left out: transients of a few cycles until requesters have interleaved; chance collisions at
 // words that all cores use, and at floating-point units of which any core may take any.
@@ -124,14 +124,19 @@ class Contention {
   double l1_delay(std::size_t runner) const;
   double fetch_delay(std::size_t runner) const;
   void sum_up(const std::vector<Runner>& runners, double dma_words);
-  /// Sets what each runner loses per lone cycle by chance collisions at shared units, and in the
-  /// queue of the dividers.
+  /// Sets what each runner loses per lone cycle by chance collisions at shared units, and how long
+  /// each of its requests waits in a queue.
   void collide();
   void queue();
+  void queue_at(Unit unit);
+  /// Cycles per lone cycle that a runner waits in the queue of a unit, and in all.
+  double queued(Unit unit, std::size_t runner) const;
+  double queued(std::size_t runner) const;
   void book_losses(std::size_t runner, Progress& progress) const;
 
   std::array<Pools, kUnitCount> pools_;
   std::vector<Unit> shared_;  ///< kinds of units that there are
+  std::vector<Unit> queues_;  ///< those of them with a queue
   int banks_;
   int code_banks_;
   double stream_conflicts_;
@@ -141,14 +146,13 @@ class Contention {
   double all_scattered_ = 0;
   double all_fetches_ = 0;
   double dma_words_ = 0;
-  std::vector<double> rate_;                            ///< current estimate
-  std::vector<double> colliding_;                       ///< lost by chance per lone cycle
-  std::vector<double> queued_;                          ///< lost at dividers per lone cycle
-  std::vector<double> waiting_;                         ///< … per request
-  std::vector<double> pace_;                            ///< rate but for what is lost by chance
-  std::vector<double> free_rate_;                       ///< rate without units that serve in turn
-  std::array<std::vector<double>, kUnitCount> limits_;  ///< highest rate that each unit allows
-  std::array<std::vector<int>, kUnitCount> pool_of_;    ///< which group of units each runner uses
+  std::vector<double> rate_;                             ///< current estimate
+  std::vector<double> colliding_;                        ///< lost by chance per lone cycle
+  std::vector<double> pace_;                             ///< rate but for what is lost by chance
+  std::vector<double> free_rate_;                        ///< rate without units that serve in turn
+  std::array<std::vector<double>, kUnitCount> limits_;   ///< highest rate that each unit allows
+  std::array<std::vector<double>, kUnitCount> waiting_;  ///< cycles of each request in a queue
+  std::array<std::vector<int>, kUnitCount> pool_of_;     ///< which group of units each runner uses
   // Scratch, kept for its memory.
   std::vector<double> asked_;
   std::vector<double> demand_;

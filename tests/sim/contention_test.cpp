@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
 #include <random>
 
 #include "tests/sim/chip_test_config.h"
@@ -127,6 +131,58 @@ TEST(Contention, ChanceIsThatOfCoresThatAreSteppedThrough) {
                 0.08 * (lost_by_first + lost_by_second))
         << mine;
   }
+}
+
+/// Cycles from one call to the next of cores that call units which take `busy` cycles, first come,
+/// first served, and do other things between for times by chance.
+double cycles_per_call(int cores, int units, double busy, double between, std::mt19937& random) {
+  constexpr int kCalls = 20'000;
+  std::exponential_distribution<double> other_work(1 / between);
+  using Times = std::priority_queue<double, std::vector<double>, std::greater<>>;
+  Times calls, free;
+  for (int i = 0; i < cores; ++i) calls.push(other_work(random));
+  for (int i = 0; i < units; ++i) free.push(0);
+  double end = 0;
+  for (int i = 0; i < kCalls; ++i) {
+    end = std::max(calls.top(), free.top()) + busy;
+    calls.pop();
+    free.pop();
+    free.push(end);
+    calls.push(end + other_work(random));
+  }
+  return end * cores / kCalls;
+}
+
+TEST(Contention, CallsQueueAsThoseOfCoresThatAreSteppedThrough) {
+  std::mt19937 random(3);
+  ClusterConfig config = with_collisions(1);
+  constexpr double kBusy = 20;
+  const Unit accelerator = accelerator_of(work::OffloadKind::Hamming);
+  for (const int units : {1, 2})
+    for (const int cores : {2, 4, 8})
+      for (const double load : {0.3, 0.5, 0.7, 1.2}) {
+        const double between = cores * kBusy / units / load - kBusy;
+        if (between <= 0) continue;
+        const double expected = cycles_per_call(cores, units, kBusy, between, random);
+        config.accelerators[work::index(work::OffloadKind::Hamming)] = {.units = units};
+        config.fpu.dividers = units;
+        for (const Unit unit : {accelerator, Unit::Divider}) {
+          const std::string where = fmt::format("{} cores, {} units, {}", cores, units, load);
+          std::vector<Runner> runners;
+          for (int i = 0; i < cores; ++i)
+            runners.push_back(asking(i, unit, 1 / (between + kBusy), kBusy));
+          std::vector<Progress> progress;
+          Contention(config).solve(runners, progress);
+          const Progress& p = progress[0];
+          EXPECT_NEAR((between + kBusy) / p.rate / expected, 1,
+                      units == 1 && load < 1 ? 0.04 : 0.12)
+              << where;
+          EXPECT_NEAR(p.rate + p.lost[unit == accelerator ? Mechanism::AcceleratorContention
+                                                          : Mechanism::Divider],
+                      1, 1e-6)
+              << where;
+        }
+      }
 }
 
 TEST(Contention, StreamsConflictAsAShareOfScatteredAccesses) {
