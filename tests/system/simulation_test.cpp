@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
@@ -91,6 +92,14 @@ TEST_F(Simulated, ACoreAloneIsNotFasterThanTwoAndTwoNotThanEight) {
   EXPECT_LT(speedup(stage(eight, name)), 8.0);
 }
 
+/// A memory is as full as the blocks in it, but for their alignment.
+void expect_holds(Bytes occupied, const std::vector<work::Block>& blocks, const std::string& what) {
+  Bytes sum;
+  for (const work::Block& block : blocks) sum += block.size;
+  EXPECT_LE(sum, occupied) << what;
+  EXPECT_GT(sum.count() + 64, occupied.count()) << what;
+}
+
 TEST_F(Simulated, BreakdownsAddUpAndMemoryFits) {
   const RunResult result = run(request(flight()));
   for (const StageResult& s : result.stages) {
@@ -102,11 +111,14 @@ TEST_F(Simulated, BreakdownsAddUpAndMemoryFits) {
     if (s.on_controller) continue;
     EXPECT_LE(s.memory.single, s.memory.parallel) << s.name;
     EXPECT_LE(s.memory.parallel, result.l1_size) << s.name;
-    Bytes blocks;
-    for (const work::Block& block : s.memory.blocks) blocks += block.size;
-    EXPECT_LE(blocks, s.memory.parallel) << s.name;
-    EXPECT_GT(blocks.count() + 64, s.memory.parallel.count()) << s.name;
+    expect_holds(s.memory.parallel, s.memory.blocks, s.name);
   }
+  std::set<std::string> rows;
+  for (const L2Row& row : result.l2) {
+    expect_holds(row.bytes, row.blocks, row.name);
+    rows.insert(row.name);
+  }
+  EXPECT_TRUE(rows.contains(kOptimiserL2));
 }
 
 TEST_F(Simulated, AHalvedClockDoublesTheTimeNotTheCycles) {

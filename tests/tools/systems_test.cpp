@@ -98,6 +98,33 @@ TEST(SystemsReport, ThePageHasAPointForEachRateWithAPower) {
   EXPECT_TRUE(systems_page({}).at("study").at("table").empty());
 }
 
+/// Of two sequences with two seeds, of which one run of the second failed.
+TEST(Ablation, TheMeanIsOfMediansAndCountsRunsAndFailures) {
+  BatchPlan plan;
+  plan.sequences.resize(2);
+  plan.sequences[0].name = "a";
+  plan.sequences[1].name = "b";
+  plan.sizes = {{160, 120}};
+  plan.profiles = {"next"};
+  plan.seeds = {1, 2};
+  std::vector<Point> runs(4);
+  runs[2].row = runs[3].row = 1;
+  std::vector<RunOutcome> outcomes(4);
+  outcomes[0].ate_m = 0.1;
+  outcomes[1].ate_m = 0.3;
+  outcomes[2].ate_m = 0.6;
+  outcomes[3].failure = "lost";
+  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, {});
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].ate.failed, 0u);
+  EXPECT_EQ(rows[1].ate.failed, 1u);
+  EXPECT_EQ(rows[2].sequence, "");
+  EXPECT_EQ(rows[2].ate.runs, 4u);
+  EXPECT_EQ(rows[2].ate.failed, 1u);
+  ASSERT_TRUE(rows[0].ate.median && rows[1].ate.median && rows[2].ate.median);
+  EXPECT_DOUBLE_EQ(*rows[2].ate.median, (*rows[0].ate.median + *rows[1].ate.median) / 2);
+}
+
 TEST(AccuracyComparison, StandsBesideTheAblationOfTheSameSequences) {
   BatchPlan plan;
   plan.sequences.resize(2);
