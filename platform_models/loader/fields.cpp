@@ -214,6 +214,10 @@ void add_instruction_cache(Table& table, const std::string& path, const std::str
       quantity(path + ".size", kSize, 0, kMaxSize, "private instruction cache of " + whose),
       [caches](auto& chip) -> auto& { return caches(chip).worker; });
   table.add(
+      quantity(path + ".refill_width", kRate, kLeastTime, 1024,
+               "bytes of a line that come from L2 per cycle"),
+      [caches](auto& chip) -> auto& { return caches(chip).refill_width; });
+  table.add(
       optional(quantity(path + ".ways", kUnits, 1, kMaxParts,
                         "lines of a set of these caches, replaced at random; 4 unless said")),
       [caches](auto& chip) -> auto& { return caches(chip).ways; });
@@ -249,7 +253,7 @@ void add_code_of_cluster(Table& table) {
       [](auto& chip) -> auto& { return chip.cluster.icache.shared_hit; });
   table.add(
       quantity(path + ".shared_miss", kCycles, kLeastTime, kMaxCost,
-               "cycles waited for a line that has to come from L2"),
+               "cycles waited until a line begins to come from L2"),
       [](auto& chip) -> auto& { return chip.cluster.icache.shared_miss; });
   table.add(
       quantity(path + ".refills", kUnits, kLeastTime, kMaxParts,
@@ -265,7 +269,7 @@ void add_code_of_controller(Table& table) {
       [](auto& chip) -> auto& { return chip.controller.icache; });
   table.add(
       quantity("controller.icache.miss", kCycles, kLeastTime, kMaxCost,
-               "cycles that the controller waits for a line that has to come from L2"),
+               "cycles that the controller waits until a line begins to come from L2"),
       [](auto& chip) -> auto& { return chip.controller.icache.shared_miss; });
   add_code_size(
       table, "controller.icache", [](auto& chip) -> auto& { return chip.controller.icache; });

@@ -16,6 +16,7 @@ ChipConfig in_cluster_cycles(ChipConfig chip) {
   for (const work::Op op : {work::Op::LoadL2, work::Op::StoreL2})
     cluster.core.ops[work::index(op)].stall *= ratio;
   cluster.icache.shared_miss *= ratio;
+  cluster.icache.refill_width /= ratio;
   cluster.dma.first_data *= ratio;
   cluster.dma.bytes_per_cycle /= ratio;
   return chip;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -220,13 +221,18 @@ struct InstructionCacheConfig {
   Bytes shared;            ///< cache that the cores share; 0: none
   int shared_banks = 1;    ///< lines that the shared cache can deliver in a cycle
   double shared_hit = 0;   ///< cycles waited for a line that the private cache lacks
-  double shared_miss = 0;  ///< cycles waited for a line that has to come from L2
+  double shared_miss = 0;  ///< cycles waited until a line begins to come from L2
   double refills = 1;      ///< lines that the shared cache can await from L2 at once
-  int ways = 4;            ///< lines of a set, in all caches
-  double code_size = 1;    ///< bytes of code for each one that was measured
+  /// Bytes of a line that come per cycle, once it comes.
+  double refill_width = std::numeric_limits<double>::infinity();
+  int ways = 4;          ///< lines of a set, in all caches
+  double code_size = 1;  ///< bytes of code for each one that was measured
   /// Measured bytes of the cores' code for each byte of work::Counts::code. Follows from
   /// CoreConfig::code.
   double measured_size = 1;
+
+  /// Cycles until the whole of a line that has to come from L2 is there.
+  double refill() const { return shared_miss + static_cast<double>(line.count()) / refill_width; }
 };
 
 struct L1Config {

@@ -135,13 +135,14 @@ Demand demand_of(const work::Counts& counts, const CoreConfig& core, const CodeF
     unit.cycles += n * cost.busy;
   }
   const CodeFetch fetch = code.fetch(counts.code);
-  demand.alone[Mechanism::Fetch] = fetch.stall;
+  const double lines = code.lines_executed(demand.alone[Mechanism::Issue]);
+  demand.alone[Mechanism::Fetch] = fetch.stall + code.wait_for_lines(lines, fetch);
   if (by_operation != nullptr) {
     OperationAccount& account = (*by_operation)[kCodeOperation];
     account.count += std::accumulate(counts.code.begin(), counts.code.end(), 0.0);
-    account.cycles[Mechanism::Fetch] += fetch.stall;
+    account.cycles[Mechanism::Fetch] += demand.alone[Mechanism::Fetch];
   }
-  demand.fetches = fetch.requests + code.lines_executed(demand.alone[Mechanism::Issue]);
+  demand.fetches = fetch.requests + lines;
   demand.units[static_cast<std::size_t>(Unit::Refill)] = {fetch.refills, fetch.refill_cycles};
   for (UnitDemand& unit : demand.units) unit.run = run_of(unit.requests, counts[Op::LoopIteration]);
   const auto sum = [&](auto... ops) { return (static_cast<double>(counts[ops]) + ...); };

@@ -196,7 +196,7 @@ const LoopMisses& loop_misses(int lines, int ways, int line) {
 CodeFetcher::CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers)
     : line_(static_cast<double>(config.line.count())),
       shared_hit_(config.shared_hit),
-      shared_miss_(config.shared_miss),
+      refill_(config.refill()),
       sharers_(sharers),
       code_size_(config.code_size * config.measured_size),
       own_(level_of(own, config.line, config.ways)),
@@ -234,10 +234,10 @@ CodeFetch CodeFetcher::solve(const work::CodeReuse& code) const {
   const double misses = shared_.bytes > 0 ? misses_of(walk, shared_, missing) : requests;
   CodeFetch sum;
   sum.stall =
-      walk.lines * (misses * shared_miss_ + (is_private ? (requests - misses) * shared_hit_ : 0.0));
+      walk.lines * (misses * refill_ + (is_private ? (requests - misses) * shared_hit_ : 0.0));
   sum.requests = is_private ? walk.lines * requests : 0;
   sum.refills = walk.lines * misses / sharers_;
-  sum.refill_cycles = sum.refills * shared_miss_;
+  sum.refill_cycles = sum.refills * refill_;
   return sum;
 }
 

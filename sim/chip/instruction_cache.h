@@ -25,6 +25,7 @@
 // code.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <unordered_map>
@@ -41,7 +42,7 @@ const LoopMisses& loop_misses(int lines, int ways, int line);
 
 /// What a work segment fetches from beyond a core's private cache.
 struct CodeFetch {
-  double stall = 0;          ///< cycles that a core waits
+  double stall = 0;          ///< cycles that a core waits, but for wait_for_lines()
   double requests = 0;       ///< lines that the private cache asks the shared one for
   double refills = 0;        ///< lines that the shared cache asks L2 for; of a team, for each core
   double refill_cycles = 0;  ///< for which it awaits them
@@ -53,7 +54,7 @@ class CodeFetcher {
  public:
   /// Caches of unlimited size.
   CodeFetcher() = default;
-  /// @param own      size of the private cache; 0 for none, then the shared one answers at once
+  /// @param own      size of the private cache; 0: none
   /// @param sharers  cores that run the same work at the same time
   CodeFetcher(const InstructionCacheConfig& config, Bytes own, int sharers);
 
@@ -62,6 +63,10 @@ class CodeFetcher {
   /// Lines that the shared cache delivers to a core without a private one while it executes so many
   /// instructions: such a core holds one line, and takes the next one when it is through with that.
   double lines_executed(double instructions) const;
+  /// Cycles that it waits for those of them that the shared cache has.
+  double wait_for_lines(double lines, const CodeFetch& fetch) const {
+    return shared_hit_ * std::max(0.0, lines - fetch.refills * sharers_);
+  }
 
   /// A cache as the equations see it.
   struct Level {
@@ -81,7 +86,7 @@ class CodeFetcher {
 
   double line_ = 0;  ///< bytes; 0: fetching costs nothing
   double shared_hit_ = 0;
-  double shared_miss_ = 0;
+  double refill_ = 0;  ///< cycles
   double sharers_ = 1;
   double code_size_ = 1;
   Level own_;

@@ -49,6 +49,7 @@ std::vector<Improvement> improvements() {
       [](ChipConfig& c) { c.cluster.icache.shared_hit /= 2; });
   add("smaller code", [](ChipConfig& c) { c.cluster.icache.code_size *= 0.8; });
   add("faster refills", [](ChipConfig& c) { c.cluster.icache.shared_miss *= 0.75; });
+  add("wider refills", [](ChipConfig& c) { c.cluster.icache.refill_width *= 2; });
   add("more refills at once", [](ChipConfig& c) { c.cluster.icache.refills *= 2; });
   add("a wider DMA", [](ChipConfig& c) { c.cluster.dma.bytes_per_cycle *= 2; });
   add("earlier first data", [](ChipConfig& c) { c.cluster.dma.first_data /= 2; });

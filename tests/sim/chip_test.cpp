@@ -21,7 +21,8 @@ double cluster_cycles(int clock_ratio, std::vector<work::Step> steps) {
                            .shared = Bytes(4096),
                            .shared_banks = 2,
                            .shared_hit = 2,
-                           .shared_miss = 20};
+                           .shared_miss = 18,
+                           .refill_width = 8};
   Chip chip(config, 8);
   JobTiming timing;
   const work::Job job{{{"stage", std::move(steps), {}}}};

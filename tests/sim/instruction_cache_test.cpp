@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/chip/cost.h"
 #include "sim/work/code_tracker.h"
+#include "tests/sim/chip_test_config.h"
 
 namespace leviosim::sim {
 namespace {
@@ -365,6 +367,21 @@ TEST(InstructionCache, StepsAtEachCapacity) {
   EXPECT_NEAR(stall_per_line(16384), 20, 0.6) << "L2";
 }
 
+/// All bytes of new code come through the same width; lines save the waiting before each.
+TEST(InstructionCache, LongerLinesComeInMoreBeats) {
+  CodeReuse code{};
+  code[work::kNeverFetched] = 65536;
+  InstructionCacheConfig c = caches();
+  c.shared_miss = 18;
+  c.refill_width = 8;
+  for (const int line : {8, 16, 32, 64}) {
+    c.line = Bytes(line);
+    const CodeFetch fetch = CodeFetcher(c, c.worker, 2).fetch(code);
+    EXPECT_DOUBLE_EQ(fetch.stall, 65536.0 / line * 18 + 65536 / 8.0) << line;
+    EXPECT_DOUBLE_EQ(fetch.refill_cycles, fetch.stall / 2) << line;
+  }
+}
+
 /// What was asked before, by whomever, is remembered.
 TEST(InstructionCache, AnswersDoNotDependOnWhatWasAskedBefore) {
   const CodeReuse small = loop_over(1024, 3), large = loop_over(6144, 3);
@@ -378,12 +395,24 @@ TEST(InstructionCache, AnswersDoNotDependOnWhatWasAskedBefore) {
   EXPECT_GT(asked.fetch(large).stall, asked.fetch(small).stall);
 }
 
-TEST(InstructionCache, WithoutAPrivateCacheTheSharedOneAnswersAtOnce) {
+TEST(InstructionCache, WithoutAPrivateCacheEachLineExecutedComesFromTheSharedOne) {
   const CodeFetcher fetcher(caches(), Bytes(0), 1);
   const CodeFetch fetch = fetcher.fetch(loop_over(1024, 1000));
   EXPECT_EQ(fetch.requests, 0);
   EXPECT_NEAR(fetch.stall, 20 * 1024 / 16.0, 0.2 * 20 * 1024 / 16.0)
       << "only the first round comes from L2, and what it throws out";
+  const double lines = fetcher.lines_executed(256'000);  // 1000 rounds of 256 instructions
+  EXPECT_DOUBLE_EQ(lines, 64'000);
+  EXPECT_DOUBLE_EQ(fetcher.wait_for_lines(lines, fetch), 2 * (lines - fetch.refills));
+  const CodeFetcher with_one(caches(), Bytes(512), 1);
+  EXPECT_EQ(with_one.lines_executed(256'000), 0);
+
+  work::Counts work = alu(256'000);
+  work.code = loop_over(1024, 1000);
+  EXPECT_DOUBLE_EQ(demand_of(work, unit_cost_core(), fetcher).alone[Mechanism::Fetch],
+                   fetch.stall + 2 * (lines - fetch.refills));
+  EXPECT_DOUBLE_EQ(demand_of(work, unit_cost_core(), with_one).alone[Mechanism::Fetch],
+                   with_one.fetch(work.code).stall);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ double LineCaches::answer(std::uint32_t line, double now) {
   if (line >= coming_.size()) coming_.resize(line + 1, 0);
   if (!shared_.holds(line)) {
     double& refill = *std::min_element(refill_free_.begin(), refill_free_.end());
-    refill = std::max(begin, refill) + config_.shared_miss;
+    refill = std::max(begin, refill) + config_.refill();
     coming_[line] = refill;
     shared_.put(line, random_);
     ++result_.refills;
