@@ -130,85 +130,50 @@ CsvReader::CsvReader(std::filesystem::path file, Separator separator,
   row_.names_ = &names_;
 }
 
-CsvReader::CsvReader(std::filesystem::path file, std::string text)
-    : CsvReader(std::move(file), Separator::comma, {}, std::move(text)) {
-  has_comments_ = false;
-  if (advance()) names_.assign(row_.cells_.begin(), row_.cells_.end());
+std::string_view CsvReader::next_line() {
+  const auto end = std::min(text_.find('\n', position_), text_.size());
+  const auto line = std::string_view(text_).substr(position_, end - position_);
+  position_ = end + 1;
+  ++line_;
+  return line;
 }
 
-std::string_view CsvReader::line_at(std::size_t at) const {
-  return std::string_view(text_).substr(at, text_.find('\n', at) - at);
-}
-
-std::size_t CsvReader::after_blanks(std::size_t at) const {
-  return std::min(text_.find_first_not_of(" \t\r", at), text_.size());
-}
-
-/// The cell in quotes at `at`, which moves behind it.
-std::string_view CsvReader::take_quoted(std::size_t& at) {
-  std::string& cell = quoted_.emplace_back();
-  for (++at;; ++at) {
-    const std::size_t quote = text_.find('"', at);
-    if (quote == std::string::npos) row_.fail("a quote begins a cell and none ends it");
-    cell.append(text_, at, quote - at);
-    at = quote + 1;
-    if (at == text_.size() || text_[at] != '"') break;
-    cell += '"';
-  }
-  line_ += static_cast<std::size_t>(std::count(cell.begin(), cell.end(), '\n'));
-  return cell;
-}
-
-std::size_t CsvReader::split_at_commas(std::size_t at) {
-  for (;; ++at) {
-    at = after_blanks(at);
-    if (at < text_.size() && text_[at] == '"') {
-      row_.cells_.push_back(take_quoted(at));
-      at = after_blanks(at);
-      if (at < text_.size() && text_[at] != ',' && text_[at] != '\n')
-        row_.fail(
-            fmt::format("column {}: text behind the quote that ends a cell", row_.cells_.size()));
-    } else {
-      const std::size_t end = std::min(text_.find_first_of(",\n", at), text_.size());
-      row_.cells_.push_back(trim(std::string_view(text_).substr(at, end - at)));
-      at = end;
-    }
-    if (at == text_.size() || text_[at] == '\n') return at;
-  }
-}
-
-/// The row that begins at `at` to cells. @returns where it ends
-std::size_t CsvReader::split(std::size_t at) {
+void CsvReader::split(std::string_view line) {
   row_.cells_.clear();
-  quoted_.clear();
-  if (separator_ == Separator::comma) return split_at_commas(at);
-  std::string_view line = line_at(at);
-  const std::size_t end = at + line.size();
-  while (!(line = trim(line)).empty()) {
-    const auto blank = std::min(line.find_first_of(kBlanks), line.size());
-    row_.cells_.push_back(line.substr(0, blank));
-    line.remove_prefix(blank);
+  if (separator_ == Separator::blanks) {
+    while (!(line = trim(line)).empty()) {
+      const auto end = std::min(line.find_first_of(kBlanks), line.size());
+      row_.cells_.push_back(line.substr(0, end));
+      line.remove_prefix(end);
+    }
+    return;
   }
-  return end;
+  for (;;) {
+    const auto comma = line.find(',');
+    row_.cells_.push_back(trim(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
+  }
 }
 
 std::vector<std::string_view> CsvReader::heading() {
-  const std::size_t at = after_blanks(position_);
-  if (at == text_.size() || text_[at] != '#' || line_at(at).find('"') != std::string::npos)
-    return {};
-  split(at + 1);
+  const auto end = std::min(text_.find('\n', position_), text_.size());
+  std::string_view line = trim(std::string_view(text_).substr(position_, end - position_));
+  if (!line.starts_with('#')) return {};
+  line.remove_prefix(1);
+  split(line);
   return row_.cells_;
 }
 
 bool CsvReader::advance() {
   while (position_ < text_.size()) {
     if (line_ % kLinesPerPoll == 0) throw_if_interrupted();
-    row_.line_ = ++line_;
-    const std::string_view line = trim(line_at(position_));
+    const std::string_view line = trim(next_line());
+    if (!line.empty() && line.front() == '#') continue;
+    row_.line_ = line_;
     if (line.empty()) row_.fail("a blank line between rows");
-    const bool is_comment = has_comments_ && line.front() == '#';
-    position_ = 1 + (is_comment ? position_ + line_at(position_).size() : split(position_));
-    if (!is_comment) return true;
+    split(line);
+    return true;
   }
   return false;
 }

@@ -3,15 +3,12 @@
 // Reading (EuRoC's data.csv, TUM trajectories) goes row by row.
 // Every fault is an InputError that names file, line and column. Lines that begin with '#' are
 // comments; CRLF line ends, a byte-order mark and blank lines at the end of the file are accepted.
-// Between commas, a cell may be quoted as RFC 4180 says: so it holds commas, line breaks, and
-// quotes, which are doubled. A quote within a cell that does not begin with one is text. Left out:
-// other escapes, which none of these formats has.
+// Left out: quoting and escapes, which none of these formats has.
 #pragma once
 
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -33,7 +30,7 @@ std::string read_text_file(const std::filesystem::path& file);
 /// locale.
 bool parse_number(std::string_view text, double& value);
 
-/// One data row; cells without quotes are trimmed of blanks. Valid until the reader moves on.
+/// One data row; cells are trimmed of blanks. Valid until the reader moves on.
 class CsvRow {
  public:
   std::size_t line() const { return line_; }
@@ -72,44 +69,36 @@ struct FirstRow {
 /// Throws InputError if the file cannot be read or has no row.
 FirstRow first_row(const std::filesystem::path& file);
 
-/// Reads a file whose rows have as many columns as there are names (which messages mention).
+/// Reads a file whose rows have `names.size()` columns (the names appear in messages only).
 class CsvReader {
  public:
   CsvReader(std::filesystem::path file, Separator separator, std::vector<std::string> names);
   /// Reads a table from text that is at hand; `file` is its name for messages.
   CsvReader(std::filesystem::path file, Separator separator, std::vector<std::string> names,
             std::string text);
-  /// Reads a table whose first row holds the names of its columns, and which has no comments.
-  CsvReader(std::filesystem::path file, std::string text);
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
 
-  /// The cells of the first line without its '#', if it begins with one and has no quotes; else
-  /// none. To be asked before the first row, and valid until then.
+  /// The cells of the first line without its '#', if it begins with one; else none. To be asked
+  /// before the first row, and valid until then.
   std::vector<std::string_view> heading();
   /// The next row, or nullptr at the end. Throws InputError for a row of another width.
   const CsvRow* next();
   const std::filesystem::path& file() const { return file_; }
-  const std::vector<std::string>& names() const { return names_; }
 
  private:
   friend FirstRow first_row(const std::filesystem::path& file);
   bool advance();
-  std::string_view line_at(std::size_t at) const;
-  std::size_t after_blanks(std::size_t at) const;
-  std::size_t split(std::size_t at);
-  std::size_t split_at_commas(std::size_t at);
-  std::string_view take_quoted(std::size_t& at);
+  std::string_view next_line();
+  void split(std::string_view line);
 
   std::filesystem::path file_;
   Separator separator_;
   std::vector<std::string> names_;
   std::string text_;
-  bool has_comments_ = true;
   std::size_t position_ = 0;
-  std::size_t line_ = 0;  ///< that have been read
+  std::size_t line_ = 0;
   CsvRow row_;
-  std::deque<std::string> quoted_;  ///< cells of the row that had quotes
 };
 
 /// Holds that time stamps rise from row to row; InputError names both stamps.

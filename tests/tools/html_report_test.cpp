@@ -42,8 +42,7 @@ TEST(CsvJson, KeepsNumbersTextsAndNothingApart) {
 }
 
 TEST(CsvJson, RefusesRowsOfAnotherWidth) {
-  expect_input_error([] { csv_json("x.csv", "a,b\n1\n"); },
-                     {"x.csv line 2", "1 column instead of 2"});
+  expect_input_error([] { csv_json("x.csv", "a,b\n1\n"); }, {"x.csv", "row 2", "1 cells", "2"});
 }
 
 TEST(Verdict, HasAGradeAndThreeVerdictsWithReasons) {

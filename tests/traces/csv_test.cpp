@@ -36,48 +36,6 @@ TEST(Csv, BlanksSeparateWhereAsked) {
   EXPECT_EQ(row->text(2), "3");
 }
 
-TEST(Csv, ReadsWhatTablesWrite) {
-  const base::CsvTable<std::string> table{
-      {"text, quoted", [](const std::string& t) { return t; }},
-      {"length", [](const std::string& t) { return t.size(); }}};
-  const std::vector<std::string> texts{"plain", "a,b", "say \"a\"", "\"", "two\nlines", "#,", "#"};
-  base::CsvReader csv("t.csv", table.text(texts));
-  EXPECT_EQ(csv.names(), (std::vector<std::string>{"text, quoted", "length"}));
-  for (const std::string& text : texts) {
-    const base::CsvRow* row = csv.next();
-    ASSERT_NE(row, nullptr);
-    EXPECT_EQ(row->text(0), text);
-    EXPECT_EQ(row->number(1), static_cast<double>(text.size()));
-    EXPECT_EQ(row->line(), text == "#," ? 8u : text == "#" ? 9u : row->line());
-  }
-  EXPECT_EQ(csv.next(), nullptr);
-}
-
-TEST(Csv, QuotesBeginACellOrAreText) {
-  base::CsvReader csv("t.csv", base::Separator::comma, {"a", "b"},
-                      "# \"\n \"1\" ,5\" x\r\n\" \",\"\"\n");
-  const base::CsvRow* row = csv.next();
-  ASSERT_NE(row, nullptr);
-  EXPECT_EQ(row->number(0), 1);
-  EXPECT_EQ(row->text(1), "5\" x");
-  row = csv.next();
-  ASSERT_NE(row, nullptr);
-  EXPECT_EQ(row->text(0), " ");
-  EXPECT_EQ(row->text(1), "");
-}
-
-TEST(Csv, RefusesQuotesThatDoNotEndACell) {
-  const auto expect = [](const std::string& text, std::initializer_list<std::string> words) {
-    base::CsvReader csv("t.csv", base::Separator::comma, {"a", "b"}, text);
-    EXPECT_NE(csv.next(), nullptr);
-    expect_input_error([&] { csv.next(); }, words);
-  };
-  expect("1,2\n3,\"4\n5,6\n", {"t.csv line 2", "none ends it"});
-  expect("1,\"2\n\"\n3,\"4\"\"\n", {"t.csv line 3", "none ends it"});
-  expect("1,2\n3,\"4\"5\n", {"t.csv line 2", "column 2", "behind the quote"});
-  expect("1,2\n\"3,4\"\n", {"t.csv line 2", "1 column instead of 2"});
-}
-
 TEST(Csv, LongCellsAreCutInMessages) {
   const TempFolder folder;
   outputs::write_file_atomically(folder / "a.csv", std::string(500, 'x'));

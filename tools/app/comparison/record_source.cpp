@@ -33,30 +33,41 @@ RunRequest request_for(const traces::WorkTrace& trace, const RecordOptions& opti
   return request;
 }
 
+std::vector<std::string> titles_of(const std::string& csv) {
+  std::vector<std::string> titles(1);
+  for (const char c : csv.substr(0, csv.find('\n'))) {
+    if (c == ',')
+      titles.emplace_back();
+    else if (c != '\r')
+      titles.back() += c;
+  }
+  return titles;
+}
+
 /// A CSV file whose first row holds the titles of its columns.
 class Table {
  public:
-  Table(const std::filesystem::path& file, const std::string& csv) : reader_(file, csv) {
+  Table(const std::filesystem::path& file, const std::string& csv)
+      : titles_(titles_of(csv)), reader_(file, base::Separator::comma, titles_, csv) {
     if (csv.empty() || csv.back() != '\n')
       throw InputError(fmt::format("{}: ends within a line: it was cut off", file.string()));
+    reader_.next();  // the titles
   }
 
-  bool has(std::string_view title) const { return place_of(title) < reader_.names().size(); }
+  bool has(std::string_view title) const {
+    return std::find(titles_.begin(), titles_.end(), title) != titles_.end();
+  }
   /// @throws InputError if there is none of that title
   std::size_t column(std::string_view title) const {
     if (!has(title))
       throw InputError(fmt::format("{}: has no column {}", reader_.file().string(), title));
-    return place_of(title);
+    return static_cast<std::size_t>(std::find(titles_.begin(), titles_.end(), title) -
+                                    titles_.begin());
   }
   const base::CsvRow* next() { return reader_.next(); }
 
  private:
-  std::size_t place_of(std::string_view title) const {
-    const std::vector<std::string>& titles = reader_.names();
-    return static_cast<std::size_t>(std::find(titles.begin(), titles.end(), title) -
-                                    titles.begin());
-  }
-
+  std::vector<std::string> titles_;
   base::CsvReader reader_;
 };
 
