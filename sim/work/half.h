@@ -4,9 +4,8 @@
 // rounded result for sums, products and quotients (float has 2·11+2 bits).
 //
 // A multiply-add rounds twice, as a product and a sum; like the other counted scalars only its
-// *count* is that of the fused form. Left out: conversions of computed values, comparisons, square
-// roots, bfloat16, packed pairs (one operation counts the same whether it works on one value or on
-// two).
+// *count* is that of the fused form. Left out: comparisons, square roots, bfloat16, packed pairs
+// (one operation counts the same whether it works on one value or on two).
 #pragma once
 
 #include <bit>
@@ -51,10 +50,12 @@ constexpr float half_value(std::uint16_t half) {
 
 template <bool Counted>
 struct Half {
+  using Single = std::conditional_t<Counted, F32, float>;
+
   std::uint16_t bits;
 
   Half() = default;
-  /// A constant.
+  /// A constant; conversions of computed values are to_f16() and to_f32().
   explicit constexpr Half(float x) : bits(half_bits(x)) {}
 
   friend Half operator+(Half a, Half b) { return done(Op::F16Op, a.v() + b.v()); }
@@ -65,6 +66,11 @@ struct Half {
   friend Half mul_add(Half a, Half b, Half c) {
     return done(Op::F16Op, Half(a.v() * b.v()).v() + c.v());
   }
+  friend Single to_f32(Half x) {
+    note(Op::F16Op);
+    return Single(x.v());
+  }
+  static Half from(Single x) { return done(Op::F16Op, work::value(x)); }
   friend float value(Half x) { return x.v(); }
 
  private:
@@ -80,5 +86,10 @@ struct Half {
 
 template <class P>
 using F16 = Half<P::kCounting>;
+
+template <class P>
+F16<P> to_f16(typename P::F32 x) {
+  return F16<P>::from(x);
+}
 
 }  // namespace leviosim::work

@@ -97,6 +97,7 @@ std::vector<float> half_results() {
   const F16<P> b(0.3333F);
   std::vector<float> out;
   for (const F16<P>& x : {a + b, a - b, a * b, a / b, mul_add(a, b, a)}) out.push_back(value(x));
+  out.push_back(value(to_f32(to_f16<P>(typename P::F32(0.1F)))));
   return out;
 }
 
@@ -105,7 +106,7 @@ TEST(Half, SameBitsUnderBothPoliciesAndItsCounts) {
   const std::vector<float> counted = half_results<Counting>();
   const Counts counts = take_tally();
   EXPECT_EQ(counted, half_results<Native>());
-  EXPECT_EQ(counts[Op::F16Op], 4U);
+  EXPECT_EQ(counts[Op::F16Op], 6U);
   EXPECT_EQ(counts[Op::F16Div], 1U);
   EXPECT_EQ(counted[0], 1.8330078125F);
   EXPECT_EQ(counted[3], 4.5F);  // 1.5 / 0.333251953125 = 4.50109…, and halves are 1/256 apart there
