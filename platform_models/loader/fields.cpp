@@ -197,9 +197,10 @@ void add_fpu(Table& table) {
                "units for 64-bit integers that the cluster's cores share, mapped as the others"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
   table.add(
-      optional(quantity("cluster.fpu.collisions", kRatio, 0, 10,
-                        "chance collisions at these units and in the queue of dividers, over those "
-                        "at any phase; 0 unless said: cores find their turns")),
+      optional(quantity(
+          "cluster.fpu.collisions", kRatio, 0, 10,
+          "chance collisions at these units and in queues of dividers and accelerators, over those "
+          "at any phase; 0 unless said: cores find their turns")),
       [](auto& chip) -> auto& { return chip.cluster.fpu.collisions; });
 }
 
