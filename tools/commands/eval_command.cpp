@@ -212,7 +212,7 @@ Json figures(const traces::TrajectoryPair& pair, const EvalRequest& request,
            rounded(accuracy.evaluation.alignment.scale));
   for (const RelativeErrors& errors : accuracy.relative)
     add_relative(list, accuracy.evaluation, errors);
-  return statistics_document(list.take(), {{"estimate", file_json(pair.estimate)},
+  return statistics_document(list.json(), {{"estimate", file_json(pair.estimate)},
                                            {"ground_truth", file_json(pair.truth)},
                                            {"protocol", protocol_json(request)}});
 }

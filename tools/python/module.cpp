@@ -173,7 +173,7 @@ std::string evaluate_files(const std::string& estimate, const std::string& truth
   add_ate(list, evaluation, traces::attitude_errors(evaluation));
   for (const double length : lengths_m)
     add_relative(list, evaluation, traces::relative_errors(evaluation, length));
-  return json_text(list.take());
+  return json_text(list.json());
 }
 
 py::list parameters_of(const platform::ResolvedPlatform& chip) {

@@ -85,6 +85,40 @@ RunFacts facts_of_manifest(const Json& m) {
   return facts;
 }
 
+/// "epnp_ransac" of "stages.epnp_ransac.calls" with the end ".calls"; empty for other names.
+std::string stage_key(const std::string& name, std::string_view end) {
+  constexpr std::string_view kStages = "stages.";
+  if (name.rfind(kStages, 0) != 0 || name.size() <= kStages.size() + end.size()) return {};
+  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return {};
+  std::string key = name.substr(kStages.size(), name.size() - kStages.size() - end.size());
+  return key.find('.') == std::string::npos ? key : std::string();
+}
+
+/// Of a statistic that is a text.
+void add_text(const std::string& name, const Json& value, RunFigures& run) {
+  const std::string key = stage_key(name, ".runs_on");
+  for (StageName& stage : run.stages)
+    if (stage.key == key) stage.on_controller = value == "controller";
+}
+
+/// Adds the numbers of stats.json, and the stages that it names.
+void add_statistics(const Json& document, RunFigures& run) {
+  for (const Json& entry : document.at("statistics")) {
+    const Json& value = entry.at("value");
+    const auto text = [&](const char* key) { return entry.at(key).get<std::string>(); };
+    const std::string name = text("name");
+    if (value.is_string()) {
+      add_text(name, value, run);
+      continue;
+    }
+    if (std::string key = stage_key(name, ".calls"); !key.empty())
+      run.stages.push_back({key, key, false});
+    Statistic statistic{name, text("unit"), text("description"), {}};
+    if (!value.is_null()) statistic.value = value.get<double>();
+    run.statistics.push_back(std::move(statistic));
+  }
+}
+
 /// @param names  of all stages; those of cycles.csv prevail
 void name_stages(RunRecord& record, std::vector<std::string> names) {
   for (const StageParts& parts : record.cycles) names.push_back(parts.stage);
@@ -205,12 +239,8 @@ Json parse_json(const std::string& where, const std::string& text) {
 
 RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run,
                       std::vector<StageParts> cycles) {
-  RunRecord record{figures_of(run), std::move(name),
-                   facts_of_manifest(manifest_json(manifest, run)), std::move(cycles)};
-  std::vector<std::string> names;
-  for (const StageResult& stage : run.stages) names.emplace_back(stage.name);
-  name_stages(record, std::move(names));
-  return record;
+  return {figures_of(run), std::move(name), facts_of_manifest(manifest_json(manifest, run)),
+          std::move(cycles)};
 }
 
 RunFiles read_run_files(const std::filesystem::path& folder) {

@@ -25,18 +25,26 @@ Json rounded(double value) { return std::round(value * 1e9) / 1e9; }
 
 void StatisticList::add(const std::string& name, std::string_view unit,
                         std::string_view description, Json value) {
-  Json& entry = list_.emplace_back(Json::object());
-  entry["name"] = name;
-  entry["unit"] = unit;
-  entry["description"] = description;
-  entry["value"] = std::move(value);
+  add_with_protocol(name, unit, description, std::move(value), {});
 }
 
 void StatisticList::add_with_protocol(const std::string& name, std::string_view unit,
                                       std::string_view description, Json value,
                                       const std::string& protocol) {
-  add(name, unit, description, std::move(value));
-  list_.back()["protocol"] = protocol;
+  rows_.push_back({name, std::string(unit), std::string(description), std::move(value), protocol});
+}
+
+Json StatisticList::json() const {
+  Json list = Json::array();
+  for (const StatisticRow& row : rows_) {
+    Json& entry = list.emplace_back(Json::object());
+    entry["name"] = row.name;
+    entry["unit"] = row.unit;
+    entry["description"] = row.description;
+    entry["value"] = row.value;
+    if (!row.protocol.empty()) entry["protocol"] = row.protocol;
+  }
+  return list;
 }
 
 Json statistics_document(Json list, const Json& about) {

@@ -1,4 +1,4 @@
-// Statistics as a list of JSON objects with name, unit, description and value, the format of
+// Statistics, each with name, unit, description and value, and their list as JSON: the format of
 // stats.json and of everything else that writes figures.
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace leviosim::tools {
 
@@ -28,6 +29,14 @@ Json value_of(std::optional<double> value);
 /// Nine decimals, as trajectory files have.
 Json rounded(double value);
 
+struct StatisticRow {
+  std::string name;
+  std::string unit;
+  std::string description;
+  Json value;            ///< a number, a text, or null for what does not exist
+  std::string protocol;  ///< of accuracy, how it was measured; else empty
+};
+
 class StatisticList {
  public:
   void add(const std::string& name, std::string_view unit, std::string_view description,
@@ -35,10 +44,12 @@ class StatisticList {
   void add_with_protocol(const std::string& name, std::string_view unit,
                          std::string_view description, Json value, const std::string& protocol);
 
-  Json take() { return std::move(list_); }
+  const std::vector<StatisticRow>& rows() const { return rows_; }
+  /// An object for each, with the names of the members.
+  Json json() const;
 
  private:
-  Json list_ = Json::array();
+  std::vector<StatisticRow> rows_;
 };
 
 /// {"format": "leviosim statistics", "version": N, "statistics": `list`}, with the members of

@@ -297,23 +297,7 @@ void add_accuracy(StatisticList& list, const RunResult& run) {
   if (run.ate) add_ate(list, *run.ate);
 }
 
-/// "epnp_ransac" of "stages.epnp_ransac.calls" with the end ".calls"; empty for other names.
-std::string stage_key(const std::string& name, std::string_view end) {
-  constexpr std::string_view kStages = "stages.";
-  if (name.rfind(kStages, 0) != 0 || name.size() <= kStages.size() + end.size()) return {};
-  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return {};
-  std::string key = name.substr(kStages.size(), name.size() - kStages.size() - end.size());
-  return key.find('.') == std::string::npos ? key : std::string();
-}
-
-/// Of a statistic that is a text.
-void add_text(const std::string& name, const Json& value, RunFigures& run) {
-  const std::string key = stage_key(name, ".runs_on");
-  for (StageName& stage : run.stages)
-    if (stage.key == key) stage.on_controller = value == "controller";
-}
-
-Json list_of(const RunResult& run) {
+StatisticList list_of(const RunResult& run) {
   StatisticList list;
   add_run(list, run);
   if (run.timed) add_accelerators(list, run);
@@ -336,7 +320,7 @@ Json list_of(const RunResult& run) {
              run.optimiser_late);
   }
   add_accuracy(list, run);
-  return list.take();
+  return list;
 }
 
 /// In words.
@@ -351,40 +335,32 @@ void add_verdicts(StatisticList& list, const Verdicts& verdicts) {
   }
 }
 
-}  // namespace
-
-void add_statistics(const Json& document, RunFigures& run) {
-  for (const Json& entry : document.at("statistics")) {
-    const Json& value = entry.at("value");
-    const auto text = [&](const char* key) { return entry.at(key).get<std::string>(); };
-    const std::string name = text("name");
-    if (value.is_string()) {
-      add_text(name, value, run);
-      continue;
-    }
-    if (std::string key = stage_key(name, ".calls"); !key.empty())
-      run.stages.push_back({key, key, false});
-    Statistic statistic{name, text("unit"), text("description"), {}};
-    if (!value.is_null()) statistic.value = value.get<double>();
-    run.statistics.push_back(std::move(statistic));
-  }
-}
-
-RunFigures figures_of(const RunResult& run) {
+/// @param list  of the run
+RunFigures figures_of(const RunResult& run, const StatisticList& list) {
   RunFigures figures;
-  add_statistics({{"statistics", list_of(run)}}, figures);
+  if (run.timed)
+    for (const StageResult& stage : run.stages)
+      figures.stages.push_back({stage.name, key_of(stage.name), stage.on_controller});
+  for (const StatisticRow& row : list.rows()) {
+    if (row.value.is_string()) continue;
+    Statistic statistic{row.name, row.unit, row.description, {}};
+    if (row.value.is_number()) statistic.value = row.value.get<double>();
+    figures.statistics.push_back(std::move(statistic));
+  }
   complete(figures, recorded_frames(run), position_pairs(run));
   return figures;
 }
 
+}  // namespace
+
+RunFigures figures_of(const RunResult& run) { return figures_of(run, list_of(run)); }
+
 Json statistics(const RunResult& run) {
-  Json list = list_of(run);
-  StatisticList words;
-  RunFigures figures = figures_of(run);
+  StatisticList list = list_of(run);
+  RunFigures figures = figures_of(run, list);
   figures.map.scale.reset();  // replays do not know it
-  add_verdicts(words, verdicts(figures));
-  for (Json& entry : words.take()) list.push_back(std::move(entry));
-  return statistics_document(std::move(list));
+  add_verdicts(list, verdicts(figures));
+  return statistics_document(list.json());
 }
 
 std::string statistics_text(const RunResult& run) {

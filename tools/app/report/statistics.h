@@ -18,8 +18,6 @@ Json statistics(const RunResult& run);
 
 /// The figures of a run that lies in memory.
 RunFigures figures_of(const RunResult& run);
-/// Adds the numbers of a document, and the stages that it names. @throws nlohmann::json::exception
-void add_statistics(const Json& document, RunFigures& run);
 
 /// The content of stats.json, with one statistic on a line, so that runs can be compared
 /// line by line.
