@@ -93,6 +93,49 @@ TEST(RunRecord, FramesAndMemoriesTogether) {
   EXPECT_TRUE(r.stages[2].on_controller);
 }
 
+TEST(RunRecord, OfARunInMemoryIsThatOfItsFolder) {
+  Manifest manifest;
+  manifest.seed = 7;
+  manifest.platform = "gap9";
+  manifest.overrides = {"cluster.l1_size=64 KiB"};
+  manifest.workload = {"workload.window=6"};
+  manifest.first_frame = 3;
+  manifest.inputs = {{"cam0/data.csv", 1, "abc"}, {"imu0/data.csv", 2, "def"}};
+  const auto expect_same = [&](const RunResult& run) {
+    const RunRecord made = make_record("run", manifest, run, {});
+    const RunRecord read = record_of_files("run", run_files(run, manifest, ""));
+    EXPECT_EQ(read.facts, made.facts);
+    ASSERT_EQ(read.stages.size(), made.stages.size());
+    for (std::size_t i = 0; i < read.stages.size(); ++i) {
+      EXPECT_EQ(read.stages[i].name, made.stages[i].name);
+      EXPECT_EQ(read.stages[i].key, made.stages[i].key);
+      EXPECT_EQ(read.stages[i].on_controller, made.stages[i].on_controller);
+    }
+    ASSERT_EQ(read.statistics.size(), made.statistics.size());
+    for (std::size_t i = 0; i < read.statistics.size(); ++i) {
+      EXPECT_EQ(read.statistics[i].name, made.statistics[i].name);
+      EXPECT_EQ(read.statistics[i].unit, made.statistics[i].unit) << made.statistics[i].name;
+      EXPECT_EQ(read.statistics[i].value, made.statistics[i].value) << made.statistics[i].name;
+    }
+  };
+  RunResult run = example_run();
+  expect_same(run);
+  run.camera = CameraRecord{12.5, Deadline::Drop, {}};
+  for (const FrameResult& f : run.frames)
+    run.camera->deliveries.push_back({f.index, f.t_ns, f.arrival_ns, 0, false});
+  run.camera->deliveries.push_back({5, 250'000'000, 250'000'000, 2, true});
+  expect_same(run);
+  Json input;
+  input["name"] = "cam0/data.csv";
+  input["sha256"] = "of the recording";
+  manifest.recording["inputs"] = Json::array();
+  manifest.recording["inputs"].push_back(input);
+  run.camera.reset();
+  expect_same(run);
+  run.timed = false;
+  expect_same(run);
+}
+
 TEST(RunRecord, DroppedFramesAreMissed) {
   RunResult run = example_run();
   run.camera = CameraRecord{};

@@ -12,6 +12,7 @@
 #include "sim/base/text.h"
 #include "sim/outputs/output_record.h"
 #include "tools/app/cli/terminal.h"
+#include "tools/app/cli/version.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/report/text_table.h"
@@ -57,9 +58,33 @@ std::vector<std::pair<std::string, std::string>> digests(const Json& inputs) {
   return list;
 }
 
-std::string camera_text(const Json& camera) {
-  return fmt::format("{:g} frames/s, {}", camera.at("frames_per_second").get<double>(),
-                     camera.at("deadline").get<std::string>());
+std::string camera_text(double rate, std::string_view deadline) {
+  return fmt::format("{:g} frames/s, {}", rate, deadline);
+}
+
+/// What facts_of_manifest() would read from the manifest of this run.
+RunFacts facts_of(const Manifest& manifest, const RunResult& run) {
+  RunFacts facts;
+  facts.program = fmt::format("{} {}", version(), revision());
+  facts.profile = run.profile;
+  facts.workload = manifest.workload;
+  facts.seed = manifest.seed;
+  if (run.timed) {
+    facts.platform = manifest.platform;
+    facts.overrides = manifest.overrides;
+    facts.cores = run.cores;
+  }
+  if (run.camera) facts.camera = camera_text(run.camera->fps, info_of(run.camera->deadline).name);
+  facts.image_width = run.image_width;
+  facts.image_height = run.image_height;
+  facts.first_frame = static_cast<std::int64_t>(manifest.first_frame);
+  facts.frames = static_cast<std::int64_t>(expected_poses(run));
+  if (!manifest.recording.is_null())
+    facts.inputs = digests(manifest.recording.at("inputs"));
+  else
+    for (const InputDigest& input : manifest.inputs)
+      facts.inputs.emplace_back(input.name, input.sha256);
+  return facts;
 }
 
 RunFacts facts_of_manifest(const Json& m) {
@@ -75,7 +100,11 @@ RunFacts facts_of_manifest(const Json& m) {
     platform.at("overrides").get_to(facts.overrides);
     whole(platform.at("cores"), facts.cores);
   }
-  if (m.contains("camera")) facts.camera = camera_text(m.at("camera"));
+  if (m.contains("camera")) {
+    const Json& camera = m.at("camera");
+    facts.camera = camera_text(camera.at("frames_per_second").get<double>(),
+                               camera.at("deadline").get<std::string>());
+  }
   whole(m.at("image").at("width"), facts.image_width);
   whole(m.at("image").at("height"), facts.image_height);
   whole(m.at("data").at("first_frame"), facts.first_frame);
@@ -239,8 +268,7 @@ Json parse_json(const std::string& where, const std::string& text) {
 
 RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run,
                       std::vector<StageParts> cycles) {
-  return {figures_of(run), std::move(name), facts_of_manifest(manifest_json(manifest, run)),
-          std::move(cycles)};
+  return {figures_of(run), std::move(name), facts_of(manifest, run), std::move(cycles)};
 }
 
 RunFiles read_run_files(const std::filesystem::path& folder) {
