@@ -69,7 +69,7 @@ class Module(unittest.TestCase):
         done = command("replay", folder, "-p", "cluster.fpu.units=1", "--out", again)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same_files(leviosim.replay(folder, set=slow), again)
-        self.assertEqual(run.replay(set=slow)["latency.all.p50"], leviosim.replay(folder, set=slow)["latency.all.p50"])
+        self.assertEqual(run.replay(set=slow)["frame.latency.p50"], leviosim.replay(folder, set=slow)["frame.latency.p50"])
 
     def test_a_native_run_leaves_the_files_of_the_command(self):
         folder = os.path.join(FOLDER.name, "native")

@@ -286,7 +286,7 @@ TEST(ClosedLoop, FilesSayOfEveryFrameWhatBecameOfIt) {
     EXPECT_NE(csv.find(part), std::string::npos) << part << " is not in:\n" << csv;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
   const std::string statistics = statistics_text(run);
-  for (const char* part : {"\"camera.dropped\"", "\"camera.missed_share\""}) {
+  for (const char* part : {"\"camera.dropped\"", "\"camera.missed\""}) {
     EXPECT_NE(statistics.find(part), std::string::npos) << part;
     EXPECT_EQ(statistics_text(testing::example_run()).find(part), std::string::npos) << part;
   }

@@ -71,25 +71,19 @@ class Table {
   base::CsvReader reader_;
 };
 
-/// The columns of frames.csv that are read; native runs have no times.
+/// The columns of frames.csv that are read; native runs have no latency.
 struct Columns {
-  struct Times {
-    std::size_t latency, start, end, parallel, single;
-  };
-
   explicit Columns(const Table& table)
       : t_ns(table.column("t_ns")),
         source(table.column("source")),
         restarts(table.column("map_restarts")),
         health(table.column("health")),
         health_reasons(table.column("health_reasons")) {
-    if (table.has("latency_ns"))
-      times = {table.column("latency_ns"), table.column("start_ns"), table.column("end_ns"),
-               table.column("parallel_cycles"), table.column("single_cycles")};
+    if (table.has("latency_ns")) latency = table.column("latency_ns");
   }
 
   std::size_t t_ns, source, restarts, health, health_reasons;
-  std::optional<Times> times;
+  std::optional<std::size_t> latency;
 };
 
 int whole(const base::CsvRow& row, std::size_t column) {
@@ -100,11 +94,6 @@ int whole(const base::CsvRow& row, std::size_t column) {
   return static_cast<int>(value);
 }
 
-RecordedFrame::Timing timing_of(const base::CsvRow& row, const Columns::Times& at) {
-  return {row.nanoseconds(at.latency), row.nanoseconds(at.end) - row.nanoseconds(at.start),
-          row.number(at.parallel), row.number(at.single)};
-}
-
 /// Of a frame that was not dropped.
 void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& frame) {
   for (const vio::PoseSourceInfo& info : vio::kPoseSources)
@@ -112,7 +101,6 @@ void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& fram
   frame.map_restarts = whole(row, at.restarts);
   frame.health = whole(row, at.health);
   frame.health_reasons = whole(row, at.health_reasons);
-  if (at.times) frame.timing = timing_of(row, *at.times);
 }
 
 }  // namespace
@@ -197,8 +185,8 @@ std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const 
   while (const base::CsvRow* row = table.next()) {
     RecordedFrame& frame = frames.emplace_back();
     frame.t_ns = row->nanoseconds(at.t_ns);
-    frame.dropped = at.times && row->text(at.times->latency).empty();
-    if (!frame.dropped) read_result(*row, at, frame);
+    const bool is_dropped = at.latency && row->text(*at.latency).empty();
+    if (!is_dropped) read_result(*row, at, frame);
   }
   return frames;
 }

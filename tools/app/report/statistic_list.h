@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 /// Of statistics documents: the one that is written and read. It rises with every statistic that is
 /// added.
-inline constexpr int kStatisticsVersion = 6;
+inline constexpr int kStatisticsVersion = 7;
 
 /// The text of any document. Bytes that are no UTF-8, which names of files may have, are replaced
 /// by U+FFFD instead of thrown.

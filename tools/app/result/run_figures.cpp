@@ -45,17 +45,13 @@ constexpr std::array kFigureRows{
     FigureRow{"verdict.map", "map verdict", "map verdict"},
 };
 
-RecordedFrame recorded(const FrameResult& frame, bool timed) {
+RecordedFrame recorded(const FrameResult& frame) {
   RecordedFrame row;
   row.t_ns = frame.t_ns;
   row.source = frame.source;
   row.map_restarts = frame.map_restarts;
   row.health = frame.health;
   row.health_reasons = frame.health_reasons;
-  if (timed)
-    row.timing = {frame.end_ns - frame.arrival_ns, frame.end_ns - frame.start_ns,
-                  static_cast<double>(frame.cycles.count()),
-                  static_cast<double>(frame.single_cycles.count())};
   return row;
 }
 
@@ -79,70 +75,6 @@ double longest_s(const std::vector<RecordedFrame>& frames, PoseSource source) {
       longest_ns = std::max(longest_ns, frames[i].t_ns - frames[known].t_ns);
   }
   return static_cast<double>(longest_ns) * 1e-9;
-}
-
-void add_latencies(RunFigures& run, const std::vector<RecordedFrame::Timing>& timings) {
-  std::vector<std::int64_t> sorted;
-  std::vector<std::int64_t> own;
-  double sum = 0;
-  double own_sum = 0;
-  double single = 0;
-  double parallel = 0;
-  for (const RecordedFrame::Timing& t : timings) {
-    sorted.push_back(t.latency_ns);
-    own.push_back(t.own_ns);
-    sum += static_cast<double>(t.latency_ns);
-    own_sum += static_cast<double>(t.own_ns);
-    single += t.single_cycles;
-    parallel += t.parallel_cycles;
-  }
-  std::sort(sorted.begin(), sorted.end());
-  std::sort(own.begin(), own.end());
-  const auto n = static_cast<double>(timings.size());
-  // Folders that were written since frames have times of their own hold some of them.
-  const auto add = [&](const char* name, const char* unit, const char* description, double value) {
-    if (run.find(name) != nullptr) return;
-    run.statistics.push_back(
-        {name, unit, description, timings.empty() ? std::nullopt : std::optional<double>(value)});
-  };
-  const auto at = [](const std::vector<std::int64_t>& values, double share) {
-    return values.empty() ? 0 : static_cast<double>(percentile(values, share));
-  };
-  add("frame.latency.mean", "ns", "from the camera's frame to its pose, all frames", sum / n);
-  add("frame.latency.p50", "ns", "median from the camera's frame to its pose", at(sorted, 0.5));
-  add("frame.latency.p95", "ns", "that 95 % of the frames do not exceed", at(sorted, 0.95));
-  add("frame.latency.p99", "ns", "that 99 % of the frames do not exceed", at(sorted, 0.99));
-  add("frame.latency.worst", "ns", "longest from the camera's frame to its pose", at(sorted, 1));
-  add("frame.cycles.single.mean", "cycles", "of the front end on one core", single / n);
-  add("frame.cycles.parallel.mean", "cycles", "of the front end on N cores", parallel / n);
-  add("frame.time.mean", "ns", "that a frame takes by itself, without waiting for others",
-      own_sum / n);
-  add("frame.time.p99", "ns", "that 99 % of the frames do not exceed by themselves", at(own, 0.99));
-  add("frame.time.worst", "ns", "longest that a frame takes by itself", at(own, 1));
-  add("frame.sustainable_rate", "1/s", "frames that the chip can process, by their mean time",
-      own_sum > 0 ? 1e9 * n / own_sum : 0);
-}
-
-void add_frame_statistics(RunFigures& run, const std::vector<RecordedFrame>& frames) {
-  std::vector<RecordedFrame::Timing> timings;
-  for (const RecordedFrame& frame : frames)
-    if (frame.timing) timings.push_back(*frame.timing);
-  const auto dropped =
-      std::count_if(frames.begin(), frames.end(), [](const RecordedFrame& f) { return f.dropped; });
-  if (frames.empty() || (timings.empty() && dropped == 0)) return;
-  add_latencies(run, timings);
-  // Without a camera in simulated time, the queue of a slow chip only says how long the flight is.
-  const bool queues = run.value("camera.arrived").has_value();
-  const double deadline = deadline_ns(run);
-  const auto late =
-      std::count_if(timings.begin(), timings.end(), [&](const RecordedFrame::Timing& t) {
-        return static_cast<double>(queues ? t.latency_ns : t.own_ns) > deadline;
-      });
-  const double missed =
-      run.value("camera.missed_share")
-          .value_or(static_cast<double>(dropped + late) / static_cast<double>(frames.size()));
-  run.statistics.push_back(
-      {"frame.missed_share", "1", "frames without a pose within a period of the camera", missed});
 }
 
 void add_operations(RunFigures& run) {
@@ -190,7 +122,7 @@ std::vector<RecordedFrame> recorded_frames(const RunResult& run) {
   std::vector<RecordedFrame> frames;
   auto frame = run.frames.begin();
   const auto next = [&] {
-    if (frame != run.frames.end()) frames.push_back(recorded(*frame++, run.timed));
+    if (frame != run.frames.end()) frames.push_back(recorded(*frame++));
   };
   if (!run.camera)
     while (frame != run.frames.end()) next();
@@ -200,9 +132,7 @@ std::vector<RecordedFrame> recorded_frames(const RunResult& run) {
         next();
         continue;
       }
-      RecordedFrame& lost = frames.emplace_back();
-      lost.t_ns = delivery.t_ns;
-      lost.dropped = true;
+      frames.emplace_back().t_ns = delivery.t_ns;
     }
   return frames;
 }
@@ -264,7 +194,6 @@ double deadline_ns(const RunFigures& run) {
 
 void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
               const std::vector<PositionPair>& positions) {
-  add_frame_statistics(run, frames);
   add_memory_statistics(run);
   add_operations(run);
   const double left_out =

@@ -49,19 +49,11 @@ struct StageName {
 
 /// A frame of the camera, as a row of frames.csv has it.
 struct RecordedFrame {
-  struct Timing {
-    std::int64_t latency_ns = 0;  ///< from arrival to pose
-    std::int64_t own_ns = 0;      ///< from the start of its front end to its pose
-    double parallel_cycles = 0;
-    double single_cycles = 0;
-  };
   std::int64_t t_ns = 0;
-  bool dropped = false;
   std::optional<PoseSource> source;  ///< absent if it was dropped
   int map_restarts = 0;
-  std::optional<int> health;     ///< of the map, as vio::Health numbers it; absent if not recorded
-  int health_reasons = 0;        ///< bits of vio::HealthReason
-  std::optional<Timing> timing;  ///< absent if it was dropped, and in native runs
+  std::optional<int> health;  ///< of the map, as vio::Health numbers it; absent if not recorded
+  int health_reasons = 0;     ///< bits of vio::HealthReason
 };
 
 /// Estimated and true position of a pose. [m]
@@ -104,8 +96,8 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames,
                    const std::vector<PositionPair>& positions, std::optional<double> rmse_m,
                    std::optional<double> path_m, std::int64_t poses_left_out);
 
-/// Adds to the statistics of stats.json those that follow from all frames (frame.*), the peaks of
-/// L1 and L2, operations of stages, the signs of the map, and the verdicts as grades (verdict.*).
+/// Adds to the statistics of stats.json what follows from them and from all frames: the peaks of L1
+/// and L2, operations of stages, the signs of the map, and the verdicts as grades (verdict.*).
 void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
               const std::vector<PositionPair>& positions);
 

@@ -10,7 +10,7 @@ import leviosim
 data = sys.argv[1] if len(sys.argv) > 1 else "synthetic"
 gap9 = leviosim.Platform("gap9")
 run = leviosim.run(gap9, data=data, record=True)
-latency = run.statistics["latency.all.p50"]
+latency = run.statistics["frame.latency.p50"]
 print(f"{gap9.name}: {latency.value} {latency.unit}, {latency.description}")
 
 # %% [markdown]
@@ -26,4 +26,4 @@ for variant, mean in zip(table["variant"], table["frame_mean_ms"]):
 
 # %%
 for settings, point in leviosim.sweep({"cluster.fpu.units": [1, 2, 4, 8]}, lambda s: run.replay(gap9.with_(s))):
-    print(settings, f"{point['latency.all.p50'] * 1e-6:.2f} ms")
+    print(settings, f"{point['frame.latency.p50'] * 1e-6:.2f} ms")

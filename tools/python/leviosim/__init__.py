@@ -5,7 +5,7 @@ What a run yields is what the command `leviosim run` would write, file by file, 
     import leviosim
     gap9 = leviosim.Platform("gap9")
     run = leviosim.run(gap9, data="synthetic", frames="0:100", record=True)
-    run["latency.all.p50"]                       # a statistic by its name
+    run["frame.latency.p50"]                       # a statistic by its name
     slow = run.replay(gap9.with_({"cluster.fpu.units": 1}))
     slow.table("stages")["cycles_parallel"]         # a column as an array; pandas.DataFrame takes all of it
 
