@@ -220,5 +220,79 @@ TEST(NextRobustnessOf, ImuAtRestWhileTheImagesMove) {
   EXPECT_LE(held, 3);
 }
 
+/// Where hand-held flights begin, on a straight line while it turns about the vertical, both
+/// evenly: its IMU measures what it would at rest, with other biases and another gravity.
+class EvenFlight : public traces::Motion {
+ public:
+  /// @param velocity  m/s, in the world
+  /// @param turn      rad/s
+  EvenFlight(Eigen::Vector3d velocity, double turn, Pace pace)
+      : velocity_(std::move(velocity)), turn_(turn), pace_(std::move(pace)) {}
+
+  traces::MotionState at(double t_s) const override {
+    const traces::Derivatives s = pace_(t_s);
+    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    traces::MotionState state = traces::HandHeldFlight(3).at(0);
+    state.T_world_body.translation() += velocity_ * s.value;
+    state.T_world_body.linear() =
+        Eigen::AngleAxisd(turn_ * s.value, up) * state.T_world_body.linear();
+    state.velocity = velocity_ * s.first;
+    state.acceleration = velocity_ * s.second;
+    state.angular_velocity = state.T_world_body.linear().transpose() * up * (turn_ * s.first);
+    return state;
+  }
+
+ private:
+  Eigen::Vector3d velocity_;
+  double turn_;
+  Pace pace_;
+};
+
+/// Frames that were taken for rest, of a flight that never rests.
+int taken_for_rest(const Flown& flown) {
+  EXPECT_TRUE(flown.finite);
+  return flown.count(PoseSource::First) - 1;
+}
+
+/// An even turn that is too fast for a bias is never taken for rest; what an IMU cannot tell from
+/// rest, until the images contradict.
+TEST(NextRobustnessOf, EvenFlightIsNoRest) {
+  const struct {
+    Eigen::Vector3d velocity;
+    double turn;
+    int taken;
+  } cases[] = {{{0, 0, 0}, 0.5, 0}, {{0, 0, 0}, 0.1, 2}, {{0, 0.2, 0}, 0, 2}, {{0.15, 0, 0}, 0, 8}};
+  for (const auto& [velocity, turn, taken] : cases) {
+    const Flown flown =
+        fly(draw_flight(EvenFlight(velocity, turn, at_pace(1)), 4), profile_named("next", 1));
+    EXPECT_LE(taken_for_rest(flown), taken) << velocity.transpose() << ", " << turn;
+    EXPECT_EQ(flown.sources.back(), PoseSource::Initialising);
+  }
+}
+
+/// Nor is a motion that begins so gently that the IMU sees no change.
+TEST(NextRobustnessOf, RestEndsWithAMotionThatOnlyTheImagesShow) {
+  const auto gently = [](double t) -> traces::Derivatives {
+    const double since = std::max(0.0, t - 2);
+    return {since * since / 2, since, since > 0 ? 1.0 : 0.0};
+  };
+  const ShortFlight flight = draw_flight(EvenFlight({0, 0.1, 0}, 0, gently), 5);
+  const Flown flown = fly(flight, profile_named("next", 1));
+  ASSERT_TRUE(flown.finite);
+  EXPECT_EQ(flown.sources[39], PoseSource::First);
+  EXPECT_EQ(std::count(flown.sources.begin() + 60, flown.sources.end(), PoseSource::First), 0);
+}
+
+/// An IMU without power.
+TEST(NextRobustnessOf, ZerosAreNoRest) {
+  ShortFlight flight = draw_flight(PacedFlight(3, at_pace(0)), 2);
+  EXPECT_GT(fly(flight, profile_named("next", 1)).count(PoseSource::First), 10);
+  for (ShortFlight::Frame& frame : flight.frames)
+    for (ImuInput& sample : frame.imu) sample = {sample.dt, {}, {}};
+  const Flown flown = fly(flight, profile_named("next", 1));
+  EXPECT_LE(taken_for_rest(flown), 1 + flown.map_restarts);
+  EXPECT_NE(flown.health.back(), Health::good);
+}
+
 }  // namespace
 }  // namespace leviosim::vio::test

@@ -65,6 +65,29 @@ inline Pace with_standstill(double stop_s, double resume_s) {
   };
 }
 
+/// PacedFlight that goes straight on from `from_s` to `to_s`, neither turning nor changing its
+/// speed, which an IMU cannot tell from rest; then it flies what it has put off.
+class GlidingFlight : public traces::Motion {
+ public:
+  GlidingFlight(std::uint64_t seed, Pace pace, double from_s, double to_s)
+      : flight_(seed, std::move(pace)), from_s_(from_s), to_s_(to_s) {}
+
+  traces::MotionState at(double t_s) const override {
+    const double glided_s = std::clamp(t_s, from_s_, to_s_) - from_s_;
+    traces::MotionState state = flight_.at(t_s - glided_s);
+    state.T_world_body.translation() += flight_.at(from_s_).velocity * glided_s;
+    if (t_s > from_s_ && t_s < to_s_) {
+      state.acceleration.setZero();
+      state.angular_velocity.setZero();
+    }
+    return state;
+  }
+
+ private:
+  PacedFlight flight_;
+  double from_s_, to_s_;
+};
+
 struct ShortFlight {
   struct Frame {
     std::int64_t t_ns;
@@ -167,6 +190,22 @@ inline void blur(ShortFlight& flight, std::size_t first, std::size_t last) {
                                                 std::clamp(x + k, 0, flight.rig.width - 1))];
         flight.frames[i].pixels[static_cast<std::size_t>(y * flight.rig.width + x)] =
             static_cast<std::uint8_t>(sum / (2 * kHalf + 1));
+      }
+  }
+}
+
+/// Rows are read out of step: those of the upper half lie too far left, those of the lower half as
+/// far right. Each half is in itself what the camera saw, and no pose explains both.
+inline void tear(ShortFlight& flight, std::size_t first, std::size_t last) {
+  constexpr int kShift = 32;
+  const int width = flight.rig.width, height = flight.rig.height;
+  for (std::size_t i = first; i < last; ++i) {
+    const std::vector<std::uint8_t> whole = flight.frames[i].pixels;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const int from = x + (y < height / 2 ? kShift : width - kShift);
+        flight.frames[i].pixels[static_cast<std::size_t>(y * width + x)] =
+            whole[static_cast<std::size_t>(y * width + from % width)];
       }
   }
 }

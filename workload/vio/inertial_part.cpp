@@ -75,6 +75,18 @@ ImuNoise InertialPart<P>::noise_of(const ImuInput& sample) const {
   return noise;
 }
 
+/// Whether what hardly varies can be a bias and gravity: an even turn has a larger rate, and an IMU
+/// that sends nothing but zeros feels no gravity.
+template <class P>
+bool InertialPart<P>::may_be_rest(const Stillness<P>& seen) const {
+  const RestOptions& limits = state_.profile.rest;
+  const float least = kGravity - limits.accel_error, most = kGravity + limits.accel_error;
+  const F rate = dot(seen.gyro_mean, seen.gyro_mean);
+  const F force = dot(seen.accel_mean, seen.accel_mean);
+  return bool(rate < F(limits.gyro_bias * limits.gyro_bias)) && bool(force > F(least * least)) &&
+         bool(force < F(most * most));
+}
+
 /// Re-estimates gravity and the gyro bias if the vehicle has stood still
 /// (PARAMETERS.md#standstill). The attitude is the last keyframe's, turned as the gyro says.
 /// @param seconds  that a batch of samples lasts
@@ -86,9 +98,10 @@ void InertialPart<P>::detect_stillness(const Preintegration<P>& interval, float 
   stillness_.end_frame();
   rest_.reset();
   recent_ = seen;
+  if (!seen.still) rest_is_rejected_ = false;
   if (!state_.started || !state_.profile.use_imu || !seen.still) return;
   if (state_.profile.optimiser.joint) {
-    rest_ = at_rest;
+    if (!rest_is_rejected_ && may_be_rest(at_rest)) rest_ = at_rest;
     return;  // it knows gravity, and learns the biases in motion as well
   }
   BiasPrior<P> prior = state_.graph_in_l2.bias_prior();

@@ -35,11 +35,18 @@ class InertialPart {
 
   /// Means over the last second if the vehicle stands still; only for the joint optimiser.
   const std::optional<Stillness<P>>& rest() const { return rest_; }
+  /// The images show that the vehicle moves: there is no rest until the IMU has seen motion, too.
+  void reject_rest() {
+    rest_.reset();
+    rest_is_rejected_ = true;
+  }
+  bool rest_is_rejected() const { return rest_is_rejected_; }
   /// The same means, whether it stands still or not.
   const Stillness<P>& recent() const { return recent_; }
 
  private:
   ImuNoise noise_of(const ImuInput& sample) const;
+  bool may_be_rest(const Stillness<P>& seen) const;
   void detect_stillness(const Preintegration<P>& interval, float seconds);
   Vec3<P> lever_arm() const;  // from the camera to the IMU
 
@@ -47,6 +54,7 @@ class InertialPart {
   Mat3<P> R_camera_body_;
   StillnessDetector<P> stillness_;
   std::optional<Stillness<P>> rest_;
+  bool rest_is_rejected_ = false;
   Stillness<P> recent_{false, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 0.0f};
 };
 

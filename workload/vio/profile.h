@@ -71,7 +71,13 @@ struct RestOptions {
   /// frozen, or shows what moves with the camera. With rotors that idle recorded flights have up to
   /// 0.04, in the air 0.11 and more; rad/s.
   float gyro_stddev = 0.08f;
+  float seen_share = 0.25f;   ///< of that time, after which images that do not move have shown rest
   float wrong_match = 0.03f;  ///< a match that moved farther is rejected, in normalised coordinates
+  /// If most matches moved farther than that, but not this far, the camera moves fast.
+  float fast_match = 0.12f;
+  // Of means over a second at rest, at most, as data sheets of MEMS sensors have it.
+  float gyro_bias = 0.17f;   ///< 10 °/s, rad/s
+  float accel_error = 1.5f;  ///< of gravity's size: 0.1 g of offset, 5 % of scale, m/s²
 };
 
 /// From where on the odometry does not call its map good (odometry/back_end.h).

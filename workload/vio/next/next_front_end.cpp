@@ -38,9 +38,13 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   still_ = rests_ = false;
   correct_path(input.dt, report);
   path_.take_motion();
+  if (state_.started) look_for_motion(frame);
+  frame.matches.list.count = 0;  // their memory is free again
   if (!state_.started) {
     start_map<P>(state_, frame);
-  } else if (inertial_.rest() && (initialises() || !prediction_.window_is_full())) {
+  } else if (began_in_motion()) {
+    start_anew(frame);
+  } else if (starts_at_rest()) {
     start_at_rest(frame, *inertial_.rest());
   } else if (!map_is_plausible(state_, prediction_, !initialises())) {
     start_anew(frame);
@@ -80,6 +84,65 @@ bool NextFrontEnd<P>::repeats_last(const Frame<P>& frame) {
   const bool repeats = list.count > 0 && bool(sum == sum_);
   sum_ = sum;
   return repeats;
+}
+
+/// Whether the window is to begin with this frame, since the vehicle stands still.
+template <class P>
+bool NextFrontEnd<P>::starts_at_rest() const {
+  return inertial_.rest() && (initialises() || !prediction_.window_is_full());
+}
+
+/// An even flight looks like rest to the IMU: before a window begins at rest, the image is compared
+/// with the keyframe, which is the frame before, or less than a second old. From where it moves,
+/// the IMU is not believed.
+template <class P>
+void NextFrontEnd<P>::look_for_motion(TrackedFrame<P>& frame) {
+  using F = typename P::F32;
+  const RestOptions& limits = state_.profile.rest;
+  const auto within = [](const Vec3<P>& motion, float most) {
+    return bool(dot(motion, motion) < F(most * most));
+  };
+  if (!inertial_.rest() && !inertial_.rest_is_rejected()) rest_ = {};
+  if (!starts_at_rest() || state_.time_since_keyframe > limits.image_time) return;
+  const work::Arena::Frame memory(state_.machine.local());
+  match_last_keyframe(frame);
+  align_features<P>(state_, frame, std::nullopt);
+  const auto stage = state_.machine.stage(stages::kGuided);
+  const auto motion = [&](float most) {
+    return motion_over_distance(state_, frame, Mat3<P>::identity(), most);
+  };
+  const float dt = state_.time_since_keyframe;
+  rest_.time += dt;
+  if (const std::optional<Vec3<P>> moved = motion(limits.wrong_match)) {
+    rest_.motion = rest_.motion * F(std::max(0.0f, 1 - dt / limits.image_time)) + *moved;
+    const float share = std::min(1.0f, rest_.time / limits.image_time);
+    if (share >= limits.seen_share && within(rest_.motion, share * limits.image_motion))
+      rest_.was_seen = true;
+    if (within(rest_.motion, limits.image_motion)) return;
+  } else if (!motion(limits.fast_match)) {
+    return;
+  }
+  inertial_.reject_rest();
+}
+
+/// Whether the map began at a rest that the images never showed: its velocity and biases are wrong.
+template <class P>
+bool NextFrontEnd<P>::began_in_motion() const {
+  return inertial_.rest_is_rejected() && !rest_.was_seen && !initialises() && has_one_keyframe();
+}
+
+template <class P>
+bool NextFrontEnd<P>::has_one_keyframe() const {
+  using I32 = typename P::I32;
+  return bool(state_.graph_in_l2.keyframe_count() == I32(1));
+}
+
+/// Room for the matches lasts as long as the caller's.
+template <class P>
+void NextFrontEnd<P>::match_last_keyframe(TrackedFrame<P>& frame) {
+  alloc_keyframe_matches<P>(state_, frame);
+  const work::Arena::Frame descriptors(state_.machine.local());
+  match_keyframe<P>(state_, frame);
 }
 
 /// A vehicle that stands still before the first window is full starts anew with every frame, from
@@ -160,11 +223,7 @@ void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {
 template <class P>
 void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
   frame.T_world_last = prediction_.last_pose();
-  alloc_keyframe_matches<P>(state_, frame);
-  {
-    const work::Arena::Frame descriptors(state_.machine.local());
-    match_keyframe<P>(state_, frame);
-  }
+  match_last_keyframe(frame);
   align_features<P>(state_, frame, std::nullopt);
   report.source = PoseSource::Initialising;
   {
@@ -178,11 +237,7 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
 /// From landmarks; without enough of them, by prediction; without one, from the last keyframe.
 template <class P>
 void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
-  alloc_keyframe_matches<P>(state_, frame);
-  {
-    const work::Arena::Frame descriptors(state_.machine.local());
-    match_keyframe<P>(state_, frame);
-  }
+  match_last_keyframe(frame);
   Pose<P> T_predicted = Pose<P>::identity();
   {
     const auto stage = state_.machine.stage(stages::kGuided);
@@ -210,15 +265,14 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
 template <class P>
 std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>& frame,
                                                            FrameReport& report) {
-  using I32 = typename P::I32;
   if (prediction_.imu_predicts()) {
     const auto stage = state_.machine.stage(stages::kGuided);
     report.source = PoseSource::Predicted;
-    if (state_.graph_in_l2.keyframe_count() == I32(1))
+    if (has_one_keyframe())
       if (const std::optional<Pose<P>> still = still_pose(frame)) return still;
     return inertial_.predicted_pose();
   }
-  if (state_.graph_in_l2.keyframe_count() == I32(1) && !is_keyframe(frame, report)) {
+  if (has_one_keyframe() && !is_keyframe(frame, report)) {
     const auto stage = state_.machine.stage(stages::kGuided);
     report.source = PoseSource::Kept;
     return Pose<P>{prediction_.by_motion(frame).R, frame.T_world_last.t};
@@ -256,7 +310,7 @@ bool NextFrontEnd<P>::images_rest() const {
 
 /// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
 /// cannot tell rest from uniform motion: from where the images disagree with rest, it is not
-/// believed until the vehicle has moved.
+/// believed until it has seen motion.
 template <class P>
 Pose<P> NextFrontEnd<P>::settled(const Pose<P>& T_world_camera) {
   using F = typename P::F32;
@@ -270,9 +324,8 @@ Pose<P> NextFrontEnd<P>::settled(const Pose<P>& T_world_camera) {
   const bool near =
       dot(moved, moved) < F(limits.position * limits.position) &&
       F(3.0f) - (turn[0][0] + turn[1][1] + turn[2][2]) < F(limits.rotation * limits.rotation);
-  const bool rests = inertial_.rest().has_value();
-  may_rest_ = !rests || (may_rest_ && near);
-  return rests && may_rest_ ? last : now;
+  if (inertial_.rest() && !near) inertial_.reject_rest();
+  return inertial_.rest() ? last : now;
 }
 
 /// It has moved far enough, less far if it sees few landmarks, or can hardly be matched with the

@@ -71,7 +71,19 @@ class NextFrontEnd : public FrontEnd<P> {
  private:
   using Floats = typename P::template Span<typename P::F32>;
 
+  /// What images show while the IMU sees rest.
+  struct ImageRest {
+    Vec3<P> motion{0.0f, 0.0f, 0.0f};  ///< of the last second, over the distance of what is seen
+    float time = 0;                    ///< looked at, s
+    bool was_seen = false;             ///< for a while nothing moved
+  };
+
   bool repeats_last(const Frame<P>& frame);
+  bool starts_at_rest() const;
+  void look_for_motion(TrackedFrame<P>& frame);
+  bool began_in_motion() const;
+  bool has_one_keyframe() const;
+  void match_last_keyframe(TrackedFrame<P>& frame);
   void start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest);
   bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);
@@ -95,9 +107,9 @@ class NextFrontEnd : public FrontEnd<P> {
   InitialPath<P> path_;              ///< until the map has settled
   float settling_ = 0;               ///< time since its alignment, s
   typename P::U32 sum_;              ///< over the features of the frame before
-  bool still_ = false;    ///< the images say that the camera has not moved since the keyframe
-  bool rests_ = false;    ///< nor turned
-  bool may_rest_ = true;  ///< the images have not contradicted that the vehicle stands still
+  bool still_ = false;  ///< the images say that the camera has not moved since the keyframe
+  bool rests_ = false;  ///< nor turned
+  ImageRest rest_;
 };
 
 }  // namespace leviosim::vio
