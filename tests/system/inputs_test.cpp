@@ -269,7 +269,7 @@ TEST_F(Inputs, FlightsThatAreLongerThanSimulatedTimeAreFoundBeforeTheFirstFrame)
   data.set_line("cam0/data.csv", 7, fmt::format("{},5250000000.png", kLast));
   data.replace("imu0/sensor.yaml", "rate_hz: 200", "rate_hz: 0.001");
   std::string samples = "#timestamp\n";
-  for (std::int64_t t_ns = 4'950'000'000; t_ns < 350'003'000'000'000'000; t_ns += 2'990'000'000'000)
+  for (std::int64_t t_ns = 4'950'000'000; t_ns < 350'003'000'000'000'000; t_ns += 1'000'000'000'000)
     samples += fmt::format("{},0,0,0,0,0,9.8\n", t_ns);
   outputs::write_file_atomically(data.mav0("imu0/data.csv"), samples);
   outputs::write_file_atomically(data.image(0), "no picture");

@@ -171,6 +171,39 @@ TEST(AslReader, ARateThatContradictsTheStamps) {
   EXPECT_EQ(open_asl(two_frames.root()).frames.size(), 2u);
 }
 
+TEST(AslReader, AnImuRateThatContradictsTheStamps) {
+  const AslFolder folder;
+  folder.replace("imu0/sensor.yaml", "rate_hz: 200", "rate_hz: 100");
+  expect_broken(folder, {"imu0/sensor.yaml line", "key 'rate_hz'", "is 100; expected 200,",
+                         "imu0/data.csv are 5 ms apart"});
+}
+
+/// In g, in °/s, or of a sensor without power.
+TEST(AslReader, UnitsOfTheImuThatCannotBe) {
+  const auto scaled = [](double accel, double gyro) {
+    std::vector<ImuSample> samples;
+    for (int i = -10; i <= 60; ++i)
+      samples.push_back({5'000'000'000 + i * 5'000'000, Eigen::Vector3d(0.1, 0.2, -0.3) * gyro,
+                         Eigen::Vector3d(0.1, 9.81, 0) * accel});
+    return format_imu_csv(samples);
+  };
+  const struct {
+    double accel, gyro;
+    const char *found, *hint;
+  } cases[] = {{1 / 9.81, 1, "at most 1 m/s²", "are they in g?"},
+               {0, 1, "at most 0 m/s²", "expected some 9.8 m/s²"},
+               {1000, 1, "at least 9.81e+03 m/s²", "expected some 9.8 m/s²"},
+               {1, 57.3, "at least 21.4 rad/s", "are they in °/s?"}};
+  for (const auto& [accel, gyro, found, hint] : cases) {
+    const AslFolder folder;
+    outputs::write_file_atomically(folder.mav0(kImu), scaled(accel, gyro));
+    expect_broken(folder, {"imu0/data.csv", found, hint});
+  }
+  const AslFolder right;
+  outputs::write_file_atomically(right.mav0(kImu), scaled(1, 1));
+  EXPECT_NO_THROW(open_asl(right.root()));
+}
+
 TEST(AslReader, ImuGapAboveTheLimit) {
   const AslFolder two_missing;
   two_missing.remove_lines(kImu, 30, 2);  // 15 ms, the default limit

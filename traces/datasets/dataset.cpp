@@ -67,6 +67,31 @@ void require_no_gaps(const Dataset& data, double longest_s) {
   }
 }
 
+/// Units that were mixed up would look like an odometry that is lost.
+void require_si_units(const Dataset& data) {
+  constexpr double kLeastForce = 3, kMostForce = 100, kMostRate = 12;  // m/s², rad/s
+  if (data.imu.empty()) return;
+  const auto median_size = [&](Eigen::Vector3d ImuSample::*of) {
+    std::vector<double> sizes;
+    for (const ImuSample& sample : data.imu) sizes.push_back((sample.*of).norm());
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return *middle;
+  };
+  const double force = median_size(&ImuSample::accel), rate = median_size(&ImuSample::gyro);
+  if (force < kLeastForce || force > kMostForce)
+    throw InputError(fmt::format(
+        "{}: half of the accelerations are {} {:.3g} m/s²; expected some 9.8 m/s², which gravity "
+        "has at rest{}",
+        data.imu_csv.string(), force < kLeastForce ? "at most" : "at least", force,
+        std::abs(force - 1) < 0.5 ? " (are they in g?)" : ""));
+  if (rate > kMostRate)
+    throw InputError(fmt::format(
+        "{}: half of the angular rates are at least {:.3g} rad/s; expected at most {:g} "
+        "rad/s (are they in °/s?)",
+        data.imu_csv.string(), rate, kMostRate));
+}
+
 }  // namespace
 
 double rate_of(const std::vector<std::int64_t>& stamps_ns, const fs::path& file) {
@@ -94,6 +119,7 @@ Dataset opened(Dataset data, const OpenOptions& options) {
     const double period_s = 1 / data.imu_model.rate_hz;
     require_cover(data, options.imu_edge_periods * period_s);
     require_no_gaps(data, options.max_imu_gap_periods * period_s);
+    require_si_units(data);
   }
   disturb(data, options.disturbance);
   return data;

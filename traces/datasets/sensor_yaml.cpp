@@ -132,17 +132,29 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
   return camera;
 }
 
-void expect_camera_rate(const std::filesystem::path& sensor_yaml, const Dataset& data) {
-  constexpr std::size_t kFewestFrames = 3;
+namespace {
+
+void expect_rate(const std::filesystem::path& sensor_yaml, double stated_hz,
+                 const std::vector<std::int64_t>& stamps_ns, const std::filesystem::path& csv) {
+  constexpr std::size_t kFewest = 3;
   constexpr double kMostOff = 0.1;
-  if (data.frames.size() < kFewestFrames) return;
-  const double found = rate_of(stamps_of(data.frames), data.frames_csv);
-  if (std::abs(data.camera.rate_hz / found - 1) <= kMostOff) return;
+  if (stamps_ns.size() < kFewest) return;
+  const double found = rate_of(stamps_ns, csv);
+  if (std::abs(stated_hz / found - 1) <= kMostOff) return;
   YamlMap::load(sensor_yaml)
-      .fail("rate_hz",
-            fmt::format("is {:g}; expected {:.4g}, since frames of {} are {:.4g} ms "
-                        "apart, most of them",
-                        data.camera.rate_hz, found, data.frames_csv.string(), 1e3 / found));
+      .fail("rate_hz", fmt::format("is {:g}; expected {:.4g}, since rows of {} are {:.4g} ms "
+                                   "apart, most of them",
+                                   stated_hz, found, csv.string(), 1e3 / found));
+}
+
+}  // namespace
+
+void expect_rates(const std::filesystem::path& folder, const Dataset& data) {
+  expect_rate(folder / "cam0/sensor.yaml", data.camera.rate_hz, stamps_of(data.frames),
+              data.frames_csv);
+  std::vector<std::int64_t> samples_ns;
+  for (const ImuSample& sample : data.imu) samples_ns.push_back(sample.t_ns);
+  expect_rate(folder / "imu0/sensor.yaml", data.imu_model.rate_hz, samples_ns, data.imu_csv);
 }
 
 ImuModel read_imu_model(const std::filesystem::path& sensor_yaml) {

@@ -24,8 +24,9 @@ constexpr int kMostPixels = 1 << 24;
 /// equidistant. The optional key `prepared: true` is ours: CameraModel::prepared.
 CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
 
-/// Holds the rate of the camera against the median period of its frames, where there are three.
-void expect_camera_rate(const std::filesystem::path& sensor_yaml, const Dataset& data);
+/// Holds the rates that cam0/sensor.yaml and imu0/sensor.yaml in the folder state against the
+/// median periods of frames and samples, where there are three.
+void expect_rates(const std::filesystem::path& folder, const Dataset& data);
 
 /// Reads imu0/sensor.yaml. Its T_BS must be the identity: the body frame is the IMU frame.
 ImuModel read_imu_model(const std::filesystem::path& sensor_yaml);

@@ -121,7 +121,7 @@ Dataset read_tum_rgbd(const fs::path& folder) {
       required(folder, "cam0/sensor.yaml",
                "TUM RGB-D folders hold no calibration: expected one as in ASL folders"));
   data.frames = read_frames(data.frames_csv);
-  expect_camera_rate(folder / "cam0/sensor.yaml", data);
+  expect_rates(folder, data);
   if (base::is_file(folder / kGyro))
     read_imu(folder, data);
   else
