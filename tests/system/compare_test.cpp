@@ -175,6 +175,15 @@ TEST_F(Compare, TheProgramPrintsAllFormats) {
   }
 }
 
+TEST_F(Compare, RunsThatAreTimedOnAnotherChipAreCalledSo) {
+  const ProgramResult result = program({"compare", path("run"), path("run"), "-p",
+                                        "cluster.fpu.dividers=2", "--quiet", "--format", "json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* run : {"a", "b"})
+    EXPECT_EQ(Json::parse(result.out).at(run).at("name"),
+              path("run") + "/work.trace, cluster.fpu.dividers=2");
+}
+
 TEST_F(Compare, TheSummaryFitsAScreen) {
   const RunRecord a = replayed({});
   for (const char* change :

@@ -26,6 +26,15 @@ struct CompareOptions : RecordOptions {
   std::string report;
 };
 
+/// ", gap8, cluster.fpu.units=1": where all runs are timed.
+std::string on_chip(const CompareOptions& options) {
+  std::string text;
+  if (!options.platform.empty()) text += ", " + options.platform;
+  for (const std::string& assignment : options.overrides) text += ", " + assignment;
+  if (!options.cores.empty()) text += fmt::format(", {} cores", options.cores);
+  return text;
+}
+
 ReportedRun reported(const std::string& run, const CompareOptions& options) {
   ReportedRun result;
   const std::optional<PointName> point = point_name(run);
@@ -34,6 +43,7 @@ ReportedRun reported(const std::string& run, const CompareOptions& options) {
         "{}: a point of a sweep has its chip; leave out --platform, -p and --cores", run));
   result.record =
       point ? read_point(*point, options, &result.files) : read_record(run, options, &result.files);
+  if (options.names_chip() && options.runs.size() > 1) result.record.name += on_chip(options);
   return result;
 }
 
