@@ -161,6 +161,9 @@ TEST_F(TrajectoryFiles, FoldersHoldOne) {
   expect_input_error([&] { find_trajectory(run); }, {"holds no trajectory", "trajectory.tum", csv});
   const auto trajectory = write("run/trajectory.tum", kTum);
   EXPECT_EQ(find_trajectory(run), trajectory);
+  std::filesystem::create_directories(folder_ / "rgbd");
+  const auto poses = write("rgbd/groundtruth.txt", std::string("# timestamp tx ty tz\n") + kTum);
+  EXPECT_EQ(read_trajectory(folder_ / "rgbd").file, poses);
   const auto both = folder("both");
   write("both/" + csv, "");
   write("both/trajectory.tum", kTum);

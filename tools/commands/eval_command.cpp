@@ -111,7 +111,7 @@ std::int64_t parse_tolerance(const std::string& option, const std::string& text)
 
 void add_eval_options(CLI::App& command, EvalOptions& options) {
   command.add_option("EST", options.estimate, "estimated trajectory: a file or a run folder");
-  command.add_option("GT", options.truth, "ground truth: a file or an ASL folder");
+  command.add_option("GT", options.truth, "ground truth: a file, or a folder of ASL or TUM");
   const TextOptions add{command};
   add("--also", options.also, "EST",
       "another estimate of the same flight, repeatable: a row for each, side by side");
@@ -138,7 +138,7 @@ void add_eval_options(CLI::App& command, EvalOptions& options) {
 /// @throws InputError for anything that is not understood, missing, or cannot be written
 EvalRequest make_eval_request(const CLI::App& command, const EvalOptions& options) {
   require(command, "EST", "an estimated trajectory: a TUM, EuRoC or KITTI file, or a run folder");
-  require(command, "GT", "the ground truth: a TUM, EuRoC or KITTI file, or an ASL folder");
+  require(command, "GT", "the ground truth: a TUM, EuRoC or KITTI file, or a folder of ASL or TUM");
   EvalRequest request;
   request.evaluation.alignment = traces::parse_alignment(options.align);
   request.evaluation.max_gap_ns = parse_tolerance("--max-dt", options.max_dt);

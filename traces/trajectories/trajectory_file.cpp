@@ -34,6 +34,7 @@ constexpr std::array<FormatRow, 3> kTrajectoryFormats{{
 }};
 
 constexpr const char* kRunTrajectory = "trajectory.tum";
+constexpr const char* kTumTruth = "groundtruth.txt";
 
 Trajectory numbered(const std::vector<Eigen::Isometry3d>& poses) {
   Trajectory trajectory;
@@ -104,15 +105,16 @@ fs::path find_trajectory(const fs::path& path) {
     throw InputError(fmt::format("{}: no such file or folder", path.string()));
   if (!base::is_folder(path)) return path;
   std::vector<fs::path> found;
-  for (const fs::path& candidate : {path / kRunTrajectory, path / "mav0" / kTruthCsv,
-                                    path / kTruthCsv, path / "mav0" / kMocapCsv, path / kMocapCsv})
+  for (const fs::path& candidate :
+       {path / kRunTrajectory, path / "mav0" / kTruthCsv, path / kTruthCsv,
+        path / "mav0" / kMocapCsv, path / kMocapCsv, path / kTumTruth})
     if (base::is_file(candidate)) found.push_back(candidate);
   if (found.size() == 1) return found.front();
   if (found.empty())
     throw InputError(
-        fmt::format("{}: holds no trajectory; expected a run folder with {}, or an ASL folder with "
-                    "mav0/{}",
-                    path.string(), kRunTrajectory, kTruthCsv));
+        fmt::format("{}: holds no trajectory; expected a run folder with {}, an ASL folder with "
+                    "mav0/{}, or a TUM folder with {}",
+                    path.string(), kRunTrajectory, kTruthCsv, kTumTruth));
   throw InputError(fmt::format("{}: holds {} and {}; name the file that is meant", path.string(),
                                found[0].string(), found[1].string()));
 }

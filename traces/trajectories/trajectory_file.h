@@ -36,8 +36,8 @@ std::string trajectory_text(std::string_view format, const Trajectory& trajector
 /// none or those of no format.
 TrajectoryFormat detect_format(const std::filesystem::path& file);
 
-/// The file itself; of a run folder its trajectory.tum; of an ASL folder its ground truth. Throws
-/// InputError if there is none or both.
+/// The file itself; of a run folder its trajectory.tum; of a folder of ASL or TUM its ground truth.
+/// Throws InputError if there is none, or several.
 std::filesystem::path find_trajectory(const std::filesystem::path& file_or_folder);
 
 struct TrajectoryFile {
@@ -62,9 +62,9 @@ struct TrajectoryPair {
   TrajectoryFile truth;
 };
 
-/// Reads estimate and truth with one set of options. Throws InputError as read_trajectory() does, if one has time
-/// stamps and the other none, if neither has any and the numbers of poses differ, and for times
-/// that neither file needs.
+/// Reads estimate and truth with one set of options. Throws InputError as read_trajectory() does,
+/// if one has time stamps and the other none, if neither has any and the numbers of poses differ,
+/// and for times that neither file needs.
 TrajectoryPair read_pair(const std::filesystem::path& estimate, const std::filesystem::path& truth,
                          const ReadOptions& options = {});
 
