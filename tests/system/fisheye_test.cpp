@@ -1,6 +1,6 @@
-// Folders as other data sets have them. As TUM-VI: an equidistant lens, 512x512, calibrated by Kalibr,
-// and poses of a motion capture; it is read and undistorted, and the odometry is as accurate as
-// through a lens without distortion. As TUM RGB-D: the same flight, or one without IMU.
+// Folders as other data sets have them. As TUM-VI: an equidistant lens, 512x512, calibrated by
+// Kalibr, and poses of a motion capture; it is read and undistorted, and the odometry is as
+// accurate as through a lens without distortion. As TUM RGB-D: the same flight, or one without IMU.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// The Debian packages of this build are unpacked, and a project of its own uses what they hold in an
-// empty folder, as the page tests/examples/outside/README.md says.
+// The Debian packages of this build are unpacked, and a project of its own uses what they hold in
+// an empty folder, as the page tests/examples/outside/README.md says.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 using tests::read_text;
 using tests::Scratch;
 
-/// What the page wants typed: its blocks of shell lines, to use the package and to measure a kernel.
+/// What the page wants typed: its blocks of shell lines, to use the package and to measure a
+/// kernel.
 std::vector<std::string> blocks_of_page() {
   const std::string page = read_text(tests::source_folder() / "tests/examples/outside/README.md");
   const std::string begin = "\n```sh\n";
@@ -56,13 +57,14 @@ class Installed : public ::testing::Test {
   std::string log() const { return read_text(folder_ / "log.txt"); }
   /// What the packages hold, with the example that is part of them.
   void unpack() {
-    ASSERT_EQ(sh("cpack -G DEB --config '" + (tests::build_folder() / "CPackConfig.cmake").string() +
-                 "' -B packages -D CPACK_DEBIAN_COMPRESSION_TYPE=none "
-                 "-D CPACK_DEBIAN_PACKAGE_SHLIBDEPS=OFF\n"
-                 "for package in packages/*.deb; do dpkg-deb -x \"$package\" packages/root; done\n"
-                 "mv packages/root/usr leviosim\n"
-                 "cp -r leviosim/share/doc/libleviosim-dev/examples/outside ."),
-              0)
+    ASSERT_EQ(
+        sh("cpack -G DEB --config '" + (tests::build_folder() / "CPackConfig.cmake").string() +
+           "' -B packages -D CPACK_DEBIAN_COMPRESSION_TYPE=none "
+           "-D CPACK_DEBIAN_PACKAGE_SHLIBDEPS=OFF\n"
+           "for package in packages/*.deb; do dpkg-deb -x \"$package\" packages/root; done\n"
+           "mv packages/root/usr leviosim\n"
+           "cp -r leviosim/share/doc/libleviosim-dev/examples/outside ."),
+        0)
         << log();
   }
   bool has(const char* file) const { return fs::exists(folder_ / file); }

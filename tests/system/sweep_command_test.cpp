@@ -267,8 +267,7 @@ TEST_F(SweepCommand, AllPointsOfTheExamplesCanRun) {
     ASSERT_TRUE(std::regex_search(text, data, std::regex("data: (.*)\n"))) << file.path();
     EXPECT_EQ((file.path().parent_path() / data[1].str()).lexically_normal(),
               (root.parent_path() / "shared/data/euroc/MH_01_easy_t05_t20").lexically_normal());
-    text.replace(static_cast<std::size_t>(data.position()),
-                 static_cast<std::size_t>(data.length()),
+    text.replace(static_cast<std::size_t>(data.position()), static_cast<std::size_t>(data.length()),
                  "data: synthetic\n  frames: '20:34'\n");
     text = std::regex_replace(text, std::regex(R"(seed: \[1, [0-9, ]*\])"), "seed: [1]");
     const std::string plan = path(file.path().filename().string());

@@ -14,12 +14,7 @@ namespace {
 RunResult with_scale(double scale) {
   RunResult run = testing::example_run();
   run.ate->path_length_m = 10;
-  for (int i = 0; i <= 10; ++i) {
-    traces::MatchedPose pose;
-    pose.truth.translation().x() = i;
-    pose.estimate.translation().x() = scale * i;
-    run.ate->poses.push_back(pose);
-  }
+  run.ate->size_ratio = scale;
   return run;
 }
 
@@ -56,7 +51,36 @@ TEST(MapVerdict, AGoodMapHasNone) {
 TEST(MapVerdict, AnErrorAboveAShareOfThePath) {
   EXPECT_EQ(map_faults(with_error(0.099)), Texts());
   EXPECT_EQ(map_faults(with_error(0.213)), (Texts{"the error is 21.3 % of the path"}));
-  EXPECT_EQ(map_faults(with_error(5, 0.9)), Texts()) << "a path too short to tell";
+}
+
+TEST(MapVerdict, AnErrorOnAShortPathCountsAsOnAMetre) {
+  EXPECT_EQ(map_faults(with_error(0.99, 0.1)), Texts());
+  EXPECT_EQ(map_faults(with_error(0.775 / 0.66, 0.66)),
+            (Texts{"the error is 0.78 m on a path of 0.66 m"}));
+  EXPECT_EQ(map_grade(with_error(0.24 / 0.5, 0.5)), Grade::doubtful);
+  EXPECT_EQ(map_grade(with_error(0.26 / 0.5, 0.5)), Grade::bad);
+  RunResult small = with_scale(3);
+  small.ate->path_length_m = 0.9;
+  small.ate->translation.rmse = 0.09;
+  EXPECT_EQ(map_faults(small), Texts());
+}
+
+/// Dark or empty images are no fault of their own, but a reason of others.
+TEST(MapVerdict, SaysThatImagesHaveNoFeatures) {
+  RunResult run = with_error(0.05);
+  for (FrameResult& frame : run.frames) frame.features = 3;
+  EXPECT_EQ(map_faults(run), Texts());
+  run.ate->translation.rmse = 3;
+  EXPECT_EQ(map_faults(run),
+            (Texts{"the error is 30.0 % of the path", "images have 3.0 features on average"}));
+}
+
+/// Of guesses before there was a map, or of the map.
+TEST(MapVerdict, SaysWhatTheErrorIsWithoutTheInitialisation) {
+  RunResult run = with_error(0.213);
+  run.ate->located_rmse_m = 0.04;
+  EXPECT_EQ(map_faults(run),
+            (Texts{"the error is 21.3 % of the path (0.04 m without the initialisation)"}));
 }
 
 TEST(MapVerdict, AScaleThatIsOffEitherWay) {
@@ -125,11 +149,15 @@ TEST(MapVerdict, WithoutTruthAndWithoutHealthNothingIsJudged) {
   EXPECT_EQ(map_verdict(signs).word(), "not judged");
   signs.health = static_cast<int>(vio::Health::not_judged);
   EXPECT_EQ(map_verdict(signs).word(), "not judged");
-  signs.scale = 1.01;
+  signs.truth = {0.05, 10, 1.01, {}};
   EXPECT_EQ(map_verdict(signs).word(), "good");
-  signs.scale = 3;
+  signs.truth.scale = 3;
   EXPECT_EQ(map_verdict(signs).word(), "lost");
-  signs.scale.reset();
+  signs.truth = {0.05, 0.9, 3, {}};
+  EXPECT_EQ(map_verdict(signs).word(), "not judged");
+  EXPECT_EQ(map_verdict(signs).reason(),
+            "there is no truth of 1 m or more, and the profile does not watch its map");
+  signs.truth = {};
   signs.restarts = 9;
   EXPECT_EQ(map_verdict(signs).word(), "unreliable");
 }

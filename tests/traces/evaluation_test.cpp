@@ -82,6 +82,20 @@ TEST(Evaluation, FiguresAreThoseOfTheirDefinitions) {
             "completion 50.0 % (8 expected poses), 6.00 m of path");
 }
 
+/// Whatever the alignment takes away.
+TEST(Evaluation, SizeIsThatOfTheEstimateBeforeItsAlignment) {
+  const Trajectory truth = helix(5'000'000, 2001);
+  const Trajectory larger = moved(helix(50'000'000, 201), some_transform(), 1.25);
+  for (const Alignment alignment : {Alignment::none, Alignment::se3, Alignment::sim3}) {
+    EvaluationOptions options;
+    options.alignment = alignment;
+    EXPECT_NEAR(evaluate(larger, truth, options).size_ratio.value(), 1.25, 1e-6);
+  }
+  Trajectory rests = truth;
+  for (StampedPose& pose : rests) pose.T_world_body.translation() *= 1e-6;
+  EXPECT_FALSE(evaluate(larger, rests).size_ratio.has_value());
+}
+
 TEST(Evaluation, ProtocolNamesTheAlignment) {
   const Trajectory truth = helix(5'000'000, 2001);
   const std::string line = evaluate(truth, truth).protocol;
@@ -127,7 +141,8 @@ TEST(Evaluation, TheLongestGapIsThatBetweenTwoPoses) {
 TEST(Evaluation, NothingMatched) {
   const Trajectory truth = helix(5'000'000, 10);
   const Trajectory later{{1'000'000'000'000, Eigen::Isometry3d::Identity()}};
-  testing::expect_input_error([&] { evaluate(later, truth); }, {"none of the 1", "10 ms"});
+  testing::expect_input_error([&] { evaluate(later, truth); },
+                              {"none of the 1", "10 ms", "(from 0.000 to 0.045 s)"});
   testing::expect_input_error([&] { evaluate({truth[0], truth[1]}, truth); }, {"at least 3"});
 }
 

@@ -106,6 +106,8 @@ inline WorkTraceInfo example_info() {
   info.l2 = {{"pose graph", Bytes(40), {{"poses", Bytes(0), Bytes(40)}}}};
   info.ate = Evaluation{};
   info.ate->translation = {0.25, 0.125, 0.1, 0.75};
+  info.ate->size_ratio = 1.5;
+  info.ate->located_rmse_m = 0.2;
   info.ate->protocol = "aligned";
   info.inputs = {{"imu0/data.csv", "c0ffee"}};
   return info;

@@ -64,6 +64,8 @@ TEST(WorkTrace, KeepsWhatIsTheSameForAllFrames) {
   ASSERT_EQ(info.l2.size(), 1u);
   EXPECT_EQ(info.l2[0].blocks.at(0).name, "poses");
   EXPECT_EQ(info.ate->translation.median, 0.1);
+  EXPECT_EQ(info.ate->size_ratio, 1.5);
+  EXPECT_EQ(info.ate->located_rmse_m, 0.2);
   EXPECT_FALSE(info.ate->longest_gap_s.has_value());
   EXPECT_EQ(info.inputs, expected.inputs);
   EXPECT_EQ(info.stamps_ns.at(2), example_frame(2).t_ns);
@@ -165,8 +167,8 @@ TEST(WorkTrace, KeepsWhichForksAreAlignedOnOneCore) {
 
 TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
   const WorkTrace trace("example", testing::example_trace_with_offload(40));
-  for (const auto code : {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6,
-                          work::CompiledFor::Rv32imfcXpulp}) {
+  for (const auto code :
+       {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6, work::CompiledFor::Rv32imfcXpulp}) {
     WorkFrames all(trace, true);
     WorkFrames one(trace, true, code);
     WorkFrame a, b;
@@ -189,9 +191,9 @@ TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
 /// LEVIOSIM_RENEW_GOLDEN the file is written anew: for a version that no release has written yet.
 TEST(WorkTrace, WritesTheContentOfItsVersion) {
   if (std::getenv("LEVIOSIM_RENEW_GOLDEN") != nullptr)
-    std::ofstream(golden_file("version_7.trace"), std::ios::binary)
+    std::ofstream(golden_file("version_8.trace"), std::ios::binary)
         << testing::example_trace_with_offload(5);
-  const std::string golden = base::read_text_file(golden_file("version_7.trace"));
+  const std::string golden = base::read_text_file(golden_file("version_8.trace"));
   EXPECT_EQ(contents_of(golden), contents_of(testing::example_trace_with_offload(5)));
 }
 
@@ -257,8 +259,8 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
   constexpr std::uint32_t kVersion = kWorkTraceFile.version;
-  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 8", "reads version 7", "newer"});
-  refuse(trace_of(contents_of(whole), kVersion - 1), {"version 6", "reads version 7", "again"});
+  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 9", "reads version 8", "newer"});
+  refuse(trace_of(contents_of(whole), kVersion - 1), {"version 7", "reads version 8", "again"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});

@@ -70,6 +70,19 @@ Similarity alignment_of(const std::vector<MatchedPose>& matches, Alignment align
   return align_points(from, to, alignment);
 }
 
+/// What moves less rests.
+constexpr double kLeastSize_m = 1e-3;
+
+/// RMS distance of positions from their mean.
+double size_of(const std::vector<MatchedPose>& poses, Eigen::Isometry3d MatchedPose::*of) {
+  const auto count = static_cast<double>(poses.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const MatchedPose& pose : poses) mean += (pose.*of).translation() / count;
+  double sum = 0;
+  for (const MatchedPose& pose : poses) sum += ((pose.*of).translation() - mean).squaredNorm();
+  return std::sqrt(sum / count);
+}
+
 void align(std::vector<MatchedPose>& poses, const Similarity& by) {
   for (MatchedPose& pose : poses) {
     const Eigen::Vector3d position = by * pose.estimate.translation();
@@ -124,16 +137,34 @@ double angle_deg(const Eigen::Matrix3d& rotation) {
   return Eigen::AngleAxisd(rotation).angle() * base::kDegreesPerRadian;
 }
 
+namespace {
+
+/// " (from 1.000 to 2.500 s)": clocks that differ are seen at once.
+std::string span_of(const Trajectory& trajectory) {
+  if (trajectory.empty()) return {};
+  const auto seconds = [](const StampedPose& pose) {
+    return static_cast<double>(pose.t_ns) * 1e-9;
+  };
+  return fmt::format(" (from {:.3f} to {:.3f} s)", seconds(trajectory.front()),
+                     seconds(trajectory.back()));
+}
+
+}  // namespace
+
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
                     const EvaluationOptions& options) {
   Evaluation result;
   result.poses = associate(estimate, truth, options.max_gap_ns);
   if (result.poses.empty())
-    throw InputError(fmt::format(
-        "none of the {} estimated poses lies within {:g} ms of one of the {} ground-truth poses",
-        estimate.size(), milliseconds(options.max_gap_ns), truth.size()));
+    throw InputError(
+        fmt::format("none of the {} estimated poses{} lies within {:g} ms of one of the {} "
+                    "ground-truth poses{}",
+                    estimate.size(), span_of(estimate), milliseconds(options.max_gap_ns),
+                    truth.size(), span_of(truth)));
   for (const MatchedPose& pose : result.poses)
     if (!pose.estimate.matrix().allFinite()) throw NotComparable("an estimated pose is no number");
+  if (const double size = size_of(result.poses, &MatchedPose::truth); size > kLeastSize_m)
+    result.size_ratio = size_of(result.poses, &MatchedPose::estimate) / size;
   result.alignment = alignment_of(result.poses, options.alignment);
   align(result.poses, result.alignment);
   result.matched = result.poses.size();

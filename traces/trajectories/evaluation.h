@@ -134,9 +134,15 @@ struct Evaluation {
   double completion = 0;
   std::optional<double> longest_gap_s;  ///< between successive matched poses; none without time
   double path_length_m = 0;             ///< of the truth from the first to the last matched pose
-  std::string protocol;                 ///< one line that belongs beside every figure above
-  std::vector<MatchedPose> poses;       ///< all that matched, the estimate aligned
-  std::vector<double> distances_m;      ///< of each along the true path, from the first
+  /// Of the estimate, as it was estimated, over the truth: RMS distances of the matched positions
+  /// from their mean. Absent where the truth does not move.
+  std::optional<double> size_ratio;
+  /// RMSE of the positions without the poses of an initialisation, which are guesses of the IMU
+  /// [m]. evaluate() leaves it to those who know which they are; absent if there are none.
+  std::optional<double> located_rmse_m;
+  std::string protocol;             ///< one line that belongs beside every figure above
+  std::vector<MatchedPose> poses;   ///< all that matched, the estimate aligned
+  std::vector<double> distances_m;  ///< of each along the true path, from the first
 };
 
 /// Throws InputError if nothing matches or too little for the alignment, and NotComparable if the

@@ -42,7 +42,8 @@ void write_fields(ByteWriter& out) {
 void write_ate(ByteWriter& out, const Evaluation& ate) {
   for (const double value :
        {ate.translation.rmse, ate.translation.mean, ate.translation.median, ate.translation.max,
-        ate.rotation_rmse_deg, ate.completion, ate.longest_gap_s.value_or(-1), ate.path_length_m})
+        ate.rotation_rmse_deg, ate.completion, ate.longest_gap_s.value_or(-1), ate.path_length_m,
+        ate.size_ratio.value_or(-1), ate.located_rmse_m.value_or(-1)})
     out.f64(value);
   out.whole(ate.matched);
   out.whole(ate.estimates);
@@ -157,12 +158,14 @@ FileFields read_fields(ByteReader& in) {
 
 Evaluation read_ate(ByteReader& in) {
   Evaluation ate;
-  double gap = 0;
+  double gap = 0, size_ratio = 0, located = 0;
   for (double* value :
        {&ate.translation.rmse, &ate.translation.mean, &ate.translation.median, &ate.translation.max,
-        &ate.rotation_rmse_deg, &ate.completion, &gap, &ate.path_length_m})
+        &ate.rotation_rmse_deg, &ate.completion, &gap, &ate.path_length_m, &size_ratio, &located})
     *value = in.f64("a figure of accuracy");
   if (gap >= 0) ate.longest_gap_s = gap;
+  if (size_ratio >= 0) ate.size_ratio = size_ratio;
+  if (located >= 0) ate.located_rmse_m = located;
   ate.matched = static_cast<std::size_t>(in.whole("matched poses"));
   ate.estimates = static_cast<std::size_t>(in.whole("poses"));
   ate.protocol = in.text("the protocol of the accuracy");

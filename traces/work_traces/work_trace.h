@@ -27,7 +27,7 @@
 namespace leviosim::traces {
 
 /// Work traces as files.
-inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 7};
+inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 8};
 
 class ByteReader;
 

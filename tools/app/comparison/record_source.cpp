@@ -76,13 +76,14 @@ struct Columns {
   explicit Columns(const Table& table)
       : t_ns(table.column("t_ns")),
         source(table.column("source")),
+        features(table.column("features")),
         restarts(table.column("map_restarts")),
         health(table.column("health")),
         health_reasons(table.column("health_reasons")) {
     if (table.has("latency_ns")) latency = table.column("latency_ns");
   }
 
-  std::size_t t_ns, source, restarts, health, health_reasons;
+  std::size_t t_ns, source, features, restarts, health, health_reasons;
   std::optional<std::size_t> latency;
 };
 
@@ -98,6 +99,7 @@ int whole(const base::CsvRow& row, std::size_t column) {
 void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& frame) {
   for (const vio::PoseSourceInfo& info : vio::kPoseSources)
     if (info.name == row.text(at.source)) frame.source = info.source;
+  frame.features = whole(row, at.features);
   frame.map_restarts = whole(row, at.restarts);
   frame.health = whole(row, at.health);
   frame.health_reasons = whole(row, at.health_reasons);
@@ -189,23 +191,6 @@ std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const 
     if (!is_dropped) read_result(*row, at, frame);
   }
   return frames;
-}
-
-std::vector<PositionPair> read_positions(const std::filesystem::path& file,
-                                         const std::string& csv) {
-  Table table(file, csv);
-  std::vector<std::size_t> columns;
-  for (const char* of : {"estimate", "truth"})
-    for (const char axis : {'x', 'y', 'z'})
-      columns.push_back(table.column(fmt::format("{}_{}_m", of, axis)));
-  std::vector<PositionPair> pairs;
-  while (const base::CsvRow* row = table.next()) {
-    PositionPair& pair = pairs.emplace_back();
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      (i < 3 ? pair.first : pair.second)[static_cast<Eigen::Index>(i % 3)] =
-          row->number(columns[i]);
-  }
-  return pairs;
 }
 
 }  // namespace leviosim::tools

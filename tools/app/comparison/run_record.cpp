@@ -317,10 +317,7 @@ RunRecord record_of_files(const std::string& where, const RunFiles& files) {
   if (std::ssize(frames) != record.facts.frames)
     throw InputError(fmt::format("{}/frames.csv: has {} frames; expected {}, as manifest.json says",
                                  where, frames.size(), record.facts.frames));
-  const auto errors = files.find(kErrorsFile);
-  complete(record, frames,
-           errors == files.end() ? std::vector<PositionPair>()
-                                 : read_positions(at(kErrorsFile), errors->second));
+  complete(record, frames);
   return record;
 }
 

@@ -139,8 +139,10 @@ std::vector<std::string> trajectory_lines(const RunResult& run) {
     return {length + again, "ATE: none: " + why};
   if (!run.ate) return {fmt::format("{}{}, {}", length, again, without_ate(run))};
   std::string text =
-      fmt::format("trajectory: ATE {} m RMSE, {} m worst", readable(run.ate->translation.rmse, 3),
-                  readable(run.ate->translation.max, 3));
+      fmt::format("trajectory: ATE {} m RMSE", readable(run.ate->translation.rmse, 3));
+  if (run.ate->located_rmse_m)
+    text += fmt::format(" ({} m without initialisation)", readable(*run.ate->located_rmse_m, 3));
+  text += fmt::format(", {} m worst", readable(run.ate->translation.max, 3));
   if (const auto attitude = traces::attitude_errors(*run.ate))
     text += fmt::format(", tilt {:.1f}°, heading {:.1f}°{}", attitude->tilt_rmse_deg,
                         attitude->heading_rmse_deg,
@@ -342,8 +344,12 @@ std::string ate_text(const Evaluation& evaluation) {
   const ErrorSummary& t = evaluation.translation;
   return fmt::format(
              "ATE: {} m RMSE ({} mean, {} median, {} worst)\n"
-             "     {}\n",
+             "{}     {}\n",
              readable(t.rmse, 3), readable(t.mean, 3), readable(t.median, 3), readable(t.max, 3),
+             evaluation.located_rmse_m
+                 ? fmt::format("     {} m RMSE without the frames of the initialisation\n",
+                               readable(*evaluation.located_rmse_m, 3))
+                 : "",
              evaluation.protocol) +
          attitude_text(evaluation);
 }
@@ -389,6 +395,9 @@ void add_ate(StatisticList& list, const Evaluation& evaluation,
   add("ate.mean", "m", "absolute trajectory error, mean", rounded(t.mean));
   add("ate.median", "m", "absolute trajectory error, median", rounded(t.median));
   add("ate.worst", "m", "absolute trajectory error, worst", rounded(t.max));
+  if (evaluation.located_rmse_m)
+    add("ate.located", "m", "absolute trajectory error without initialising frames, RMS",
+        rounded(*evaluation.located_rmse_m));
   if (attitude) {
     add("tilt.rmse", "deg", "of the vertical, attitudes best aligned, root mean square",
         rounded(attitude->tilt_rmse_deg));
@@ -398,6 +407,9 @@ void add_ate(StatisticList& list, const Evaluation& evaluation,
   add("matched", "1", "poses matched with the ground truth", evaluation.matched);
   add("completion", "1", "how much of the flight has an estimate", rounded(evaluation.completion));
   add("truth_length", "m", "of the true path", rounded(evaluation.path_length_m));
+  add("size_ratio", "1",
+      "scale: RMS distance of the estimated positions from their mean, over that of the true ones",
+      evaluation.size_ratio ? rounded(*evaluation.size_ratio) : Json());
 }
 
 void add_relative(StatisticList& list, const Evaluation& evaluation, const RelativeErrors& errors) {

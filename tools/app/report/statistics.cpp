@@ -135,12 +135,6 @@ void add_frames(StatisticList& list, const RunResult& run) {
     for (const FrameResult& frame : run.frames) sum += frame.*fact.of;
     list.add(fmt::format("frames.{}.sum", fact.name), "1", "summed over the frames", sum);
   }
-  MapSigns without_scale = map_signs(run);
-  without_scale.scale.reset();
-  list.add("frames.map_faults", "text",
-           "what is plainly wrong with the map, as the end of the run warns of it, but for the "
-           "scale, which replays do not know; empty if nothing",
-           map_verdict(without_scale).reason());
 }
 
 void add_latencies(StatisticList& list, const RunResult& run) {
@@ -374,7 +368,7 @@ RunFigures figures_of(const RunResult& run, const StatisticList& list) {
     if (row.value.is_number()) statistic.value = row.value.get<double>();
     figures.statistics.push_back(std::move(statistic));
   }
-  complete(figures, recorded_frames(run), position_pairs(run));
+  complete(figures, recorded_frames(run));
   return figures;
 }
 
@@ -384,9 +378,7 @@ RunFigures figures_of(const RunResult& run) { return figures_of(run, list_of(run
 
 Json statistics(const RunResult& run) {
   StatisticList list = list_of(run);
-  RunFigures figures = figures_of(run, list);
-  figures.map.scale.reset();  // replays do not know it
-  add_verdicts(list, verdicts(figures));
+  add_verdicts(list, verdicts(figures_of(run, list)));
   return statistics_document(list.json());
 }
 

@@ -39,6 +39,7 @@ constexpr std::array kFigureRows{
     FigureRow{"energy.frame", "mJ", "energy per frame", "energy of a frame", "mJ", 1},
     FigureRow{"energy.mean_power", "mW", "mean power", "mean power", "mW", 1},
     FigureRow{"accuracy.ate.rmse", "m", "ATE", "ATE (RMSE)", "m", 1},
+    FigureRow{"accuracy.ate.located", "m", "located ATE", "ATE without initialisation", "m", 1},
     FigureRow{"accuracy.completion", "1", "completion"},
     FigureRow{"verdict.time", "time verdict", "time verdict"},
     FigureRow{"verdict.memory", "memory verdict", "memory verdict"},
@@ -49,20 +50,11 @@ RecordedFrame recorded(const FrameResult& frame) {
   RecordedFrame row;
   row.t_ns = frame.t_ns;
   row.source = frame.source;
+  row.features = frame.features;
   row.map_restarts = frame.map_restarts;
   row.health = frame.health;
   row.health_reasons = frame.health_reasons;
   return row;
-}
-
-/// Root mean square of the distances from their mean. [m]
-double spread(const std::vector<PositionPair>& poses, Eigen::Vector3d PositionPair::*position) {
-  const auto count = static_cast<double>(poses.size());
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const PositionPair& pose : poses) mean += pose.*position / count;
-  double sum = 0;
-  for (const PositionPair& pose : poses) sum += (pose.*position - mean).squaredNorm();
-  return std::sqrt(sum / count);
 }
 
 /// The longest time from a pose to the last of its successors that all come from `source`.
@@ -137,25 +129,11 @@ std::vector<RecordedFrame> recorded_frames(const RunResult& run) {
   return frames;
 }
 
-std::vector<PositionPair> position_pairs(const RunResult& run) {
-  std::vector<PositionPair> pairs;
-  if (run.ate)
-    for (const traces::MatchedPose& pose : run.ate->poses)
-      pairs.emplace_back(pose.estimate.translation(), pose.truth.translation());
-  return pairs;
-}
-
-MapSigns map_signs(const std::vector<RecordedFrame>& frames,
-                   const std::vector<PositionPair>& positions, std::optional<double> rmse_m,
-                   std::optional<double> path_m, std::int64_t poses_left_out) {
+MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& truth,
+                   std::int64_t poses_left_out) {
   MapSigns signs;
   signs.poses_left_out = poses_left_out;
-  if (rmse_m && path_m && *path_m >= kShortestPath_m) {
-    signs.error_share = *rmse_m / *path_m;
-    if (!positions.empty())
-      signs.scale =
-          spread(positions, &PositionPair::first) / spread(positions, &PositionPair::second);
-  }
+  signs.truth = truth;
   std::vector<RecordedFrame> processed;
   for (const RecordedFrame& frame : frames)
     if (frame.source) processed.push_back(frame);
@@ -168,10 +146,13 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames,
   signs.duration_s = static_cast<double>(last.t_ns - processed.front().t_ns) * 1e-9;
   signs.health = last.health;
   signs.health_reasons = last.health_reasons;
+  double features = 0;
   for (const RecordedFrame& frame : processed) {
+    features += frame.features;
     signs.restarts += frame.map_restarts;
     signs.lost_frames += frame.health == static_cast<int>(vio::Health::lost) ? 1 : 0;
   }
+  signs.features = features / static_cast<double>(processed.size());
   return signs;
 }
 
@@ -192,14 +173,14 @@ double deadline_ns(const RunFigures& run) {
   return rate > 0 ? 1e9 / rate : run.value("run.frame_period").value_or(0);
 }
 
-void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
-              const std::vector<PositionPair>& positions) {
+void complete(RunFigures& run, const std::vector<RecordedFrame>& frames) {
   add_memory_statistics(run);
   add_operations(run);
   const double left_out =
       run.value("frames.count").value_or(0) - run.value("trajectory.poses").value_or(0);
-  run.map = map_signs(frames, positions, run.value("accuracy.ate.rmse"),
-                      run.value("accuracy.truth_length"),
+  run.map = map_signs(frames,
+                      {run.value("accuracy.ate.rmse"), run.value("accuracy.truth_length"),
+                       run.value("accuracy.size_ratio"), run.value("accuracy.ate.located")},
                       std::max<std::int64_t>(0, std::llround(left_out)));
   for (const RunVerdict& verdict : verdicts(run).list)
     run.statistics.push_back({fmt::format("verdict.{}", verdict.about),

@@ -51,24 +51,30 @@ struct StageName {
 struct RecordedFrame {
   std::int64_t t_ns = 0;
   std::optional<PoseSource> source;  ///< absent if it was dropped
+  int features = 0;
   int map_restarts = 0;
   std::optional<int> health;  ///< of the map, as vio::Health numbers it; absent if not recorded
   int health_reasons = 0;     ///< bits of vio::HealthReason
 };
 
-/// Estimated and true position of a pose. [m]
-using PositionPair = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
+/// What the ground truth says of a run; nothing is known without one.
+struct TruthSigns {
+  std::optional<double> error_m;    ///< RMSE of the positions
+  std::optional<double> path_m;     ///< length of the true path
+  std::optional<double> scale;      ///< size of the estimated path over that of the true one
+  std::optional<double> located_m;  ///< error_m without initialising frames, if there are any
+};
 
 /// What says whether a map can be right.
 struct MapSigns {
-  std::optional<double> error_share;  ///< ATE over the length of the true path, where that is long
-  std::optional<double> scale;        ///< size of the estimated path over that of the true one
-  double kept_s = 0;                  ///< the longest time for which the pose was kept
-  double initialising_s = 0;          ///< the longest initialisation
-  bool ends_without_pose = false;     ///< the last frame kept its pose, or still initialises
+  TruthSigns truth;
+  double kept_s = 0;               ///< the longest time for which the pose was kept
+  double initialising_s = 0;       ///< the longest initialisation
+  bool ends_without_pose = false;  ///< the last frame kept its pose, or still initialises
   std::int64_t restarts = 0;
   double duration_s = 0;
   std::int64_t poses_left_out = 0;  ///< since they are NaN
+  std::optional<double> features;   ///< of a mean frame
   std::optional<int> health;        ///< of the last frame
   int health_reasons = 0;           ///< likewise
   std::int64_t lost_frames = 0;     ///< of health 2
@@ -87,19 +93,14 @@ struct RunFigures {
 
 /// All frames that arrived.
 std::vector<RecordedFrame> recorded_frames(const RunResult& run);
-/// None without ground truth, and in replays.
-std::vector<PositionPair> position_pairs(const RunResult& run);
 
-/// What frames and positions tell.
-/// @param rmse_m, path_m  absent without ground truth
-MapSigns map_signs(const std::vector<RecordedFrame>& frames,
-                   const std::vector<PositionPair>& positions, std::optional<double> rmse_m,
-                   std::optional<double> path_m, std::int64_t poses_left_out);
+/// What frames and the ground truth say.
+MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& truth,
+                   std::int64_t poses_left_out);
 
 /// Adds to the statistics of stats.json what follows from them and from all frames: the peaks of L1
 /// and L2, operations of stages, the signs of the map, and the verdicts as grades (verdict.*).
-void complete(RunFigures& run, const std::vector<RecordedFrame>& frames,
-              const std::vector<PositionPair>& positions);
+void complete(RunFigures& run, const std::vector<RecordedFrame>& frames);
 
 /// The stage of the cluster with the highest peak of L1; null if there is none.
 const StageName* fullest_stage(const RunFigures& run);

@@ -95,7 +95,7 @@ struct RunResult {
   int poses_left_out = 0;                 ///< of the trajectory, since they are NaN
   std::optional<traces::Evaluation> ate;  ///< where ground truth exists and all poses are numbers
   std::string
-      not_comparable;       ///< why the trajectory could not be evaluated; see why_incomparable()
+      not_comparable;  ///< why the trajectory could not be evaluated; see why_incomparable()
   std::optional<TimeBands> time_bands{};  ///< where they were asked for
   double host_seconds = 0;  ///< wall time; not part of anything that must be reproducible
   sim::ChipConfig chip{};   ///< that the run was timed on; unused if not timed

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "tools/app/result/summary.h"
 
@@ -179,18 +180,39 @@ std::string Verdicts::text() const {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+namespace {
+
+using Fault = std::function<void(bool is_lost, std::string reason)>;
+
+/// On a short path the error counts as on one of kShortestPath_m.
+void judge_by_truth(const TruthSigns& truth, const MapLimits& limits, const Fault& fault) {
+  if (!truth.error_m || !truth.path_m) return;
+  const bool is_short = *truth.path_m < kShortestPath_m;
+  const double path_m = std::max(*truth.path_m, kShortestPath_m);
+  const double share = *truth.error_m / path_m;
+  if (share > limits.error_share) {
+    std::string reason =
+        is_short ? fmt::format("the error is {} m on a path of {} m", readable(*truth.error_m, 2),
+                               readable(*truth.path_m, 2))
+                 : fmt::format("the error is {} % of the path", readable(100 * share, 1));
+    if (truth.located_m && *truth.located_m <= limits.error_share * path_m)
+      reason += fmt::format(" ({} m without the initialisation)", readable(*truth.located_m, 2));
+    fault(share > limits.lost_error_share, std::move(reason));
+  }
+  if (!is_short && truth.scale && !(off(*truth.scale) < limits.scale))
+    fault(!(off(*truth.scale) < limits.lost_scale),
+          fmt::format("the scale is {}", readable(*truth.scale, 2)));
+}
+
+}  // namespace
+
 RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   RunVerdict verdict{"map", Grade::good, {}};
   const auto fault = [&](bool is_lost, std::string reason) {
     verdict.grade = std::max(verdict.grade, is_lost ? Grade::bad : Grade::doubtful);
     verdict.reasons.push_back(std::move(reason));
   };
-  if (signs.error_share && *signs.error_share > limits.error_share)
-    fault(*signs.error_share > limits.lost_error_share,
-          fmt::format("the error is {} % of the path", readable(100 * *signs.error_share, 1)));
-  if (signs.scale && !(off(*signs.scale) < limits.scale))
-    fault(!(off(*signs.scale) < limits.lost_scale),
-          fmt::format("the scale is {}", readable(*signs.scale, 2)));
+  judge_by_truth(signs.truth, limits, fault);
   if (signs.kept_s > limits.kept_s)
     fault(signs.ends_without_pose, fmt::format("the pose was kept for {:.1f} s", signs.kept_s));
   if (signs.initialising_s > limits.initialising_s)
@@ -207,8 +229,11 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   else if (signs.lost_frames > 0)
     fault(false, fmt::format("the estimator had lost its map in {} frames", signs.lost_frames));
   if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));
-  if (verdict.grade == Grade::good && !signs.error_share && !signs.scale &&
-      health == vio::Health::not_judged) {
+  if (verdict.grade > Grade::unknown && signs.features && *signs.features < limits.features)
+    verdict.reasons.push_back(
+        fmt::format("images have {} features on average", readable(*signs.features, 1)));
+  const bool says_little = !signs.truth.error_m || signs.truth.path_m < kShortestPath_m;
+  if (verdict.grade == Grade::good && says_little && health == vio::Health::not_judged) {
     verdict.grade = Grade::unknown;
     verdict.reasons.push_back(
         "there is no truth of 1 m or more, and the profile does not watch its map");
@@ -227,10 +252,11 @@ Verdicts verdicts(const RunFigures& run) {
 }
 
 MapSigns map_signs(const RunResult& run) {
-  const auto of_ate = [&](double value) { return run.ate ? std::optional(value) : std::nullopt; };
-  return map_signs(recorded_frames(run), position_pairs(run),
-                   of_ate(run.ate ? run.ate->translation.rmse : 0),
-                   of_ate(run.ate ? run.ate->path_length_m : 0), run.poses_left_out);
+  TruthSigns truth;
+  if (run.ate)
+    truth = {run.ate->translation.rmse, run.ate->path_length_m, run.ate->size_ratio,
+             run.ate->located_rmse_m};
+  return map_signs(recorded_frames(run), truth, run.poses_left_out);
 }
 
 std::int64_t map_restarts(const RunResult& run) {

@@ -52,7 +52,8 @@ struct Verdicts {
 
 Verdicts verdicts(const RunFigures& run);
 
-/// On paths below this, error and scale say nothing of the map.
+/// On paths below this, the scale says nothing of the map, nor does a small error; a large one
+/// counts as on a path of this length.
 inline constexpr double kShortestPath_m = 1;
 
 /// Beyond these a map is unreliable, or lost. Drift of published estimators is 1 % of the path or
@@ -66,6 +67,7 @@ struct MapLimits {
   double kept_s = 2;            ///< that the pose may be kept, frame after frame
   double initialising_s = 5;    ///< that the initialisation may take
   double restarts_per_s = 0.2;  ///< of the map, where there are more than two
+  double features = 20;         ///< of a mean frame; with fewer they are a reason
 };
 
 /// By the truth where there is one, and by what the estimator says of its poses.

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "platform_models/loader/compiled_code.h"
@@ -101,6 +102,17 @@ std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
   return soc::frames_at(*request.camera->fps, stamps_ns, data.camera.rate_hz);
 }
 
+/// Without those of frames that waited for a map.
+traces::Trajectory located_poses(const RunResult& run) {
+  std::set<std::int64_t> initialising_ns;
+  for (const FrameResult& frame : run.frames)
+    if (frame.source == PoseSource::Initialising) initialising_ns.insert(frame.t_ns);
+  traces::Trajectory poses = run.trajectory;
+  std::erase_if(
+      poses, [&](const traces::StampedPose& pose) { return initialising_ns.contains(pose.t_ns); });
+  return poses;
+}
+
 }  // namespace
 
 work::MachineConfig cluster_machine(const RunRequest& request, int alignment) {
@@ -197,11 +209,14 @@ void LiveSource::describe(RunResult& result) const {
 /// A run that has diverged, or dropped the frames that the truth covers, is still a run.
 void LiveSource::evaluate(RunResult& result) const {
   try {
+    const traces::Trajectory truth = traces::to_trajectory(feed_.data().ground_truth);
     result.ate =
-        traces::evaluate(result.trajectory, traces::to_trajectory(feed_.data().ground_truth),
-                         {.expected_poses = expected_poses(result)});
+        traces::evaluate(result.trajectory, truth, {.expected_poses = expected_poses(result)});
+    const traces::Trajectory located = located_poses(result);
+    if (located.size() < result.trajectory.size() && located.size() >= kFewestPoses)
+      result.ate->located_rmse_m = traces::evaluate(located, truth).translation.rmse;
   } catch (const InputError& failure) {
-    result.not_comparable = failure.what();
+    if (!result.ate) result.not_comparable = failure.what();
   }
 }
 
