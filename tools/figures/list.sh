@@ -94,7 +94,7 @@ cut 'table stage stage calls "kcycles, 1 core" "kcycles, 8 cores" speed-up ms "w
 figure next-error
 needs data
 shows 'leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --tables all --out next'
-cut 'lines ^ATE SE3'
+cut 'lines ^ATE without SE3'
 
 figure levio-error
 needs data
