@@ -1,6 +1,7 @@
 // The summary of a run fits a screen, whatever the run.
 #include "tools/app/report/run_summary.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sim/energy/model.h"

@@ -9,6 +9,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::vio {
 namespace {
