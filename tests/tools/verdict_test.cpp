@@ -32,19 +32,20 @@ RunResult with_kept(int kept) {
   for (int i = 0; i < 100; ++i)
     run.frames.push_back(testing::frame(
         i, i >= 10 && i < 10 + kept ? PoseSource::Kept : PoseSource::Epnp, false, 1'000'000));
+  run.trajectory.resize(run.frames.size());
   return run;
 }
 
 using Texts = std::vector<std::string>;
 
-Texts map_faults(const RunResult& run) { return map_verdict(map_signs(run)).reasons; }
-Grade map_grade(const RunResult& run) { return map_verdict(map_signs(run)).grade; }
+Texts map_faults(const RunResult& run) { return map_verdict(figures_of(run).map).reasons; }
+Grade map_grade(const RunResult& run) { return map_verdict(figures_of(run).map).grade; }
 std::string text_of(const RunResult& run) { return verdicts(figures_of(run)).text(); }
 Grade grade_of(const RunResult& run) { return verdicts(figures_of(run)).grade(); }
 
 TEST(MapVerdict, AGoodMapHasNone) {
   EXPECT_EQ(map_faults(testing::example_run()), Texts());
-  EXPECT_EQ(map_verdict(map_signs(RunResult())).word(), "not judged");
+  EXPECT_EQ(map_verdict(figures_of(RunResult()).map).word(), "not judged");
   EXPECT_EQ(map_warning(testing::example_run()), "");
 }
 
@@ -102,6 +103,7 @@ TEST(MapVerdict, AreAllNamedInOneWarningAtTheEnd) {
   RunResult run = with_kept(60);
   run.ate->translation.rmse = 2.7;  // of 5.4 m
   run.poses_left_out = 3;
+  run.trajectory.resize(run.frames.size() - 3);
   EXPECT_EQ(map_warning(run),
             "warning: map lost: the error is 50.0 % of the path, the pose was kept for 3.0 "
             "s, 3 poses are NaN\n");

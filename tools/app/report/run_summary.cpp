@@ -336,7 +336,7 @@ std::string host_line(const RunResult& run) {
 }
 
 std::string map_warning(const RunResult& run) {
-  const RunVerdict verdict = map_verdict(map_signs(run));
+  const RunVerdict verdict = map_verdict(figures_of(run).map);
   return verdict.grade <= Grade::unknown ? "" : fmt::format("warning: {}\n", verdict.text());
 }
 

@@ -129,6 +129,9 @@ std::vector<RecordedFrame> recorded_frames(const RunResult& run) {
   return frames;
 }
 
+namespace {
+
+/// What frames and the ground truth say.
 MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& truth,
                    std::int64_t poses_left_out) {
   MapSigns signs;
@@ -155,6 +158,8 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& t
   signs.features = features / static_cast<double>(processed.size());
   return signs;
 }
+
+}  // namespace
 
 const StageName* fullest_stage(const RunFigures& run) {
   const StageName* fullest = nullptr;

@@ -94,10 +94,6 @@ struct RunFigures {
 /// All frames that arrived.
 std::vector<RecordedFrame> recorded_frames(const RunResult& run);
 
-/// What frames and the ground truth say.
-MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& truth,
-                   std::int64_t poses_left_out);
-
 /// Adds to the statistics of stats.json what follows from them and from all frames: the peaks of L1
 /// and L2, operations of stages, the signs of the map, and the verdicts as grades (verdict.*).
 void complete(RunFigures& run, const std::vector<RecordedFrame>& frames);

@@ -251,14 +251,6 @@ Verdicts verdicts(const RunFigures& run) {
   return all;
 }
 
-MapSigns map_signs(const RunResult& run) {
-  TruthSigns truth;
-  if (run.ate)
-    truth = {run.ate->translation.rmse, run.ate->path_length_m, run.ate->size_ratio,
-             run.ate->located_rmse_m};
-  return map_signs(recorded_frames(run), truth, run.poses_left_out);
-}
-
 std::int64_t map_restarts(const RunResult& run) {
   std::int64_t restarts = 0;
   for (const FrameResult& frame : run.frames) restarts += frame.map_restarts;

@@ -73,7 +73,6 @@ struct MapLimits {
 /// By the truth where there is one, and by what the estimator says of its poses.
 RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits = {});
 
-MapSigns map_signs(const RunResult& run);
 /// Over all frames.
 std::int64_t map_restarts(const RunResult& run);
 
