@@ -270,6 +270,17 @@ TEST(NextRobustnessOf, EvenFlightIsNoRest) {
   }
 }
 
+/// Where most of what was matched has moved too far for one image, that is a motion as well.
+TEST(NextRobustnessOf, FastEvenFlightIsNoRest) {
+  ShortFlight flight = draw_flight(EvenFlight({0, 0.8, 0}, 0, at_pace(1)), 3);
+  drop_frames(flight, [](int i) { return i % 3 != 0; });
+  Profile profile = profile_named("next", 1);
+  profile.stillness.batches = 8;  // just above a second
+  EXPECT_LE(taken_for_rest(fly(flight, profile)), 2);
+  profile.rest.fast_match = profile.rest.wrong_match;
+  EXPECT_GE(taken_for_rest(fly(flight, profile)), 5);
+}
+
 /// Nor is a motion that begins so gently that the IMU sees no change.
 TEST(NextRobustnessOf, RestEndsWithAMotionThatOnlyTheImagesShow) {
   const auto gently = [](double t) -> traces::Derivatives {

@@ -102,6 +102,9 @@ std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
   return soc::frames_at(*request.camera->fps, stamps_ns, data.camera.rate_hz);
 }
 
+/// Fewer poses are fitted by their alignment, whatever they are.
+constexpr std::size_t kFewestLocated = 20;
+
 /// Without those of frames that waited for a map.
 traces::Trajectory located_poses(const RunResult& run) {
   std::set<std::int64_t> initialising_ns;
@@ -213,7 +216,7 @@ void LiveSource::evaluate(RunResult& result) const {
     result.ate =
         traces::evaluate(result.trajectory, truth, {.expected_poses = expected_poses(result)});
     const traces::Trajectory located = located_poses(result);
-    if (located.size() < result.trajectory.size() && located.size() >= kFewestPoses)
+    if (located.size() < result.trajectory.size() && located.size() >= kFewestLocated)
       result.ate->located_rmse_m = traces::evaluate(located, truth).translation.rmse;
   } catch (const InputError& failure) {
     if (!result.ate) result.not_comparable = failure.what();
