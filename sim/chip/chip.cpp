@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sim/events/timebase.h"
+#include "sim/work/op.h"
 
 namespace leviosim::sim {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sim/work/op.h"
+
 namespace leviosim::work {
 namespace {
 
