@@ -14,6 +14,7 @@
 #include "tools/app/run/trace_source.h"
 #include "tools/app/run/workload.h"
 #include "workload/vio/odometry/odometry.h"
+#include "workload/vio/profile.h"
 
 namespace leviosim::tools {
 namespace {

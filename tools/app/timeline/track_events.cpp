@@ -1,5 +1,6 @@
 #include "tools/app/timeline/track_events.h"
 
+#include "sim/base/check.h"
 #include "sim/base/text.h"
 
 namespace leviosim::tools {
