@@ -222,6 +222,27 @@ TEST(LevioEightPoint, MoreIterationsNeverFindFewerInliers) {
   }
 }
 
+/// Samples are drawn one after the other, whatever the forks that they are computed in.
+TEST(LevioEightPoint, EachCoreHasAHypothesisAndTheBestIsTheSame) {
+  const TwoViewScene scene =
+      make_two_view_scene(5, {.matches = 100, .outliers = 0.4, .rounded = true});
+  const auto of_eight = estimate_essential_of<work::Counting>(scene, 8, {.iterations = 40});
+  for (const int cores : {1, 3, 4, 12, 16}) {
+    const auto found = estimate_essential_of<work::Counting>(scene, cores, {.iterations = 40});
+    EXPECT_EQ(found.essential.inliers, of_eight.essential.inliers) << cores;
+    EXPECT_EQ(found.E, of_eight.E) << cores;
+    EXPECT_EQ(found.mask, of_eight.mask) << cores;
+    for (const work::Step& step : found.job.stages.at(0).steps)
+      if (const auto* fork = std::get_if<work::Fork>(&step);
+          fork && fork->name == "8-point scoring") {
+        EXPECT_EQ(static_cast<int>(fork->shares.size()), cores);
+        for (const work::Segment& share : fork->shares)
+          EXPECT_GT(share[work::Op::F32Div], 0u) << "a core of " << cores << " has no hypothesis";
+        break;  // the last fork has what is left
+      }
+  }
+}
+
 /// Nothing is checked on the way, so no pose is what degenerate matches have to end with, or one
 /// that is a number.
 TEST(LevioEightPoint, DegenerateMatchesGiveNoPoseThatIsNoNumber) {

@@ -81,14 +81,15 @@ bool improves(typename P::I32 inliers, typename P::F32 error_px, const BestPose<
   return static_cast<bool>(error_px < best.error_px);
 }
 
-/// Scores the hypotheses of a batch one after the other; the best pose stays in `pose`.
+/// Scores the first `size` hypotheses of a batch one after the other; the best pose stays in
+/// `pose`.
 template <class P>
-void keep_best(const EpnpBatch<P>& batch, const LandmarkMatches<P>& matches,
+void keep_best(const EpnpBatch<P>& batch, int size, const LandmarkMatches<P>& matches,
                const CameraConstants<P>& camera, float inlier_px, MatrixView<P> pose,
                BestPose<P>& best) {
   using F = typename P::F32;
   using I32 = typename P::I32;
-  for (int h : P::range(0, batch.errors.size())) {
+  for (int h : P::range(0, size)) {
     const I32 inliers = count_inliers<P>(batch.pose(h), matches, camera, F(inlier_px));
     const F error = batch.errors[h];
     if (!improves<P>(inliers, error, best)) continue;
@@ -109,21 +110,23 @@ EpnpResult<P> estimate_pose_epnp(work::Machine& machine, const LandmarkMatches<P
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
   const Indices numbers = local.alloc<Indices>("match numbers", matches.n);
-  const EpnpBatch<P> batch(local, options.batch);
+  const Batches batches(options.iterations, options.batch, machine);
+  const EpnpBatch<P> batch(local, batches.largest());
   const MatrixView<P> pose = alloc_matrix<P>(local, "best pose", 4, 4);
   number_consecutively<P>(numbers);
   BestPose<P> best;
-  for ([[maybe_unused]] int i : P::range(0, options.iterations / options.batch)) {
-    for (int h : P::range(0, options.batch)) {
+  for (int i : P::range(0, batches.count())) {
+    const int size = batches.size(i);
+    for (int h : P::range(0, size)) {
       draw_sample<P>(random, numbers, kEpnpSample, batch.sample(h));
       copy_sample<P>(matches, batch, h);
     }
     machine.fork("solve EPnP", [&](work::Core& core) {
-      const auto [begin, end] = core.share(options.batch);
+      const auto [begin, end] = core.share(size);
       for (int h : P::range(begin, end))
         batch.errors[h] = solve_epnp<P>(batch.matches(h), camera, batch.pose(h), core.scratch);
     });
-    keep_best<P>(batch, matches, camera, options.inlier_px, pose, best);
+    keep_best<P>(batch, size, matches, camera, options.inlier_px, pose, best);
   }
   if (!best.found) return {};
   return {true, load_pose<P>(pose), work::value(best.inliers)};

@@ -1,6 +1,6 @@
-// RANSAC around EPnP as the released program runs it (PARAMETERS.md#epnp): in batches of 8 the
-// master draws and copies the samples, the team solves one hypothesis per sample, and the master
-// scores all of them serially over all matches.
+// RANSAC around EPnP as the released program runs it (PARAMETERS.md#epnp): in batches of
+// one sample for each core the master draws and copies the samples, the team solves one hypothesis
+// per sample, and the master scores all of them serially over all matches.
 //
 // The best hypothesis is the result however few its inliers are. Left out, as in the release: early
 // termination, and a final refit to the inliers.
@@ -21,8 +21,8 @@ struct LandmarkMatches {
 };
 
 struct EpnpRansacOptions {
-  int iterations = 64;  ///< a multiple of `batch`
-  int batch = 8;        ///< hypotheses per fork
+  int iterations = 64;
+  int batch = 0;  ///< hypotheses per fork; 0: one for each core (sampling.h)
   float inlier_px = 1.41421356f;
 };
 

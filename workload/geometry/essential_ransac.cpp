@@ -25,7 +25,6 @@ struct EssentialBatch {
         masks(a.alloc<Span<Byte>>("8-point inlier masks", size * matches)),
         matches_(matches) {}
 
-  int size() const { return inliers.size(); }
   Span<U16> sample(int h) const { return indices.subspan(h * kEssentialSample, kEssentialSample); }
   MatrixView<P> essential(int h) const { return {essentials.row(h), 3, 3}; }
   EssentialScore<P> score(int h) const { return {inliers.subspan(h, 1), error_sums.subspan(h, 1)}; }
@@ -55,12 +54,13 @@ bool improves(typename P::I32 inliers, typename P::F32 mean_error, const BestEss
   return static_cast<bool>(mean_error < best.mean_error);
 }
 
+/// Of the first `size` hypotheses of a batch.
 template <class P>
-void keep_best(const EssentialBatch<P>& batch, MatrixView<P> essential,
+void keep_best(const EssentialBatch<P>& batch, int size, MatrixView<P> essential,
                typename P::template Span<typename P::Byte> inlier_mask, BestEssential<P>& best) {
   using F = typename P::F32;
   using I32 = typename P::I32;
-  for (int h : P::range(0, batch.size())) {
+  for (int h : P::range(0, size)) {
     const I32 inliers = batch.inliers[h];
     const F mean_error = F(batch.error_sums[h]) / work::to_f32(inliers);
     if (!improves<P>(inliers, mean_error, best)) continue;
@@ -87,23 +87,25 @@ EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatch
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
   const Indices numbers = local.alloc<Indices>("8-point indices", matches.n);
-  const EssentialBatch<P> batch(local, options.batch, matches.n);
+  const Batches batches(options.iterations, options.batch, machine);
+  const EssentialBatch<P> batch(local, batches.largest(), matches.n);
   number_consecutively<P>(numbers);
   BestEssential<P> best;
-  for ([[maybe_unused]] int i : P::range(0, options.iterations / options.batch)) {
-    for (int h : P::range(0, options.batch))
+  for (int i : P::range(0, batches.count())) {
+    const int size = batches.size(i);
+    for (int h : P::range(0, size))
       draw_sample<P>(random, numbers, kEssentialSample, batch.sample(h));
     machine.fork_aligned_on_one_core("8-point hypotheses", [&](work::Core& core) {
-      const auto [begin, end] = core.share(options.batch);
+      const auto [begin, end] = core.share(size);
       for (int h : P::range(begin, end))
         essential_from_sample<P>(matches, batch.sample(h), batch.essential(h), core.scratch);
     });
     machine.fork_aligned_on_one_core("8-point scoring", [&](work::Core& core) {
-      const auto [begin, end] = core.share(options.batch);
+      const auto [begin, end] = core.share(size);
       for (int h : P::range(begin, end))
         score_essential<P>(batch.essential(h), matches, threshold, batch.mask(h), batch.score(h));
     });
-    keep_best<P>(batch, essential, inlier_mask, best);
+    keep_best<P>(batch, size, essential, inlier_mask, best);
   }
   const int inliers = work::value(best.inliers);
   return {inliers > 0, inliers};

@@ -1,6 +1,7 @@
 // RANSAC for the essential matrix as the released program runs it
-// (PARAMETERS.md#eight-point-algorithm): in batches of 8 the master draws the samples, one fork
-// computes a hypothesis per sample, another scores them, and the master keeps the best.
+// (PARAMETERS.md#eight-point-algorithm): in batches of one sample for each core the master draws
+// the samples, one fork computes a hypothesis per sample, another scores them, and the master keeps
+// the best.
 //
 // The number of iterations is fixed: nothing stops early, and nothing is fitted to the inliers.
 #pragma once
@@ -75,8 +76,8 @@ void score_essential(MatrixView<P> essential, const TwoViewMatches<P>& matches,
                      const EssentialScore<P>& score);
 
 struct EssentialRansacOptions {
-  int iterations = 640;  ///< a multiple of `batch`
-  int batch = 8;         ///< hypotheses per fork
+  int iterations = 640;
+  int batch = 0;  ///< hypotheses per fork; 0: one for each core (sampling.h)
 };
 
 template <class P>

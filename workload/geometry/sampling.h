@@ -5,9 +5,11 @@
 // other. It is no generator for simulating noise.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
+#include "sim/work/machine.h"
 #include "sim/work/policy.h"
 
 namespace leviosim::vio::levio {
@@ -65,5 +67,24 @@ void number_consecutively(Indices indices) {
   for (int i : P::range(0, indices.size()))
     indices[i] = work::narrow<typename P::U16>(typename P::I32(i));
 }
+
+/// How hypotheses are spread over forks. Samples are drawn and results compared in one order, so
+/// that the best hypothesis does not depend on it.
+class Batches {
+ public:
+  /// @param hypotheses  of all batches
+  /// @param wanted      of a batch; 0: one for each core, as the released program has it
+  Batches(int hypotheses, int wanted, const work::Machine& machine)
+      : hypotheses_(hypotheses),
+        largest_(std::min(hypotheses, wanted > 0 ? wanted : machine.cores())) {}
+
+  int largest() const { return largest_; }
+  int count() const { return (hypotheses_ + largest_ - 1) / largest_; }
+  int size(int batch) const { return std::min(largest_, hypotheses_ - batch * largest_); }
+
+ private:
+  int hypotheses_;
+  int largest_;
+};
 
 }  // namespace leviosim::vio::levio

@@ -63,6 +63,13 @@ constexpr std::array kParameters = {
     Parameter{"workload.patches.max_difference", Kind::number, "", 0, 100,
               "of patches that agree, as a share of their contrast", false,
               LEVIOSIM_FIELD(patches.max_difference)},
+    Parameter{"workload.ransac_batch", Kind::whole, "hypotheses", 0, 64,
+              "hypotheses that a fork of EPnP and of the 8-point algorithm computes; 0: one for "
+              "each core",
+              false, [](const Profile& p) { return static_cast<double>(p.epnp.batch); },
+              [](Profile& p, double value) {
+                p.epnp.batch = p.essential.batch = static_cast<int>(value);
+              }},
     Parameter{"workload.guided", Kind::toggle, "", 0, 1,
               "look for landmarks where the IMU predicts them, and refine the pose to them", false,
               LEVIOSIM_FIELD(guided.enabled)},
