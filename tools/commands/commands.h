@@ -26,6 +26,7 @@
   ADD(replay)            \
   ADD(trace)             \
   ADD(whatif)            \
+  ADD(why)               \
   ADD(tune)              \
   ADD(sweep)             \
   ADD(flow)              \
