@@ -47,9 +47,11 @@ std::string_view name_of(mode_t mode) {
   return "something else";
 }
 
-/// A FIFO without a writer does not hold up an opening that is not to block.
+/// A FIFO without a writer does not hold up an opening that is not to block. @returns -errno if it
+/// cannot be opened
 int open_waiting_for_nobody(const std::filesystem::path& path) {
-  return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  return opened < 0 ? -errno : opened;
 }
 
 }  // namespace
@@ -61,16 +63,18 @@ const InputKindInfo& info_of(InputKind kind) {
 }
 
 OpenedFile::OpenedFile(std::filesystem::path path, InputKind kind)
-    : path_(std::move(path)), kind_(kind), descriptor_(open_waiting_for_nobody(path_)) {
+    : OpenedFile(path, kind, open_waiting_for_nobody(path)) {}
+
+OpenedFile::OpenedFile(std::filesystem::path path, InputKind kind, int descriptor)
+    : path_(std::move(path)), kind_(kind), descriptor_(descriptor) {
   // Some kinds cannot be opened at all (a socket, a FIFO that nobody may read): say what they are.
-  const int error = errno;
   struct stat status {};
   const bool is_known =
       (descriptor_ < 0 ? ::stat(path_.c_str(), &status) : ::fstat(descriptor_, &status)) == 0;
   try {
     if (is_known && !S_ISREG(status.st_mode))
       refuse(fmt::format("is {}; expected a regular file", name_of(status.st_mode)));
-    if (descriptor_ < 0 || !is_known) refuse(reason_of(error));
+    if (descriptor_ < 0 || !is_known) refuse(reason_of(descriptor < 0 ? -descriptor : errno));
     size_ = static_cast<std::uint64_t>(status.st_size);
     require_size(size_);
   } catch (...) {
@@ -138,8 +142,8 @@ void OpenedFile::require_size(std::uint64_t bytes) const {
 }
 
 void OpenedFile::refuse(std::string_view reason) const {
-  throw InputError(fmt::format("{}: cannot be opened as {}: {}", path_.string(),
-                               info_of(kind_).name, reason));
+  throw InputError(
+      fmt::format("{}: cannot be opened as {}: {}", path_.string(), info_of(kind_).name, reason));
 }
 
 std::string read_file(const std::filesystem::path& path, InputKind kind) {

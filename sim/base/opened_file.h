@@ -15,6 +15,8 @@ class OpenedFile {
  public:
   /// @throws InputError as read_file()
   OpenedFile(std::filesystem::path path, InputKind kind);
+  /// Takes over what is open already, as `path` for messages. @param descriptor  or -errno
+  OpenedFile(std::filesystem::path path, InputKind kind, int descriptor);
   ~OpenedFile();
   OpenedFile(OpenedFile&& other) noexcept;
   OpenedFile& operator=(OpenedFile&& other) noexcept;

@@ -88,12 +88,20 @@ std::optional<FileState> state_of_file(const fs::path& path) {
 
 std::optional<std::string> try_read_file(const fs::path& path, std::uint64_t most) {
   std::uint64_t size = 0;
-  const Descriptor file = open_regular(path, size);
-  if (!file || size > most) return std::nullopt;
-  std::string text(size, '\0');
+  return try_read_file(open_regular(path, size), most);
+}
+
+std::optional<std::string> try_read_file(const Descriptor& file, std::uint64_t most) {
+  struct stat status {};
+  if (!file || ::fstat(file.get(), &status) != 0) return std::nullopt;
+  if (!S_ISREG(status.st_mode) || static_cast<std::uint64_t>(status.st_size) > most)
+    return std::nullopt;
+  std::string text(static_cast<std::size_t>(status.st_size), '\0');
   std::size_t have = 0;
   while (have < text.size()) {
-    const ssize_t got = read_some(file.get(), text.data() + have, text.size() - have);
+    const ssize_t got =
+        ::pread(file.get(), text.data() + have, text.size() - have, static_cast<off_t>(have));
+    if (got < 0 && errno == EINTR) continue;
     if (got < 0) return std::nullopt;
     if (got == 0) break;
     have += static_cast<std::size_t>(got);

@@ -59,6 +59,8 @@ std::optional<FileState> state_of_file(const std::filesystem::path& path);
 
 /// @returns nothing if it is not there, no regular file, larger than `most` or cannot be read
 std::optional<std::string> try_read_file(const std::filesystem::path& path, std::uint64_t most);
+/// The same of what is open.
+std::optional<std::string> try_read_file(const Descriptor& file, std::uint64_t most);
 
 /// What a folder holds; nothing if it cannot be listed. (Those of std::filesystem end the program
 /// where there is no memory.)

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "sim/base/error.h"
+#include "sim/outputs/growing_file.h"
 
 namespace leviosim::outputs {
 namespace {
@@ -117,13 +118,20 @@ OutputRecord OutputRecord::parse(std::string_view text, const std::string& name)
   return record;
 }
 
+namespace {
+
+OutputRecord parsed(const std::optional<std::string>& text, const fs::path& file) {
+  if (!text) throw InputError(fmt::format("{}: cannot be read as a record", file.string()));
+  return OutputRecord::parse(*text, file.string());
+}
+
+}  // namespace
+
 std::optional<OutputRecord> OutputRecord::read(const fs::path& folder) {
   const fs::path file = folder / kRecordName;
   if (!status_of(file)) return std::nullopt;
   if (::access(file.c_str(), R_OK) != 0 && errno == EACCES) return std::nullopt;  // another user's
-  const std::optional<std::string> text = try_read_file(file, kLargestRecord);
-  if (!text) throw InputError(fmt::format("{}: cannot be read as a record", file.string()));
-  return parse(*text, file.string());
+  return parsed(try_read_file(file, kLargestRecord), file);
 }
 
 std::string OutputRecord::text() const {
@@ -222,25 +230,25 @@ void FolderContents::remove(const Descriptor& folder) const {
 
 HeldRecord::HeldRecord(const fs::path& folder, std::chrono::milliseconds patience)
     : path_(folder / kRecordName) {
-  for (;;) {
-    constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-    file_ = Descriptor(::open(path_.c_str(), kFlags, 0666));
-    if (!file_ && (errno == EACCES || errno == EPERM || errno == EROFS || errno == ENOENT)) break;
-    if (!file_) fail(errno);
-    state_ = lock(file_.get(), patience) ? State::held : State::busy;
+  int error = 0;
+  file_ = open_locked(path_, O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW, patience, error);
+  if (error == EWOULDBLOCK) {
+    state_ = State::busy;
+  } else if (error == EACCES || error == EPERM || error == EROFS || error == ENOENT) {
+    record_ = OutputRecord::read(folder).value_or(OutputRecord());
+  } else if (error != 0) {
+    fail(error);
+  } else {
+    state_ = State::held;
     struct stat held {};
-    const std::optional<struct stat> there = status_of(path_);
     if (::fstat(file_.get(), &held) != 0) fail(errno);
-    if (!there || !is_same_file(held, *there)) continue;
     if (!S_ISREG(held.st_mode) || held.st_nlink != 1)
       throw InputError(fmt::format(
           "{}: is no regular file with one name, and so is not written to; remove it by hand",
           path_.string()));
-    break;
+    // What was only just made is not read, so that nothing can fail which would leave it.
+    if (held.st_size > 0) record_ = parsed(try_read_file(file_, kLargestRecord), path_);
   }
-  // What was only just made is not read, so that nothing can fail which would leave it.
-  if (state_ == State::unwritable || (state_ == State::held && !is_empty()))
-    record_ = OutputRecord::read(folder).value_or(OutputRecord());
 }
 
 bool HeldRecord::is_empty() const {

@@ -122,6 +122,7 @@ class Program {
     limit(RLIMIT_DATA, limits.data_bytes);
   }
 
+  pid_t id() const { return pid_; }
   void send(int signal) const { ::kill(pid_, signal); }
   bool running() {
     if (pid_ > 0 && !ended_) ended_ = ::waitpid(pid_, &wait_status_, WNOHANG) == pid_;

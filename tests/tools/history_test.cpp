@@ -220,6 +220,10 @@ TEST(History, IsReadInPiecesAndOnce) {
     EXPECT_EQ(history.lines_for(run), "") << run.origin.commit;
 }
 
+void add_run(const std::string& file, const PastRun& run) {
+  add_to_history(file, [&](const History& history) { return history.lines_for(run); });
+}
+
 /// What is added stands behind what was there, of which no byte changes; and so it is where a
 /// program was stopped in the middle of a line.
 TEST(History, IsAddedToAllOrNothing) {
@@ -227,29 +231,27 @@ TEST(History, IsAddedToAllOrNothing) {
   const std::string file = (folder / "h.jsonl").string();
   std::vector<std::string> texts{""};
   for (const PastRun& run : runs_of({1000, 1001, 1002})) {
-    GrowingHistory growing(file);
-    growing.append(growing.history().lines_for(run));
+    add_run(file, run);
     texts.push_back(tests::read_text(file));
     EXPECT_TRUE(texts.back().starts_with(texts[texts.size() - 2]));
   }
   for (std::size_t size = texts[2].size() + 1; size < texts[3].size(); ++size) {
     tests::write_text(file, texts[3].substr(0, size));
-    GrowingHistory growing(file);
     const bool lacks_a_break_only = size + 1 == texts[3].size();
-    EXPECT_EQ(growing.history().size(), lacks_a_break_only ? 3u : 2u) << size;
-    growing.append(growing.history().lines_for(run_of(2, 1002)));
+    EXPECT_EQ(History::read(file).size(), lacks_a_break_only ? 3u : 2u) << size;
+    add_run(file, run_of(2, 1002));
+    if (lacks_a_break_only) continue;  // it is there already
     EXPECT_EQ(tests::read_text(file), texts[3]) << size;
   }
   // A whole line without a break, as editors leave it, is not glued to the next.
   tests::write_text(file, texts[2].substr(0, texts[2].size() - 1));
-  GrowingHistory growing(file);
-  growing.append(growing.history().lines_for(run_of(2, 1002)));
+  add_run(file, run_of(2, 1002));
   EXPECT_EQ(tests::read_text(file), texts[3]);
   // What is no history at all stays as it is.
   tests::write_text(file, "a letter");
-  EXPECT_THROW((void)GrowingHistory(file), InputError);
+  EXPECT_THROW(add_run(file, run_of(2, 1002)), InputError);
   EXPECT_EQ(tests::read_text(file), "a letter");
-  EXPECT_THROW((void)GrowingHistory(folder.path().string()), InputError);
+  EXPECT_THROW(add_run(folder.path().string(), run_of(2, 1002)), InputError);
 }
 
 /// The first runs of a history, by jobs that end together.
@@ -261,15 +263,16 @@ TEST(History, IsBegunByManyAtOnce) {
     for (int n = 0; n < 4; ++n)
       jobs.emplace_back([=] {
         EXPECT_NO_THROW({
-          GrowingHistory growing(file);
-          if (n > 0) growing.append(growing.history().lines_for(run_of(n, 1000)));
+          add_to_history(file, [&](const History& history) {
+            return n > 0 ? history.lines_for(run_of(n, 1000)) : std::string();
+          });
         });
       });
     for (std::thread& job : jobs) job.join();
     EXPECT_EQ(History::read(file).size(), 3u);
   }
   const std::string none = (folder / "none.jsonl").string();
-  GrowingHistory{none};
+  add_to_history(none, [](const History&) { return std::string(); });
   EXPECT_FALSE(base::exists(none)) << "nothing was added";
 }
 

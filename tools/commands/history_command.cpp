@@ -75,26 +75,33 @@ Origin origin_of(const HistoryOptions& options) {
   return origin;
 }
 
+LimitsThen limits_of(const PastRun& run, Gate gate, const History& history) {
+  // The run before is the baseline, unless there is another; of the first run, itself.
+  const std::vector<PastRun> before = history.like(run.record, run.origin.branch, 1);
+  gate.use_baseline(before.empty() ? run.record : before.back().record);
+  const CheckResult check = gate.check(run.record);
+  LimitsThen limits{check.findings.size(), {}};
+  for (const Finding& finding : check.findings)
+    if (finding.fails()) limits.missed.push_back(finding.title());
+  return limits;
+}
+
 void add(const CLI::App& command, const HistoryOptions& options) {
   require(command, "RUN", "a run folder or a work trace");
   std::optional<Gate> gate = optional_gate(options.gate, options);
   PastRun run{origin_of(options), {}, read_run_or_baseline(options.run, options)};
-  GrowingHistory file(options.file);
-  const History& history = file.history();
-  if (gate) {
-    // The run before is the baseline, unless there is another; of the first run, itself.
-    const std::vector<PastRun> before = history.like(run.record, run.origin.branch, 1);
-    gate->use_baseline(before.empty() ? run.record : before.back().record);
-    const CheckResult check = gate->check(run.record);
-    run.limits.held = check.findings.size();
-    for (const Finding& finding : check.findings)
-      if (finding.fails()) run.limits.missed.push_back(finding.title());
-  }
-  const std::string lines = history.lines_for(run);
-  if (!lines.empty()) file.append(lines);
-  const std::string place =
-      lines.empty() ? fmt::format("is in {} already", printable(options.file))
-                    : fmt::format("is run {} of {}", history.size() + 1, printable(options.file));
+  std::size_t runs = 0;
+  bool is_new = false;
+  add_to_history(options.file, [&](const History& history) {
+    if (gate) run.limits = limits_of(run, *gate, history);
+    const std::string lines = history.lines_for(run);
+    runs = history.size();
+    is_new = !lines.empty();
+    return lines;
+  });
+  const std::string place = is_new
+                                ? fmt::format("is run {} of {}", runs + 1, printable(options.file))
+                                : fmt::format("is in {} already", printable(options.file));
   const std::string limits =
       gate ? fmt::format("; {} of {} limits not met", run.limits.missed.size(), run.limits.held)
            : "";

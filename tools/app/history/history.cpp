@@ -1,12 +1,8 @@
 #include "tools/app/history/history.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <functional>
@@ -17,6 +13,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/sha256.h"
+#include "sim/outputs/growing_file.h"
 #include "tools/app/budget/gate.h"
 
 namespace leviosim::tools {
@@ -278,48 +275,23 @@ std::string History::lines_for(const PastRun& run) const {
                      member("missed", run.limits.missed), found, member("stages", stages));
 }
 
-GrowingHistory::GrowingHistory(const std::string& file) : name_(file) {
+void add_to_history(const std::string& file,
+                    const std::function<std::string(const History&)>& lines) {
   constexpr std::chrono::seconds kPatience{30};
-  // Others that wait for a new file see it go if nothing is added.
-  do {
-    open();
-    if (!outputs::lock(file_.get(), kPatience))
-      throw InputError(fmt::format("{}: another program adds to it; try again later", name_));
-  } while (is_gone());
-  history_ = History::read(file);
-}
-
-GrowingHistory::~GrowingHistory() {
-  if (is_made_ && history_->whole_size() == 0) ::unlink(name_.c_str());
-}
-
-void GrowingHistory::open() {
-  constexpr int kFlags = O_WRONLY | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
-  file_ = outputs::Descriptor(::open(name_.c_str(), kFlags | O_CREAT | O_EXCL, 0666));
-  is_made_ = static_cast<bool>(file_);
-  if (errno == EEXIST && !file_)
-    file_ = outputs::Descriptor(::open(name_.c_str(), kFlags | O_CREAT, 0666));
-  if (!file_)
-    throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(errno)));
-}
-
-bool GrowingHistory::is_gone() const {
-  struct stat status {};
-  return ::fstat(file_.get(), &status) == 0 && status.st_nlink == 0;
-}
-
-void GrowingHistory::append(std::string lines) {
-  if (!history_->ends_a_line()) lines.insert(0, 1, '\n');
-  const auto whole = static_cast<off_t>(history_->whole_size());
-  int error = ::ftruncate(file_.get(), whole) == 0 ? 0 : errno;
-  if (error == 0) {
-    error = outputs::write_all(file_.get(), lines);
-    if (error != 0 && ::ftruncate(file_.get(), whole) != 0) error = errno;
-  }
-  if (const int closed = file_.close(); error == 0) error = closed;
-  if (error != 0)
-    throw InputError(fmt::format("{}: cannot be written: {}", name_, outputs::reason(error)));
-  is_made_ = false;
+  const auto addition = [&](std::optional<base::OpenedFile> there) {
+    const std::uint64_t size = there ? there->size() : 0;
+    const History history(file, there ? Pieces(std::move(*there)) : Pieces(std::string()));
+    // A history begins with whole lines: add_lines() makes no others.
+    if (history.whole_size() == 0 && size > 0)
+      throw InputError(
+          fmt::format("{}: holds one line that lacks its end, and no run, so it may be no history; "
+                      "remove it by hand if it is of no use",
+                      file));
+    outputs::Addition wanted{history.whole_size(), lines(history)};
+    if (!wanted.lines.empty() && !history.ends_a_line()) wanted.lines.insert(0, 1, '\n');
+    return wanted;
+  };
+  outputs::add_lines(file, base::InputKind::history, kPatience, addition);
 }
 
 }  // namespace leviosim::tools

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,7 +19,6 @@
 #include <vector>
 
 #include "sim/base/opened_file.h"
-#include "sim/outputs/file_system.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/cli/outputs.h"
@@ -127,30 +127,11 @@ class History {
   mutable std::size_t lines_parsed_ = 0;
 };
 
-/// The file while a run is added to it, made if there is none. Others that add wait.
-class GrowingHistory {
- public:
-  /// @throws InputError if there is another thing of that name, or if others add all the time;
-  ///         Interrupted
-  explicit GrowingHistory(const std::string& file);
-  ~GrowingHistory();  ///< leaves no new file to which nothing was added
-  GrowingHistory(const GrowingHistory&) = delete;
-  GrowingHistory& operator=(const GrowingHistory&) = delete;
-
-  const History& history() const { return *history_; }
-  /// At the end, all or nothing, and once. Nothing else of it is touched, so that what is written
-  /// does not grow with the file. @throws InputError if that fails
-  void append(std::string lines);
-
- private:
-  void open();
-  bool is_gone() const;
-
-  std::string name_;
-  bool is_made_ = false;  ///< by this one, and nothing was added yet
-  outputs::Descriptor file_;
-  std::optional<History> history_;
-};
+/// Adds a run to a file, made if there is none. Others that add wait.
+/// @param lines  lines_for() a run, of the history as it is now; may be called several times
+/// @throws InputError as outputs::add_lines(), and for what is no history; Interrupted
+void add_to_history(const std::string& file,
+                    const std::function<std::string(const History&)>& lines);
 
 // What became of the figures of a budget over many runs. Runs have no noise: every change of a
 // figure is one of a commit. A change beyond a limit is a step; smaller ones that are beyond it

@@ -2,13 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <thread>
 
 #include "sim/base/error.h"
+#include "sim/outputs/growing_file.h"
 #include "sim/outputs/output_record.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
@@ -18,27 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Excludes other processes from acquire() to the end of its life. The file stays; it is empty.
-class FileLock {
- public:
-  explicit FileLock(const fs::path& file)
-      : descriptor_(::open(file.c_str(), O_CREAT | O_RDWR | O_NOFOLLOW | O_CLOEXEC, 0644)) {
-    if (descriptor_ < 0) throw InputError(fmt::format("{}: cannot be written", file.string()));
-  }
-  ~FileLock() { ::close(descriptor_); }
-  FileLock(const FileLock&) = delete;
-  FileLock& operator=(const FileLock&) = delete;
-
-  void acquire() {
-    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      throw_if_interrupted();
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-  }
-
- private:
-  int descriptor_;
-};
+/// Excludes other processes while the result lives. The file stays; it is empty.
+outputs::Descriptor locked(const fs::path& file) {
+  constexpr std::chrono::hours kPatience{24};
+  int error = 0;
+  outputs::Descriptor lock =
+      outputs::open_locked(file, O_CREAT | O_RDWR | O_NOFOLLOW, kPatience, error);
+  if (!lock)
+    throw InputError(
+        fmt::format("{}: cannot be written: {}", file.string(), outputs::reason(error)));
+  return lock;
+}
 
 /// Whether all files of the flight are there as they were drawn.
 bool is_whole(const fs::path& folder) {
@@ -90,8 +78,7 @@ fs::path cached_flight(const std::string& name, const std::function<void(const f
     throw InputError(
         fmt::format("{}: cannot be created: {}", folder.parent_path().string(), error.message()));
   cache_folder();  // refuses it if it is not the user's
-  FileLock lock(folder.string() + ".lock");
-  lock.acquire();
+  const outputs::Descriptor lock = locked(folder.string() + ".lock");
   if (!is_whole(folder)) write(folder);
   return folder;
 }
