@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/soc/account.h"
+#include "sim/soc/run_account.h"
 #include "sim/work/program.h"
 
 namespace leviosim::soc {

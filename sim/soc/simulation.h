@@ -18,11 +18,11 @@
 
 #include "sim/chip/chip.h"
 #include "sim/events/channel.h"
-#include "sim/soc/account.h"
 #include "sim/soc/camera.h"
 #include "sim/soc/job_source.h"
 #include "sim/soc/job_timer.h"
 #include "sim/soc/observer.h"
+#include "sim/soc/run_account.h"
 
 namespace leviosim::soc {
 

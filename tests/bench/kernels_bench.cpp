@@ -11,12 +11,12 @@
 
 #include "sim/work/machine.h"
 #include "tests/bench/cpu_time.h"
-#include "workload/geometry/epnp_ransac.h"
-#include "workload/geometry/essential_ransac.h"
-#include "workload/geometry/svd.h"
 #include "workload/inertial/preintegration.h"
+#include "workload/levio/geometry/epnp_ransac.h"
+#include "workload/levio/geometry/essential_ransac.h"
+#include "workload/levio/geometry/svd.h"
+#include "workload/levio/vision/levio_matcher.h"
 #include "workload/math/matrix.h"
-#include "workload/vio/levio/vision/matcher.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/matcher.h"
 

@@ -26,7 +26,7 @@ constexpr const char* kHead =
 //
 // Made by:
 //     ninja -C build/release leviosim_learn_pairs
-//     build/release/tests/leviosim_learn_pairs > workload/vio/levio/vision/learned_pairs.h
+//     build/release/tests/leviosim_learn_pairs > workload/levio/vision/learned_pairs.h
 #pragma once
 
 #include "workload/vision/point_pairs.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "sim/base/error.h"
-#include "tests/workload/optimiser_scene.h"
-#include "tests/workload/two_view_scene.h"
+#include "tests/workload/graph/optimiser_scene.h"
+#include "tests/workload/levio/two_view_scene.h"
 #include "tools/app/run/live_source.h"
 
 namespace leviosim::rv32 {

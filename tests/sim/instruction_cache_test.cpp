@@ -1,6 +1,6 @@
 // Fetching code: reuse distances of known walks, misses of random replacement against closed
 // formulas, and what a team shares. Against caches that are stepped: code_lines_test.cpp and
-// tests/workload/ransac_code_test.cpp.
+// tests/workload/levio/ransac_code_test.cpp.
 #include "sim/chip/instruction_cache.h"
 
 #include <gtest/gtest.h>

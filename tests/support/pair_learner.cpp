@@ -11,9 +11,9 @@
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/image_preparation.h"
 #include "traces/synthesis/synthetic.h"
-#include "workload/vio/levio/vision/blur.h"
-#include "workload/vio/levio/vision/descriptor.h"
-#include "workload/vio/levio/vision/extractor.h"
+#include "workload/levio/vision/levio_blur.h"
+#include "workload/levio/vision/levio_descriptor.h"
+#include "workload/levio/vision/levio_extractor.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tests {

@@ -9,7 +9,7 @@
 #include "sim/soc/job_timer.h"
 #include "sim/work/machine.h"
 #include "tests/workload/short_flight.h"
-#include "workload/loop/loop_closer.h"
+#include "workload/next/loop/loop_closer.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {

@@ -14,8 +14,8 @@ ALL = "--all" in sys.argv
 FLAGS = ["--", "-std=c++20", "-I.", "-I/usr/include/eigen3"]
 TRAPS = "tests/tools/counting_traps.cpp"
 KINDS = ("a view's memory", "a plain pointer", "an array that counts no load", "work::value() in an index", "index arithmetic")
-MOST = ("vio/levio/vision/extractor.cpp", "geometry/epnp.cpp", "graph/anchored_landmarks.cpp",
-        "vio/inertial_part.cpp", "loop/place_search.cpp", "vision/matcher.cpp")
+MOST = ("levio/vision/levio_extractor.cpp", "levio/geometry/epnp.cpp", "graph/anchored_landmarks.cpp",
+        "vio/inertial_part.cpp", "next/loop/place_search.cpp", "vision/matcher.cpp")
 
 if shutil.which("clang-query") is None:
     print("skipped: the program clang-query is missing; apt-get install clang-tools")

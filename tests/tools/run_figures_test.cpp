@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "platform_models/loader/loader.h"
-#include "sim/soc/account.h"
+#include "sim/soc/run_account.h"
 #include "sim/work/op.h"
 #include "tests/tools/example_run.h"
 #include "tests/tools/statistic_values.h"

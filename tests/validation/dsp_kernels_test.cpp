@@ -16,7 +16,7 @@
 #include "tests/validation/int8_product_code.h"
 #include "tools/app/validation/microbench/bench.h"
 #include "tools/app/validation/microbench/library_programs.h"
-#include "workload/geometry/essential_ransac.h"
+#include "workload/levio/geometry/essential_ransac.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,16 +1,16 @@
-// Scenes of the released program's work (workload/vio/levio), one for each unit of work whose
+// Scenes of the released program's work (workload/levio), one for each unit of work whose
 // instructions are known of the release: units.csv sets them side by side. That all of its
 // functions are reached is left to the scene of the whole pipeline.
 #pragma once
 
 #include "tools/rv32/scene_data.h"
-#include "workload/geometry/epnp_ransac.h"
-#include "workload/geometry/essential_ransac.h"
-#include "workload/geometry/pose_matrix.h"
-#include "workload/geometry/pose_recovery.h"
-#include "workload/vio/levio/optimiser/optimiser.h"
-#include "workload/vio/levio/vision/extractor.h"
-#include "workload/vio/levio/vision/matcher.h"
+#include "workload/levio/geometry/epnp_ransac.h"
+#include "workload/levio/geometry/essential_ransac.h"
+#include "workload/levio/geometry/pose_matrix.h"
+#include "workload/levio/geometry/pose_recovery.h"
+#include "workload/levio/optimiser/levio_optimiser.h"
+#include "workload/levio/vision/levio_extractor.h"
+#include "workload/levio/vision/levio_matcher.h"
 
 namespace leviosim::rv32 {
 

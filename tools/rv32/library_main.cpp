@@ -68,7 +68,7 @@ template <class Real>
   }
 }
 
-/// The double precision of a Jacobi rotation (workload/geometry/svd.h): what the
+/// The double precision of a Jacobi rotation (workload/levio/geometry/svd.h): what the
 /// workload's calls of it are.
 [[gnu::noinline]] void exercise_rotations(const volatile float* in) {
   for (int i = 0; i < kOperands; ++i) {

@@ -1,7 +1,7 @@
 // Eigenvector of the smallest eigenvalue by inverse power iteration (PARAMETERS.md#linear-algebra),
-// for triangulation; the 8-point algorithm has its own (workload/geometry/inverse_power.h). Every
-// step solves A y = x by a full Gaussian elimination; the factors are not kept, as in the modelled
-// library.
+// for triangulation; the 8-point algorithm has its own
+// (workload/levio/geometry/levio_inverse_power.h). Every step solves A y = x by a full Gaussian
+// elimination; the factors are not kept, as in the modelled library.
 //
 // A singular A is what callers hope for: pivots that vanish are replaced by 1e-9 of the largest
 // diagonal element, beneath the rounding of the elimination, so that y points along the null space.

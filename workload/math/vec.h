@@ -4,7 +4,7 @@
 #pragma once
 
 #include "sim/work/policy.h"
-#include "workload/math/camera.h"
+#include "workload/math/pinhole_camera.h"
 
 namespace leviosim::vio {
 

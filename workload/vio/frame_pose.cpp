@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "workload/geometry/epnp_ransac.h"
-#include "workload/geometry/essential_ransac.h"
-#include "workload/geometry/pose_matrix.h"
-#include "workload/geometry/pose_recovery.h"
-#include "workload/vio/levio/vision/matcher.h"
+#include "workload/levio/geometry/epnp_ransac.h"
+#include "workload/levio/geometry/essential_ransac.h"
+#include "workload/levio/geometry/pose_matrix.h"
+#include "workload/levio/geometry/pose_recovery.h"
+#include "workload/levio/vision/levio_matcher.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

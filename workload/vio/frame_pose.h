@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "workload/geometry/sampling.h"
+#include "workload/levio/geometry/sampling.h"
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
 

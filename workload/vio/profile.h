@@ -7,14 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "workload/geometry/epnp_ransac.h"
-#include "workload/geometry/essential_ransac.h"
 #include "workload/graph/alignment.h"
 #include "workload/graph/optimiser.h"
 #include "workload/inertial/bias_estimation.h"
 #include "workload/inertial/initialisation.h"
 #include "workload/inertial/preintegration.h"
-#include "workload/loop/options.h"
+#include "workload/levio/geometry/epnp_ransac.h"
+#include "workload/levio/geometry/essential_ransac.h"
+#include "workload/vio/loop_options.h"
 #include "workload/vision/extractor.h"
 #include "workload/vision/guided_matcher.h"
 #include "workload/vision/matcher.h"

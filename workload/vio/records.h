@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "workload/math/camera.h"
+#include "workload/math/pinhole_camera.h"
 #include "workload/vio/frame_facts.h"
 
 namespace leviosim::vio {

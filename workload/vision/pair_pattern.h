@@ -1,5 +1,5 @@
 // The 256 pairs of points of the shared extraction's descriptor; `levio` has others
-// (workload/vio/levio/vision/learned_pairs.h).
+// (workload/levio/vision/learned_pairs.h).
 //
 // The pattern is our own, drawn at compile time by a fixed rule (no learned table): every
 // coordinate is a sum of four uniform 16-bit numbers, which is nearly normal, scaled to the

@@ -2,7 +2,7 @@
 // its orientation), and how a core sees them: what the patterns of the profiles have in common.
 //
 // Left out: which pairs they are. Those of the shared extraction are drawn (pair_pattern.h), those
-// of `levio` are learned (workload/vio/levio/vision/learned_pairs.h).
+// of `levio` are learned (workload/levio/vision/learned_pairs.h).
 #pragma once
 
 #include <array>

@@ -11,9 +11,9 @@
 
 #include "sim/base/units.h"
 #include "sim/chip/config.h"
-#include "sim/soc/account.h"
 #include "sim/soc/camera.h"
 #include "sim/soc/observer.h"
+#include "sim/soc/run_account.h"
 #include "sim/work/program.h"
 #include "tools/app/result/banded.h"
 #include "traces/trajectories/evaluation.h"

@@ -9,7 +9,7 @@
 #include "sim/base/error.h"
 #include "sim/chip/chip.h"
 #include "sim/outputs/file_system.h"
-#include "sim/soc/account.h"
+#include "sim/soc/run_account.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/result/summary.h"

@@ -9,7 +9,7 @@
 #include "sim/work/functions.h"
 #include "workload/graph/carried_poses.h"
 #include "workload/graph/departing_visual_terms.h"
-#include "workload/vio/levio/optimiser/optimiser.h"
+#include "workload/levio/optimiser/levio_optimiser.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

@@ -1,8 +1,8 @@
 #include "workload/vio/odometry/odometry.h"
 
-#include "workload/loop/loop_closer.h"
-#include "workload/vio/levio/levio_front_end.h"
-#include "workload/vio/next/next_front_end.h"
+#include "workload/levio/levio_front_end.h"
+#include "workload/next/loop/loop_closer.h"
+#include "workload/next/next_front_end.h"
 #include "workload/vio/odometry/back_end.h"
 #include "workload/vio/stages.h"
 

@@ -1,0 +1,81 @@
+#include "workload/levio/levio_front_end.h"
+
+#include "workload/levio/keyframe_insertion.h"
+#include "workload/levio/vision/levio_extractor.h"
+#include "workload/vio/frame_pose.h"
+#include "workload/vio/keyframes.h"
+#include "workload/vio/stages.h"
+
+namespace leviosim::vio {
+
+template <class P>
+LevioFrontEnd<P>::LevioFrontEnd(const Profile& profile, const Rig& rig, work::Machine& cluster,
+                                work::Arena& keyframe_memory, const PoseGraph<P>& graph)
+    : state_(profile, rig, cluster, keyframe_memory, graph),
+      inertial_(state_),
+      random_(profile.sampling_seed) {}
+
+template <class P>
+FrameReport LevioFrontEnd<P>::process(const FrameInput& input) {
+  const work::Arena::Frame memory(state_.machine.local());
+  FrameReport report;
+  Frame<P> frame;
+  take_image(input, state_);
+  inertial_.integrate(input);
+  extract(frame);
+  if (!state_.started) {
+    start_map(state_, frame);
+    report.keyframe = true;
+  } else {
+    locate(frame, report);
+    report.keyframe = is_keyframe(frame);
+    if (report.keyframe) levio::insert_keyframe(state_, frame);
+  }
+  complete(state_, frame, report);
+  return report;
+}
+
+/// Features of the image in L2; images that L1 cannot hold are left to the shared extraction.
+template <class P>
+void LevioFrontEnd<P>::extract(Frame<P>& frame) {
+  if (state_.strips) return extract_frame(state_, frame);
+  const auto stage = state_.machine.stage(stages::kExtraction);
+  const KeyframeRecord<P>& keyframe = state_.keyframe;
+  frame.features =
+      alloc_observed_features<P>(state_.machine.local(), keyframe.features.list.capacity);
+  const Profile& profile = state_.profile;
+  levio::extract_features<P>(
+      state_.machine, keyframe.image, profile.extractor,
+      profile.released ? levio::DescriptorKind::Released : levio::DescriptorKind::Exact,
+      frame.features.list);
+  forget_landmarks(frame);
+}
+
+/// From landmarks, or from the last keyframe, whose matches are needed in any case.
+template <class P>
+void LevioFrontEnd<P>::locate(Frame<P>& frame, FrameReport& report) {
+  const std::optional<Pose<P>> pose =
+      pose_from_landmarks(state_, inertial_, random_, frame, report);
+  alloc_keyframe_matches(state_, frame);
+  const work::Arena::Frame descriptors(state_.machine.local());
+  levio::match_keyframe(state_, frame);
+  frame.T_world_camera = pose ? *pose : pose_from_keyframe(state_, random_, frame, {}, report);
+}
+
+/// It has moved far enough, or can hardly be matched with the last one any more.
+template <class P>
+bool LevioFrontEnd<P>::is_keyframe(const Frame<P>& frame) {
+  using F = typename P::F32;
+  const auto stage = state_.machine.stage(stages::kKeyframeSelection);
+  const Profile& profile = state_.profile;
+  const int matches = frame.matches.list.count;
+  if (matches < profile.min_frame_matches) return true;
+  const F parallax = profile.released ? levio::total_motion(state_, frame)
+                                      : total_parallax(state_, inertial_, frame);
+  return bool(parallax > F(profile.keyframe_parallax * static_cast<float>(matches)));
+}
+
+template class LevioFrontEnd<work::Native>;
+template class LevioFrontEnd<work::Counting>;
+
+}  // namespace leviosim::vio
