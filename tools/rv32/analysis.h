@@ -17,7 +17,7 @@
 
 #include "footprint.h"
 #include "instruction.h"
-#include "program.h"
+#include "traced_program.h"
 
 namespace leviosim::rv32 {
 
@@ -59,8 +59,8 @@ struct Account {
   std::array<std::uint64_t, kKinds> of_kind{};
   std::uint64_t load_use = 0;
   std::uint64_t load_use_xpulp = 0;  ///< if what Xpulp spares does not stand in between
-  std::uint64_t host = 0;       ///< instructions of the simulator's book-keeping
-  std::uint64_t inclusive = 0;  ///< instructions from entry to end, with what it called
+  std::uint64_t host = 0;            ///< instructions of the simulator's book-keeping
+  std::uint64_t inclusive = 0;       ///< instructions from entry to end, with what it called
   std::map<std::string, LibraryUse> library;
 };
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "eigen_conversions.h"
-#include "preintegration_motion.h"
 #include "sim/work/machine.h"
+#include "tests/workload/inertial/preintegration_motion.h"
+#include "tests/workload/math/eigen_conversions.h"
 #include "workload/graph/alignment.h"
 #include "workload/inertial/initialisation.h"
 

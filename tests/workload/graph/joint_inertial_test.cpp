@@ -1,7 +1,7 @@
 // Upright attitudes, and intervals with the biases as unknowns.
 #include <gtest/gtest.h>
 
-#include "preintegration_motion.h"
+#include "tests/workload/inertial/preintegration_motion.h"
 #include "workload/graph/joint_inertial_terms.h"
 #include "workload/inertial/initialisation.h"
 

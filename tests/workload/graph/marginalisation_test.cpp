@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "optimiser_scene.h"
+#include "tests/workload/graph/optimiser_scene.h"
 #include "workload/graph/departing_visual_terms.h"
 #include "workload/vio/odometry/back_end.h"
 #include "workload/vio/profile.h"

@@ -1,8 +1,8 @@
-#include "preintegration_double.h"
+#include "tests/workload/inertial/preintegration_double.h"
 //
 #include <gtest/gtest.h>
 
-#include "preintegration_motion.h"
+#include "tests/workload/inertial/preintegration_motion.h"
 #include "workload/graph/reprojection.h"
 
 namespace leviosim::vio::test {

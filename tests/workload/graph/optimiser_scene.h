@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "preintegration_motion.h"
 #include "sim/work/machine.h"
+#include "tests/workload/inertial/preintegration_motion.h"
 #include "workload/graph/optimiser.h"
 
 namespace leviosim::vio::test {

@@ -1,8 +1,8 @@
 // The normal equations of one iteration, against dense ones in double precision.
 #include <gtest/gtest.h>
 
-#include "optimiser_scene.h"
 #include "tests/support/dense_algebra.h"
+#include "tests/workload/graph/optimiser_scene.h"
 #include "workload/graph/visual_terms.h"
 
 namespace leviosim::vio::test {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "optimiser_scene.h"
+#include "tests/workload/graph/optimiser_scene.h"
 #include "workload/graph/visual_terms.h"
 
 namespace leviosim::vio::test {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "preintegration_motion.h"
+#include "tests/workload/inertial/preintegration_motion.h"
 #include "workload/graph/pose_graph.h"
 
 namespace leviosim::vio::test {

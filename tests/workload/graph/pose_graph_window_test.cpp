@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "optimiser_scene.h"
 #include "pose_graph_fixture.h"
+#include "tests/workload/graph/optimiser_scene.h"
 #include "workload/graph/window.h"
 
 namespace leviosim::vio::test {

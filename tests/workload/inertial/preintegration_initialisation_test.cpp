@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "preintegration_motion.h"
+#include "tests/workload/inertial/preintegration_motion.h"
 #include "workload/inertial/initialisation.h"
 
 namespace leviosim::vio::test {

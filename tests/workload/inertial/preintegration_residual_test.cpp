@@ -1,10 +1,10 @@
-#include "preintegration_double.h"
+#include "tests/workload/inertial/preintegration_double.h"
 //
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "preintegration_motion.h"
+#include "tests/workload/inertial/preintegration_motion.h"
 #include "workload/inertial/bias_estimation.h"
 
 namespace leviosim::vio::test {

@@ -1,11 +1,11 @@
-#include "preintegration_double.h"
+#include "tests/workload/inertial/preintegration_double.h"
 //
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-#include "preintegration_motion.h"
 #include "tests/support/dense_algebra.h"
+#include "tests/workload/inertial/preintegration_motion.h"
 #include "workload/math/solve.h"
 
 namespace leviosim::vio::test {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "optimiser_scene.h"
 #include "tests/support/dense_algebra.h"
+#include "tests/workload/graph/optimiser_scene.h"
 #include "workload/levio/optimiser/cholesky.h"
 
 namespace leviosim::vio::levio {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "optimiser_scene.h"
+#include "tests/workload/graph/optimiser_scene.h"
 #include "workload/graph/carried_poses.h"
 #include "workload/vio/profile.h"
 

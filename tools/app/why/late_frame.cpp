@@ -11,7 +11,7 @@
 #include "sim/base/check.h"
 #include "sim/chip/timing.h"
 #include "sim/events/timebase.h"
-#include "sim/soc/account.h"
+#include "sim/soc/run_account.h"
 #include "sim/work/program.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/result/summary.h"
