@@ -243,10 +243,10 @@ std::vector<Field> energy_fields() {
 EnergyGroup energy_group_of(const Field& field) {
   const auto begins = [&](const char* with) { return field.path.rfind(with, 0) == 0; };
   if (begins("area.")) return EnergyGroup::Area;
+  if (!begins("supply.") && !begins("energy.")) return EnergyGroup::None;
   if (begins("energy.by_size.")) return EnergyGroup::BySize;
-  if (std::find(kFixed.begin(), kFixed.end(), field.path) != kFixed.end())
-    return EnergyGroup::Fixed;
-  return begins("supply.") || begins("energy.") ? EnergyGroup::Always : EnergyGroup::None;
+  const bool fixed = std::find(kFixed.begin(), kFixed.end(), field.path) != kFixed.end();
+  return fixed ? EnergyGroup::Fixed : EnergyGroup::Always;
 }
 
 }  // namespace leviosim::platform

@@ -52,18 +52,21 @@ Task<JobTiming> Chip::control(const work::Job& job) {
 }
 
 Task<JobTiming> Chip::offload(const work::Job& job) {
+  co_await take_core();
+  JobTiming timing = time_offload(job, kernel_.now());
+  co_await kernel_.at(timing.end);
+  leave_core();
+  co_return timing;
+}
+
+JobTiming Chip::time_offload(const work::Job& job, Time begin) {
   const Duration one_way =
       timebase_.clock("controller")
           .duration(counted_cycles(std::round(config_.cluster.events.offload)));
-  co_await take_core();
-  const Time begin = kernel_.now();
-  co_await kernel_.delay(one_way);
-  JobTiming timing = co_await cluster_.run(job);
-  co_await kernel_.delay(one_way);
+  JobTiming timing = cluster_.time(job, begin + one_way);
   timing.begin = begin;
-  timing.end = kernel_.now();
-  leave_core();
-  co_return timing;
+  timing.end = timing.end + one_way;
+  return timing;
 }
 
 }  // namespace leviosim::sim

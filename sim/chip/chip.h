@@ -33,6 +33,9 @@ class Chip {
   Task<JobTiming> offload(const work::Job& job);
   /// co_await: the controller runs the job itself.
   Task<JobTiming> control(const work::Job& job);
+  /// The same of a chip that has nothing else to do.
+  JobTiming time_offload(const work::Job& job, Time begin = {});
+  JobTiming time_control(const work::Job& job) const { return controller_.time(job, {}); }
 
  private:
   /// co_await: whoever works next has a core; where there is one only, first come first served. A

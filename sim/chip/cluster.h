@@ -4,15 +4,19 @@
 // Models: the path of a team fork (dispatch by the master, wake-up of the workers, barrier at the
 // end; a fork right after another finds masks and code as that left them), DMA programming,
 // latency, payload and completion (dma.h), contention within a team (team.h).
+//
+// Nothing outside of the cluster changes how long a job takes once it has begun, so the whole job
+// is timed in one go, from step to step; processes in simulated time only await its end.
 #pragma once
 
-#include <memory>
+#include <span>
 #include <vector>
 
 #include "sim/chip/dma.h"
 #include "sim/chip/team.h"
 #include "sim/chip/timing.h"
-#include "sim/events/channel.h"
+#include "sim/events/kernel.h"
+#include "sim/events/task.h"
 #include "sim/work/program.h"
 
 namespace leviosim::sim {
@@ -26,9 +30,15 @@ class Cluster {
   /// @param workers  size of the team, ≤ config.max_workers, or kMasterAlone
   Cluster(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
 
-  /// co_await: the master runs the job. If the job was recorded for another number of workers,
-  /// worker w of W runs shares w, w+W, … one after the other. One job at a time.
+  /// The master runs the job, which begins at that time. If the job was recorded for another number
+  /// of workers, worker w of W runs shares w, w+W, … one after the other.
+  JobTiming time(const work::Job& job, Time begin);
+  /// co_await: the same from now on, until it is done. One job at a time.
   Task<JobTiming> run(const work::Job& job);
+
+  /// As of Team; jobs outlive the memory.
+  void remember(TeamMemory* memory) { team_.remember(memory); }
+  void recall(const TeamMemory* memory) { team_.recall(memory); }
 
   /// Whether the timings of jobs hold their steps, for who wants to see what each core did when.
   void keep_steps(bool keep) { keep_steps_ = keep; }
@@ -36,39 +46,36 @@ class Cluster {
   void keep_forks(bool keep) { keep_forks_ = keep; }
 
   const ClockDomain& clock() const { return clock_; }
+  const ClusterConfig& config() const { return config_; }
   int workers() const { return workers_; }
 
  private:
-  /// What a worker is sent: its shares, and where it reports to.
-  struct Dispatch {
-    const work::Fork* fork;
-    CycleAccount* account;
-    ForkAccount* of_fork;  ///< in it; null where forks are not asked for
-    Time begin;            ///< of the fork
-    Duration start_up;     ///< until the share begins
-  };
-
-  Process worker(int id);
-  Task<> run_alone(const work::Fork& fork, CycleAccount& account);
+  StageTiming time_stage(const work::StageRun& stage);
+  void step(const work::Serial& serial, CycleAccount& account);
+  void step(const work::Fork& fork, CycleAccount& account);
+  void step(const work::Transfer& transfer, CycleAccount& account);
+  void step(const work::TransferWait& wait, CycleAccount& account);
+  void run_alone(const work::Fork& fork, CycleAccount& account);
+  void until_arrived(Cycles arrival);
+  /// One core works, and the others wait. Returns what its cycles were spent on.
+  /// @param step  that it is
+  MechanismCycles execute(const work::Segment& segment, OperationAccounts* by_operation,
+                          const void* step);
+  /// The shares of a fork that begin then, the master's, if it takes part, last.
+  std::span<TeamShare> shares_of(const work::Fork& fork, Cycles of_workers, Cycles of_master,
+                                 ForkAccount* of_fork);
+  /// The worker's share; where it has several, their sum.
+  const work::Segment& shares_of(int id, const work::Fork& fork);
   /// Cores whose cycles an account adds up.
   int accounted() const { return workers_ > 0 ? workers_ : 1; }
-  Task<> step(const work::Serial& serial, CycleAccount& account);
-  Task<> step(const work::Fork& fork, CycleAccount& account);
-  Task<> step(const work::Transfer& transfer, CycleAccount& account);
-  Task<> step(const work::TransferWait& wait, CycleAccount& account);
-  Task<> until_arrived(Time arrival);
   /// What the team waited for a transfer since `begin`.
-  void book_transfer(CycleAccount& account, Time begin);
-  /// The worker's share; where it has several, their sum, which is put into `sum`.
-  const work::Segment& shares_of(int id, const work::Fork& fork, work::Segment& sum) const;
+  void book_transfer(CycleAccount& account, Cycles begin);
   /// Null where forks are not asked for.
   ForkAccount* fork_in(CycleAccount& account, std::string_view name, double weight) const;
-  void begin_step(const work::Step& step, StageTiming& stage);
-  void end_step();
   /// Of a core that has done its work.
-  void note(int core, Time begin, const MechanismCycles& time);
-  Duration cycles(double n) const;
-  double cycles_since(Time begin, Time end) const;
+  void note(const TeamShare& share);
+  Time at(Cycles instant) const { return job_begin_ + clock_.duration(instant); }
+  double cycles_since(Cycles begin) const { return static_cast<double>((now_ - begin).count()); }
 
   Kernel& kernel_;
   const ClockDomain& clock_;
@@ -76,16 +83,16 @@ class Cluster {
   int workers_;
   Team team_;  ///< the workers and, last, the master
   Dma dma_;
-  std::vector<Time> background_;  ///< arrivals of the job's background transfers
-  Barrier end_of_fork_;
-  std::vector<std::unique_ptr<Channel<Dispatch>>> dispatch_;
   bool keep_steps_ = false;
   bool keep_forks_ = false;
-  bool after_fork_ = false;     ///< the step before was a fork
-  StepTiming* step_ = nullptr;  ///< that runs, if steps are kept
-  Time last_arrival_;
-  double arrivals_ =
-      0;  ///< arrival times of the workers after the begin of the fork, summed, cycles
+  // Of the job that is timed; instants are in cycles since it began.
+  Time job_begin_;
+  Cycles now_;
+  std::vector<Cycles> background_;  ///< arrivals of background transfers
+  bool after_fork_ = false;         ///< the step before was a fork
+  StepTiming* step_ = nullptr;      ///< that is timed, if steps are kept
+  std::vector<TeamShare> shares_;
+  std::vector<work::Segment> sums_;  ///< of shares of a worker, by worker
 };
 
 }  // namespace leviosim::sim

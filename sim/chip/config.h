@@ -176,6 +176,8 @@ struct OpCost {
   Unit unit = Unit::Core;
   double busy = 1;       ///< cycles that it occupies the unit, if that is not the core
   bool routine = false;  ///< the numbers are of a whole library routine as it was compiled
+
+  friend bool operator==(const OpCost&, const OpCost&) = default;
 };
 
 /// What operations cost that files leave out: those that are older than the operation.
@@ -195,6 +197,7 @@ struct CoreConfig {
   work::CompiledFor code = work::CompiledFor::Rv32imfc;  ///< whose measured code it executes
 
   const OpCost& operator[](work::Op op) const { return ops[work::index(op)]; }
+  friend bool operator==(const CoreConfig&, const CoreConfig&) = default;
 };
 
 /// Arithmetic units shared by the cores of a cluster. How long an operation occupies its unit is
@@ -211,6 +214,8 @@ struct FpuConfig {
   int int64_units = 0;    ///< units for 64-bit integers, mapped as the floating-point ones
   double collisions = 0;  ///< chance collisions at a unit, over those of cores at any phase; 0:
                           ///< cores find their turns
+
+  friend bool operator==(const FpuConfig&, const FpuConfig&) = default;
 };
 
 /// Instruction caches of a group of cores, with L2 behind them (instruction_cache.h).
@@ -233,6 +238,8 @@ struct InstructionCacheConfig {
 
   /// Cycles until the whole of a line that has to come from L2 is there.
   double refill() const { return shared_miss + static_cast<double>(line.count()) / refill_width; }
+
+  friend bool operator==(const InstructionCacheConfig&, const InstructionCacheConfig&) = default;
 };
 
 struct L1Config {
@@ -249,6 +256,8 @@ struct AcceleratorConfig {
   double latency = 0;          ///< cycles of a call besides those of its items
   double items_per_cycle = 1;  ///< of each unit
   double l1_words = 0;         ///< words of L1 that a unit moves per cycle while it works
+
+  friend bool operator==(const AcceleratorConfig&, const AcceleratorConfig&) = default;
 };
 using Accelerators = std::array<AcceleratorConfig, work::kOffloadKindCount>;
 

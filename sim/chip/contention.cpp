@@ -9,8 +9,7 @@ namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-// The limits of one unit depend on the rates that the others allow. A few rounds settle it; the
-// bound only keeps a pathological mix from going on for ever.
+// A few rounds settle the rates; the bound only keeps a pathological mix from going on for ever.
 constexpr int kMaxRounds = 32;
 constexpr double kSettled = 1e-9;
 
@@ -80,7 +79,8 @@ Runner Runner::of(int core, const Demand& demand) {
 
 Contention::Contention(const ClusterConfig& config)
     : banks_(config.l1.banks),
-      code_banks_(config.icache.shared_banks),
+      wait_for_bank_(1 / (2.0 * config.l1.banks)),
+      wait_for_code_bank_(1 / (2.0 * config.icache.shared_banks)),
       stream_conflicts_(config.l1.stream_conflicts),
       collisions_(config.fpu.collisions) {
   const FpuConfig& fpu = config.fpu;
@@ -94,13 +94,226 @@ Contention::Contention(const ClusterConfig& config)
   pools_[index(Unit::Bank)] = {1, 1.0};
   pools_[index(Unit::Refill)] = {1, config.icache.refills};
   shared_ = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::L1, Unit::Refill};
-  if (fpu.dividers > 0) queues_.push_back(Unit::Divider);
+  const auto add_queue = [&](Unit unit, int units) {
+    pools_[index(unit)] = {1, static_cast<double>(units)};
+    if (units > 0 && collisions_ > 0) queues_.push_back({unit, static_cast<double>(units), {}});
+  };
+  add_queue(Unit::Divider, fpu.dividers);
   for (const work::OffloadKindInfo& info : work::kOffloadKinds) {
     const int units = config.accelerators[work::index(info.kernel)].units;
     if (units == 0) continue;
     shared_.push_back(accelerator_of(info.kernel));
-    queues_.push_back(shared_.back());
-    pools_[index(shared_.back())] = {1, static_cast<double>(units)};
+    add_queue(shared_.back(), units);
+  }
+}
+
+void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
+                       double dma_words) {
+  progress.assign(runners.size(), Progress{});
+  if (runners.size() < 2 && dma_words == 0) return;
+  begin(runners, dma_words);
+  for (int i = 0; i < kMaxRounds; ++i) {
+    ++rounds_;
+    if (round(runners) < kSettled) break;
+    if (scarce_.empty())
+      secant_step(i == 0);
+    else
+      std::swap(pace_, next_pace_);
+  }
+  sum_up();
+  book_losses(progress);
+}
+
+void Contention::begin(const std::vector<Runner>& runners, double dma_words) {
+  const std::size_t n = runners.size();
+  dma_words_ = dma_words;
+  // What the DMA moves, up to half of what there is.
+  pools_[index(Unit::L1)] = {1, std::max(banks_ - dma_words, 0.5 * banks_)};
+  for (std::vector<double>* of_runners : {&pace_, &rate_, &free_rate_}) of_runners->assign(n, 1.0);
+  for (std::vector<double>* of_runners : {&colliding_, &queued_}) of_runners->assign(n, 0.0);
+  for (std::vector<double>* of_runners :
+       {&next_pace_, &change_, &last_next_pace_, &last_change_, &streamed_, &scattered_, &fetches_})
+    of_runners->resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    streamed_[i] = runners[i].streamed;
+    scattered_[i] = runners[i].scattered;
+    fetches_[i] = runners[i].fetches;
+  }
+  find_scarce(runners);
+  for (const Unit unit : scarce_) limits_[index(unit)].assign(n, kUnlimited);
+  pairs_.clear();
+  if (collisions_ == 0) return;
+  for (const Unit unit : {Unit::Fpu, Unit::Int64}) pair_up(runners, unit);
+  for (Queue& queue : queues_) {
+    queue.members.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      const UnitDemand& asked = runners[i].units[index(queue.unit)];
+      if (asked.requests > 0)
+        queue.members.push_back({i, asked.requests, asked.cycles / asked.requests});
+    }
+    if (static_cast<double>(queue.members.size()) <= queue.units) queue.members.clear();
+  }
+}
+
+void Contention::pair_up(const std::vector<Runner>& runners, Unit unit) {
+  const Pools& kind = pools_[index(unit)];
+  if (kind.pools == 0 || kind.capacity != 1) return;
+  for (std::size_t i = 0; i < runners.size(); ++i) {
+    const UnitDemand& a = runners[i].units[index(unit)];
+    if (a.cycles == 0) continue;
+    for (std::size_t j = i + 1; j < runners.size(); ++j) {
+      const UnitDemand& b = runners[j].units[index(unit)];
+      if (b.cycles == 0 || kind.pool_of(runners[i]) != kind.pool_of(runners[j])) continue;
+      const bool by_chance = a.run == 0 || b.run == 0;
+      pairs_.push_back({i, j, a.cycles, b.cycles,
+                        by_chance ? 0 : collisions_in_runs(1, a.run, 1, b.run), by_chance});
+    }
+  }
+}
+
+/// Units that would not serve all requests at the highest rates, which are 1.
+void Contention::find_scarce(const std::vector<Runner>& runners) {
+  scarce_.clear();
+  for (const Unit unit : shared_) {
+    const Pools& kind = pools_[index(unit)];
+    if (kind.pools == 0) continue;
+    if (kind.pools == 1) {
+      double demand = 0;
+      for (const Runner& runner : runners) demand += runner.units[index(unit)].cycles;
+      if (demand > kind.capacity) scarce_.push_back(unit);
+      continue;
+    }
+    demand_.assign(static_cast<std::size_t>(kind.pools), 0.0);
+    for (const Runner& runner : runners)
+      demand_[kind.pool_of(runner)] += runner.units[index(unit)].cycles;
+    if (*std::max_element(demand_.begin(), demand_.end()) > kind.capacity) scarce_.push_back(unit);
+  }
+}
+
+double Contention::round(const std::vector<Runner>& runners) {
+  const std::size_t n = runners.size();
+  if (!pairs_.empty()) collide();
+  if (scarce_.empty())
+    for (std::size_t i = 0; i < n; ++i) rate_[i] = pace_[i] / (1 + colliding_[i]);
+  else
+    last_rate_ = rate_;
+  std::fill(queued_.begin(), queued_.end(), 0.0);
+  for (Queue& queue : queues_) {
+    if (queue.members.empty()) continue;
+    scarce_.empty() ? wait_in(queue) : wait_some_more_in(queue);
+  }
+  sum_up();
+  for (std::size_t i = 0; i < n; ++i)
+    free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + colliding_[i] + queued_[i]);
+  // Each unit's limit is found with what the *other* limits leave of the demand.
+  for (const Unit unit : scarce_) {
+    for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate_[i], allowed(i, index(unit)));
+    limit(index(unit), runners);
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    rate_[i] =
+        scarce_.empty() ? free_rate_[i] : std::min(free_rate_[i], allowed(i, index(Unit::Core)));
+    next_pace_[i] = rate_[i] * (1 + colliding_[i]);
+    change_[i] = next_pace_[i] - pace_[i];
+    largest = std::max(largest, std::abs(scarce_.empty() ? change_[i] : rate_[i] - last_rate_[i]));
+  }
+  return largest;
+}
+
+/// The paces of the next round.
+void Contention::secant_step(bool first) {
+  double along = 0;
+  double curved = 0;
+  for (std::size_t i = 0; !first && i < pace_.size(); ++i) {
+    const double bend = change_[i] - last_change_[i];
+    along += change_[i] * bend;
+    curved += bend * bend;
+  }
+  const double back = curved > 0 ? along / curved : 0;
+  for (std::size_t i = 0; i < pace_.size(); ++i) {
+    const double pace =
+        back == 0 ? next_pace_[i] : next_pace_[i] - back * (next_pace_[i] - last_next_pace_[i]);
+    pace_[i] = pace > 0 && pace <= 1 ? pace : next_pace_[i];
+  }
+  std::swap(last_change_, change_);
+  std::swap(last_next_pace_, next_pace_);
+}
+
+/// What runners lose by chance at units that they share, per lone cycle. What else slows a core
+/// down keeps it from asking as often.
+void Contention::collide() {
+  std::fill(colliding_.begin(), colliding_.end(), 0.0);
+  for (const Pair& pair : pairs_) {
+    const double a = std::min(1.0, pair.of_a * pace_[pair.a]);
+    const double b = std::min(1.0, pair.of_b * pace_[pair.b]);
+    if (pair.by_chance) {
+      colliding_[pair.a] += collisions_by_chance(a, b);
+      colliding_[pair.b] += collisions_by_chance(b, a);
+    } else {
+      colliding_[pair.a] += a * b * pair.in_runs;
+      colliding_[pair.b] += a * b * pair.in_runs;
+    }
+  }
+  for (std::size_t i = 0; i < colliding_.size(); ++i) colliding_[i] *= collisions_ / pace_[i];
+}
+
+double Contention::counted_part(const Queue& queue) const {
+  if (queue.units == 1) return collisions_;
+  double busy = 0;  // units, on average
+  for (const Queue::Member& m : queue.members) busy += m.requests * rate_[m.runner] * m.busy;
+  // With several units a request waits only while all are busy, and for the first that ends.
+  return collisions_ * std::pow(std::min(1.0, busy / queue.units), queue.units - 1) / queue.units;
+}
+
+/// What all requests of a queue wait behind each other. With A what of it counts, request i waits
+/// w_i = A (S - s_i), where s_i is what one waits behind those of runner i (queued_behind), and S
+/// the sum of these. As s_i depends on w_i, it is a rising function of S, linear up to a bound:
+/// so S is the zero of a function that bends one way only, and Newton's steps from above end there.
+void Contention::wait_in(Queue& queue) {
+  const double counts = counted_part(queue);
+  double sum = 0;
+  for (Queue::Member& m : queue.members) {
+    const double served = m.requests * rate_[m.runner] * m.busy;
+    const double part = 1 / (1 + counts * served);
+    m.most = m.busy * (1 - served / 2);
+    m.constant = m.busy * served / 2 * part;
+    m.slope = counts * served * part;
+    sum += m.most;
+  }
+  for (bool bounded = true; bounded;) {
+    bounded = false;
+    double constant = 0;
+    double slope = 0;
+    for (const Queue::Member& m : queue.members) {
+      const bool at_most = m.constant + m.slope * sum > m.most;
+      bounded |= at_most;
+      constant += at_most ? m.most : m.constant;
+      slope += at_most ? 0 : m.slope;
+    }
+    const double next = constant / (1 - slope);
+    if (!(next < sum)) break;
+    sum = next;
+  }
+  for (Queue::Member& m : queue.members) {
+    m.waiting = counts * (sum - std::min(m.most, m.constant + m.slope * sum));
+    queued_[m.runner] += m.requests * m.waiting;
+  }
+}
+
+/// A step towards what wait_in() finds.
+void Contention::wait_some_more_in(Queue& queue) {
+  const double counts = counted_part(queue);
+  const auto behind = [&](const Queue::Member& m) {
+    return queued_behind({m.requests * rate_[m.runner], m.busy, m.waiting});
+  };
+  double sum = 0;
+  for (const Queue::Member& m : queue.members) sum += behind(m);
+  for (Queue::Member& m : queue.members) {
+    sum -= behind(m);
+    m.waiting = (m.waiting + counts * sum) / 2;
+    sum += behind(m);
+    queued_[m.runner] += m.requests * m.waiting;
   }
 }
 
@@ -113,7 +326,7 @@ void Contention::limit(std::size_t unit, const std::vector<Runner>& runners) {
     requests_.clear();
     for (std::size_t i = 0; i < runners.size(); ++i) {
       const UnitDemand& demand = runners[i].units[unit];
-      if (demand.requests > 0 && pool_of_[unit][i] == pool)
+      if (demand.requests > 0 && kind.pool_of(runners[i]) == static_cast<std::size_t>(pool))
         requests_.push_back(
             {i, demand.requests, demand.requests * rate_[i], demand.cycles / demand.requests});
     }
@@ -121,195 +334,54 @@ void Contention::limit(std::size_t unit, const std::vector<Runner>& runners) {
   }
 }
 
-/// Whether the units serve all requests at the highest rates, which are 1.
-bool Contention::serves_everybody(Unit unit, const std::vector<Runner>& runners) {
-  const Pools& kind = pools_[index(unit)];
-  if (kind.pools == 0) return true;
-  demand_.assign(static_cast<std::size_t>(kind.pools), 0.0);
-  for (std::size_t i = 0; i < runners.size(); ++i) {
-    const UnitDemand& asked = runners[i].units[index(unit)];
-    if (asked.requests > 0)
-      demand_[static_cast<std::size_t>(pool_of_[index(unit)][i])] +=
-          asked.requests * (asked.cycles / asked.requests);
-  }
-  return std::none_of(demand_.begin(), demand_.end(),
-                      [&](double demand) { return demand > kind.capacity; });
-}
-
 /// The rate that all kinds of units but one allow a runner.
 double Contention::allowed(std::size_t runner, std::size_t except) const {
   double rate = kUnlimited;
-  for (const Unit unit : shared_)
+  for (const Unit unit : scarce_)
     if (index(unit) != except) rate = std::min(rate, limits_[index(unit)][runner]);
   return rate;
 }
 
-void Contention::sum_up(const std::vector<Runner>& runners, double dma_words) {
-  runners_ = &runners;
-  dma_words_ = dma_words;
+void Contention::sum_up() {
   all_streamed_ = all_scattered_ = all_fetches_ = 0;
-  for (std::size_t i = 0; i < runners.size(); ++i) {
-    all_streamed_ += runners[i].streamed * rate_[i];
-    all_scattered_ += runners[i].scattered * rate_[i];
-    all_fetches_ += runners[i].fetches * rate_[i];
+  for (std::size_t i = 0; i < rate_.size(); ++i) {
+    all_streamed_ += streamed_[i] * rate_[i];
+    all_scattered_ += scattered_[i] * rate_[i];
+    all_fetches_ += fetches_[i] * rate_[i];
   }
 }
 
 double Contention::l1_delay(std::size_t i) const {
-  const Runner& me = (*runners_)[i];
-  const double scattered = all_scattered_ - me.scattered * rate_[i] + dma_words_;
-  const double streamed = all_streamed_ - me.streamed * rate_[i];
+  const double scattered = all_scattered_ - scattered_[i] * rate_[i] + dma_words_;
+  const double streamed = all_streamed_ - streamed_[i] * rate_[i];
   const double beside_streams = scattered + stream_conflicts_ * streamed;
-  return (me.scattered * (scattered + streamed) + me.streamed * beside_streams) / (2.0 * banks_);
+  return (scattered_[i] * (scattered + streamed) + streamed_[i] * beside_streams) * wait_for_bank_;
 }
 
 double Contention::fetch_delay(std::size_t i) const {
-  const Runner& me = (*runners_)[i];
-  return me.fetches * (all_fetches_ - me.fetches * rate_[i]) / (2.0 * code_banks_);
+  return fetches_[i] * (all_fetches_ - fetches_[i] * rate_[i]) * wait_for_code_bank_;
 }
 
-void Contention::collide() {
-  if (collisions_ == 0) return;
-  const std::vector<Runner>& runners = *runners_;
-  const std::size_t n = runners.size();
-  // What else slows a core down keeps it from asking as often.
-  for (std::size_t i = 0; i < n; ++i) pace_[i] = std::min(1.0, rate_[i] * (1 + colliding_[i]));
-  colliding_.assign(n, 0.0);
-  for (const Unit unit : {Unit::Fpu, Unit::Int64}) {
-    const Pools& kind = pools_[index(unit)];
-    if (kind.pools == 0 || kind.capacity != 1) continue;
-    const std::vector<int>& pool_of = pool_of_[index(unit)];
-    asked_.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
-      asked_[i] = std::min(1.0, runners[i].units[index(unit)].cycles * pace_[i]);
-    const auto collisions_of = [&](std::size_t i, std::size_t j) {
-      const double run = runners[i].units[index(unit)].run;
-      const double other_run = runners[j].units[index(unit)].run;
-      return run > 0 && other_run > 0 ? collisions_in_runs(asked_[i], run, asked_[j], other_run)
-                                      : collisions_by_chance(asked_[i], asked_[j]);
-    };
-    for (std::size_t i = 0; i < n; ++i) {
-      if (asked_[i] == 0) continue;
-      double colliding = colliding_[i];
-      for (std::size_t j = 0; j < n; ++j)
-        if (pool_of[j] == pool_of[i] && j != i)
-          colliding += collisions_ * collisions_of(i, j) / pace_[i];
-      colliding_[i] = colliding;
-    }
+/// Books the time that runners lose on what they wait for.
+void Contention::book_losses(std::vector<Progress>& progress) const {
+  for (std::size_t i = 0; i < progress.size(); ++i) {
+    progress[i].rate = rate_[i];
+    CoreCycles& on = progress[i].lost;
+    on[Mechanism::Banks] = rate_[i] * l1_delay(i);
+    on[Mechanism::FetchContention] = rate_[i] * fetch_delay(i);
+    on[Mechanism::Fpu] = rate_[i] * colliding_[i];
   }
-}
-
-void Contention::queue() {
-  if (collisions_ == 0) return;
-  for (const Unit unit : queues_) queue_at(unit);
-}
-
-void Contention::queue_at(Unit unit) {
-  const std::size_t k = index(unit);
-  const double units = pools_[k].capacity;
-  const std::vector<Runner>& runners = *runners_;
-  const std::size_t n = runners.size();
-  double asking = 0;
-  double busy = 0;  // units, on average
-  for (std::size_t i = 0; i < n; ++i) {
-    asking += runners[i].units[k].requests > 0 ? 1 : 0;
-    busy += runners[i].units[k].cycles * rate_[i];
+  for (const Queue& queue : queues_)
+    for (const Queue::Member& m : queue.members)
+      progress[m.runner].lost[mechanism_of(queue.unit)] += rate_[m.runner] * m.requests * m.waiting;
+  for (std::size_t i = 0; i < progress.size(); ++i) {
+    CoreCycles& on = progress[i].lost;
+    const auto tightest = std::min_element(scarce_.begin(), scarce_.end(), [&](Unit a, Unit b) {
+      return limits_[index(a)][i] < limits_[index(b)][i];
+    });
+    const Unit unit = tightest == scarce_.end() ? Unit::Fpu : *tightest;
+    on[mechanism_of(unit)] += std::max(0.0, 1.0 - rate_[i] - on.total());
   }
-  if (asking <= units) return;
-  std::vector<double>& waiting = waiting_[k];
-  // With several units a request waits only while all are busy, and for the first that ends.
-  const double all_busy = std::pow(std::min(1.0, busy / units), units - 1) / units;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (runners[i].units[k].requests == 0) continue;
-    double behind = 0;
-    for (std::size_t j = 0; j < n; ++j) {
-      const UnitDemand& other = runners[j].units[k];
-      if (j != i && other.requests > 0)
-        behind +=
-            queued_behind({other.requests * rate_[j], other.cycles / other.requests, waiting[j]});
-    }
-    waiting[i] = (waiting[i] + collisions_ * all_busy * behind) / 2;  // damped
-  }
-}
-
-double Contention::queued(Unit unit, std::size_t i) const {
-  return (*runners_)[i].units[index(unit)].requests * waiting_[index(unit)][i];
-}
-
-double Contention::queued(std::size_t i) const {
-  double cycles = 0;
-  for (const Unit unit : queues_) cycles += queued(unit, i);
-  return cycles;
-}
-
-/// Books the time that a runner loses on what it waits for.
-void Contention::book_losses(std::size_t i, Progress& p) const {
-  CoreCycles& on = p.lost;
-  on[Mechanism::Banks] = p.rate * l1_delay(i);
-  on[Mechanism::FetchContention] = p.rate * fetch_delay(i);
-  on[Mechanism::Fpu] = p.rate * colliding_[i];
-  double lost =
-      1.0 - p.rate - on[Mechanism::Banks] - on[Mechanism::FetchContention] - on[Mechanism::Fpu];
-  for (const Unit unit : queues_) {
-    const double waited = p.rate * queued(unit, i);
-    on[mechanism_of(unit)] += waited;
-    lost -= waited;
-  }
-  const auto tightest = std::min_element(shared_.begin(), shared_.end(), [&](Unit a, Unit b) {
-    return limits_[index(a)][i] < limits_[index(b)][i];
-  });
-  on[mechanism_of(*tightest)] += std::max(0.0, lost);
-}
-
-void Contention::solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
-                       double dma_words) {
-  const std::size_t n = runners.size();
-  rate_.assign(n, 1.0);
-  for (const Unit unit : shared_) limits_[index(unit)].assign(n, kUnlimited);
-  progress.assign(n, Progress{});
-  colliding_.assign(n, 0.0);
-  for (const Unit unit : queues_) waiting_[index(unit)].assign(n, 0.0);
-  pace_.assign(n, 1.0);
-  if (n < 2 && dma_words == 0) return;
-
-  // What the DMA moves, up to half of what there is.
-  pools_[index(Unit::L1)] = {1, std::max(banks_ - dma_words, 0.5 * banks_)};
-  for (const Unit unit : shared_) {
-    std::vector<int>& pool_of = pool_of_[index(unit)];
-    const int pools = pools_[index(unit)].pools;
-    pool_of.resize(n);
-    for (std::size_t i = 0; i < n; ++i) pool_of[i] = pools > 1 ? runners[i].core % pools : 0;
-  }
-  std::array<Unit, kUnitCount> scarce{};
-  std::size_t scarce_units = 0;
-  for (const Unit unit : shared_)
-    if (!serves_everybody(unit, runners)) scarce[scarce_units++] = unit;
-
-  free_rate_.resize(n);
-  for (int round = 0; round < kMaxRounds; ++round) {
-    double change = 0;
-    sum_up(runners, dma_words);
-    collide();
-    queue();
-    for (std::size_t i = 0; i < n; ++i)
-      free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + colliding_[i] + queued(i));
-    // Each unit's limit is found with what the *other* limits leave of the demand.
-    for (std::size_t k = 0; k < scarce_units; ++k) {
-      const std::size_t unit = index(scarce[k]);
-      for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate_[i], allowed(i, unit));
-      limit(unit, runners);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const double rate = scarce_units == 0
-                              ? free_rate_[i]
-                              : std::min(free_rate_[i], allowed(i, index(Unit::Core)));
-      change = std::max(change, std::abs(rate - progress[i].rate));
-      rate_[i] = progress[i].rate = rate;
-    }
-    if (change < kSettled) break;
-  }
-  sum_up(runners, dma_words);
-  for (std::size_t i = 0; i < n; ++i) book_losses(i, progress[i]);
 }
 
 }  // namespace leviosim::sim

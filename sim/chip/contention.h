@@ -100,7 +100,17 @@ struct UnitRequest {
   double busy;  ///< cycles that one of them occupies the unit, on average
 };
 
-/// Solves the rates of all runners at once. Results are in the order of the runners.
+/// Solves the rates of all runners at once. Results are in the order of the runners, depend on
+/// nothing but the runners and the DMA, and are within 1e-8 of the fixed point of the equations
+/// above.
+///
+/// What is unknown is each runner's *pace*: its rate but for what it loses by chance. From paces
+/// follow collisions, from these rates, from these queues (in closed form), waits and the next
+/// paces. Each round after the second starts where a secant of the two before has its zero.
+///
+/// Units that cannot serve all make limits, which have corners. Rounds then go on from the rates of
+/// the one before, with half of what queues change, until rates no longer change: those that limits
+/// hold back settle at once, however long their queues still become.
 class Contention {
  public:
   explicit Contention(const ClusterConfig& config);
@@ -108,53 +118,86 @@ class Contention {
   /// @param dma_words  words per cycle that the DMA moves in L1
   void solve(const std::vector<Runner>& runners, std::vector<Progress>& progress,
              double dma_words = 0);
+  /// Rounds of all solutions so far.
+  std::int64_t rounds() const { return rounds_; }
 
  private:
   /// Units of one kind: `pools` groups of `capacity` units; core c uses group c mod pools.
   struct Pools {
     int pools = 0;
     double capacity = 0;
+    std::size_t pool_of(const Runner& runner) const {
+      return pools > 1 ? static_cast<std::size_t>(runner.core % pools) : 0;
+    }
+  };
+  /// Two runners that share a unit at which they collide by chance.
+  struct Pair {
+    std::size_t a, b;
+    double of_a, of_b;  ///< cycles of the unit that they ask for per lone cycle
+    double in_runs;     ///< of operations in runs: what collisions_in_runs() has of both…
+    bool by_chance;     ///< … or whether they come in any order
+  };
+  /// A queue in front of a unit, and who stands in it.
+  struct Queue {
+    Unit unit;
+    double units;
+    struct Member {
+      std::size_t runner;
+      double requests;     ///< per lone cycle
+      double busy;         ///< cycles that one occupies the unit
+      double waiting = 0;  ///< cycles of one in the queue
+      // What one waits behind those of this runner, by what it waits behind all (wait_in()).
+      double constant = 0, slope = 0, most = 0;
+    };
+    std::vector<Member> members;
   };
 
-  bool serves_everybody(Unit unit, const std::vector<Runner>& runners);
+  void begin(const std::vector<Runner>& runners, double dma_words);
+  void pair_up(const std::vector<Runner>& runners, Unit unit);
+  void find_scarce(const std::vector<Runner>& runners);
+  /// One round: from paces to rates. Returns the largest change of a pace, or of a rate that has
+  /// limits.
+  double round(const std::vector<Runner>& runners);
+  void collide();
+  void sum_up();
+  /// What queued requests count of those before them: all if there is one unit.
+  double counted_part(const Queue& queue) const;
+  void wait_in(Queue& queue);
+  void wait_some_more_in(Queue& queue);
   void limit(std::size_t unit, const std::vector<Runner>& runners);
   double allowed(std::size_t runner, std::size_t except) const;
+  void secant_step(bool first);
   /// Cycles per lone cycle that a runner waits for L1 banks, and for those of the instruction
   /// cache.
   double l1_delay(std::size_t runner) const;
   double fetch_delay(std::size_t runner) const;
-  void sum_up(const std::vector<Runner>& runners, double dma_words);
-  /// Sets what each runner loses per lone cycle by chance collisions at shared units, and how long
-  /// each of its requests waits in a queue.
-  void collide();
-  void queue();
-  void queue_at(Unit unit);
-  /// Cycles per lone cycle that a runner waits in the queue of a unit, and in all.
-  double queued(Unit unit, std::size_t runner) const;
-  double queued(std::size_t runner) const;
-  void book_losses(std::size_t runner, Progress& progress) const;
+  void book_losses(std::vector<Progress>& progress) const;
 
   std::array<Pools, kUnitCount> pools_;
   std::vector<Unit> shared_;  ///< kinds of units that there are
-  std::vector<Unit> queues_;  ///< those of them with a queue
   int banks_;
-  int code_banks_;
+  double wait_for_bank_;       ///< of an access, for each one per cycle beside it
+  double wait_for_code_bank_;  ///< of a fetch from the shared instruction cache
   double stream_conflicts_;
   double collisions_;
-  const std::vector<Runner>* runners_ = nullptr;  ///< while solving
-  double all_streamed_ = 0;                       ///< per cycle at the present rates, by everybody
+  std::int64_t rounds_ = 0;
+  // Of the solution that is sought; vectors are by runner, and kept for their memory.
+  double all_streamed_ = 0;  ///< per cycle at the present rates, by everybody
   double all_scattered_ = 0;
   double all_fetches_ = 0;
   double dma_words_ = 0;
-  std::vector<double> rate_;                             ///< current estimate
-  std::vector<double> colliding_;                        ///< lost by chance per lone cycle
-  std::vector<double> pace_;                             ///< rate but for what is lost by chance
-  std::vector<double> free_rate_;                        ///< rate without units that serve in turn
-  std::array<std::vector<double>, kUnitCount> limits_;   ///< highest rate that each unit allows
-  std::array<std::vector<double>, kUnitCount> waiting_;  ///< cycles of each request in a queue
-  std::array<std::vector<int>, kUnitCount> pool_of_;     ///< which group of units each runner uses
-  // Scratch, kept for its memory.
-  std::vector<double> asked_;
+  std::vector<double> streamed_, scattered_, fetches_;  ///< per lone cycle
+  std::vector<Pair> pairs_;
+  std::vector<Queue> queues_;
+  std::vector<Unit> scarce_;  ///< units that do not serve everybody at rate 1
+  std::vector<double> pace_, next_pace_, change_;
+  std::vector<double> last_next_pace_, last_change_;  ///< of the round before
+  std::vector<double> rate_;
+  std::vector<double> last_rate_;                       ///< of the round before
+  std::vector<double> colliding_;                       ///< lost by chance per lone cycle
+  std::vector<double> queued_;                          ///< waited in queues per lone cycle
+  std::vector<double> free_rate_;                       ///< rate without units that serve in turn
+  std::array<std::vector<double>, kUnitCount> limits_;  ///< highest rate that each unit allows
   std::vector<double> demand_;
   std::vector<UnitRequest> requests_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
@@ -12,16 +13,21 @@
 namespace leviosim::sim {
 
 Task<JobTiming> Controller::run(const work::Job& job) {
-  JobTiming timing{kernel_.now(), kernel_.now(), {}};
+  JobTiming timing = time(job, kernel_.now());
+  co_await kernel_.at(timing.end);
+  co_return timing;
+}
+
+JobTiming Controller::time(const work::Job& job, Time begin) const {
+  JobTiming timing{begin, begin, {}};
   for (const work::StageRun& stage : job.stages) {
-    StageTiming s{stage.stage, kernel_.now(), {}, {}, {}};
+    StageTiming s{stage.stage, timing.end, {}, {}, {}};
     book(s, stage);
-    co_await kernel_.delay(clock_.duration(s.cycles));
-    s.end = kernel_.now();
+    timing.end = s.end = s.begin + clock_.duration(s.cycles);
+    if (s.end > kLastTime) fail_beyond_time();
     timing.stages.push_back(std::move(s));
   }
-  timing.end = kernel_.now();
-  co_return timing;
+  return timing;
 }
 
 /// Cycles of a stage, and its account.

@@ -20,8 +20,11 @@ class Controller {
         config_(config),
         code_(config.icache, config.icache.worker, 1) {}
 
-  /// co_await: runs the job. Forks run their shares one after the other; transfers copy nothing,
-  /// since the controller works where the data lies, except for those from and to external memory.
+  /// Runs the job, which begins at that time. Forks run their shares one after the other; transfers
+  /// copy nothing, since the controller works where the data lies, except for those from and to
+  /// external memory.
+  JobTiming time(const work::Job& job, Time begin) const;
+  /// co_await: the same from now on, until it is done.
   Task<JobTiming> run(const work::Job& job);
 
   /// As of Cluster.

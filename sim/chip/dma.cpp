@@ -22,37 +22,51 @@ double transfer_cycles(const DmaConfig& dma, Bytes bytes) {
          dma.completion;
 }
 
-Dma::Dma(Kernel& kernel, const ClockDomain& clock, const DmaConfig& config, Team& team)
-    : kernel_(kernel), clock_(clock), config_(config), team_(team) {}
+void Traffic::forget(Cycles before) {
+  std::erase_if(data_, [&](const Interval& data) { return data.end <= before; });
+}
 
-Duration Dma::cycles(double n) const { return clock_.duration(counted_cycles(std::round(n))); }
+double Traffic::words(Cycles now) const {
+  double words = 0;
+  for (const Interval& data : data_) words += data.begin <= now && now < data.end ? words_ : 0;
+  return words;
+}
 
-Time Dma::room() {
-  const Time now = kernel_.now();
-  std::erase_if(under_way_, [&](Time end) { return end <= now; });
+Cycles Traffic::next_change(Cycles now) const {
+  Cycles next = kNever;
+  for (const Interval& data : data_)
+    for (const Cycles change : {data.begin, data.end})
+      if (change > now) next = std::min(next, change);
+  return next;
+}
+
+Dma::Dma(const DmaConfig& config)
+    : config_(config), traffic_(config.bytes_per_cycle / kWordBytes) {}
+
+void Dma::begin_job() {
+  traffic_.forget(Traffic::kNever);
+  free_ = {};
+  under_way_.clear();
+}
+
+Cycles Dma::room(Cycles now) {
+  std::erase_if(under_way_, [&](Cycles end) { return end <= now; });
   const auto most = static_cast<std::size_t>(config_.commands);
   if (under_way_.empty() || under_way_.size() < most) return now;
   return *std::min_element(under_way_.begin(), under_way_.end());
 }
 
-DataTiming Dma::start(const work::Transfer& transfer) {
+Interval Dma::start(const work::Transfer& transfer, Cycles now) {
   check(work::is_between_l1_and_l2(transfer.direction), "the cluster's DMA reaches L1 and L2 only");
-  Channel& channel = channels_[transfer.direction == work::Direction::L2ToL1 ? 0 : 1];
-  const Time begin = std::max(channel.free, kernel_.now() + cycles(config_.first_data));
-  if (begin > kLastTime) fail_beyond_time();
-  channel.free = begin + cycles(payload_cycles(config_, transfer.bytes));
-  if (config_.commands > 0) under_way_.push_back(channel.free);
-  // Nobody computes during a transfer that the master waits for.
-  if (transfer.background) kernel_.spawn("DMA data", disturb(begin, channel.free));
-  return {begin, channel.free};
-}
-
-Process Dma::disturb(Time begin, Time end) {
-  const double words = config_.bytes_per_cycle / kWordBytes;
-  co_await kernel_.at(begin);
-  team_.change_traffic(words);
-  co_await kernel_.at(end);
-  team_.change_traffic(-words);
+  Cycles& free = free_[transfer.direction == work::Direction::L2ToL1 ? 0 : 1];
+  const Cycles begin = std::max(free, later(now, counted_cycles(std::round(config_.first_data))));
+  free = later(begin, counted_cycles(std::round(payload_cycles(config_, transfer.bytes))));
+  if (config_.commands > 0) under_way_.push_back(free);
+  if (transfer.background) {
+    traffic_.forget(now);
+    traffic_.add({begin, free});
+  }
+  return {begin, free};
 }
 
 }  // namespace leviosim::sim

@@ -10,12 +10,11 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
+#include "sim/base/units.h"
 #include "sim/chip/config.h"
-#include "sim/chip/team.h"
-#include "sim/events/kernel.h"
-#include "sim/events/task.h"
 #include "sim/work/program.h"
 
 namespace leviosim::sim {
@@ -24,30 +23,51 @@ namespace leviosim::sim {
 /// transfer is under way.
 double transfer_cycles(const DmaConfig& dma, Bytes bytes);
 
-class Dma {
- public:
-  Dma(Kernel& kernel, const ClockDomain& clock, const DmaConfig& config, Team& team);
+/// From one instant until another, in cycles since the job began.
+struct Interval {
+  Cycles begin;
+  Cycles end;
+};
 
-  /// When another command finds room in the queue: now, or as soon as one fewer is under way.
-  Time room();
-  /// A transfer that has just been programmed. Returns when its data flow: the last ones arrive at
-  /// the end.
-  DataTiming start(const work::Transfer& transfer);
+/// What the DMA moves in L1 while cores work.
+class Traffic {
+ public:
+  static constexpr Cycles kNever{std::numeric_limits<std::int64_t>::max()};
+
+  explicit Traffic(double words_of_a_channel) : words_(words_of_a_channel) {}
+
+  void add(const Interval& data) { data_.push_back(data); }
+  /// Nobody will ask for earlier instants.
+  void forget(Cycles before);
+  /// Words per cycle that flow from an instant on, until the next change.
+  double words(Cycles now) const;
+  /// The next instant at which data begin or cease to flow; or kNever.
+  Cycles next_change(Cycles now) const;
 
  private:
-  struct Channel {
-    Time free;  ///< the last data of all transfers so far have arrived
-  };
+  double words_;
+  std::vector<Interval> data_;
+};
 
-  Process disturb(Time begin, Time end);
-  Duration cycles(double n) const;
+class Dma {
+ public:
+  explicit Dma(const DmaConfig& config);
 
-  Kernel& kernel_;
-  const ClockDomain& clock_;
+  /// Another job: nothing is under way.
+  void begin_job();
+  /// When another command finds room in the queue: now, or as soon as one fewer is under way.
+  Cycles room(Cycles now);
+  /// A transfer that has just been programmed. Returns when its data flow: the last ones arrive at
+  /// the end.
+  Interval start(const work::Transfer& transfer, Cycles now);
+  /// Of transfers in the background: nobody computes during one that the master waits for.
+  const Traffic& traffic() const { return traffic_; }
+
+ private:
   DmaConfig config_;
-  Team& team_;
-  std::array<Channel, 2> channels_{};  ///< by direction
-  std::vector<Time> under_way_;        ///< ends of transfers; not kept where any number may be
+  Traffic traffic_;
+  std::array<Cycles, 2> free_{};   ///< by direction: the last data of all transfers have arrived
+  std::vector<Cycles> under_way_;  ///< ends of transfers; not kept where any number may be
 };
 
 }  // namespace leviosim::sim

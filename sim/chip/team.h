@@ -1,67 +1,81 @@
 // Cores of a cluster that run work segments at the same time and share units.
 //
-// Whenever a core starts or ends a work segment, the rates of all running ones are solved again
-// (contention.h), once per instant, and their ends are moved. No cycle is stepped.
+// Whenever a core starts or ends a work segment, or the DMA begins or ceases to move data, the
+// rates of all running cores are solved again (contention.h), once per instant, and their ends are
+// moved. No cycle is stepped.
 #pragma once
 
-#include <memory>
+#include <span>
 #include <vector>
 
 #include "sim/chip/accelerator.h"
 #include "sim/chip/contention.h"
 #include "sim/chip/cost.h"
-#include "sim/chip/timing.h"
-#include "sim/events/kernel.h"
-#include "sim/events/sync.h"
-#include "sim/events/task.h"
+#include "sim/chip/dma.h"
+#include "sim/chip/team_memory.h"
 
 namespace leviosim::sim {
+
+/// A work segment that one core of a team executes. Instants are in cycles since the job began.
+struct TeamShare {
+  int core = 0;
+  const work::Segment* work = nullptr;
+  Cycles begin;
+  OperationAccounts* by_operation = nullptr;  ///< gets what of it each kind of operation has
+  // Of these, the team says:
+  Cycles end{};
+  MechanismCycles time{};  ///< what the core's cycles were spent on; adds up to those it took
+};
 
 class Team {
  public:
   /// @param workers  ids 0 … workers-1; the master is core `workers`
-  Team(Kernel& kernel, const ClockDomain& clock, const ClusterConfig& config, int workers);
+  Team(const ClusterConfig& config, int workers);
 
-  /// co_await: core `id` runs the work segment; at most one per core at a time.
-  /// @param by_operation  gets what of it each kind of operation has; may be null
-  /// @returns what the core's cycles were spent on; they add up to the cycles it took
-  Task<MechanismCycles> execute(int id, const work::Segment& segment,
-                                OperationAccounts* by_operation = nullptr);
+  /// Executes shares of different cores, and says when they end.
+  /// @param work  what they are shares of, for the memory; null if it is not to be known
+  void execute(std::span<TeamShare> shares, const Traffic& traffic, const void* work = nullptr);
 
-  /// The DMA moves so many words of L1 per cycle more (or less) from now on.
-  void change_traffic(double words_per_cycle);
+  /// What is executed from now on is added to the memory, or taken from it where it takes as long
+  /// (and nobody asks for kinds of operation). Null ends that. The memory outlives the team.
+  void remember(TeamMemory* memory) { learning_ = memory; }
+  void recall(const TeamMemory* memory);
 
  private:
-  struct Core {
-    explicit Core(Kernel& kernel, int id);
-    Timer end;
-    bool running = false;
-    Demand demand;
-    Runner runner;         ///< the segment as the contention solver sees it
-    double remaining = 0;  ///< lone cycles still to do
-    Progress progress;
-    MechanismCycles time;
+  /// A share that has begun and not ended.
+  struct Running {
+    TeamShare* share;
+    const LoneCycles* alone;
+    double remaining;  ///< lone cycles still to do
+    Cycles end{};      ///< at the present rates
   };
 
-  Process settle();
-  void note_change();
-  void advance();
-  void solve();
+  void price(std::span<const TeamShare> shares, const TeamMemory::Execution* known);
+  void walk(std::span<TeamShare> shares, Cycles now, const Traffic& traffic);
+  /// Whether it takes as long as what is known, which it is then.
+  bool repeats(std::span<TeamShare> shares, Cycles now, const Traffic& traffic,
+               const TeamMemory::Execution& known) const;
+  void learn(std::span<const TeamShare> shares, Cycles begin, const void* work);
+  void begin(TeamShare& share, const Demand& demand);
+  /// Sets rates and ends of all that run. Returns the first end.
+  Cycles solve(Cycles now, double dma_words);
+  void work(Cycles cycles);
+  /// Of those that end now. Returns how many there are.
+  std::size_t end_all(Cycles now);
 
-  Kernel& kernel_;
-  const ClockDomain& clock_;
-  CoreConfig core_config_;
-  Accelerators accelerators_;
+  ClusterConfig config_;
   CodeFetcher worker_code_;
   CodeFetcher master_code_;
+  int master_;
   Contention contention_;
-  std::vector<std::unique_ptr<Core>> cores_;
-  std::vector<Runner> runners_;
+  std::vector<Demand> demands_;   ///< of the shares
+  std::vector<Running> running_;  ///< in the order of their cores
+  std::vector<Runner> runners_;   ///< the same as the contention solver sees them
   std::vector<Progress> progress_;
-  Event changed_;
-  bool change_noted_ = false;
-  double dma_words_ = 0;
-  Time advanced_to_;
+  TeamMemory* learning_ = nullptr;
+  const TeamMemory* recalling_ = nullptr;
+  bool same_cores_ = false;
+  bool same_sharing_ = false;
 };
 
 }  // namespace leviosim::sim

@@ -109,4 +109,11 @@ inline Cycles counted_cycles(double cycles) {
   return Cycles(static_cast<std::int64_t>(cycles));
 }
 
+/// So many cycles later. @throws InputError for more than can be counted
+inline Cycles later(Cycles instant, Cycles by) {
+  const Cycles sum = instant + by;  // of two that are no longer than this one may be
+  if (sum.count() > kLongestDuration.count()) fail_beyond_time();
+  return sum;
+}
+
 }  // namespace leviosim::sim

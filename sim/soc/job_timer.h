@@ -14,10 +14,16 @@ class JobTimer {
   /// @throws InputError as sim::Chip
   JobTimer(const sim::ChipConfig& config, int workers) : chip_(config, workers) {}
 
+  /// As of sim::Team.
+  void remember(sim::TeamMemory* memory) { chip_.cluster().remember(memory); }
+  void recall(const sim::TeamMemory* memory) { chip_.cluster().recall(memory); }
+  /// Of the cluster as it is timed, in its own cycles.
+  const sim::ClusterConfig& cluster() { return chip_.cluster().config(); }
+
   /// A job of the front end: offloaded by the controller, run by the cluster.
-  sim::JobTiming front_end(const work::Job& job);
+  sim::JobTiming front_end(const work::Job& job) { return chip_.time_offload(job); }
   /// A job of the optimiser, on the controller.
-  sim::JobTiming optimiser(const work::Job& job);
+  sim::JobTiming optimiser(const work::Job& job) { return chip_.time_control(job); }
 
   /// Whole cycles of the cluster from the controller's call until it is notified of the end.
   Cycles front_end_cycles(const sim::JobTiming& timing) {

@@ -206,5 +206,97 @@ TEST(Contention, StreamsConflictAsAShareOfScatteredAccesses) {
   }
 }
 
+// ---- the solution ----
+
+/// The rates of runners that no unit holds back: the equations one by one, each step half of what
+/// they ask for, until nothing changes.
+std::vector<double> damped_rates(const std::vector<Runner>& runners, const ClusterConfig& config,
+                                 double dma_words) {
+  const std::size_t n = runners.size();
+  const double collisions = config.fpu.collisions;
+  constexpr auto kFpu = static_cast<std::size_t>(Unit::Fpu);
+  constexpr auto kDivider = static_cast<std::size_t>(Unit::Divider);
+  std::vector<double> rate(n, 1), colliding(n, 0), waiting(n, 0);
+  for (int round = 0; round < 20'000; ++round) {
+    const std::vector<double> before = rate, collided = colliding, waited = waiting;
+    const auto asked = [&](std::size_t i) {
+      return std::min(1.0, runners[i].units[kFpu].cycles * before[i] * (1 + collided[i]));
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      const Runner& me = runners[i];
+      double lost = 0, behind = 0, banks = me.scattered * dma_words, code = 0;
+      banks += me.streamed * dma_words;
+      for (std::size_t j = 0; j < n; ++j) {
+        if (j == i) continue;
+        const Runner& other = runners[j];
+        if (me.core % config.fpu.units == other.core % config.fpu.units)
+          lost += me.units[kFpu].run > 0 && other.units[kFpu].run > 0
+                      ? collisions_in_runs(asked(i), me.units[kFpu].run, asked(j),
+                                           other.units[kFpu].run)
+                      : collisions_by_chance(asked(i), asked(j));
+        const UnitDemand& divisions = other.units[kDivider];
+        if (divisions.requests > 0)
+          behind += queued_behind(
+              {divisions.requests * before[j], divisions.cycles / divisions.requests, waited[j]});
+        const double streamed = other.streamed * before[j], scattered = other.scattered * before[j];
+        banks += me.scattered * (scattered + streamed) +
+                 me.streamed * (scattered + config.l1.stream_conflicts * streamed);
+        code += me.fetches * other.fetches * before[j];
+      }
+      const double pace = before[i] * (1 + collided[i]);
+      colliding[i] = (collided[i] + collisions * lost / pace) / 2;
+      waiting[i] = (waited[i] + collisions * behind) / 2;
+      rate[i] = (before[i] + 1 / (1 + banks / (2.0 * config.l1.banks) +
+                                  code / (2.0 * config.icache.shared_banks) + colliding[i] +
+                                  me.units[kDivider].requests * waiting[i])) /
+                2;
+    }
+  }
+  return rate;
+}
+
+/// Runners that do not ask any unit for more than it has, most of the divider nearly so.
+std::vector<Runner> random_runners(std::mt19937& random, const ClusterConfig& config) {
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<Runner> runners;
+  const int cores = 2 + static_cast<int>(random() % 8);
+  for (int core = 0; core < cores; ++core) {
+    Runner runner;
+    runner.core = core;
+    const double busy = share(random) < 0.2 ? 0 : share(random) * 0.99 / cores;
+    const double length = 10 + 4 * share(random);
+    if (busy > 0) runner.units[static_cast<std::size_t>(Unit::Divider)] = {busy / length, busy, 1};
+    const double fpu = share(random) / (1 + cores / config.fpu.units);
+    const double run = share(random) < 0.5 ? 0 : 1 + 20 * share(random);
+    runner.units[static_cast<std::size_t>(Unit::Fpu)] = {fpu, fpu, run};
+    runner.streamed = 0.4 * share(random);
+    runner.scattered = 0.3 * share(random);
+    runner.fetches = 0.1 * share(random);
+    runners.push_back(runner);
+  }
+  return runners;
+}
+
+TEST(Contention, FindsTheFixedPointOfItsEquations) {
+  std::mt19937 random(5);
+  ClusterConfig config = with_collisions(1);
+  config.l1.stream_conflicts = 0.9;
+  config.icache.shared_banks = 2;
+  Contention contention(config);
+  std::vector<Progress> progress;
+  constexpr int kSets = 60;
+  for (int k = 0; k < kSets; ++k) {
+    const std::vector<Runner> runners = random_runners(random, config);
+    const double dma_words = k % 3 == 0 ? 2 : 0;
+    contention.solve(runners, progress, dma_words);
+    const std::vector<double> expected = damped_rates(runners, config, dma_words);
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+      EXPECT_NEAR(progress[i].rate / expected[i], 1, 1e-7) << k << ", runner " << i;
+      EXPECT_NEAR(progress[i].rate + progress[i].lost.total(), 1, 1e-7);
+    }
+  }
+  EXPECT_LT(contention.rounds(), 9 * kSets) << "that few rounds settle it";
+}
+
 }  // namespace
 }  // namespace leviosim::sim

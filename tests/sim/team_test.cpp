@@ -31,20 +31,17 @@ struct Outcome {
 /// Runs work[i] on core i, all starting at cycle start[i], and returns how long each took.
 Outcome run_together(const std::vector<Counts>& work, ClusterConfig config = test_cluster(),
                      std::vector<std::int64_t> start = {}) {
-  const Timebase timebase({{"cluster", config.clock}});
-  const ClockDomain& clock = timebase.clock("cluster");
   start.resize(work.size(), 0);
-  Outcome out{std::vector<std::int64_t>(work.size()), std::vector<MechanismCycles>(work.size())};
-  Kernel kernel;
-  Team team(kernel, clock, config, static_cast<int>(work.size()));
-  const auto body = [&](std::size_t i) -> Process {
-    co_await kernel.delay(clock.duration(Cycles(start[i])));
-    const Time begin = kernel.now();
-    out.time[i] = co_await team.execute(static_cast<int>(i), work[i]);
-    out.cycles[i] = clock.whole_cycles(kernel.now() - begin).count();
-  };
-  for (std::size_t i = 0; i < work.size(); ++i) kernel.spawn("test", body(i));
-  EXPECT_EQ(kernel.run(), 0U);
+  const std::vector<work::Segment> segments(work.begin(), work.end());
+  std::vector<TeamShare> shares;
+  for (std::size_t i = 0; i < work.size(); ++i)
+    shares.push_back({static_cast<int>(i), &segments[i], Cycles(start[i])});
+  Team(config, static_cast<int>(work.size())).execute(shares, Traffic(0));
+  Outcome out;
+  for (const TeamShare& share : shares) {
+    out.cycles.push_back((share.end - share.begin).count());
+    out.time.push_back(share.time);
+  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "tools/app/run/range_bands.h"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include "platform_models/loader/value.h"
@@ -63,36 +64,53 @@ std::vector<std::string_view> stages_of(const JobSample& sample) {
   return names;
 }
 
-/// Cycles of the slowest frame and of those spread over the run, then of each stage.
+/// Cycles of the slowest frame and of those spread over the run, then of each stage, on one chip
+/// after the other: what the first of them took is used again where the others are as it is.
 class SampleTimes {
  public:
-  SampleTimes(const JobSample& sample, const std::vector<std::string_view>& stages)
-      : sample_(sample), stages_(stages), cycles_(2 + stages.size(), 0.0) {}
-
-  void run(const sim::ChipConfig& chip, int workers) {
-    soc::JobTimer timer(chip, workers);
-    cycles_[0] = front_end(timer, sample_.slowest());
-    for (const work::Job& job : sample_.spread()) cycles_[1] += front_end(timer, job);
-    add_stages(timer.optimiser(sample_.iteration()));
+  /// @param workers  as of sim::Cluster
+  SampleTimes(const JobSample& sample, const sim::ChipConfig& first, int workers)
+      : sample_(sample), stages_(stages_of(sample)), workers_(workers), memory_(cluster_of(first)) {
+    soc::JobTimer timer(first, workers);
+    timer.remember(&memory_);
+    cycles(timer);
   }
-  const std::vector<double>& cycles() const { return cycles_; }
+
+  std::vector<double> on(const sim::ChipConfig& chip) const {
+    soc::JobTimer timer(chip, workers_);
+    timer.recall(&memory_);
+    return cycles(timer);
+  }
+  const std::vector<std::string_view>& stages() const { return stages_; }
 
  private:
-  double front_end(soc::JobTimer& timer, const work::Job& job) {
-    const sim::JobTiming timing = timer.front_end(job);
-    add_stages(timing);
-    return static_cast<double>(timer.front_end_cycles(timing).count());
+  sim::ClusterConfig cluster_of(const sim::ChipConfig& chip) const {
+    return soc::JobTimer(chip, workers_).cluster();
   }
-  void add_stages(const sim::JobTiming& timing) {
+
+  std::vector<double> cycles(soc::JobTimer& timer) const {
+    std::vector<double> cycles(2 + stages_.size(), 0.0);
+    const auto front_end = [&](const work::Job& job) {
+      const sim::JobTiming timing = timer.front_end(job);
+      add_stages(timing, cycles);
+      return static_cast<double>(timer.front_end_cycles(timing).count());
+    };
+    cycles[0] = front_end(sample_.slowest());
+    for (const work::Job& job : sample_.spread()) cycles[1] += front_end(job);
+    add_stages(timer.optimiser(sample_.iteration()), cycles);
+    return cycles;
+  }
+  void add_stages(const sim::JobTiming& timing, std::vector<double>& cycles) const {
     for (const sim::StageTiming& stage : timing.stages) {
       const auto at = std::find(stages_.begin(), stages_.end(), stage.stage) - stages_.begin();
-      cycles_[2 + static_cast<std::size_t>(at)] += static_cast<double>(stage.cycles.count());
+      cycles[2 + static_cast<std::size_t>(at)] += static_cast<double>(stage.cycles.count());
     }
   }
 
   const JobSample& sample_;
-  const std::vector<std::string_view>& stages_;
-  std::vector<double> cycles_;
+  std::vector<std::string_view> stages_;
+  int workers_;
+  sim::TeamMemory memory_;
 };
 
 /// Over the figure itself.
@@ -171,33 +189,40 @@ TimeBands time_bands(const platform::ResolvedPlatform& platform, int cores, cons
   check(!sample.empty() && which != TimeBandsOf::nothing, "bands are of a run with frames");
   const platform::Variants variants(platform);
   if (which == TimeBandsOf::slowest_frame) {
+    soc::JobTimer first(variants.config({}), cores);
+    sim::TeamMemory memory(first.cluster());
+    first.remember(&memory);
+    first.front_end(sample.slowest());
     const auto cycles = [&](const sim::ChipConfig& chip) {
       soc::JobTimer timer(chip, cores);
+      timer.recall(&memory);
       const auto count = timer.front_end_cycles(timer.front_end(sample.slowest())).count();
       return std::vector<double>{static_cast<double>(count)};
     };
     const Banded band = relative(range_bands(variants, cycles, 1).front());
     return {band, band, {}};
   }
-  const bool single = which == TimeBandsOf::team_and_one_core;
-  const std::vector<std::string_view> stages = stages_of(sample);
+  const sim::ChipConfig first = variants.config({});
+  const SampleTimes team(sample, first, cores);
+  std::optional<SampleTimes> alone;
+  if (which == TimeBandsOf::team_and_one_core)
+    alone.emplace(sample, first, sim::Cluster::kMasterAlone);
   const std::vector<Banded> bands = range_bands(
       variants,
       [&](const sim::ChipConfig& chip) {
-        SampleTimes team(sample, stages);
-        team.run(chip, cores);
-        std::vector<double> cycles = team.cycles();
-        if (!single) return cycles;
-        SampleTimes alone(sample, stages);
-        alone.run(chip, sim::Cluster::kMasterAlone);
-        cycles.insert(cycles.end(), alone.cycles().begin() + 2, alone.cycles().end());
+        std::vector<double> cycles = team.on(chip);
+        if (alone) {
+          const std::vector<double> of_stages = alone->on(chip);
+          cycles.insert(cycles.end(), of_stages.begin() + 2, of_stages.end());
+        }
         return cycles;
       },
       threads);
+  const std::vector<std::string_view>& stages = team.stages();
   TimeBands result{relative(bands[1]), relative(bands[0]), {}};
   for (std::size_t i = 0; i < stages.size(); ++i)
     result.stages.push_back({std::string(stages[i]), relative(bands[2 + i]),
-                             single ? relative(bands[2 + stages.size() + i]) : Banded{1, 1, 1}});
+                             alone ? relative(bands[2 + stages.size() + i]) : Banded{1, 1, 1}});
   return result;
 }
 
