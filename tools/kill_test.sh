@@ -67,7 +67,7 @@ command_of() { # command_of NAME: the words in `words`
 }
 
 results_of() { # results_of FOLDER: digests of what must be the same in every run
-  (cd "$1" && find . -type f ! -name manifest.json ! -name '*.sqlite' ! -name .leviosim-files -print0 |
+  (cd "$1" && find . -type f ! -name manifest.json ! -name .leviosim-files -print0 |
     sort -z | xargs -0 sha256sum)
 }
 

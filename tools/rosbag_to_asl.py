@@ -9,20 +9,33 @@ sensor.yaml files are copied: a bag holds no calibration of both sensors. Needs 
 MCAP file that are compressed the program zstd or lz4. Left out: bags of ROS 1, compressed .db3 files, ground truth."""
 
 import argparse
+import math
 import pathlib
 import shutil
 import sqlite3
 import struct
 import subprocess
 import sys
+import tempfile
+import urllib.parse
 import zlib
 
 IMAGE, COMPRESSED, IMU = ("sensor_msgs/msg/" + name for name in ("Image", "CompressedImage", "Imu"))
 MAGIC = b"\x89MCAP0\r\n"
+MOST_MESSAGE = 256 << 20  # bytes of a message, and of a chunk once it is decompressed
+MOST_CHUNKS = 4 << 30  # bytes of all chunks
+MOST_PIXELS = 1 << 24  # as leviosim reads them
 
 
 class Refused(Exception):
     pass
+
+
+def decoded(name):
+    try:
+        return name.decode()
+    except UnicodeDecodeError:
+        raise Refused(f"a name is not UTF-8: {name[:40]!r}") from None
 
 
 class Cdr:
@@ -36,6 +49,8 @@ class Cdr:
     def take(self, kind, count=1):
         size = struct.calcsize("=" + kind)
         self.at += -self.at % size
+        if self.at + size * count > len(self.data):
+            raise Refused("a message ends early")
         values = struct.unpack_from(f"{self.order}{count}{kind}", self.data, self.at)
         self.at += size * count
         return values[0] if count == 1 else values
@@ -48,11 +63,13 @@ class Cdr:
         return self.data[self.at - size : self.at]
 
     def text(self):
-        return self.octets().rstrip(b"\0").decode()
+        return decoded(self.octets().rstrip(b"\0"))
 
     def stamp(self):
         """Of a std_msgs/msg/Header. [ns]"""
         seconds, nanoseconds = self.take("i"), self.take("I")
+        if seconds < 0 or nanoseconds >= 10**9:
+            raise Refused(f"a message has the time {seconds} s and {nanoseconds} ns")
         self.text()
         return seconds * 10**9 + nanoseconds
 
@@ -84,6 +101,8 @@ def image_of(message):
     if encoding not in kinds:
         raise Refused(f"images are '{encoding}'; expected one of {', '.join(kinds)}")
     size, bits = kinds[encoding]
+    if not (width and height and width * height <= MOST_PIXELS):
+        raise Refused(f"an image is of {width}x{height}; expected 1x1 to {MOST_PIXELS} pixels")
     if step < width * size or len(data) < step * height:
         raise Refused(f"an image of {width}x{height} has {len(data)} bytes")
     rows = [data[y * step : y * step + width * size] for y in range(height)]
@@ -108,7 +127,10 @@ def imu_of(message):
     cdr.take("d", 4 + 9)
     gyro = cdr.take("d", 3)
     cdr.take("d", 9)
-    return stamp, gyro, cdr.take("d", 3)
+    accel = cdr.take("d", 3)
+    if not all(map(math.isfinite, gyro + accel)):
+        raise Refused(f"the IMU sample of {stamp} ns has a value that is no number")
+    return stamp, gyro, accel
 
 
 def sqlite_messages(path):
@@ -116,31 +138,66 @@ def sqlite_messages(path):
     with open(path, "rb") as file:
         if file.read(16) != b"SQLite format 3\0":
             raise Refused(f"{path}: no SQLite file; decompress it with: ros2 bag convert, or zstd -d")
-    base = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
-    yield from base.execute(
+    base = sqlite3.connect("file:" + urllib.parse.quote(str(path.absolute())) + "?mode=ro", uri=True)
+    if hasattr(base, "setlimit"):  # Python 3.11
+        base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_MESSAGE)
+    base.execute("pragma trusted_schema = off")
+    steps = [100 + path.stat().st_size // 100]  # of 10 000 instructions: far more than rows need
+
+    def stop():
+        steps[0] -= 1
+        return steps[0] < 0
+
+    base.set_progress_handler(stop, 10_000)
+    # What a view or a computed column would give is not in the file, and may have no end.
+    for table in ("topics", "messages"):
+        kinds = base.execute("select type from sqlite_master where name = ? and sql like 'create table%'", (table,))
+        if [kind for (kind,) in kinds] != ["table"] or any(c[6] for c in base.execute(f"pragma table_xinfo({table})")):
+            raise Refused(f"{path}: {table} is no plain table of a bag")
+    rows = base.execute(
         "select name, type, data from messages join topics on topics.id = topic_id order by timestamp, messages.id")
+    for name, kind, data in rows:
+        if not (isinstance(name, str) and isinstance(kind, str) and isinstance(data, bytes)):
+            raise Refused(f"{path}: a message has another type than bags have")
+        yield name, kind, data
 
 
-def decompressed(kind, data):
+def decompressed(kind, data, size):
+    """@param size  that it says to have"""
+    if size > MOST_MESSAGE:
+        raise Refused(f"a chunk has {size} bytes; expected at most {MOST_MESSAGE}")
     if kind == "":
         return data
     if kind not in ("zstd", "lz4"):
         raise Refused(f"chunks are compressed by '{kind}'; expected zstd or lz4")
     if shutil.which(kind) is None:
         raise Refused(f"chunks are compressed, and the program {kind} is missing; apt-get install {kind}")
-    return subprocess.run([kind, "-dc"], input=data, stdout=subprocess.PIPE, check=True).stdout
+    with tempfile.TemporaryFile() as stored:
+        stored.write(data)
+        stored.seek(0)
+        with subprocess.Popen([kind, "-dc"], stdin=stored, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as child:
+            text = child.stdout.read(size + 1)
+            if len(text) > size:
+                child.kill()
+    if len(text) != size or child.returncode != 0:
+        raise Refused(f"a chunk is damaged: it says to have {size} bytes")
+    return text
 
 
 def records(data):
     at = 0
     while at + 9 <= len(data):
         kind, size = struct.unpack_from("<BQ", data, at)
+        if size > len(data) - at - 9:
+            raise Refused("ends in the middle of a record; recover it with: mcap recover")
         yield kind, data[at + 9 : at + 9 + size]
         at += 9 + size
 
 
 def prefixed(data, at):
     (size,) = struct.unpack_from("<I", data, at)
+    if size > len(data) - at - 4:
+        raise Refused("a record ends early")
     return data[at + 4 : at + 4 + size], at + 4 + size
 
 
@@ -150,27 +207,36 @@ def mcap_messages(path):
     if not data.startswith(MAGIC):
         raise Refused(f"{path}: no MCAP file")
     schemas, channels, messages = {}, {}, []
+    left = [MOST_CHUNKS]
 
-    def add(kind, body):
+    def add(kind, body, is_inner):
         if kind == 0x03:
-            schemas[struct.unpack_from("<H", body)[0]] = prefixed(body, 2)[0].decode()
+            schemas[struct.unpack_from("<H", body)[0]] = decoded(prefixed(body, 2)[0])
         elif kind == 0x04:
             channel, schema = struct.unpack_from("<HH", body)
             topic, at = prefixed(body, 4)
-            channels[channel] = (topic.decode(), schemas.get(schema, ""), prefixed(body, at)[0])
+            channels[channel] = (decoded(topic), schemas.get(schema, ""), prefixed(body, at)[0])
         elif kind == 0x05:
             channel, _, _, time = struct.unpack_from("<HIQQ", body)
             messages.append((time, len(messages), channel, body[22:]))
         elif kind == 0x06:
+            if is_inner:
+                raise Refused(f"{path}: a chunk lies in another")
+            (size,) = struct.unpack_from("<Q", body, 16)
+            left[0] -= size
+            if left[0] < 0:
+                raise Refused(f"{path}: its chunks have more than {MOST_CHUNKS} bytes")
             compression, at = prefixed(body, 28)
-            for inner in records(decompressed(compression.decode(), body[at + 8 :])):
-                add(*inner)
+            for inner in records(decompressed(decoded(compression), body[at + 8 :], size)):
+                add(*inner, True)
 
     for record in records(data[len(MAGIC) :]):
         if record[0] == 0x0F:  # the end of the data; a summary follows
             break
-        add(*record)
+        add(*record, False)
     for _, _, channel, message in sorted(messages):
+        if channel not in channels:
+            raise Refused(f"{path}: a message is of channel {channel}, which the file does not describe")
         topic, kind, encoding = channels[channel]
         if encoding == b"cdr":
             yield topic, kind, message
@@ -233,6 +299,11 @@ def write(arguments, mav0):
     return f"{arguments.out}: {len(frames)} images, {len(samples)} IMU samples\n"
 
 
+def shown(text):
+    """No character of a name does anything to a terminal."""
+    return "".join(c if c == "\n" or c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bag", type=pathlib.Path)
@@ -247,9 +318,11 @@ def main():
     if not arguments.list and None in needed:
         parser.error("expected BAG OUT --image TOPIC --imu TOPIC --camera FILE --imu-model FILE, or BAG --list")
     try:
-        sys.stdout.write(listed(arguments.bag) if arguments.list else convert(arguments))
-    except (Refused, OSError, sqlite3.Error, struct.error, subprocess.CalledProcessError) as error:
-        print(f"rosbag_to_asl.py: {error}", file=sys.stderr)
+        sys.stdout.write(shown(listed(arguments.bag) if arguments.list else convert(arguments)))
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except (Refused, OSError, sqlite3.Error, struct.error, ValueError, OverflowError, MemoryError) as error:
+        print(f"rosbag_to_asl.py: {' '.join(shown(str(error) or 'too little memory').split())}", file=sys.stderr)
         sys.exit(2)
 
 

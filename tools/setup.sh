@@ -14,7 +14,6 @@ packages=(
   libpng-dev libturbojpeg0-dev             # PNG and JPEG files
   libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
-  libsqlite3-dev                                              # results of sweeps
   libjs-chart.js                                              # charts of reports, embedded
 )
 tests=(

@@ -35,6 +35,7 @@ constexpr std::array kKinds{
     InputKindInfo{InputKind::budget, "a budget file", 1 * kMiB},
     InputKindInfo{InputKind::baseline, "a baseline", 4 * kMiB},
     InputKindInfo{InputKind::history, "a history", 256 * kMiB},
+    InputKindInfo{InputKind::points, "a file of a sweep's points", 4096 * kMiB},
 };
 
 std::string reason_of(int error) { return std::system_category().message(error); }

@@ -21,7 +21,8 @@ enum class InputKind {
   run_file,
   budget,
   baseline,
-  history
+  history,
+  points
 };
 
 struct InputKindInfo {

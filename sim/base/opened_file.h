@@ -21,6 +21,7 @@ class OpenedFile {
   OpenedFile(OpenedFile&& other) noexcept;
   OpenedFile& operator=(OpenedFile&& other) noexcept;
 
+  const std::filesystem::path& path() const { return path_; }
   /// When it was opened. [bytes]
   std::uint64_t size() const { return size_; }
   /// Reads as many bytes as the piece has. @throws InputError if it cannot be read or has fewer now

@@ -152,6 +152,23 @@ std::string escaped(std::string_view text, std::string_view kept) {
 }  // namespace
 
 std::string printable(std::string_view text) { return escaped(text, ""); }
+
+std::string printable_json(std::string_view text) {
+  constexpr std::uint8_t kFirstBeyond = 0x7f;
+  const auto is_beyond = [](char c) { return static_cast<std::uint8_t>(c) >= kFirstBeyond; };
+  if (std::none_of(text.begin(), text.end(), is_beyond)) return std::string(text);
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const Character c = first_character(text);
+    if (is_beyond(text[0]) && c.valid && is_escaped(c))
+      fmt::format_to(std::back_inserter(out), "\\u{:04x}", c.code);
+    else
+      out += text.substr(0, c.length);
+    text.remove_prefix(c.length);
+  }
+  return out;
+}
 std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }
 
 std::string shell_word(std::string_view word) {

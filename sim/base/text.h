@@ -43,6 +43,9 @@ namespace leviosim {
 /// are no UTF-8: "\n", "\t", "\r" and else "\x1b" for each byte. What servers of CI would obey gets
 /// a blank: "::" where a line begins, and "##" before a letter or '['.
 std::string printable(std::string_view text);
+/// A text of JSON, in UTF-8, of which printable() would change no character: what it would escape,
+/// and can stand in strings only, is written as JSON escapes it.
+std::string printable_json(std::string_view text);
 
 /// Printable form of a text of several lines, such as tables: newlines and tabs stay.
 std::string printable_lines(std::string_view text);

@@ -94,33 +94,14 @@ printf 'i#timestamp [ns],w\r\n1403636579758555392,-0.1,0.1,0.02,8.1,-0.3,-4.0\r\
 cp tools/app/study/flights/plans/*.yaml "$folder/flight_plan"
 printf 'recordings: [a]\nstarts: { even: [0, 20] }\npieces: [90, rest]\nevery: 2.5\ndisturbances: [none, noise=10]\nsize: 32x24\nvariants:\n  - { profile: next, workload.window: 8 }\n' \
   >"$folder/flight_plan/recordings"
-printf 'leviosim files 1\n%064d 12 frames.csv\n%064d 0 deep/er/%%0A%%25x\n- - sweep.sqlite\n' 1 2 \
+printf 'leviosim files 1\n%064d 12 frames.csv\n%064d 0 deep/er/%%0A%%25x\n- - points.jsonl\n' 1 2 \
   >"$folder/output_record/some"
 printf 'leviosim journal 1 9\n- - notes.md\n' >"$folder/output_record/journal"
 printf 'leviosim files 1\n- - ../x\n' >"$folder/output_record/outside"
 cat >"$folder/cache_entry/text" <<'END'
-t{"failure":"","figures":[["ate_m","","",0.25],["arrived","","",3],["processed","","",3],["health","","",1]],"format":"leviosim outcome 1","protocol":"SE(3)"}
+t{"failure":"","figures":[["ate_m","",0.25],["arrived","",3],["processed","",3],["health","",1]],"format":"leviosim outcome 2","protocol":"SE(3)"}
 END
 printf 'fleviosim cache 2 ab-fuzzed %s\n{}' "$(printf '{}' | sha256sum | cut -c1-64)" >"$folder/cache_entry/file"
-
-# A journal that names the file which the target watches, as its super-journal (SQLite's file format).
-victim=/dev/shm/leviosim-fuzz-victim
-magic='\xd9\xd5\x05\xf9\x20\xa1\x63\xd7'
-sum=0
-for ((i = 0; i < ${#victim}; ++i)); do sum=$((sum + $(printf '%d' "'${victim:i:1}"))); done
-word() { printf "$(printf '\\x%02x' $(($1 >> 24 & 255)) $(($1 >> 16 & 255)) $(($1 >> 8 & 255)) $(($1 & 255)))"; }
-{
-  cat "$folder/sweep_database/clean"
-  printf '\n=%%%%=\n'
-  printf "$magic"
-  for value in 0 1 16777215 512 512; do word $value; done
-  head -c 484 /dev/zero
-  word $(((1 << 30) / 512 + 1))
-  printf %s "$victim"
-  word ${#victim}
-  word $sum
-  printf "$magic"
-} >"$folder/sweep_database/naming"
 
 # The fewest lines of each file of a run, in the order of the target.
 {

@@ -3,7 +3,6 @@
 //   seeds FOLDER   makes FOLDER/TARGET/* for the targets work_trace, work_trace_content, image,
 //                  evaluation and sweep_database
 #include <fmt/core.h>
-#include <sqlite3.h>
 
 #include <Eigen/Geometry>
 #include <fstream>
@@ -13,7 +12,6 @@
 #include "tests/support/image_files.h"
 #include "tests/traces/trace_parts.h"
 #include "tests/traces/work_trace_example.h"
-#include "tools/app/study/sweep/sweep_store.h"
 
 namespace {
 
@@ -107,24 +105,14 @@ void write_trajectories(const fs::path& folder) {
   write(folder / "asl_tables/ground_truth", "g" + poses("euroc", 5));
 }
 
-/// A sweep of two points, one of them finished, in small pages.
+/// A sweep of two points, one of them finished.
 void write_sweep(const fs::path& file) {
-  fs::create_directories(file.parent_path());
-  sqlite3* database = nullptr;
-  sqlite3_open(file.c_str(), &database);
-  const std::string sql = std::string("PRAGMA page_size = 512;") + tools::kSweepTables + R"(
-INSERT INTO sweep VALUES('format', 'leviosim sweep 2'), ('plan', 'points: { grid: {} }'),
-  ('plan file', 'plan.yaml'), ('simulator', '0');
-INSERT INTO planned VALUES(1, 'one'), (2, 'two');
-INSERT INTO parameters VALUES(1, 0, 'cores', '4', 4, ''), (2, 0, 'cores', '8', 8, '');
-INSERT INTO outcomes VALUES(1, '');
-INSERT INTO figures VALUES(1, 'energy.frame', 'uJ', 'of a frame');
-INSERT INTO figure_values VALUES(1, 1, 0, 3.5);
-INSERT INTO front VALUES(1);
-CREATE VIEW wide AS SELECT point, status, failure, NULL AS cores, NULL AS energy FROM points;
-)";
-  if (sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) std::abort();
-  sqlite3_close(database);
+  write(file, R"({"sweep":"leviosim sweep 3","points":2,"keys":"k","simulator":"0","program":"p",)"
+              R"("parameters":["cores"],"place":"plan.yaml","plan":"points: { grid: {} }"})"
+              "\n"
+              R"({"point":1,"key":"one","set":[["cores","4"]],"failure":"",)"
+              R"("figures":[["energy.frame","uJ",3.5]]})"
+              "\n");
 }
 
 }  // namespace
@@ -137,5 +125,5 @@ int main(int argc, char** argv) {
   write_traces(argv[1]);
   write_images(argv[1]);
   write_trajectories(argv[1]);
-  write_sweep(fs::path(argv[1]) / "sweep_database/clean");
+  write_sweep(fs::path(argv[1]) / "sweep_points/clean");
 }

@@ -56,7 +56,7 @@ class HostileHistories : public tests::ProgramSuite {
   /// Adds a run while another program has the lock, does something, and lets go.
   template <class Meanwhile>
   static ProgramResult add_while(int n, const Meanwhile& meanwhile) {
-    const outputs::Descriptor held(::open(path("history").c_str(), O_RDWR));
+    const outputs::Descriptor held(::open(path("history").c_str(), O_RDWR | O_CLOEXEC));
     EXPECT_EQ(::flock(held.get(), LOCK_EX), 0);
     Program adding(folder_->path(), words(n));
     wait_until_open(adding.id(), path("history"));

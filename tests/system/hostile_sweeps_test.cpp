@@ -1,7 +1,6 @@
-// Sweeps that a stranger made: what lies beside the data base, and what its schema says, deletes
-// nothing, keeps nobody waiting, and takes no memory.
+// Sweeps that a stranger made: what their lines say deletes nothing, keeps nobody waiting, and
+// takes no memory.
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 #include <sys/stat.h>
 
 #include <csignal>
@@ -22,35 +21,6 @@ using testing::ProgramResult;
 using tests::picture_of;
 using tests::read_text;
 using tests::write_text;
-
-std::string big_endian(std::uint32_t value) {
-  std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
-  return bytes;
-}
-
-const std::string kMagic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
-
-/// A hot journal without pages that names a file as its super-journal (SQLite's file format).
-std::string journal_naming(const std::string& victim) {
-  std::string header = kMagic + big_endian(0) + big_endian(1) + big_endian(0xffffff) +
-                       big_endian(512) + big_endian(4096);
-  header.resize(512, '\0');
-  std::uint32_t sum = 0;
-  for (const char c : victim) sum += static_cast<std::uint32_t>(c);
-  const auto size = static_cast<std::uint32_t>(victim.size());
-  return header + big_endian((1u << 30) / 4096 + 1) + victim + big_endian(size) + big_endian(sum) +
-         kMagic;
-}
-
-/// Files of SQL in, as somebody with the sqlite3 program would.
-void change(const fs::path& folder, const std::string& sql) {
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open((folder / "sweep.sqlite").c_str(), &database), SQLITE_OK);
-  char* fault = nullptr;
-  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, &fault), SQLITE_OK) << fault;
-  sqlite3_close(database);
-}
 
 class HostileSweeps : public tests::ProgramSuite {
  protected:
@@ -110,18 +80,9 @@ class HostileSweeps : public tests::ProgramSuite {
   }
 };
 
-TEST_F(HostileSweeps, JournalsThatNameAnotherFileDeleteNothing) {
-  write_text(path("sw/sweep.sqlite-journal"), journal_naming(path("thesis.tex")));
-  expect_refused_by_all({"sweep.sqlite", "names another file"});
-}
-
-TEST_F(HostileSweeps, WhatIsNoJournalIsNotOpened) {
-  for (const char* end : {"-wal", "-shm"}) {
-    write_text(path("sw/sweep.sqlite") + end, "x");
-    expect_refused_by_all({"sweep.sqlite", end});
-    fs::remove(path("sw/sweep.sqlite") + end);
-  }
-  ASSERT_EQ(::mkfifo((path("sw/sweep.sqlite-journal")).c_str(), 0600), 0);
+TEST_F(HostileSweeps, PipesAreNotWaitedFor) {
+  fs::remove(path("sw/points.jsonl"));
+  ASSERT_EQ(::mkfifo((path("sw/points.jsonl")).c_str(), 0600), 0);
   for (const std::vector<std::string>& words : readers()) {
     Program program(folder_->path(), words);
     for (int tries = 0; tries < 500 && program.running(); ++tries)
@@ -132,53 +93,54 @@ TEST_F(HostileSweeps, WhatIsNoJournalIsNotOpened) {
   }
 }
 
-TEST_F(HostileSweeps, FilesOfOtherNamesAreNotWritten) {
-  fs::create_hard_link(path("sw/sweep.sqlite"), path("elsewhere"));
-  expect_refused_by_all({"sweep.sqlite", "one name"});
-  fs::remove(path("elsewhere"));
+/// Lines that name a thing a million times, nest without end, or have no end.
+TEST_F(HostileSweeps, LinesAreBounded) {
+  const std::string clean = read_text(path("clean/points.jsonl"));
+  const std::string first = clean.substr(0, clean.find('\n') + 1);
+  std::string many = "{\"point\":1,\"key\":\"k\",\"set\":[";
+  for (int i = 0; i < 200'000; ++i) many += "[\"a\",\"b\"],";
+  std::string members = "{\"point\":1";
+  for (int i = 0; i < 100'000; ++i) members += fmt::format(",\"m{}\":0", i);
+  for (const std::string& line :
+       {many + "[]]}", members + "}", std::string(60'000, '['),
+        "{\"a\":" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}",
+        std::string(40 << 20, ' ')}) {
+    write_text(path("sw/points.jsonl"), first + line + "\n");
+    expect_refused_by_all({"points.jsonl"});
+  }
+  write_text(path("sw/points.jsonl"),
+             "{\"sweep\":\"leviosim sweep 3\",\"points\":9999999999999,\"keys\":\"k\"}\n");
+  expect_refused_by_all({"points.jsonl"});
 }
 
-TEST_F(HostileSweeps, SchemasOfOthersAreNotRun) {
-  const std::string kEndless =
-      "WITH RECURSIVE n(point, key) AS (SELECT 1, 'x' UNION ALL SELECT point + 1, key FROM n) "
-      "SELECT point, key FROM n";
-  for (const std::string& sql : std::vector<std::string>{
-           "ALTER TABLE planned RENAME TO was; CREATE VIEW planned AS " + kEndless,
-           "CREATE TRIGGER t AFTER INSERT ON sweep BEGIN INSERT INTO front SELECT 1 FROM (" +
-               kEndless + "); END; UPDATE sweep SET value = '' WHERE name = 'plan file'",
-           "ALTER TABLE sweep RENAME TO was; CREATE VIEW sweep AS SELECT name, "
-           "printf('%.*c', 900000000, 'x') AS value FROM was",
-           "CREATE INDEX i ON sweep(printf('%.*c', 100000, value))",
-           "DROP VIEW points; CREATE VIEW points AS SELECT 1 AS point, 'done' AS status, '' AS "
-           "failure, key FROM (" +
-               kEndless + ")"}) {
-    change(path("sw"), "PRAGMA writable_schema = 0;" + sql);
-    for (const std::vector<std::string>& words : readers()) {
-      const auto before = picture_of(path("sw"));
-      const ProgramResult result = limited(words);
-      EXPECT_EQ(result.status, 2) << sql << '\n' << words[0] << ' ' << words.back() << result.err;
-      EXPECT_EQ(picture_of(path("sw")), before);
-      fs::remove_all(path("all"));
-    }
-    fs::remove_all(path("sw"));
-    fs::copy(path("clean"), path("sw"));
+/// What a data base of an earlier version was, whatever is in it.
+TEST_F(HostileSweeps, OldSweepsAreRefusedUnread) {
+  fs::remove(path("sw/points.jsonl"));
+  write_text(path("sw/sweep.sqlite"), std::string(155'000, '\1'));
+  expect_refused_by_all({"sweep.sqlite", "earlier leviosim"});
+}
+
+/// A sweep goes on in no folder of a run, and takes no file of a user.
+TEST_F(HostileSweeps, FoldersOfRunsAndNeighboursStay) {
+  const auto before = picture_of(path("recorded"));
+  for (const char* further : {"", "--force"})
+    expect_refused(limited(sweep("recorded", further)), {"something other than a sweep"});
+  EXPECT_EQ(picture_of(path("recorded")), before);
+  for (const char* name :
+       {"sweep.sqlite-journal", "sweep.sqlite", "points.jsonl-journal", "points.jsonl~"}) {
+    write_text(path("sw/") + name, "mine");
+    for (const char* further : {"", "--force"})
+      expect_refused(limited(sweep("sw", further)), {name});
+    EXPECT_EQ(read_text(path("sw/") + name), "mine");
+    fs::remove(path("sw/") + name);
   }
 }
 
-TEST_F(HostileSweeps, ForceEmptiesNoDataBaseOfOthers) {
-  fs::remove_all(path("sw"));
-  fs::create_directory(path("sw"));
-  change(path("sw"),
-         "CREATE TABLE sweep(room TEXT); INSERT INTO sweep VALUES('kitchen');"
-         "CREATE TABLE planned(day TEXT); CREATE TABLE outcomes(dust REAL)");
-  const auto before = picture_of(path("sw"));
-  expect_refused(limited(sweep("sw", "--force")), {"sweep.sqlite"});
-  EXPECT_EQ(picture_of(path("sw")), before);
-}
-
 TEST_F(HostileSweeps, LaterVersionsAreNotGoneOnWith) {
-  change(path("sw"), "UPDATE sweep SET value = 'leviosim sweep 99' WHERE name = 'format'");
-  expect_refused(limited(sweep("sw")), {"version", "leviosim sweep 2"});
+  std::string text = read_text(path("sw/points.jsonl"));
+  text.replace(text.find("sweep 3"), 7, "sweep 99");
+  write_text(path("sw/points.jsonl"), text);
+  expect_refused(limited(sweep("sw")), {"version", "leviosim sweep 3"});
 }
 
 }  // namespace

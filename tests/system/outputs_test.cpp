@@ -304,10 +304,12 @@ TEST_F(Outputs, SweepsOnlyAddToWhatSweepsWrote) {
   write_text(folder_ / "w/sweep.csv", table + "edited");
   expect_kept_by_force(sweep("w"), {"sweep.csv", "changed since"});
   expect_kept_by_force({"sweep", "--merge", path("w"), path("w")}, {"--merge", "is read"});
-  write_text(folder_ / "v/sweep.sqlite", "no data base");
-  expect_kept_by_force(sweep("v"), {"sweep.sqlite"});
-  write_text(folder_ / "u/sweep.sqlite", "");
-  expect_kept_by_force(sweep("u"), {"sweep.sqlite"});
+  for (const char* text : {"", "no sweep", "{\"sweep\":\"living room\"}\n", "{\"sweep\":"}) {
+    write_text(folder_ / "v/points.jsonl", text);
+    expect_kept_by_force(sweep("v"), {"points.jsonl"});
+  }
+  write_text(folder_ / "u/sweep.sqlite", "mine");
+  expect_kept_by_force(sweep("u"), {"sweep.sqlite", "earlier leviosim", "new folder"});
   write_text(folder_ / "t/sweep.sqlite-journal", "x");
   expect_kept_by_force(sweep("t"), {"sweep.sqlite-journal"});
 }

@@ -101,7 +101,7 @@ TEST_F(SweepCommand, GivesTheFiguresOfReplaysAndRunsNothingTwice) {
     sum_ns += static_cast<double>(f.end_ns - f.start_ns);
   {
     SweepStore store(folder_ / "whole");
-    EXPECT_GT(store.front().size(), 0u);
+    EXPECT_GT(pareto_front(store.outcomes()).size(), 0u);
     ASSERT_EQ(
         store.settings_of(2).find("platform.cluster.clock=200MHz platform.cluster.fpu.units=1"),
         0u);
@@ -178,6 +178,20 @@ TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
                             path("share-2"), path("share-1")});
   ASSERT_EQ(merged.status, 0) << merged.err;
   EXPECT_EQ(csv("merged"), csv("whole"));
+  // Lines one behind the other are a sweep, too.
+  fs::create_directory(folder_ / "joined");
+  std::ofstream joined(folder_ / "joined" / kSweepFile, std::ios::binary);
+  for (const char* share : {"share-2", "share-1", "share-3", "share-2"})
+    joined << base::read_text_file(folder_ / share / kSweepFile);
+  joined.close();
+  const ProgramResult of_joined =
+      run_program(folder_, {"sweep", "--merge", path("from-joined"), path("joined")});
+  EXPECT_EQ(of_joined.status, 2) << "two folders";
+  ASSERT_EQ(run_program(folder_,
+                        {"sweep", "--merge", path("from-joined"), path("joined"), path("share-1")})
+                .status,
+            0);
+  EXPECT_EQ(csv("from-joined"), csv("whole"));
   for (const char* point : {"9", "2"})
     ASSERT_LE(sweep({"--out", path("singly"), "--point", point}, "s").status, 1);
   EXPECT_EQ(SweepStore(folder_ / "singly").finished(), (std::set<int>{2, 9}));
@@ -195,7 +209,7 @@ TEST_F(SweepCommand, SharesMergedAreOneRunAndNothingElseIsMerged) {
   testing::expect_refused(sweep({"--out", path("other")}, "other"), {"another plan", "--force"});
   testing::expect_refused(
       run_program(folder_, {"sweep", "--merge", path("mixed"), path("nowhere")}),
-      {"nowhere", "sweep.sqlite"});
+      {"nowhere", "points.jsonl"});
 }
 
 TEST_F(SweepCommand, ListsItsPointsAndRefusesWhatItCannotDo) {
@@ -375,10 +389,12 @@ TEST_F(SweepCommand, FrontsOf72ChipsHaveSixPointsAndMore) {
   ASSERT_EQ(swept.status, 0) << swept.err;
   SweepStore store(folder_ / "hardware");
   ASSERT_EQ(store.outcomes().size(), 72u);
-  EXPECT_GE(store.front().size(), 6u);
-  EXPECT_LT(store.front().size(), 72u) << "a front of all says nothing";
-  const auto of_front = store.front();
-  EXPECT_EQ(std::count(of_front.begin(), of_front.end(), 1), 1)
+  const std::vector<SweepOutcome> front = pareto_front(store.outcomes());
+  EXPECT_GE(front.size(), 6u);
+  EXPECT_LT(front.size(), 72u) << "a front of all says nothing";
+  EXPECT_EQ(std::count_if(front.begin(), front.end(),
+                          [](const SweepOutcome& point) { return point.point == 1; }),
+            1)
       << "the smallest has the least area";
 }
 

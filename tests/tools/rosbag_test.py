@@ -184,6 +184,70 @@ class Rosbag(unittest.TestCase):
         (self.folder / "camera.yaml").unlink()
         self.refused(self.convert("bag.db3"), "camera.yaml: no such file")
 
+    def test_names_with_marks_of_addresses_are_names(self):
+        for name in ("a?b.db3", "a#b.db3", "100%.db3", "a%20b.db3", "a?mode=memory.db3"):
+            write_db3(self.folder / name, flight())
+            self.assertEqual(self.convert(name, "out-" + name).returncode, 0, name)
+
+    def changed(self, *statements):
+        bag = self.folder / "bag.db3"
+        bag.unlink(missing_ok=True)
+        write_db3(bag, flight())
+        base = sqlite3.connect(bag)
+        for statement in statements:
+            base.execute(statement)
+        base.commit()
+        base.close()
+        return self.convert("bag.db3")
+
+    def test_data_bases_of_others_are_refused(self):
+        for statements in (
+                ["update messages set data = 'text'"], ["update messages set data = null"], ["update messages set data = 5"],
+                ["update topics set name = 7"], ["update topics set type = null"],
+                ["update topics set name = cast(x'ff' as text)"], ["update messages set data = x'00'"],
+                ["update messages set data = zeroblob(1000)"], ["drop table topics"], ["drop table messages"],
+                ["alter table messages rename to m", "create view messages as select * from m"],
+                ["alter table topics rename to m", "create view topics as with recursive n(i) as (select 1 union all "
+                 "select i + 1 from n) select i as id, 'a' as name, 'b' as type from n"],
+                ["alter table messages rename to m", "create table messages(id, topic_id, timestamp, "
+                 "data as (zeroblob(1000000000)))", "insert into messages values(1, 1, 1)"]):
+            self.refused(self.changed(*statements))
+
+    def test_chunks_of_others_are_refused(self):
+        bag = self.folder / "bag.mcap"
+
+        def chunk(inner, size=None, kind="", stored=None):
+            stored = inner if stored is None else stored
+            size = len(inner) if size is None else size
+            return record(6, struct.pack("<QQQI", 0, 0, size, 0) + text(kind) + struct.pack("<Q", len(stored)) + stored)
+
+        nested = b""
+        for _ in range(2000):
+            nested = chunk(nested)
+        zeros = [b"\0" * (64 << 20)]
+        bombs = [subprocess.run(["zstd", "-c"], input=zeros[0], stdout=subprocess.PIPE, check=True).stdout] if shutil.which("zstd") else []
+        contents = [nested, record(5, struct.pack("<HIQQ", 9, 0, 0, 0)), record(4, b"\0"), record(3, b"\0\0\xff\xff\xff\xff"),
+                    record(3, struct.pack("<HI", 1, 1) + b"\xff"), struct.pack("<BQ", 5, 1 << 62), record(6, b"\0"),
+                    chunk(b"", 1 << 62), chunk(b"", 100, "lzma"), chunk(b"", 100, "zstd", b"no"), chunk(b"", 100, "\ud7ff")]
+        contents += [chunk(b"", 1000, "zstd", bomb) for bomb in bombs]
+        for content in contents:
+            bag.write_bytes(MAGIC + content)
+            self.refused(self.convert("bag.mcap"), "rosbag_to_asl.py: ")
+
+    def test_messages_without_pixels_or_numbers_are_refused(self):
+        def empty(width, height):
+            return Cdr().header(START).put("I", height).put("I", width).octets(b"mono8\0").put("B", 0).put("I", width).octets(b"").message()
+
+        nan = float("nan")
+        samples = [[nan if i == 13 else 0.0 for i in range(37)], [float("inf")] * 37, [nan if i == 27 else 0.0 for i in range(37)]]
+        bad = [("/cam", empty(0, 0)), ("/cam", empty(0, 5)), ("/cam", empty(5, 0)), ("/cam", empty(1 << 20, 1 << 20)),
+               ("/imu", Cdr().put("i", -5).put("I", 0).octets(b"\0").put("d", *[0.0] * 37).message())]
+        bad += [("/imu", Cdr().header(START).put("d", *values).message()) for values in samples]
+        for topic, message in bad:
+            (self.folder / "bag.db3").unlink(missing_ok=True)
+            write_db3(self.folder / "bag.db3", flight() + [(START, topic, message)])
+            self.refused(self.convert("bag.db3"))
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

@@ -13,6 +13,7 @@
 namespace leviosim::tools {
 namespace {
 
+namespace fs = std::filesystem;
 using traces::testing::expect_input_error;
 using traces::testing::TempFolder;
 
@@ -46,8 +47,7 @@ void publish(SweepStore& store, const TempFolder& folder) {
 
 Outcome result_of(double latency_ms, double l1_bytes = 1000) {
   return {"",
-          {{"objective.frame_time", "ms", "of a frame", latency_ms},
-           {"objective.l1_peak", "byte", "peak", l1_bytes}}};
+          {{"objective.frame_time", "ms", latency_ms}, {"objective.l1_peak", "byte", l1_bytes}}};
 }
 
 double latency(SweepStore& store, int point) {
@@ -63,7 +63,7 @@ TEST(SweepStore, TheSamePlanGoesOnWhereItWas) {
   SweepStore again(folder.path(), "plan", plan_of({100, 200}));
   EXPECT_EQ(again.finished(), std::set<int>{2});
   EXPECT_EQ(again.planned(), 2);
-  EXPECT_EQ(again.settings_of(1), "platform.cluster.clock=100MHz");
+  EXPECT_EQ(again.settings_of(2), "platform.cluster.clock=200MHz");
 }
 
 TEST(SweepStore, APlanOfTheSameSizeWithOtherValuesIsAnother) {
@@ -72,10 +72,11 @@ TEST(SweepStore, APlanOfTheSameSizeWithOtherValuesIsAnother) {
   for (const std::vector<int>& other :
        {std::vector{100, 300}, std::vector{200, 100}, std::vector{100}, std::vector{100, 200, 300}})
     expect_input_error([&] { SweepStore(folder.path(), "plan", plan_of(other)); },
-                       {"sweep.sqlite", "another plan"});
-  SweepStore kept(folder.path());
+                       {"points.jsonl", "another plan"});
+  const SweepStore kept(folder.path());
   EXPECT_EQ(kept.planned(), 2);
-  EXPECT_EQ(kept.settings_of(2), "platform.cluster.clock=200MHz");
+  EXPECT_TRUE(kept.holds(plan_of({100, 200})));
+  EXPECT_FALSE(kept.holds(plan_of({100, 300})));
 }
 
 TEST(SweepStore, RemembersWhereThePlanLiesAlsoAfterAMerge) {
@@ -89,18 +90,20 @@ TEST(SweepStore, RemembersWhereThePlanLiesAlsoAfterAMerge) {
   store.copy_plan_to(in("deep/er"));
   EXPECT_EQ(SweepStore(in("deep/er")).place(), store.place());
   EXPECT_EQ(store.plan_text(), "plan");
-  EXPECT_EQ(store.key_of(2), plan_of({100, 200})[1].key);
-  EXPECT_EQ(store.key_of(3), "");
 }
 
 TEST(SweepStore, RefusesOtherVersions) {
   const TempFolder folder;
   SweepStore(folder.path(), "plan", plan_of({100})).put(1, result_of(5));
-  for (const char* format : {"leviosim sweep 1", "leviosim sweep 3"}) {
-    Database(folder / kSweepFile, Database::Mode::existing)
-        .run(std::string("UPDATE sweep SET value = '") + format + "' WHERE name = 'format'");
+  const std::string text = base::read_text_file(folder / kSweepFile);
+  for (const char* version : {"1", "2", "4", "30"}) {
+    std::string other = text;
+    other.replace(other.find("sweep 3"), 7, std::string("sweep ") + version);
+    outputs::write_file_atomically(folder / kSweepFile, other);
     expect_input_error([&] { SweepStore(folder.path()); }, {"not known", kSweepFormat});
   }
+  std::filesystem::rename(folder / kSweepFile, folder / kOldSweepFile);
+  expect_input_error([&] { SweepStore(folder.path()); }, {kOldSweepFile, "new folder"});
 }
 
 TEST(SweepStore, OfTwoResultsOfAPointTheFirstStays) {
@@ -157,11 +160,11 @@ TEST(SweepStore, AMergeRefusesAnotherPlan) {
 }
 
 /// Points that several jobs compute are finished in any order, and have figures of their own.
-TEST(SweepStore, TheFileDoesNotDependOnTheOrderInWhichPointsWereFinished) {
+TEST(SweepStore, TheTableDoesNotDependOnTheOrderInWhichPointsWereFinished) {
   std::map<int, Outcome> results{
       {1, result_of(5)}, {2, {"too little L1", {}}}, {3, result_of(3)}, {4, result_of(4, 900)}};
-  results[3].figures.insert(results[3].figures.begin(), {"accuracy.tilt", "deg", "of it", 0.5});
-  results[4].figures.push_back({"accuracy.ate", "m", "of it", 0.25});
+  results[3].figures.insert(results[3].figures.begin(), {"accuracy.tilt", "deg", 0.5});
+  results[4].figures.push_back({"accuracy.ate", "m", 0.25});
   const std::vector<int> clocks{100, 200, 300, 350};
   std::set<std::string> files;
   for (const std::vector<int>& order : {std::vector{1, 2, 3, 4}, {4, 3, 2, 1}, {3, 1, 4, 2}}) {
@@ -171,21 +174,79 @@ TEST(SweepStore, TheFileDoesNotDependOnTheOrderInWhichPointsWereFinished) {
     publish(store, folder);
     for (const auto& [point, result] : results)
       EXPECT_EQ(to_text(*store.result_of(point)), to_text(result)) << point;
-    files.insert(base::read_text_file(folder / kSweepFile));
+    files.insert(base::read_text_file(folder / kSweepCsv));
   }
   EXPECT_EQ(files.size(), 1u);
 }
 
-TEST(SweepStore, TheFrontIsThatOfTheLastPublication) {
+/// A process that was killed while it wrote, at every byte: whole points count, and the next goes
+/// on.
+TEST(SweepStore, ALineThatLacksItsEndDoesNotCount) {
   const TempFolder folder;
+  const fs::path file = folder / kSweepFile;
+  SweepStore(folder.path(), "plan", plan_of({100, 200})).put(1, result_of(5));
+  const std::string one = base::read_text_file(file);
+  SweepStore(folder.path(), "plan", plan_of({100, 200})).put(2, result_of(4));
+  const std::string both = base::read_text_file(file);
+  for (std::size_t size = one.size(); size <= both.size(); ++size) {
+    outputs::write_file_atomically(file, both.substr(0, size));
+    SweepStore store(folder.path(), "plan", plan_of({100, 200}));
+    EXPECT_EQ(store.finished().size(), size == both.size() ? 2u : 1u) << size;
+    store.put(2, result_of(4));
+    EXPECT_EQ(base::read_text_file(file), both) << size;
+  }
+}
+
+/// What others do to the file while a process has it open.
+TEST(SweepStore, GoesOnInWhatHasTheName) {
+  const TempFolder folder;
+  const fs::path file = folder / kSweepFile;
   SweepStore store(folder.path(), "plan", plan_of({100, 200, 300}));
-  store.put(1, result_of(5, 1000));
-  publish(store, folder);
-  EXPECT_EQ(store.front(), std::set<int>{1});
-  store.put(2, result_of(4, 900));   // better in all
-  store.put(3, result_of(3, 2000));  // faster, but larger
-  publish(store, folder);
-  EXPECT_EQ(store.front(), (std::set<int>{2, 3}));
+  store.put(1, result_of(5));
+  const std::string one = base::read_text_file(file);
+  fs::rename(file, folder / "moved");  // as a backup does
+  store.put(2, result_of(4));
+  EXPECT_EQ(base::read_text_file(folder / "moved"), one);
+  EXPECT_EQ(SweepStore(folder.path()).finished(), std::set<int>{2});
+  SweepStore(folder.path(), "plan", plan_of({100, 200, 300})).put(1, result_of(5));
+  store.put(3, result_of(3));
+  EXPECT_EQ(store.finished(), (std::set<int>{1, 2, 3}));
+  fs::create_hard_link(file, folder / "linked");
+  expect_input_error([&] { store.put(1, result_of(5)); }, {kSweepFile, "2 names"});
+  fs::remove(folder / "linked");
+  fs::remove(file);
+  SweepStore(folder.path(), "plan", plan_of({100}));  // another sweep began there
+  const std::string other = base::read_text_file(file);
+  expect_input_error([&] { store.put(2, result_of(4)); }, {"another plan"});
+  EXPECT_EQ(base::read_text_file(file), other);
+}
+
+TEST(SweepStore, RefusesDamagedLines) {
+  const TempFolder folder;
+  SweepStore(folder.path(), "plan", plan_of({100, 200})).put(1, result_of(5));
+  const std::string text = base::read_text_file(folder / kSweepFile);
+  const std::string first = text.substr(0, text.find('\n') + 1);
+  const std::string point = text.substr(first.size());
+  std::string other = point;
+  other.replace(other.find("\"failure\":\"\""), 12, "\"failure\":\"x\"");
+  std::string beyond = point;
+  beyond.replace(beyond.find(":1,"), 3, ":3,");
+  std::string settings = point;
+  settings.replace(settings.find("\"set\":["), 7, "\"set\":[[\"a\",\"b\"],");
+  for (const auto& [lines, fault] : std::vector<std::pair<std::string, std::string>>{
+           {point, "no file of leviosim sweep"},
+           {first + point + other, "other results for point 1"},
+           {first + beyond, "point 3"},
+           {first + settings, "parameters"},
+           {first + "{}\n", "expected a line"},
+           {first + std::string(70'000, '[') + "\n", "levels"},
+           {first + "{\"point\":1,\"key\":\"k\",\"set\":[" + std::string(300'000, '0') + "\n",
+            "JSON"},
+           {first + std::string(5 << 20, 'x') + "\n", "more than"},
+           {first + "\n\n" + point.substr(0, 40) + "\n", "JSON"}}) {
+    outputs::write_file_atomically(folder / kSweepFile, lines);
+    expect_input_error([&] { SweepStore(folder.path()); }, {kSweepFile, fault});
+  }
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <png.h>
-#include <sqlite3.h>
 #include <unistd.h>
 #include <yaml.h>
 #include <zstd.h>
@@ -58,7 +57,6 @@ void add_versions(Findings& all) {
   const std::vector<std::pair<const char*, std::string>> libraries{
       {"fmt",
        fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
-      {"SQLite", sqlite3_libversion()},
       {"zstd", ZSTD_versionString()},
       {"libpng", png_get_libpng_ver(nullptr)},
       {"libyaml", yaml_get_version_string()}};

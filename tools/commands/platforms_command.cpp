@@ -317,6 +317,9 @@ void show_differences(const PlatformsOptions& options) {
 /// A file to begin a chip with, in this folder or where the name says.
 void begin_new(const PlatformsOptions& options) {
   const std::string& wanted = options.names[0];
+  // It stands in a comment of the file, too.
+  if (printable(wanted) != wanted || wanted.empty())
+    throw InputError(fmt::format("platforms new: '{}' has characters that no name has", wanted));
   const std::filesystem::path file = wanted.ends_with(".yaml") ? wanted : wanted + ".yaml";
   if (const auto known = platform::platform_names();
       std::find(known.begin(), known.end(), file.stem()) != known.end())

@@ -14,6 +14,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 
 namespace leviosim::traces {
 namespace {
@@ -111,6 +112,8 @@ class Png {
       png_set_read_fn(calls_.png(), &rest_, read);
       png_set_crc_action(calls_.png(), PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
       png_set_chunk_malloc_max(calls_.png(), kMostChunkBytes);
+      // Texts, profiles and all else that no pixel needs is passed over, and never inflated.
+      png_set_keep_unknown_chunks(calls_.png(), PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
       png_read_info(calls_.png(), calls_.info());
     });
   }
@@ -140,13 +143,21 @@ class Png {
  private:
   static void read(png_structp png, png_bytep to, std::size_t size) {
     auto& rest = *static_cast<std::string_view*>(png_get_io_ptr(png));
+    // Asked as often as some kilobytes are read; the error becomes Interrupted in demand().
+    constexpr std::size_t kBytesPerPoll = 1 << 14;
+    if (rest.size() / kBytesPerPoll !=
+            (rest.size() - std::min(size, rest.size())) / kBytesPerPoll &&
+        pending_interrupt() != 0)
+      png_error(png, "interrupted");
     if (size > rest.size()) png_error(png, "the file ends early");
     std::copy_n(rest.data(), size, to);
     rest.remove_prefix(size);
   }
   template <class Body>
   void demand(const Body& body) {
-    if (!calls_.succeed(body)) refuse_damaged("PNG", calls_.reason().c_str());
+    if (calls_.succeed(body)) return;
+    throw_if_interrupted();
+    refuse_damaged("PNG", calls_.reason().c_str());
   }
 
   PngCalls calls_;

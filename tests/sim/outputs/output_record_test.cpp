@@ -25,10 +25,10 @@ TEST(OutputRecord, IsReadAsItWasWritten) {
   OutputRecord record;
   record.add("mav0/cam0/data.csv", {kDigest, 12});
   record.add("100% \n\x7f\xff r\xc3\xa9sum\xc3\xa9", {kDigest, 0});
-  record.add("sweep.sqlite", {});
+  record.add("points.jsonl", {});
   const std::string text = record.text();
   EXPECT_EQ(text, "leviosim files 1\n" + kDigest + " 0 100%25 %0A%7F%FF r%C3%A9sum%C3%A9\n" +
-                      kDigest + " 12 mav0/cam0/data.csv\n- - sweep.sqlite\n");
+                      kDigest + " 12 mav0/cam0/data.csv\n- - points.jsonl\n");
   const OutputRecord again = OutputRecord::parse(text, "f");
   EXPECT_EQ(again.text(), text);
   EXPECT_EQ(again.paths(), record.paths());
@@ -132,10 +132,10 @@ TEST(FolderContents, AnEditedFileIsNotLeviosimsAnyMore) {
 
 TEST(FolderContents, WhatHasNoDigestIsNotLeviosims) {
   const Scratch folder;
-  write_text(folder / "sweep.sqlite", "1");
-  write_text(folder / kRecordName, "leviosim files 1\n- - sweep.sqlite\n");
-  EXPECT_TRUE(OutputRecord::read(folder.path())->names("sweep.sqlite"));
-  EXPECT_EQ(contents_of(folder.path()).foreign, "sweep.sqlite");
+  write_text(folder / "points.jsonl", "1");
+  write_text(folder / kRecordName, "leviosim files 1\n- - points.jsonl\n");
+  EXPECT_TRUE(OutputRecord::read(folder.path())->names("points.jsonl"));
+  EXPECT_EQ(contents_of(folder.path()).foreign, "points.jsonl");
 }
 
 TEST(FolderContents, UnfinishedFilesHaveTheirInodeForAName) {

@@ -134,20 +134,6 @@ std::string test_case(const Finding& f) {
       head, xml(f.excess()), body);
 }
 
-/// Text from outside, in which no character means something to Markdown or HTML.
-std::string markdown(const std::string& raw) {
-  std::string text;
-  for (const char c : printable(raw)) {
-    if (c == '<')
-      text += "&lt;";
-    else if (std::string_view("\\`*_[]#|>").find(c) != std::string_view::npos)
-      text += {'\\', c};
-    else
-      text += c;
-  }
-  return text;
-}
-
 /// Findings stand in the order of the sections.
 template <class F>
 void for_each_section(const CheckResult& result, F&& f) {
@@ -257,31 +243,33 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
                       : fmt::format("{} of {} limits {} not met", result.missed(),
                                     result.findings.size(), result.missed() == 1 ? "is" : "are"));
   for (const RunVerdict& verdict : verdicts(run).list)
-    text += fmt::format("- **{}**: {}{}\n", verdict.about, markdown(std::string(verdict.word())),
-                        verdict.reason().empty() ? "" : ": " + markdown(verdict.reason()));
+    text +=
+        fmt::format("- **{}**: {}{}\n", verdict.about, markdown_text(std::string(verdict.word())),
+                    verdict.reason().empty() ? "" : ": " + markdown_text(verdict.reason()));
   for (const Finding& f : result.findings) {
     if (f.met) continue;
-    text += fmt::format("\n**{} {}**: {}\n", f.fails() ? "✗" : "⚠", markdown(f.title()),
-                        markdown(f.excess()));
-    if (!f.where.empty()) text += fmt::format("- where: {}\n", markdown(f.where));
-    for (const std::string& why : f.why) text += fmt::format("- why: {}\n", markdown(why));
-    if (!f.limit->owner.empty()) text += fmt::format("- owner: {}\n", markdown(f.limit->owner));
+    text += fmt::format("\n**{} {}**: {}\n", f.fails() ? "✗" : "⚠", markdown_text(f.title()),
+                        markdown_text(f.excess()));
+    if (!f.where.empty()) text += fmt::format("- where: {}\n", markdown_text(f.where));
+    for (const std::string& why : f.why) text += fmt::format("- why: {}\n", markdown_text(why));
+    if (!f.limit->owner.empty())
+      text += fmt::format("- owner: {}\n", markdown_text(f.limit->owner));
   }
   for (const Finding& f : result.findings)
     if (f.better())
-      text +=
-          fmt::format("\n**✓ {}**: {}, {:.2f} % better than the baseline\n", markdown(f.title()),
-                      figure_text(*f.value, f.unit, f.limit->bound), *f.better());
+      text += fmt::format("\n**✓ {}**: {}, {:.2f} % better than the baseline\n",
+                          markdown_text(f.title()), figure_text(*f.value, f.unit, f.limit->bound),
+                          *f.better());
   if (result.better() > 0 && result.is_kept)
     text += "\nThe baseline is stale: its limits allow these figures to worsen again.\n";
   if (baseline != nullptr)
     text += fmt::format("\n<details><summary>What changed since {}</summary>\n\n{}\n</details>\n",
-                        markdown(baseline->name),
+                        markdown_text(baseline->name),
                         comparison_report(compare_runs(*baseline, run), ReportFormat::markdown));
   TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"bound"}});
   for (const Finding& f : result.findings)
     table.add({f.met       ? "met"
-               : f.fails() ? "**not met**"
+               : f.fails() ? "✗ not met"
                            : "warning",
                f.title(), f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–",
                f.bound ? figure_text(*f.bound, f.unit, f.limit->bound) : "–"});

@@ -12,6 +12,7 @@
 #include "tools/app/budget/figures.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/report/json_reader.h"
 
 namespace leviosim::tools {
 namespace {
@@ -208,7 +209,7 @@ std::string baseline_text(const RunRecord& run, const Budget* budget) {
 }
 
 RunRecord parse_baseline(const std::string& name, const std::string& text) {
-  const Json document = parse_json(name, text);
+  const Json document = read_json(name, text);
   try {
     if (document.at("format") == kFormat && document.at("version") == 1)
       return record_of_baseline(name, document);

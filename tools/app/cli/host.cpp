@@ -2,17 +2,23 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <system_error>
+#include <thread>
 
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 #include "sim/outputs/file_system.h"
 #include "tools/app/cli/terminal.h"
 
@@ -48,9 +54,25 @@ pid_t started(std::vector<std::string> words, posix_spawn_file_actions_t* files)
   return child;
 }
 
+/// Passes a request to stop on to the child, which may have something to put in order first.
+/// @param passed  whether that was done
+void pass_on(pid_t child, bool& passed) {
+  const int signal = pending_interrupt();
+  if (signal == 0 || passed) return;
+  ::kill(child, signal == SIGPIPE ? SIGTERM : signal);
+  passed = true;
+}
+
 int status_of(pid_t child) {
+  using std::chrono::microseconds;
+  constexpr microseconds kLongest{20'000};
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  bool passed = false;
+  for (microseconds wait{200};; wait = std::min(2 * wait, kLongest)) {
+    const pid_t ended = ::waitpid(child, &status, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) break;
+    pass_on(child, passed);
+    std::this_thread::sleep_for(wait);
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -123,8 +145,19 @@ std::string output_of(const std::vector<std::string>& words) {
   ::close(ends[1]);
   std::string text;
   std::array<char, 4096> part{};
-  for (ssize_t n = 0; (n = ::read(ends[0], part.data(), part.size())) > 0;)
+  bool passed = false;
+  for (;;) {
+    constexpr int kMillisecondsPerPoll = 20;
+    pollfd readable{ends[0], POLLIN, 0};
+    if (::poll(&readable, 1, kMillisecondsPerPoll) == 0) {
+      pass_on(child, passed);
+      continue;
+    }
+    const ssize_t n = ::read(ends[0], part.data(), part.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
     text.append(part.data(), static_cast<std::size_t>(n));
+  }
   ::close(ends[0]);
   if (status_of(child) != 0) return {};
   while (!text.empty() && text.back() == '\n') text.pop_back();

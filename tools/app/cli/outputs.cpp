@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "sim/base/error.h"
+#include "sim/base/input_file.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/terminal.h"
@@ -42,6 +43,14 @@ void publish(outputs::OutputFolder& out, const Printout& report, const std::func
 
 std::optional<outputs::OutputFile> claimed_file(const outputs::OutputRequest& request) {
   if (request.path.empty()) return std::nullopt;
+  // The record of a run's folder names its table and its page, but what else is written there is a
+  // user's own: a table of another command would make the folder another run's.
+  const std::filesystem::path path(request.path);
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const bool is_of_run = base::exists(folder / "manifest.json") && base::exists(path) &&
+                         (path.extension() == ".csv" || path.extension() == ".json");
+  if (is_of_run)
+    throw InputError(fmt::format("{}: is a file of a run; choose a new file", request.shown()));
   return std::optional<outputs::OutputFile>(std::in_place, request);
 }
 

@@ -270,7 +270,7 @@ std::string measured_report(const RunComparison& c, bool markdown) {
   const std::string bullet = markdown ? "- " : "";
   std::string text;
   const auto line = [&](const std::string& words) {
-    text += bullet + (markdown ? words : shortened(words, kScreenColumns)) + '\n';
+    text += bullet + (markdown ? markdown_text(words) : shortened(words, kScreenColumns)) + '\n';
   };
   line("measured: " + printable(measured.name));
   line(fmt::format("{}: {}", what, printable(other.name)));
@@ -301,13 +301,16 @@ std::string measured_report(const RunComparison& c, bool markdown) {
   if (!missing.empty()) {
     missing.front().insert(0, "not measured: ");
     for (std::size_t i = 0; i + 1 < missing.size(); ++i) missing[i] += ',';
-    text += wrap(missing, " ", 2, kScreenColumns) + '\n';
+    const std::string lines = wrap(missing, " ", 2, kScreenColumns) + '\n';
+    text += markdown ? "\n" + markdown_text(lines.substr(0, lines.size() - 1)) + '\n' : lines;
   }
   if (worst == nullptr) return text + "in short: no stage is in both\n";
   return text +
          wrap({fmt::format("in short: {:.2f} % off on average of {} stages,",
                            sum / static_cast<double>(stages), stages),
-               fmt::format("most in {} ({:+.2f} %)", printable(worst->stage), *worst->percent)},
+               fmt::format("most in {} ({:+.2f} %)",
+                           markdown ? markdown_text(worst->stage) : printable(worst->stage),
+                           *worst->percent)},
               " ", 2, kScreenColumns) +
          (markdown ? "\n" : "\nnext: the same with --json, or both in leviosim check --baseline\n");
 }

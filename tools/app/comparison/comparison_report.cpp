@@ -67,7 +67,8 @@ class Writer {
 
  private:
   void title(const std::string& name) {
-    text_ += markdown_ ? fmt::format("\n### {}\n\n", name) : fmt::format("\n{}\n", name);
+    text_ +=
+        markdown_ ? fmt::format("\n### {}\n\n", markdown_text(name)) : fmt::format("\n{}\n", name);
   }
   void table(const TextTable& t) { text_ += markdown_ ? with_dots(t.markdown()) : t.str(); }
   /// Blanks at the begin of a cell, which say what is part of what, are lost in Markdown.
@@ -85,7 +86,8 @@ class Writer {
     return text;
   }
   void line(const std::string& words) {
-    text_ += (markdown_ ? "- " : "") + wrap_words(words, markdown_ ? 2 : 3, kWidth) + '\n';
+    text_ += (markdown_ ? "- " : "") +
+             wrap_words(markdown_ ? markdown_text(words) : words, markdown_ ? 2 : 3, kWidth) + '\n';
   }
 
   std::string described(const RunRecord& run) const {

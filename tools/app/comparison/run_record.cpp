@@ -9,6 +9,7 @@
 #include "sim/base/input_file.h"
 #include "sim/outputs/output_record.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/report/json_reader.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/summary.h"
 
@@ -186,13 +187,6 @@ const StageParts* RunRecord::stage_parts(std::string_view stage) const {
   return it == cycles.end() ? nullptr : &*it;
 }
 
-Json parse_json(const std::string& where, const std::string& text) {
-  Json document = Json::parse(text, nullptr, false);  // takes a NUL for the end
-  if (text.find('\0') != std::string::npos || document.is_discarded() || !document.is_object())
-    throw InputError(fmt::format("{}: no JSON document", where));
-  return document;
-}
-
 RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run,
                       std::vector<StageParts> cycles) {
   return {figures_of(run), std::move(name), facts_of(manifest, run), std::move(cycles)};
@@ -226,13 +220,13 @@ RunRecord record_of_files(const std::string& where, const RunFiles& files) {
   if (const auto file = files.find(kCyclesFile); file != files.end())
     record.cycles = parse_cycles(at(kCyclesFile), file->second);
   const std::string manifest_file = where + "/manifest.json";
-  const Json manifest = parse_json(manifest_file, files.at("manifest.json"));
+  const Json manifest = read_json(manifest_file, files.at("manifest.json"));
   reading(manifest_file, "a manifest", [&] {
     check_format(manifest_file, manifest, "leviosim manifest", kManifestVersion);
     record.facts = facts_of_manifest(manifest);
   });
   const std::string statistics_file = where + "/stats.json";
-  const Json statistics = parse_json(statistics_file, files.at("stats.json"));
+  const Json statistics = read_json(statistics_file, files.at("stats.json"));
   reading(statistics_file, "statistics", [&] {
     check_format(statistics_file, statistics, "leviosim statistics", kStatisticsVersion);
     add_statistics(statistics, record);

@@ -116,9 +116,6 @@ RunRecord record_of_files(const std::string& where, const RunFiles& files);
 /// Both.
 RunRecord read_run_folder(const std::filesystem::path& folder);
 
-/// The document in a text. @throws InputError that begins with `where`
-Json parse_json(const std::string& where, const std::string& text);
-
 /// The facts in JSON and back: for baselines. @throws InputError
 Json facts_json(const RunFacts& facts);
 RunFacts facts_of_json(const std::string& where, const Json& json);

@@ -15,6 +15,7 @@
 #include "sim/base/sha256.h"
 #include "sim/outputs/growing_file.h"
 #include "tools/app/budget/gate.h"
+#include "tools/app/report/json_reader.h"
 
 namespace leviosim::tools {
 namespace {
@@ -23,7 +24,10 @@ constexpr std::string_view kKept = "{\"kept\":\"";
 constexpr std::string_view kRun = "{\"run\":\"";
 constexpr std::string_view kTime = "\",\"time\":";
 constexpr std::size_t kDigits = 12;  ///< of a digest
-constexpr std::size_t kPiece = std::size_t{1} << 18;
+/// A run of fifty stages takes a few kB.
+constexpr JsonLimits kLineLimits{
+    .bytes = std::size_t{1} << 20, .depth = 16, .values = 50'000, .members = 256};
+constexpr std::size_t kMostStages = 1000;
 
 /// A shared line: what it holds, under its digest.
 struct Shared {
@@ -75,7 +79,7 @@ bool is_unfinished(std::string_view last) {
   const auto begins = [&](std::string_view mark) {
     return last.starts_with(mark.substr(0, last.size()));
   };
-  return (begins(kKept) || begins(kRun)) && !Json::accept(last);
+  return (begins(kKept) || begins(kRun)) && !try_read_json(last, kLineLimits);
 }
 
 /// The digest that a line of a run has of what it shares; empty if it has none. No string holds
@@ -94,43 +98,11 @@ std::string short_commit(const std::string& commit) {
   return commit.substr(0, kShort);
 }
 
-std::string_view Pieces::held_from(std::uint64_t begin) const {
-  if (begin < begin_ || begin > begin_ + held_.size()) return {};
-  return std::string_view(held_).substr(begin - begin_);
-}
-
-void Pieces::hold(std::uint64_t begin, std::size_t size) {
-  held_.resize(size);
-  begin_ = begin;
-  bytes_read_ += size;
-  file_->read_piece(begin, held_);
-}
-
-std::string_view Pieces::at(std::uint64_t begin, std::size_t size) {
-  if (held_from(begin).size() < size) {
-    // Lines are read one after the other, forwards or backwards: what comes next is held, too.
-    const std::uint64_t end = begin + size;
-    const std::uint64_t from =
-        begin < begin_ && end > kPiece ? std::min(begin, end - kPiece) : begin;
-    hold(from, std::min<std::uint64_t>(std::max<std::uint64_t>(kPiece, end - from), size_ - from));
-  }
-  return held_from(begin).substr(0, size);
-}
-
-std::string_view Pieces::line_at(std::uint64_t begin) {
-  for (std::size_t most = kPiece;; most *= 2) {
-    const std::string_view rest = held_from(begin);
-    const std::size_t end = rest.find('\n');
-    if (end != std::string_view::npos) return rest.substr(0, end);
-    if (begin + rest.size() == size_) return rest;
-    hold(begin, std::min<std::uint64_t>(most, size_ - begin));
-  }
-}
-
-History::History(std::string file, Pieces text) : file_(std::move(file)), pieces_(std::move(text)) {
+History::History(std::string file, base::Pieces text)
+    : file_(std::move(file)), pieces_(std::move(text)) {
   std::size_t number = 0;
   while (whole_size_ < pieces_.size()) {
-    const std::string_view line = pieces_.line_at(whole_size_);
+    const std::string_view line = pieces_.line_at(whole_size_, kLineLimits.bytes);
     const std::uint64_t end = whole_size_ + line.size();
     if (end == pieces_.size() && is_unfinished(line)) break;
     if (!line.empty()) add_line(line, {whole_size_, line.size()}, ++number);
@@ -165,7 +137,7 @@ void History::add_line(std::string_view text, Line line, std::size_t number) {
 }
 
 History History::read(const std::string& file) {
-  return {file, Pieces(base::OpenedFile(file, base::InputKind::history))};
+  return {file, base::Pieces(base::OpenedFile(file, base::InputKind::history))};
 }
 
 bool History::ends_a_line() const {
@@ -174,7 +146,7 @@ bool History::ends_a_line() const {
 
 Json History::parsed(const Line& line) const {
   ++lines_parsed_;
-  return parse_json(file_, std::string(text_of(line)));
+  return read_json(file_, text_of(line), kLineLimits);
 }
 
 const Json& History::kept(const std::string& digest) const {
@@ -209,6 +181,9 @@ PastRun History::run(std::size_t i) const {
       statistic.unit = string_of(names.at(k).at(1));
       if (!values.at(k).is_null()) statistic.value = values.at(k).get<double>();
     }
+    if (run.at("stages").size() > kMostStages)
+      throw InputError(fmt::format("{}: a run of it has {} stages; expected at most {}", file_,
+                                   run.at("stages").size(), kMostStages));
     for (const Json& stage : run.at("stages"))
       add_baseline_stage(kept(string_of(stage)), past.record);
     return past;
@@ -280,7 +255,8 @@ void add_to_history(const std::string& file,
   constexpr std::chrono::seconds kPatience{30};
   const auto addition = [&](std::optional<base::OpenedFile> there) {
     const std::uint64_t size = there ? there->size() : 0;
-    const History history(file, there ? Pieces(std::move(*there)) : Pieces(std::string()));
+    const History history(file,
+                          there ? base::Pieces(std::move(*there)) : base::Pieces(std::string()));
     // A history begins with whole lines: add_lines() makes no others.
     if (history.whole_size() == 0 && size > 0)
       throw InputError(

@@ -18,7 +18,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "sim/base/opened_file.h"
+#include "sim/base/pieces.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/cli/outputs.h"
@@ -49,38 +49,13 @@ struct PastRun {
 /// "8f3c2a1": as people name a commit.
 std::string short_commit(const std::string& commit);
 
-/// A text of which a piece is held at a time, however long it is.
-class Pieces {
- public:
-  explicit Pieces(std::string whole) : held_(std::move(whole)), size_(held_.size()) {}
-  explicit Pieces(base::OpenedFile file) : size_(file.size()), file_(std::move(file)) {}
-
-  std::uint64_t size() const { return size_; }
-  /// Valid until the next call. @throws InputError if the file has become shorter
-  std::string_view at(std::uint64_t begin, std::size_t size);
-  /// What stands before the next line break or the end. As at()
-  std::string_view line_at(std::uint64_t begin);
-  /// How many bytes were read from the file.
-  std::uint64_t bytes_read() const { return bytes_read_; }
-
- private:
-  void hold(std::uint64_t begin, std::size_t size);
-  std::string_view held_from(std::uint64_t begin) const;
-
-  std::string held_;
-  std::uint64_t begin_ = 0;  ///< of what is held
-  std::uint64_t size_;
-  std::uint64_t bytes_read_ = 0;
-  std::optional<base::OpenedFile> file_;
-};
-
 class History {
  public:
   /// Where the lines are; parses none of them. A line that lacks its end, as an interrupted program
   /// leaves it, is passed over.
   /// @param text  empty: no runs
   /// @throws InputError with the line that is none of a history
-  History(std::string file, Pieces text);
+  History(std::string file, base::Pieces text);
   /// @throws InputError if there is no such file
   static History read(const std::string& file);
 
@@ -119,7 +94,7 @@ class History {
   const Json& kept(const std::string& digest) const;
 
   std::string file_;
-  mutable Pieces pieces_;
+  mutable base::Pieces pieces_;
   std::uint64_t whole_size_ = 0;
   std::vector<Line> runs_;
   std::unordered_map<std::string, Line> kept_;  ///< by digest

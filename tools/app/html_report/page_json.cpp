@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/base/error.h"
+#include "tools/app/report/json_reader.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 
@@ -272,8 +273,8 @@ void add_energy(std::vector<KeyFigure>& list, const RunRecord& run) {
 }  // namespace
 
 Json run_json(const RunRecord& record, const RunFiles& files) {
-  const Json manifest = Json::parse(files.at("manifest.json"));
-  const std::string protocol = protocol_of(Json::parse(files.at("stats.json")));
+  const Json manifest = read_json("manifest.json", files.at("manifest.json"));
+  const std::string protocol = protocol_of(read_json("stats.json", files.at("stats.json")));
   Json json;
   json["name"] = record.name;
   json["facts"] = facts_of(record, manifest);

@@ -16,7 +16,7 @@ std::string json_text(const Json& json, int indent) {
   // Servers of CI obey "##[error]" wherever it stands; it can only stand in a string.
   for (std::size_t at = 0; (at = text.find("##", at)) != std::string::npos;)
     text.replace(at, 2, "#\\u0023");
-  return text;
+  return printable_json(text);
 }
 
 Json value_of(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }

@@ -44,14 +44,35 @@ std::string TextTable::line(const std::vector<std::string>& cells,
   return text + '\n';
 }
 
+std::string markdown_text(const std::string& raw) {
+  // A word joiner, which nobody sees, parts '@' from the name of a team, and a scheme from its
+  // address.
+  constexpr const char* kJoiner = "\u2060";
+  std::string text;
+  const std::string shown = printable(raw);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const char c = shown[i];
+    if (c == '<' || c == '&')
+      text += c == '<' ? "&lt;" : "&amp;";
+    else if (std::string_view("\\`*_[]#|>~").find(c) != std::string_view::npos)
+      text += {'\\', c};
+    else if (c == '@')
+      text += std::string("@") + kJoiner;
+    else if (shown.compare(i, 3, "://") == 0)
+      text += std::string(":") + kJoiner;
+    else if (c == '.' && i >= 3 && shown.compare(i - 3, 3, "www") == 0)
+      text += std::string(".") + kJoiner;
+    else
+      text += c;
+  }
+  return text;
+}
+
 std::string TextTable::markdown() const {
   const auto row = [](const std::vector<std::string>& cells) {
     std::string text = "|";
     for (const std::string& cell : cells) {
-      text += ' ';
-      for (const char c : cell)
-        text += c == '|' || c == '\\' ? std::string{'\\', c} : std::string{c};
-      text += " |";
+      text += ' ' + markdown_text(cell) + " |";
     }
     return text + '\n';
   };

@@ -33,7 +33,7 @@ class TextTable {
   /// titles then end in "…". Before that, columns of long text, which are aligned to the left, are
   /// cut.
   std::string str(int width = table_width()) const;
-  /// A table for Markdown files, in which bars and backslashes of cells are escaped.
+  /// A table for Markdown files; cells as markdown_text().
   std::string markdown() const;
 
  private:
@@ -109,5 +109,9 @@ inline std::optional<double> scaled(std::optional<double> value, double factor) 
 
 /// A clock in MHz.
 inline double megahertz(Hertz clock) { return static_cast<double>(clock.count()) / 1e6; }
+
+/// A text of which no character means something to Markdown or HTML: it makes no tags, links, lists
+/// or headings, and mentions nobody.
+std::string markdown_text(const std::string& raw);
 
 }  // namespace leviosim::tools

@@ -23,8 +23,13 @@ std::vector<std::int64_t> stamps_of(const Feed& feed) {
   return stamps_ns;
 }
 
-/// Room for a native run at any resolution; untouched pages cost nothing.
-constexpr Bytes kUnlimited{std::int64_t{1} << 30};
+/// Room for a native run at this resolution: pages that are not touched cost nothing but addresses,
+/// of which `ulimit -v` leaves few. An image takes some 4 bytes a pixel in all, on top of 1 MB.
+Bytes native_room(const RunRequest& request) {
+  constexpr std::int64_t kOfAny = std::int64_t{1} << 26;
+  constexpr std::int64_t kOfPixel = 64;
+  return Bytes(kOfAny + kOfPixel * static_cast<std::int64_t>(request.image_size.pixels()));
+}
 
 /// Only an accelerator, of this chip or of one that replays the run, asks for offload regions.
 bool follows_offload(const RunRequest& request) {
@@ -36,7 +41,7 @@ work::MachineConfig controller_machine(const RunRequest& request) {
   if (request.camera) l2 -= soc::second_buffer(request.image_size.width, request.image_size.height);
   return {.cores = 1,
           .memory = "L2",
-          .capacity = request.native ? kUnlimited : l2,
+          .capacity = request.native ? native_room(request) : l2,
           .alignment = 4,
           .record = !request.native,
           .offload = follows_offload(request),
@@ -119,13 +124,14 @@ traces::Trajectory located_poses(const RunResult& run) {
 }  // namespace
 
 work::MachineConfig cluster_machine(const RunRequest& request, int alignment) {
-  return {.cores = request.cores,
-          .memory = "L1",
-          .capacity = request.native ? kUnlimited : request.platform.config.cluster.l1.size,
-          .alignment = alignment,
-          .record = !request.native,
-          .offload = follows_offload(request),
-          .code = &platform::compiled_code()};
+  return {
+      .cores = request.cores,
+      .memory = "L1",
+      .capacity = request.native ? native_room(request) : request.platform.config.cluster.l1.size,
+      .alignment = alignment,
+      .record = !request.native,
+      .offload = follows_offload(request),
+      .code = &platform::compiled_code()};
 }
 
 std::vector<StageResult> named_stages(const std::vector<vio::StageName>& names) {

@@ -88,7 +88,7 @@ class Numbers {
   template <class Number>
   void take(const std::string& name, Number& value) {
     if (writes_to_ != nullptr)
-      writes_to_->figures.push_back({name, {}, {}, static_cast<double>(value)});
+      writes_to_->figures.push_back({name, {}, static_cast<double>(value)});
     else
       value = static_cast<Number>(number(name, !std::is_floating_point_v<Number>));
   }

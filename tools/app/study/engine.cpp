@@ -20,7 +20,7 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/report/json_reader.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
@@ -62,7 +62,7 @@ double path_over_frames(const traces::Dataset& data) {
   return length;
 }
 
-constexpr const char* kFormat = "leviosim outcome 1";
+constexpr const char* kFormat = "leviosim outcome 2";
 
 constexpr std::uint64_t kLargestFile = 64 << 20;
 
@@ -182,27 +182,34 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
           work_of(data, digest)};
 }
 
+void add_outcome(const Outcome& outcome, Json& line) {
+  line["failure"] = outcome.failure;
+  if (!outcome.protocol.empty()) line["protocol"] = outcome.protocol;
+  line["figures"] = Json::array();
+  for (const Figure& f : outcome.figures)
+    line["figures"].push_back(Json::array({f.name, f.unit, f.value}));
+}
+
+Outcome outcome_of(const Json& line) {
+  Outcome outcome{line.at("failure").get<std::string>(), {}, line.value("protocol", "")};
+  for (const Json& f : line.at("figures"))
+    outcome.figures.push_back(
+        {f.at(0).get<std::string>(), f.at(1).get<std::string>(), f.at(2).get<double>()});
+  return outcome;
+}
+
 std::string to_text(const Outcome& outcome) {
   Json json;
   json["format"] = kFormat;
-  json["failure"] = outcome.failure;
-  json["protocol"] = outcome.protocol;
-  json["figures"] = Json::array();
-  for (const Figure& f : outcome.figures)
-    json["figures"].push_back(Json::array({f.name, f.unit, f.description, f.value}));
+  add_outcome(outcome, json);
   return json_text(json) + '\n';
 }
 
 std::optional<Outcome> parse_outcome(std::string_view text) {
   try {
-    const Json json = Json::parse(text);
-    if (json.at("format") != kFormat) return std::nullopt;
-    Outcome outcome{
-        json.at("failure").get<std::string>(), {}, json.at("protocol").get<std::string>()};
-    for (const Json& f : json.at("figures"))
-      outcome.figures.push_back({f.at(0).get<std::string>(), f.at(1).get<std::string>(),
-                                 f.at(2).get<std::string>(), f.at(3).get<double>()});
-    return outcome;
+    const std::optional<Json> json = try_read_json(text);
+    if (!json || json->at("format") != kFormat) return std::nullopt;
+    return outcome_of(*json);
   } catch (const Json::exception&) {
     return std::nullopt;
   }

@@ -10,6 +10,7 @@
 
 #include "platform_models/loader/schema.h"
 #include "tools/app/cli/terminal.h"
+#include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "traces/datasets/dataset.h"
 #include "traces/work_traces/work_trace.h"
@@ -82,7 +83,6 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
 struct Figure {
   std::string name;
   std::string unit;
-  std::string description;
   double value = 0;
 };
 
@@ -92,7 +92,13 @@ struct Outcome {
   std::string protocol{};  ///< of errors of trajectories among the figures
 };
 
-/// As JSON with every bit of the numbers.
+/// Adds its members to a line of JSON, with every bit of the numbers: those of a cached outcome and
+/// of a point of a sweep.
+void add_outcome(const Outcome& outcome, Json& line);
+/// @throws Json::exception for what add_outcome() never wrote
+Outcome outcome_of(const Json& line);
+
+/// As one line.
 std::string to_text(const Outcome& outcome);
 /// Nothing for what to_text() never wrote, such as a file that was cut off.
 std::optional<Outcome> parse_outcome(std::string_view text);

@@ -41,13 +41,10 @@ bool is_kept(const std::string& name) {
 void add_comparison(const Replay& replay, std::vector<Figure>& figures) {
   const auto differs = [](const FrameComparison& f) { return !f.computes_the_same(); };
   const auto count = std::count_if(replay.frames.begin(), replay.frames.end(), differs);
-  figures.push_back({"replay.differing_frames", "1",
-                     "frames at which the algorithm would have seen something else",
-                     static_cast<double>(count)});
+  figures.push_back({"replay.differing_frames", "1", static_cast<double>(count)});
   if (count == 0) return;
   const auto first = std::find_if(replay.frames.begin(), replay.frames.end(), differs);
-  figures.push_back(
-      {"replay.first_differing_frame", "1", "first of them", static_cast<double>(first->frame)});
+  figures.push_back({"replay.first_differing_frame", "1", static_cast<double>(first->frame)});
 }
 
 /// @param ate_holds  whether the algorithm computed what is on record
@@ -57,10 +54,10 @@ void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& f
   for (const Objective& o : kObjectives)
     if (const auto value = known.value(o.statistic);
         value && (ate_holds || !is_of_accuracy(o.statistic)))
-      figures.push_back({o.figure, o.unit, o.description, *value * o.factor});
+      figures.push_back({o.figure, o.unit, *value * o.factor});
   for (const Statistic& s : known.statistics)
     if (s.value && is_kept(s.name) && (ate_holds || !is_of_accuracy(s.name)))
-      figures.push_back({s.name, s.unit, s.description, *s.value});
+      figures.push_back({s.name, s.unit, *s.value});
 }
 
 Outcome computed(const ResolvedPoint& point) {
@@ -81,7 +78,10 @@ Outcome computed(const ResolvedPoint& point) {
 
 namespace fs = std::filesystem;
 
-bool holds_sweep(const fs::path& folder) { return base::is_file(folder / kSweepFile); }
+bool holds_sweep(const fs::path& folder) {
+  refuse_old_sweep(folder);
+  return base::is_file(folder / kSweepFile);
+}
 
 /// The place of a point in its plan. @throws InputError if there is no such point
 std::size_t index_of(const PointName& name, std::int64_t planned) {
@@ -178,7 +178,7 @@ RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int
   record.facts.cores = point.request.cores;
   record.stages = stages_of(point);
   for (const Figure& figure : outcome.figures)
-    record.statistics.push_back({figure.name, figure.unit, figure.description, figure.value});
+    record.statistics.push_back({figure.name, figure.unit, "", figure.value});
   add_missing(record);
   return record;
 }
@@ -207,15 +207,14 @@ std::optional<PointName> point_name(const std::string& text) {
 }
 
 RunRecord read_point(const PointName& name, const RecordOptions& options, RunFiles* files) {
-  SweepStore store{fs::path(name.sweep)};
+  const SweepStore store{fs::path(name.sweep)};
   const std::size_t i = index_of(name, store.planned());
   const std::optional<fs::path> file = store.place();
   if (!file) refuse(name, "the sweep does not say where its plan lies");
   if (store.simulator() != results_version()) refuse(name, "the sweep is of another leviosim");
   Swept swept(*file, store.plan_text(), options);
   const std::vector<SweepPoint>& points = swept.expansion.points;
-  if (i >= points.size() || points[i].key != store.key_of(static_cast<int>(i) + 1))
-    refuse(name, "what the plan names has changed since the sweep");
+  if (!store.holds(points)) refuse(name, "what the plan names has changed since the sweep");
   const SweepRow settings = points[i].settings;
   const ResolvedPoint point = resolve(swept.plan, settings, swept.inputs, name.text());
   return computed_record(

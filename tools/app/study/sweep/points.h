@@ -146,8 +146,8 @@ class SweepInputs {
 };
 
 // The folder of a sweep. Unlike other results it is added to, by several processes at a time, so it
-// is no folder that appears whole (sim/outputs/output_folder.h): the data base in it is never
-// removed, and sweep.csv is a single file that only replaces what leviosim wrote.
+// is no folder that appears whole (sim/outputs/output_folder.h): the file of points in it grows,
+// and sweep.csv is a single file that only replaces what leviosim wrote.
 
 class SweepFolder {
  public:
@@ -165,7 +165,7 @@ class SweepFolder {
   const std::filesystem::path& path() const { return path_; }
   /// To be published when all is done.
   outputs::OutputFile& csv() { return *csv_; }
-  /// Begins anew: takes all out of the data base, in one transaction.
+  /// Begins anew: removes the points, of which others begin anew, too.
   void empty();
 
  private:

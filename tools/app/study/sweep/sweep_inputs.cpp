@@ -172,12 +172,6 @@ bool is_regular(const fs::path& file) {
   throw InputError(fmt::format("{} {}: {}", request.option, request.path, why));
 }
 
-/// What SQLite keeps beside the data base while it is open.
-bool is_of_sqlite(const std::string& name) {
-  const std::string file(kSweepFile);
-  return name == file + "-journal" || name == file + "-wal" || name == file + "-shm";
-}
-
 }  // namespace
 
 bool SweepKey::is_number(const platform::Schema& schema) const {
@@ -356,6 +350,7 @@ SweepFolder::SweepFolder(const Request& request) {
   std::error_code error;
   path_ = outputs::resolved(request.path, error);
   if (error) refuse(request, "cannot be used: " + error.message());
+  refuse_old_sweep(path_);
   const std::optional<struct stat> status = outputs::status_of(path_);
   if (status && S_ISLNK(status->st_mode)) refuse(request, "is a symbolic link that leads nowhere");
   if (status && !S_ISDIR(status->st_mode)) refuse(request, "is a file; expected a folder");
@@ -387,17 +382,20 @@ void SweepFolder::check_entry(const Request& request, const std::string& name) c
   if (name == outputs::StagingFolder::place_of(path_ / kSweepCsv).filename()) return;
   if (!is_regular(path_ / name)) foreign();
   if (name == outputs::kRecordName || name == kSweepCsv) return;
-  const std::optional<outputs::OutputRecord> record = outputs::OutputRecord::read(path_);
   if (name == kSweepFile) {
-    if (!is_sweep(path_, record && record->names(kSweepFile))) foreign();
+    if (!is_sweep(path_)) foreign();
     return;
   }
-  if (is_of_sqlite(name) && is_regular(path_ / kSweepFile)) return;
-  if (!record || !record->describes(path_, name)) foreign();
+  // Such as a page that was asked for here. In the folder of a run, all is of the run.
+  const std::optional<outputs::OutputRecord> record = outputs::OutputRecord::read(path_);
+  if (!record || !record->names(kSweepFile) || !record->describes(path_, name)) foreign();
 }
 
 void SweepFolder::empty() {
-  if (is_regular(path_ / kSweepFile)) empty_sweep(path_);
+  if (!is_regular(path_ / kSweepFile)) return;
+  if (::unlink((path_ / kSweepFile).c_str()) != 0)
+    throw InputError(fmt::format("{}: cannot be removed: {}", (path_ / kSweepFile).string(),
+                                 outputs::reason(errno)));
 }
 
 }  // namespace leviosim::tools

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "sim/base/check.h"
@@ -69,7 +70,7 @@ std::string front_table(SweepStore& store, const std::vector<SweepOutcome>& fron
   for (std::size_t i = 1; i < rows.size(); ++i) table.add(rows[i]);
   std::string text = table.str();
   if (front.size() > kMostRows)
-    text += fmt::format("  and {} more: table front of sweep.sqlite\n", front.size() - kMostRows);
+    text += fmt::format("  and {} more: rows of sweep.csv\n", front.size() - kMostRows);
   return text;
 }
 
@@ -298,8 +299,16 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
     return run_point(resolve(sweep.plan, points[open[i]].settings, sweep.inputs,
                              fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)));
   };
+  // In the order of the plan, so that the file has the same bytes however many run at a time. Those
+  // that wait for one before them are in the cache if the program is killed.
+  std::map<std::size_t, Outcome> waiting;
+  std::size_t next = 0;
   batch.take = [&](std::size_t i, const Outcome& outcome) {
-    store.put(static_cast<int>(open[i]) + 1, outcome);
+    waiting.emplace(i, outcome);
+    for (auto first = waiting.begin(); first != waiting.end() && first->first == next; ++next) {
+      store.put(static_cast<int>(open[next]) + 1, first->second);
+      first = waiting.erase(first);
+    }
   };
   return run_points(batch, options);
 }
@@ -317,11 +326,10 @@ void merge(const SweepWords& words) {
       {"--merge", words.merge.front(), {words.merge.begin() + 1, words.merge.end()}, {}});
   if (words.force) out.empty();
   SweepStore(fs::path(words.merge[1])).copy_plan_to(out.path());
-  SweepStore store(out.path(), Database::Mode::existing);
+  SweepStore store(out.path());
   for (std::size_t i = 1; i < words.merge.size(); ++i) {
     throw_if_interrupted();
-    SweepStore part{fs::path(words.merge[i])};
-    store.merge(part);
+    store.merge(SweepStore(fs::path(words.merge[i])));
   }
   const std::optional<std::string> elsewhere = store.publish(out.csv());
   const auto lines = [&] {

@@ -3,19 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <chrono>
 
 #include "platform_models/loader/schema.h"
+#include "sim/base/check.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
+#include "sim/base/pieces.h"
+#include "sim/base/sha256.h"
+#include "sim/outputs/growing_file.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/report/json_reader.h"
 
 namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kAboutBegin = "{\"sweep\":\"leviosim sweep ";
+/// Publishing a table of a million points takes some seconds under the lock.
+constexpr std::chrono::seconds kPatience{60};
+constexpr JsonLimits kLineLimits{
+    .bytes = std::size_t{4} << 20, .depth = 4, .values = 100'000, .members = 32};
 
 fs::path made(const fs::path& folder) {
   std::error_code error;
@@ -26,70 +37,25 @@ fs::path made(const fs::path& folder) {
 }
 
 fs::path existing(const fs::path& folder) {
+  refuse_old_sweep(folder);
   if (!base::is_file(folder / kSweepFile))
     throw InputError(fmt::format("{}: holds no {}; expected the folder of a sweep", folder.string(),
                                  kSweepFile));
   return folder / kSweepFile;
 }
 
-/// As an SQL identifier.
-std::string quoted(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
-}
-
-std::string literal(const std::string& text) {
-  std::string sql = "'";
-  for (const char c : text) sql += c == '\'' ? std::string("''") : std::string(1, c);
-  return sql + '\'';
-}
-
-constexpr const char* kPlanFile = "plan file";
-
-void say(Database& database, std::string_view name, std::string_view value) {
-  Statement about(database, "INSERT OR REPLACE INTO sweep VALUES(?, ?)");
-  about.bind(1, name).bind(2, value).run();
+std::string digest_of_keys(const std::vector<SweepPoint>& points) {
+  base::Sha256 all;
+  for (const SweepPoint& point : points) {
+    throw_if_interrupted();
+    all.add(point.key + '\n');
+  }
+  return all.hex();
 }
 
 /// Relative, so that a sweep and its plan can be moved together.
-void say_place(Database& database, const fs::path& plan, const fs::path& folder) {
-  say(database, kPlanFile, fs::proximate(plan, folder).string());
-}
-
-enum class Schema { empty, of_sweep, foreign };
-
-constexpr const char* kEntries =
-    "SELECT name, type, sql, tbl_name FROM sqlite_master WHERE sql IS NOT NULL";
-
-/// Type and SQL of a sweep's tables and views, by their names.
-std::map<std::string, std::pair<std::string, std::string>> tables_of_sweep() {
-  Database in_memory("", Database::Mode::create);
-  in_memory.run(kSweepTables);
-  std::map<std::string, std::pair<std::string, std::string>> all;
-  for (Statement entry(in_memory, kEntries); entry.step();)
-    all[entry.text(0)] = {entry.text(1), entry.text(2)};
-  return all;
-}
-
-/// Whether the tables are those of a sweep, word by word: what else a stranger's would compute when
-/// they are read is not run. Tables and views of other names are not looked at.
-Schema schema_of(Database& database) {
-  static const auto ours = tables_of_sweep();
-  bool is_empty = true;
-  std::set<std::string> found;
-  for (Statement entry(database, kEntries); entry.step();) {
-    is_empty = false;
-    const auto same = ours.find(entry.text(0));
-    if (same != ours.end()) {
-      if (same->second != std::pair(entry.text(1), entry.text(2))) return Schema::foreign;
-      found.insert(same->first);
-    } else if (ours.count(entry.text(3)) > 0) {
-      return Schema::foreign;  // an index or a trigger of our tables
-    }
-  }
-  if (is_empty) return Schema::empty;
-  return found.size() == ours.size() ? Schema::of_sweep : Schema::foreign;
+std::string place_of(const fs::path& plan, const fs::path& folder) {
+  return fs::proximate(plan, folder).string();
 }
 
 bool is_objective(const std::string& name) {
@@ -97,332 +63,317 @@ bool is_objective(const std::string& name) {
                      [&](const Objective& o) { return o.figure == name; });
 }
 
+std::string string_of(const Json& json) { return json.get<std::string>(); }
+
 }  // namespace
 
 SweepStore::SweepStore(const fs::path& folder, const std::string& plan,
                        const std::vector<SweepPoint>& points)
-    : folder_(folder), database_(made(folder), Database::Mode::create) {
-  Transaction transaction(database_);
-  if (schema_of(database_) == Schema::foreign) database_.fail("is no file of leviosim sweep");
-  database_.run(kSweepTables);
-  if (planned() > 0) {
-    expect_known_format();
-    if (!holds(points))
-      database_.fail(
-          "holds the results of another plan, of other data or of another leviosim; choose a new "
-          "folder, or --force to begin anew (finished points come from the cache where they are "
-          "the same)");
-    transaction.commit();
-    return;
-  }
-  say(database_, "format", kSweepFormat);
-  say(database_, "program", fmt::format("leviosim {} {}", version(), revision()));
-  say(database_, "simulator", results_version());
-  say(database_, "plan", plan);
-  this->plan(points);
-  transaction.commit();
+    : folder_(folder), file_(made(folder)), planned_points_(&points) {
+  refuse_old_sweep(folder);
+  about_.points = static_cast<std::int64_t>(points.size());
+  about_.keys = digest_of_keys(points);
+  about_.simulator = results_version();
+  about_.program = fmt::format("leviosim {} {}", version(), revision());
+  about_.plan = plan;
+  if (!points.empty())
+    for (const PointParameter& parameter : points.front().parameters)
+      about_.parameters.push_back(parameter.name);
+  append([] { return std::string(); });
 }
 
-bool SweepStore::holds(const std::vector<SweepPoint>& points) {
-  if (planned() != static_cast<std::int64_t>(points.size())) return false;
-  Statement select(database_, "SELECT point, key FROM planned ORDER BY point");
-  for (std::size_t i = 0; select.step(); ++i) {
-    throw_if_interrupted();
-    if (select.whole(0) != static_cast<std::int64_t>(i) + 1 || select.text(1) != points[i].key)
-      return false;
-  }
-  return true;
+SweepStore::SweepStore(const fs::path& folder) : folder_(folder), file_(existing(folder)) {
+  load(base::OpenedFile(file_, base::InputKind::points));
 }
 
-void SweepStore::plan(const std::vector<SweepPoint>& points) {
-  Statement point(database_, "INSERT INTO planned VALUES(?, ?)");
-  Statement parameter(database_, "INSERT INTO parameters VALUES(?, ?, ?, ?, ?, ?)");
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    throw_if_interrupted();
-    const SweepPoint p = points[i];
-    point.bind(1, std::int64_t{p.number}).bind(2, std::string_view(p.key)).run();
-    std::int64_t place = 0;
-    for (const PointParameter& v : p.parameters) {
-      parameter.bind(1, std::int64_t{p.number}).bind(2, place++).bind(3, std::string_view(v.name));
-      parameter.bind(4, std::string_view(v.text))
-          .bind(5, v.number)
-          .bind(6, std::string_view(v.unit));
-      parameter.run();
+std::string SweepStore::line_of(const About& about) {
+  Json line;
+  line["sweep"] = kSweepFormat;
+  line["points"] = about.points;
+  line["keys"] = about.keys;
+  line["simulator"] = about.simulator;
+  line["program"] = about.program;
+  line["parameters"] = about.parameters;
+  line["place"] = about.place;
+  line["plan"] = about.plan;
+  return json_text(line) + '\n';
+}
+
+std::string SweepStore::line_of(int point, const Outcome& result) const {
+  const SweepPoint& planned = (*planned_points_)[static_cast<std::size_t>(point) - 1];
+  Json line;
+  line["point"] = point;
+  line["key"] = planned.key;
+  line["set"] = Json::array();
+  for (const PointParameter& parameter : planned.parameters)
+    line["set"].push_back({parameter.name, parameter.text});
+  add_outcome(result, line);
+  return json_text(line) + '\n';
+}
+
+/// Reads on where it ended, or anew where another process began anew.
+void SweepStore::load(base::OpenedFile file) {
+  base::Pieces text(std::move(file));
+  const bool goes_on = read_to_ > 0 && text.size() >= read_to_ &&
+                       text.at(0, first_line_.size()) == first_line_ &&
+                       text.at(read_to_ - 1, 1) == "\n";
+  if (!goes_on) read_to_ = 0;
+  while (read_to_ < text.size()) {
+    const std::string_view line = text.line_at(read_to_, kLineLimits.bytes);
+    const std::uint64_t end = read_to_ + line.size();
+    if (end == text.size()) break;  // it lacks its end
+    if (!line.empty()) add_line(line, read_to_);
+    read_to_ = end + 1;
+  }
+  if (read_to_ == 0)
+    throw InputError(fmt::format("{}: is no file of leviosim sweep", file_.string()));
+}
+
+void SweepStore::add_line(std::string_view text, std::uint64_t begin) {
+  if (begin == 0 && !text.starts_with(kAboutBegin))
+    throw InputError(fmt::format("{}: is no file of leviosim sweep", file_.string()));
+  const std::string where = fmt::format("{}: line at byte {}", file_.string(), begin);
+  const Json line = read_json(where, text, kLineLimits);
+  try {
+    if (text.starts_with(kAboutBegin))
+      add_about(line);
+    else
+      add_point(line, text);
+  } catch (const Json::exception&) {
+    throw InputError(fmt::format("{}: expected a line that 'leviosim sweep' writes", where));
+  }
+  if (begin == 0) first_line_ = std::string(text) + '\n';
+}
+
+void SweepStore::add_about(const Json& line) {
+  if (string_of(line.at("sweep")) != kSweepFormat)
+    throw InputError(fmt::format("{}: is of a version that is not known; expected '{}'",
+                                 file_.string(), kSweepFormat));
+  About about{.points = line.at("points").get<std::int64_t>(),
+              .keys = string_of(line.at("keys")),
+              .simulator = string_of(line.at("simulator")),
+              .program = string_of(line.at("program")),
+              .plan = string_of(line.at("plan")),
+              .place = string_of(line.at("place")),
+              .parameters = line.at("parameters").get<std::vector<std::string>>()};
+  if (about.points < 0 || about.points > static_cast<std::int64_t>(kMostPoints))
+    throw InputError(fmt::format("{}: has {} points; expected at most {}", file_.string(),
+                                 about.points, kMostPoints));
+  if (!about_.keys.empty() && (about.keys != about_.keys || about.points != about_.points))
+    throw InputError(fmt::format(
+        "{}: holds the results of another plan, of other data or of another leviosim; choose a new "
+        "folder, or --force to begin anew (finished points come from the cache where they are "
+        "the same)",
+        file_.string()));
+  about_ = std::move(about);
+}
+
+void SweepStore::add_point(const Json& line, std::string_view text) {
+  const auto number = line.at("point").get<std::int64_t>();
+  if (number < 1 || number > about_.points)
+    throw InputError(
+        fmt::format("{}: has a point {}; expected 1 to {}", file_.string(), number, about_.points));
+  const int point = static_cast<int>(number);
+  Kept kept{.line = std::string(text) + '\n',
+            .settings = {},
+            .failure = {},
+            .protocol = {},
+            .figures = {}};
+  const auto known = points_.find(point);
+  if (known != points_.end()) {
+    if (known->second.line == kept.line) return;
+    throw InputError(
+        fmt::format("{}: has other results for point {} than it has before; expected lines of one "
+                    "program",
+                    file_.string(), point));
+  }
+  if (string_of(line.at("key")).empty()) throw InputError(file_.string() + ": a point has no key");
+  for (const Json& set : line.at("set"))
+    kept.settings.emplace_back(string_of(set.at(0)), string_of(set.at(1)));
+  if (kept.settings.size() != about_.parameters.size())
+    throw InputError(fmt::format("{}: point {} sets {} parameters; expected {}", file_.string(),
+                                 point, kept.settings.size(), about_.parameters.size()));
+  const Outcome outcome = outcome_of(line);
+  kept.failure = outcome.failure;
+  kept.protocol = outcome.protocol;
+  for (const Figure& f : outcome.figures)
+    kept.figures.emplace_back(figure(f.name, f.unit), f.value);
+  points_.emplace(point, std::move(kept));
+}
+
+std::size_t SweepStore::figure(const std::string& name, const std::string& unit) {
+  const auto [place, is_new] = figure_places_.try_emplace(name, figure_names_.size());
+  if (is_new) figure_names_.emplace_back(name, unit);
+  return place->second;
+}
+
+void SweepStore::append(const std::function<std::string()>& lines) {
+  const auto addition = [&](std::optional<base::OpenedFile> there) {
+    outputs::Addition wanted;
+    if (there) {
+      load(std::move(*there));
+      wanted.whole = read_to_;
+    } else {
+      read_to_ = 0;
+      points_.clear();
+      wanted.lines = line_of(about_);
     }
-  }
-}
-
-SweepStore::SweepStore(const fs::path& folder, Database::Mode mode)
-    : folder_(folder), database_(existing(folder), mode) {
-  if (schema_of(database_) != Schema::of_sweep) database_.fail("is no file of leviosim sweep");
-  expect_known_format();
-}
-
-void SweepStore::expect_known_format() {
-  if (fact("format") != kSweepFormat)
-    database_.fail(fmt::format("is of a version that is not known; expected '{}'", kSweepFormat));
-}
-
-std::optional<std::string> SweepStore::fact(std::string_view name) {
-  Statement select(database_, "SELECT value FROM sweep WHERE name = ?");
-  if (!select.bind(1, name).step()) return std::nullopt;
-  return select.text(0);
+    wanted.lines += lines();
+    return wanted;
+  };
+  outputs::add_lines(file_, base::InputKind::points, kPatience, addition);
+  load(base::OpenedFile(file_, base::InputKind::points));
 }
 
 void SweepStore::keep_place(const fs::path& plan) {
   if (place() == fs::weakly_canonical(plan)) return;
-  Transaction transaction(database_);
-  say_place(database_, plan, folder_);
-  transaction.commit();
+  append([&] {
+    About about = about_;
+    about.place = place_of(plan, folder_);
+    return line_of(about);
+  });
 }
 
-std::optional<fs::path> SweepStore::place() {
-  const std::optional<std::string> plan = fact(kPlanFile);
-  if (!plan) return std::nullopt;
-  return fs::weakly_canonical(folder_ / *plan);
+std::optional<fs::path> SweepStore::place() const {
+  if (about_.place.empty()) return std::nullopt;
+  return fs::weakly_canonical(folder_ / about_.place);
 }
 
-std::string SweepStore::key_of(int point) {
-  Statement select(database_, "SELECT key FROM planned WHERE point = ?");
-  return select.bind(1, std::int64_t{point}).step() ? select.text(0) : std::string();
+bool SweepStore::holds(const std::vector<SweepPoint>& points) const {
+  return planned() == static_cast<std::int64_t>(points.size()) &&
+         about_.keys == digest_of_keys(points);
 }
 
-SweepStore::Keys SweepStore::keys() {
-  Keys all;
-  Statement select(database_, "SELECT point, key FROM planned ORDER BY point");
-  while (select.step()) all.emplace_back(static_cast<int>(select.whole(0)), select.text(1));
-  return all;
-}
-
-std::set<int> SweepStore::finished() {
-  std::set<int> points;
-  Statement select(database_, "SELECT point FROM outcomes");
-  while (select.step()) points.insert(static_cast<int>(select.whole(0)));
-  return points;
-}
-
-std::int64_t SweepStore::planned() {
-  Statement select(database_, "SELECT COUNT(*) FROM planned");
-  select.step();
-  return select.whole(0);
+std::set<int> SweepStore::finished() const {
+  std::set<int> numbers;
+  for (const auto& [point, kept] : points_) numbers.insert(point);
+  return numbers;
 }
 
 void SweepStore::put(int point, const Outcome& result) {
-  Transaction transaction(database_);
-  write(point, result);
-  transaction.commit();
+  append([&] { return points_.count(point) > 0 ? std::string() : line_of(point, result); });
 }
 
-void SweepStore::write(int point, const Outcome& result) {
-  Statement outcome(database_, "INSERT OR IGNORE INTO outcomes VALUES(?, ?) RETURNING point");
-  outcome.bind(1, std::int64_t{point}).bind(2, std::string_view(result.failure));
-  const bool is_new = outcome.step();
-  outcome.reset();
-  if (!is_new) return;  // another process was faster
-  Statement figure(database_,
-                   "INSERT OR IGNORE INTO figures(name, unit, description) VALUES(?, ?, ?)");
-  Statement value(database_,
-                  "INSERT INTO figure_values SELECT ?, figure, ?, ? FROM figures WHERE name = ?");
-  std::int64_t place = 0;
-  for (const Figure& f : result.figures) {
-    figure.bind(1, std::string_view(f.name)).bind(2, std::string_view(f.unit));
-    figure.bind(3, std::string_view(f.description)).run();
-    value.bind(1, std::int64_t{point}).bind(2, place++);
-    value.bind(3, std::optional(f.value)).bind(4, std::string_view(f.name)).run();
-  }
+std::optional<Outcome> SweepStore::result_of(int point) const {
+  const auto kept = points_.find(point);
+  if (kept == points_.end()) return std::nullopt;
+  Outcome outcome{kept->second.failure, {}, kept->second.protocol};
+  for (const auto& [place, value] : kept->second.figures)
+    outcome.figures.push_back({figure_names_[place].first, figure_names_[place].second, value});
+  return outcome;
 }
 
-std::optional<Outcome> SweepStore::result_of(int point) {
-  Statement outcome(database_, "SELECT failure FROM outcomes WHERE point = ?");
-  if (!outcome.bind(1, std::int64_t{point}).step()) return std::nullopt;
-  Outcome result{outcome.text(0), {}};
-  Statement figures(database_,
-                    "SELECT name, unit, description, value FROM figure_values JOIN figures USING "
-                    "(figure) WHERE point = ? ORDER BY place");
-  figures.bind(1, std::int64_t{point});
-  while (figures.step())
-    result.figures.push_back(
-        {figures.text(0), figures.text(1), figures.text(2), figures.number(3).value_or(0)});
-  return result;
-}
-
-void SweepStore::merge(SweepStore& other) {
-  if (keys() != other.keys())
-    other.database_.fail(fmt::format("is of another plan, other data or another leviosim than {}",
-                                     (folder_ / kSweepFile).string()));
-  Transaction transaction(database_);
-  for (const int point : other.finished()) {
-    const Outcome theirs = other.result_of(point).value();
-    const std::optional<Outcome> ours = result_of(point);
-    if (!ours)
-      write(point, theirs);
-    else if (to_text(*ours) != to_text(theirs))
-      other.database_.fail(fmt::format("has other results for point {} than {}", point,
-                                       (folder_ / kSweepFile).string()));
-  }
-  transaction.commit();
-}
-
-void SweepStore::copy_plan_to(const fs::path& folder) {
-  if (fs::exists(folder / kSweepFile)) return;
-  Database copy(made(folder), Database::Mode::create);
-  Transaction transaction(copy);
-  copy.run(kSweepTables);
-  const auto copy_rows = [&](const char* select, const char* insert, int columns) {
-    Statement from(database_, select);
-    Statement into(copy, insert);
-    while (from.step()) {
-      for (int c = 0; c < columns; ++c) from.bind_column(c, into);
-      into.run();
+void SweepStore::merge(const SweepStore& other) {
+  if (about_.keys != other.about_.keys)
+    throw InputError(fmt::format("{}: is of another plan, other data or another leviosim than {}",
+                                 other.file_.string(), file_.string()));
+  append([&] {
+    std::string lines;
+    for (const auto& [point, theirs] : other.points_) {
+      throw_if_interrupted();
+      const auto ours = points_.find(point);
+      if (ours == points_.end())
+        lines += theirs.line;
+      else if (ours->second.line != theirs.line)
+        throw InputError(fmt::format("{}: has other results for point {} than {}",
+                                     other.file_.string(), point, file_.string()));
     }
-  };
-  copy_rows("SELECT * FROM sweep", "INSERT INTO sweep VALUES(?, ?)", 2);
-  copy_rows("SELECT * FROM planned", "INSERT INTO planned VALUES(?, ?)", 2);
-  copy_rows("SELECT * FROM parameters", "INSERT INTO parameters VALUES(?, ?, ?, ?, ?, ?)", 6);
-  if (const auto plan = place()) say_place(copy, *plan, folder);
-  transaction.commit();
+    return lines;
+  });
 }
 
-std::vector<SweepOutcome> SweepStore::outcomes() {
+void SweepStore::copy_plan_to(const fs::path& folder) const {
+  About about = about_;
+  if (const auto plan = place()) about.place = place_of(*plan, folder);
+  outputs::add_lines(made(folder), base::InputKind::points, kPatience,
+                     [&](const std::optional<base::OpenedFile>& there) {
+                       return outputs::Addition{0, there ? std::string() : line_of(about)};
+                     });
+}
+
+std::vector<SweepOutcome> SweepStore::outcomes() const {
+  std::array<std::size_t, kObjectives.size()> places{};
+  for (std::size_t k = 0; k < kObjectives.size(); ++k) {
+    const auto place = figure_places_.find(kObjectives[k].figure);
+    places[k] = place == figure_places_.end() ? figure_names_.size() : place->second;
+  }
   std::vector<SweepOutcome> all;
-  Statement select(database_, "SELECT point, failure FROM outcomes ORDER BY point");
-  while (select.step()) all.push_back({static_cast<int>(select.whole(0)), select.text(1), {}});
-  Statement value(database_, "SELECT value FROM metrics WHERE point = ? AND name = ?");
-  for (SweepOutcome& outcome : all)
-    for (std::size_t k = 0; k < kObjectives.size(); ++k) {
-      value.bind(1, std::int64_t{outcome.point}).bind(2, std::string_view(kObjectives[k].figure));
-      if (value.step()) outcome.objectives[k] = value.number(0);
-      value.reset();
-    }
+  for (const auto& [point, kept] : points_) {
+    SweepOutcome& outcome = all.emplace_back();
+    outcome.point = point;
+    outcome.failure = kept.failure;
+    for (const auto& [place, value] : kept.figures)
+      for (std::size_t k = 0; k < kObjectives.size(); ++k)
+        if (places[k] == place) outcome.objectives[k] = value;
+  }
   return all;
 }
 
-std::vector<std::string> SweepStore::parameter_names() {
-  std::vector<std::string> names;
-  Statement select(database_,
-                   "SELECT name FROM parameters WHERE point = (SELECT MIN(point) FROM planned) "
-                   "ORDER BY place");
-  while (select.step()) names.push_back(select.text(0));
-  return names;
-}
-
-std::string SweepStore::settings_of(int point) {
+std::string SweepStore::settings_of(int point) const {
   std::string text;
-  Statement select(database_, "SELECT name, text FROM parameters WHERE point = ? ORDER BY place");
-  select.bind(1, std::int64_t{point});
-  while (select.step())
-    text += fmt::format("{}{}={}", text.empty() ? "" : " ", select.text(0), select.text(1));
+  const auto kept = points_.find(point);
+  if (kept == points_.end()) return text;
+  for (const auto& [name, value] : kept->second.settings)
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value);
   return text;
 }
 
-std::vector<std::string> SweepStore::figure_names() {
-  std::vector<std::string> figures;
-  for (const Objective& o : kObjectives) figures.emplace_back(o.figure);
-  Statement select(database_, "SELECT name FROM figures ORDER BY name");
-  while (select.step())
-    if (!is_objective(select.text(0))) figures.push_back(select.text(0));
-  return figures;
-}
+std::string SweepStore::csv() const {
+  std::vector<std::string> columns;  // of figures: objectives, then the others by name
+  for (const auto& [name, unit] : figure_names_)
+    if (!is_objective(name)) columns.push_back(name);
+  std::sort(columns.begin(), columns.end());
+  std::vector<std::string> objectives;
+  for (const Objective& o : kObjectives) objectives.emplace_back(o.figure);
+  columns.insert(columns.begin(), objectives.begin(), objectives.end());
+  std::unordered_map<std::string, std::size_t> column_of;
+  for (std::size_t c = 0; c < columns.size(); ++c) column_of.emplace(columns[c], c);
 
-void SweepStore::make_views(const std::vector<std::string>& parameters,
-                            const std::vector<std::string>& figures) {
-  std::string columns = "point, status, failure";
-  for (const std::string& name : parameters)
-    columns += fmt::format(
-        ",\n (SELECT COALESCE(number, text) FROM parameters p WHERE p.point = points.point AND "
-        "p.name = {}) AS {}",
-        literal(name), quoted(name));
-  Statement number(database_, "SELECT figure FROM figures WHERE name = ?");
-  for (const std::string& name : figures) {
-    const bool known = number.bind(1, std::string_view(name)).step();
-    columns += known ? fmt::format(
-                           ",\n (SELECT value FROM figure_values v WHERE v.point = "
-                           "points.point AND v.figure = {}) AS {}",
-                           number.whole(0), quoted(name))
-                     : fmt::format(",\n NULL AS {}", quoted(name));
-    number.reset();
-  }
-  database_.run("DROP VIEW IF EXISTS wide; CREATE VIEW wide AS SELECT " + columns + " FROM points");
-}
-
-std::string SweepStore::csv() {
-  const std::vector<std::string> parameters = parameter_names();
-  const std::vector<std::string> figures = figure_names();
   std::vector<base::Cell> cells{"point", "status"};
-  cells.insert(cells.end(), parameters.begin(), parameters.end());
-  cells.insert(cells.end(), figures.begin(), figures.end());
+  cells.insert(cells.end(), about_.parameters.begin(), about_.parameters.end());
+  cells.insert(cells.end(), columns.begin(), columns.end());
   cells.emplace_back("failure");
   std::string text = base::csv_line(cells);
-  Statement row(database_, "SELECT * FROM wide WHERE status <> 'open' ORDER BY point");
-  Statement value(database_, "SELECT text FROM parameters WHERE point = ? ORDER BY place");
-  while (row.step()) {
-    cells = {row.text(0), row.text(1)};
-    value.bind(1, row.whole(0));
-    while (value.step()) cells.emplace_back(value.text(0));
-    value.reset();
-    const auto first = static_cast<int>(3 + parameters.size());
-    for (int k = 0; k < static_cast<int>(figures.size()); ++k) {
-      const std::optional<double> figure = row.number(first + k);
-      cells.emplace_back(figure ? platform::number_text(*figure) : std::string());
-    }
-    cells.emplace_back(row.text(2));
+  for (const auto& [point, kept] : points_) {
+    throw_if_interrupted();
+    cells = {std::to_string(point), kept.failure.empty() ? "done" : "failed"};
+    for (const auto& [name, value] : kept.settings) cells.emplace_back(value);
+    std::vector<std::string> values(columns.size());
+    for (const auto& [place, value] : kept.figures)
+      values[column_of.at(figure_names_[place].first)] = platform::number_text(value);
+    cells.insert(cells.end(), values.begin(), values.end());
+    cells.emplace_back(kept.failure);
     text += base::csv_line(cells);
   }
   return text;
 }
 
-void SweepStore::write_front() {
-  database_.run("DELETE FROM front");
-  Statement insert(database_, "INSERT INTO front VALUES(?)");
-  for (const SweepOutcome& o : pareto_front(outcomes()))
-    insert.bind(1, std::int64_t{o.point}).run();
-}
-
-void SweepStore::number_figures() {
-  database_.run(R"(
-CREATE TEMP TABLE ranks AS
-  SELECT figure, ROW_NUMBER() OVER (ORDER BY MIN(point * 1000000 + place)) AS rank
-  FROM figure_values GROUP BY figure;
-CREATE UNIQUE INDEX temp.by_figure ON ranks(figure))");
-  const bool is_right =
-      !Statement(database_, "SELECT 1 FROM temp.ranks WHERE rank <> figure").step();
-  if (!is_right)  // by way of numbers that no figure has
-    for (const char* rank :
-         {"-(SELECT rank FROM temp.ranks r WHERE r.figure = t.figure)", "-figure"})
-      for (const char* table : {"figures", "figure_values"})
-        database_.run(fmt::format("UPDATE {} AS t SET figure = {}", table, rank));
-  database_.run("DROP TABLE temp.ranks");
-}
-
-std::set<int> SweepStore::front() {
-  std::set<int> points;
-  Statement select(database_, "SELECT point FROM front");
-  while (select.step()) points.insert(static_cast<int>(select.whole(0)));
-  return points;
-}
-
 std::optional<std::string> SweepStore::publish(outputs::OutputFile& file) {
-  Transaction transaction(database_);  // of several processes, the last sees what all have done
-  number_figures();
-  make_views(parameter_names(), figure_names());
-  write_front();
-  std::optional<std::string> elsewhere = file.publish(csv());
-  transaction.commit();
-  database_.rewrite();
+  // Of several processes, the last one to publish sees what all have done.
+  std::optional<std::string> elsewhere;
+  outputs::add_lines(file_, base::InputKind::points, kPatience,
+                     [&](std::optional<base::OpenedFile> there) {
+                       if (there) load(std::move(*there));
+                       elsewhere = file.publish(csv());
+                       return outputs::Addition{};
+                     });
   return elsewhere;
 }
 
-bool is_sweep(const fs::path& folder, bool may_be_empty) {
-  Database database(folder / kSweepFile, Database::Mode::existing);
-  const Schema schema = schema_of(database);
-  return schema == Schema::of_sweep || (may_be_empty && schema == Schema::empty);
+bool is_sweep(const fs::path& folder) {
+  const base::OpenedFile file(folder / kSweepFile, base::InputKind::points);
+  if (file.size() < kAboutBegin.size()) return false;
+  std::string begin(kAboutBegin.size(), '\0');
+  file.read_piece(0, begin);
+  return begin == kAboutBegin;
 }
 
-void empty_sweep(const fs::path& folder) {
-  Database database(folder / kSweepFile, Database::Mode::existing);
-  Transaction transaction(database);
-  database.run(kSweepEmpty);
-  transaction.commit();
+void refuse_old_sweep(const fs::path& folder) {
+  if (base::exists(folder / kOldSweepFile) && !base::exists(folder / kSweepFile))
+    throw InputError(
+        fmt::format("{}: holds {} of an earlier leviosim, which is not read any more; run the "
+                    "sweep again in a new folder: leviosim sweep PLAN --out DIR",
+                    folder.string(), kOldSweepFile));
 }
 
 }  // namespace leviosim::tools

@@ -1,118 +1,44 @@
-// As much of SQLite as sweeps need: statements with bound values, rows one after the other. Faults,
-// such as a file that is no data base or a full disk, are InputErrors that name the file. Waiting
-// for other processes and long statements end with Interrupted (sim/base/interruption.h).
+// Results of a sweep in one file of lines, points.jsonl: what the sweep is, then a point a line.
 //
-// A data base may be a stranger's. SQLite would play back a journal beside it, and delete whatever
-// file that names as its super-journal: a journal that names one, and whatever else beside the file
-// would be opened but is none, is refused before SQLite sees it. Functions in its schema are not
-// trusted, triggers do not run, values are bounded, and statements end after a number of steps that
-// grows with the file.
+//   {"sweep":"leviosim sweep 3","points":2,"keys":"8f3c…","parameters":[…],"plan":"…",…}
+//   {"point":1,"key":"41aa…","set":[[name, value],…],"failure":"","figures":[[name, unit,
+//   value],…]}
+//
+// A point is added as soon as it and those before it are finished, all or nothing: a process that
+// dies leaves whole points only, and a last line that lacks its end does not count. Several
+// processes may add to one file (sim/outputs/growing_file.h), and the lines of the parts of one
+// sweep, one behind the other, are a sweep. A point may stand there twice, if both lines say the
+// same. A table for people and data bases is sweep.csv, which follows from the lines.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "sim/base/opened_file.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/study/sweep/points.h"
 
-struct sqlite3;
-struct sqlite3_stmt;
-
 namespace leviosim::tools {
 
-class Database {
- public:
-  enum class Mode {
-    create,
-    existing,
-    read_only  ///< changes nothing, and refuses what a killed process left half-done
-  };
-
-  Database(const std::filesystem::path& file, Mode mode);
-  ~Database();
-  Database(const Database&) = delete;
-  Database& operator=(const Database&) = delete;
-
-  /// Statements without values, separated by semicolons.
-  void run(const std::string& sql);
-  /// Puts the pages of the file into an order that follows from the rows.
-  void rewrite();
-  [[noreturn]] void fail(std::string_view message) const;
-  /// With what SQLite says of the last statement. @throws Interrupted if that was stopped
-  [[noreturn]] void fail_with_reason() const;
-
- private:
-  friend class Statement;
-  void confine();
-  static int is_to_stop(void* database);
-
-  std::string file_;
-  sqlite3* handle_ = nullptr;
-  std::uint64_t steps_ = 0;  ///< of SQLite's machine, in long statements
-};
-
-class Statement {
- public:
-  Statement(Database& database, const std::string& sql);
-  ~Statement();
-  Statement(const Statement&) = delete;
-  Statement& operator=(const Statement&) = delete;
-
-  /// Values of the statement's question marks, from 1; reset() keeps none.
-  Statement& bind(int place, std::int64_t value);
-  Statement& bind(int place, std::optional<double> value);
-  Statement& bind(int place, std::string_view value);
-  /// The next row, if there is one.
-  bool step();
-  /// Runs a statement that has no rows, and makes it ready for other values.
-  void run();
-  void reset();
-
-  std::int64_t whole(int column) const;
-  std::optional<double> number(int column) const;
-  std::string text(int column) const;
-  /// Binds the value of a column, whatever its type, at the same place of another statement.
-  void bind_column(int column, Statement& other) const;
-
- private:
-  /// @param result  of SQLite; a value that memory lacks for would become NULL
-  void expect_bound(int result) const;
-
-  Database& database_;
-  sqlite3_stmt* handle_ = nullptr;
-};
-
-/// All or nothing: what was written is undone unless commit() is reached. Others that write wait.
-class Transaction {
- public:
-  explicit Transaction(Database& database);
-  ~Transaction();
-  Transaction(const Transaction&) = delete;
-  Transaction& operator=(const Transaction&) = delete;
-
-  void commit();
-
- private:
-  Database& database_;
-  bool open_ = true;
-};
-
-// Results of a sweep in one SQLite file (README.md lists tables and views). Each point is written
-// as soon as it is finished, in a transaction of its own: a process that dies leaves whole points
-// only. Several processes may write to one file; a point that two of them finish is there once.
-
-inline constexpr const char* kSweepFile = "sweep.sqlite";
+inline constexpr const char* kSweepFile = "points.jsonl";
 inline constexpr const char* kSweepCsv = "sweep.csv";
+/// Of earlier versions, and not read any more.
+inline constexpr const char* kOldSweepFile = "sweep.sqlite";
+inline constexpr const char* kSweepFormat = "leviosim sweep 3";
 
 /// A finished point as the report needs it.
 struct SweepOutcome {
@@ -123,123 +49,95 @@ struct SweepOutcome {
 
 class SweepStore {
  public:
-  /// Opens the file, or makes it with the points of a sweep.
+  /// Opens the file, or makes it for the points of a sweep, which outlive the store.
   /// @param plan  its text
   /// @throws InputError if it holds another sweep
   SweepStore(const std::filesystem::path& folder, const std::string& plan,
              const std::vector<SweepPoint>& points);
   /// Opens what is there. @throws InputError if it is no sweep's
-  explicit SweepStore(const std::filesystem::path& folder,
-                      Database::Mode mode = Database::Mode::read_only);
+  explicit SweepStore(const std::filesystem::path& folder);
 
-  std::set<int> finished();
+  std::set<int> finished() const;
   void put(int point, const Outcome& result);
 
   /// Takes over all that another has finished. @throws InputError if it is of another sweep, or if
   /// both have a point with different results
-  void merge(SweepStore& other);
-  /// Makes a new file with the same points and nothing finished, if there is none.
-  void copy_plan_to(const std::filesystem::path& folder);
+  void merge(const SweepStore& other);
+  /// Makes a new file of the same sweep with nothing finished, if there is none.
+  void copy_plan_to(const std::filesystem::path& folder) const;
 
   /// What is kept of a point; nothing of one that is not finished.
-  std::optional<Outcome> result_of(int point);
+  std::optional<Outcome> result_of(int point) const;
   /// In the order of their numbers.
-  std::vector<SweepOutcome> outcomes();
+  std::vector<SweepOutcome> outcomes() const;
   /// That the points set, in the order of the plan.
-  std::vector<std::string> parameter_names();
-  /// "platform.cluster.clock=240MHz" of a point.
-  std::string settings_of(int point);
-  std::int64_t planned();
-  /// point_key() of a point; empty if there is no such point.
-  std::string key_of(int point);
+  const std::vector<std::string>& parameter_names() const { return about_.parameters; }
+  /// "platform.cluster.clock=240MHz" of a finished point.
+  std::string settings_of(int point) const;
+  std::int64_t planned() const { return about_.points; }
+  /// Whether these are the points of the sweep, by their keys.
+  bool holds(const std::vector<SweepPoint>& points) const;
 
   /// Remembers where the plan lies, since what it names lies beside it.
   void keep_place(const std::filesystem::path& plan);
   /// That file, which may be gone; nothing if none was remembered.
-  std::optional<std::filesystem::path> place();
-  std::string plan_text() { return fact("plan").value_or(""); }
+  std::optional<std::filesystem::path> place() const;
+  const std::string& plan_text() const { return about_.plan; }
   /// Digest of the sources of the program that made the file.
-  std::string simulator() { return fact("simulator").value_or(""); }
+  const std::string& simulator() const { return about_.simulator; }
 
-  /// Numbers of the points on the Pareto front at the last publish().
-  std::set<int> front();
-
-  /// Brings views, front and sweep.csv up to date: a row per finished point, a column per parameter
-  /// and figure. Neither file depends on which point was finished first.
+  /// Brings sweep.csv up to date: a row per finished point, a column per parameter and figure. It
+  /// does not depend on which point was finished first.
   /// @returns nothing, or why sweep.csv has another name now
   [[nodiscard]] std::optional<std::string> publish(outputs::OutputFile& file);
-  /// The text of sweep.csv as of the last publish().
-  std::string csv();
+  /// The text of sweep.csv.
+  std::string csv() const;
 
  private:
-  using Keys = std::vector<std::pair<int, std::string>>;
+  /// The first line, and later ones that say where the plan lies by now.
+  struct About {
+    std::int64_t points = 0;
+    std::string keys;  ///< a digest of those of all points, in their order
+    std::string simulator;
+    std::string program;
+    std::string plan;
+    std::string place;  ///< of its file, relative to the folder; empty if it is not known
+    std::vector<std::string> parameters;
+  };
+  /// A finished point. Names of figures are kept once for all points.
+  struct Kept {
+    std::string line;  ///< with its end
+    std::vector<std::pair<std::string, std::string>> settings;
+    std::string failure;
+    std::string protocol;
+    std::vector<std::pair<std::size_t, double>> figures;  ///< place in figure_names_, value
+  };
 
-  void expect_known_format();
-  /// A row of the table `sweep`.
-  std::optional<std::string> fact(std::string_view name);
-  Keys keys();
-  bool holds(const std::vector<SweepPoint>& points);
-  void plan(const std::vector<SweepPoint>& points);
-  void write(int point, const Outcome& result);
-  std::vector<std::string> figure_names();
-  void write_front();
-  /// Numbers figures as the points of the plan have them, whichever was finished first.
-  void number_figures();
-  void make_views(const std::vector<std::string>& parameters,
-                  const std::vector<std::string>& figures);
+  static std::string line_of(const About& about);
+  std::string line_of(int point, const Outcome& result) const;
+  void load(base::OpenedFile file);
+  void add_line(std::string_view line, std::uint64_t begin);
+  void add_about(const Json& line);
+  void add_point(const Json& line, std::string_view text);
+  std::size_t figure(const std::string& name, const std::string& unit);
+  /// Adds what `lines` says once all that is in the file is known; then knows that, too.
+  void append(const std::function<std::string()>& lines);
 
   std::filesystem::path folder_;
-  Database database_;
+  std::filesystem::path file_;
+  const std::vector<SweepPoint>* planned_points_ = nullptr;
+  About about_;
+  std::string first_line_;
+  std::uint64_t read_to_ = 0;  ///< of the file [bytes]
+  std::map<int, Kept> points_;
+  std::vector<std::pair<std::string, std::string>> figure_names_;  ///< with units
+  std::unordered_map<std::string, std::size_t> figure_places_;
 };
 
-/// Whether a folder's data base is a sweep's; `may_be_empty`: also one without any table.
-/// @throws InputError if it is no data base
-bool is_sweep(const std::filesystem::path& folder, bool may_be_empty);
-/// Takes all of the sweep out of the data base, or nothing.
-void empty_sweep(const std::filesystem::path& folder);
-
-// Tables and fixed views of sweep.sqlite.
-
-inline constexpr const char* kSweepFormat = "leviosim sweep 2";
-
-/// Takes out all of a sweep, and nothing that others added.
-inline constexpr const char* kSweepEmpty = R"(
-DROP VIEW IF EXISTS wide;
-DROP VIEW IF EXISTS metrics;
-DROP VIEW IF EXISTS points;
-DROP TABLE IF EXISTS front;
-DROP TABLE IF EXISTS figure_values;
-DROP TABLE IF EXISTS figures;
-DROP TABLE IF EXISTS outcomes;
-DROP TABLE IF EXISTS parameters;
-DROP TABLE IF EXISTS planned;
-DROP TABLE IF EXISTS sweep;
-)";
-
-inline constexpr const char* kSweepTables = R"(
-CREATE TABLE IF NOT EXISTS sweep(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS planned(point INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE);
-CREATE TABLE IF NOT EXISTS parameters(
-  point INTEGER NOT NULL REFERENCES planned, place INTEGER NOT NULL, name TEXT NOT NULL,
-  text TEXT NOT NULL, number REAL, unit TEXT NOT NULL, PRIMARY KEY(point, name)) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS outcomes(
-  point INTEGER PRIMARY KEY REFERENCES planned, failure TEXT NOT NULL);
-CREATE TABLE IF NOT EXISTS figures(
-  figure INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL,
-  description TEXT NOT NULL);
-CREATE TABLE IF NOT EXISTS figure_values(
-  point INTEGER NOT NULL REFERENCES outcomes, figure INTEGER NOT NULL REFERENCES figures,
-  place INTEGER NOT NULL, value REAL NOT NULL, PRIMARY KEY(point, figure)) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS front(point INTEGER PRIMARY KEY REFERENCES outcomes);
-CREATE VIEW IF NOT EXISTS points AS
-  SELECT planned.point AS point,
-         CASE WHEN failure IS NULL THEN 'open' WHEN failure = '' THEN 'done' ELSE 'failed' END
-           AS status,
-         COALESCE(failure, '') AS failure, key
-  FROM planned LEFT JOIN outcomes USING (point);
-CREATE VIEW IF NOT EXISTS metrics AS
-  SELECT point, name, value, unit, description FROM figure_values JOIN figures USING (figure);
-)";
+/// Whether a folder's file of points is a sweep's, of whatever version.
+bool is_sweep(const std::filesystem::path& folder);
+/// @throws InputError if the folder holds a sweep of an earlier version only, saying what to do
+void refuse_old_sweep(const std::filesystem::path& folder);
 
 // The points of a sweep that no other is better than in every respect.
 

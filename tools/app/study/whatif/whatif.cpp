@@ -182,6 +182,9 @@ void WhatIf::expect_known(const std::string& change, const SweepRow& settings) {
           fmt::format("{}: unknown key{}", change, base::did_you_mean(path, schema.paths())));
     if (value.empty())
       throw InputError(fmt::format("{}: {} is empty; expected a value", change, path));
+    const std::optional<platform::Measure> measure = platform::split_measure(value);
+    if (measure && !std::isfinite(measure->number))
+      throw InputError(fmt::format("{}: '{}' is not a finite number", change, value));
   }
 }
 

@@ -380,6 +380,9 @@ void run(const WhatIfWords& typed, const Words& words) {
                      name.empty() ? std::vector<std::filesystem::path>{}
                                   : std::vector<std::filesystem::path>{trace_of(name)});
   SweepInputs inputs(std::filesystem::current_path(), style, trace_memory(typed.memory));
+  // Refused before a flight is drawn, which takes a while.
+  for (const std::string& change : changes)
+    if (change.find('=') == std::string::npos) inputs.platform(change, {change});
   const RunnerOptions options{
       .noun = "variant", .threads = parse_jobs(typed.jobs), .progress = style};
   const Asked asked = asked_of(name, inputs, words, style);
