@@ -101,10 +101,11 @@ TEST(NextRobustnessOf, StartsInMotion) {
 TEST(NextRobustnessOf, StartsInMotionWithADelay) {
   const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 6);
   Profile profile = profile_named("next", 1);
+  profile.initial_wait = 0;
   const Flown at_once = fly(flight, profile);
   ASSERT_GT(at_once.count(PoseSource::Initialising), 5);
   EXPECT_EQ(at_once.sources.back(), PoseSource::Tracked);
-  profile.initial_frames = 80;
+  profile.initial_wait = 4;
   const Flown delayed = fly(flight, profile);
   EXPECT_EQ(delayed.sources, at_once.sources);
   EXPECT_EQ(delayed.trajectory.back().T_world_body.matrix(),
@@ -113,6 +114,9 @@ TEST(NextRobustnessOf, StartsInMotionWithADelay) {
             at_once.trajectory[3].T_world_body.matrix());
   EXPECT_LT(delayed.ate, at_once.ate);
   RecordProperty("ate_mm", static_cast<int>(delayed.ate * 1000));
+  profile.initial_wait = 0.2f;  // which is over before anything is known
+  EXPECT_EQ(fly(flight, profile).trajectory[3].T_world_body.matrix(),
+            at_once.trajectory[3].T_world_body.matrix());
 }
 
 /// The IMU leads back to frames whose keyframes have left the map, or were of one that was given
@@ -121,8 +125,9 @@ TEST(NextRobustnessOf, FramesBeforeAnEarlyDarknessAreCorrectedToo) {
   ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 6);
   darken(flight, 4, 24);
   Profile profile = profile_named("next", 1);
+  profile.initial_wait = 0;
   const Flown at_once = fly(flight, profile);
-  profile.initial_frames = 100;
+  profile.initial_wait = 5;
   const Flown delayed = fly(flight, profile);
   RecordProperty("at_once_mm", static_cast<int>(at_once.ate * 1000));
   RecordProperty("delayed_mm", static_cast<int>(delayed.ate * 1000));
@@ -134,7 +139,7 @@ TEST(NextRobustnessOf, FramesBeforeAnEarlyDarknessAreCorrectedToo) {
 TEST(NextRobustnessOf, PosesThatWaitLongerAreBetter) {
   const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 6);
   Profile profile = profile_named("next", 1);
-  profile.initial_frames = 100;
+  profile.initial_wait = 5;
   profile.settling_time = 0;
   const Flown aligned = fly(flight, profile);
   profile.settling_time = 1.5f;

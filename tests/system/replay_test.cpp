@@ -7,8 +7,10 @@
 
 #include "sim/work/op.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/workload.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/profile.h"
 
@@ -251,6 +253,29 @@ TEST(ReplayOfRealFrames, IsTheRunAndSmall) {
   const Replay again = replayed(*recorded.trace, {});
   EXPECT_EQ(files_of(again.run), files_of(recorded.run));
   EXPECT_LE(recorded.trace->file_size(), 100u * 20'000u);
+}
+
+/// A start in motion: run and trace have the poses as the alignment corrected them.
+TEST(ReplayOfRealFrames, HasThePosesThatWaited) {
+  const auto folder = traces::testing::recorded_data() / "euroc" / "MH_01_easy_t05_t20";
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << "no recorded flight: set LEVIOSIM_DATA to the folder that contains euroc/";
+  RunRequest request = request_on({});
+  request.data = folder;
+  request.profile = "next";
+  request.frames = traces::FrameRange{50, 130};
+  const Recorded recorded = record(request);
+  EXPECT_EQ(files_of(replayed(*recorded.trace, {}).run), files_of(recorded.run));
+  request.workload = {{&workload_parameter("test", "workload.initialisation.wait"), 0}};
+  const RunResult online = live(request);
+  const FrameResult &waited = recorded.run.frames[3], &at_once = online.frames[3];
+  EXPECT_EQ(waited.source, PoseSource::Initialising);
+  EXPECT_EQ(at_once.source, PoseSource::Initialising);
+  EXPECT_EQ(waited.pose_state(), vio::PoseState::Located);
+  EXPECT_EQ(at_once.pose_state(), vio::PoseState::Initialising);
+  EXPECT_LT(recorded.run.ate->translation.rmse, 0.5 * online.ate->translation.rmse);
+  EXPECT_EQ(figures_of(recorded.run).map.guesses, 0);
+  EXPECT_GT(figures_of(online).map.located_from, online.frames[3].index);
 }
 
 }  // namespace

@@ -168,6 +168,20 @@ TEST(Tuning, FiguresAreMediansOverTheSeeds) {
   EXPECT_FALSE(point.median(&LoopOutcome::power_w));
 }
 
+/// A median would hide a start from which the map is wrong.
+TEST(Tuning, NineteenOfTwentyRunsMustMeetTheError) {
+  Example example;
+  example.plan.ate_m = 0.2;
+  TunePoint point = example.points[5];  // at the limits
+  point.outcomes.assign(20, point.outcomes[0]);
+  point.outcomes[3].ate_m = 0.21;
+  EXPECT_EQ(point.failures(0.2), 1u);
+  EXPECT_TRUE(is_enough(point, example.plan));
+  point.outcomes[7].ate_m.reset();
+  EXPECT_EQ(point.failures(0.2), 2u);
+  EXPECT_FALSE(is_enough(point, example.plan));
+}
+
 TEST(Tuning, SaysWhatItFound) {
   Example example;
   EXPECT_NE(choice_text(example.plan, choices(example.plan, example.points))

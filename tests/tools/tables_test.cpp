@@ -237,10 +237,10 @@ TEST(FrameSummary, AddsUp) {
       run.frames.push_back(testing::frame(k, static_cast<PoseSource>(k), false, 10'000'000));
   run.frames[0].map_restarts = run.frames[7].map_restarts = 1;
   const std::string line = line_of(frame_summary(run), "frames: ");
-  EXPECT_EQ(
-      line,
-      "frames: 21 (tracked 6, EPnP 2, 8-point 3, predicted 5, pose kept 4, first of a map 1), "
-      "keyframes 0, restarts of the map 2");
+  EXPECT_EQ(line,
+            "frames: 21 (tracked 6, EPnP 2, 8-point 3, predicted 5, pose kept 4, at rest or first "
+            "of a map 1), "
+            "keyframes 0, restarts of the map 2");
 }
 
 TEST(LatencyTable, EveryFrameIsInOneScenario) {

@@ -76,12 +76,43 @@ TEST(MapVerdict, SaysThatImagesHaveNoFeatures) {
             (Texts{"the error is 30.0 % of the path", "images have 3.0 features on average"}));
 }
 
-/// Of guesses before there was a map, or of the map.
-TEST(MapVerdict, SaysWhatTheErrorIsWithoutTheInitialisation) {
+/// What comes before there is a map is no fault of the map.
+TEST(MapVerdict, GuessesAreNamedAndNotJudged) {
   RunResult run = with_error(0.213);
   run.ate->located_rmse_m = 0.04;
-  EXPECT_EQ(map_faults(run),
-            (Texts{"the error is 21.3 % of the path (0.04 m without the initialisation)"}));
+  for (std::size_t i = 0; i < 3; ++i)
+    run.frames[i].state = static_cast<int>(vio::PoseState::Initialising);
+  const RunVerdict verdict = map_verdict(figures_of(run).map);
+  EXPECT_EQ(verdict.grade, Grade::good);
+  EXPECT_EQ(verdict.text(), fmt::format("map good: from frame {} on; 3 poses before are guesses",
+                                        run.frames[3].index));
+  run.ate->located_rmse_m = 1.15;
+  EXPECT_EQ(map_grade(run), Grade::doubtful);
+  run.frames[9].state = run.frames[0].state;
+  EXPECT_EQ(map_faults(run).back(), "4 poses are guesses");
+}
+
+TEST(MapVerdict, SaysSinceWhenAReasonHolds) {
+  RunResult run = with_error(0.05);
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    run.frames[i].health = static_cast<int>(vio::Health::unreliable);
+    run.frames[i].health_reasons =
+        bit(vio::HealthReason::FewInliers) | (i < 7 ? 0 : bit(vio::HealthReason::Drift));
+  }
+  EXPECT_EQ(
+      map_faults(run),
+      (Texts{
+          fmt::format("too few matches agree with the pose (since frame {})", run.frames[0].index),
+          fmt::format("too much of the path is uncertain (since frame {})", run.frames[7].index)}));
+}
+
+TEST(MapVerdict, KnowsSinceWhenTheVehicleRests) {
+  RunResult run = with_error(0.05);
+  EXPECT_FALSE(figures_of(run).map.at_rest_since);
+  for (std::size_t i = 12; i < run.frames.size(); ++i) run.frames[i].at_rest = 1;
+  EXPECT_EQ(figures_of(run).map.at_rest_since, run.frames[12].index);
+  run.frames.back().at_rest = 0;
+  EXPECT_FALSE(figures_of(run).map.at_rest_since);
 }
 
 TEST(MapVerdict, AScaleThatIsOffEitherWay) {

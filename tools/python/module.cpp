@@ -80,6 +80,8 @@ RunOptions run_options(const py::dict& words) {
       text(options.deadline);
     else if (name == "initial_delay")
       text(options.initial_delay);
+    else if (name == "online")
+      options.online = value.cast<bool>();
     else if (name == "native")
       options.native = value.cast<bool>();
     else if (name == "record")

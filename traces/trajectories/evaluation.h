@@ -135,10 +135,10 @@ struct Evaluation {
   std::optional<double> longest_gap_s;  ///< between successive matched poses; none without time
   double path_length_m = 0;             ///< of the truth from the first to the last matched pose
   /// Of the estimate, as it was estimated, over the truth: RMS distances of the matched positions
-  /// from their mean. Absent where the truth does not move.
+  /// from their mean. Absent where the truth does not move. Without guesses where they are known.
   std::optional<double> size_ratio;
-  /// RMSE of the positions without the poses of an initialisation, which are guesses of the IMU
-  /// [m]. evaluate() leaves it to those who know which they are; absent if there are none.
+  /// RMSE of the positions without the poses that are guesses, before there was a map [m].
+  /// evaluate() leaves it to those who know which they are; absent if there are none.
   std::optional<double> located_rmse_m;
   std::string protocol;             ///< one line that belongs beside every figure above
   std::vector<MatchedPose> poses;   ///< all that matched, the estimate aligned

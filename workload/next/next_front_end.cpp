@@ -20,7 +20,7 @@ NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Mach
       inertial_(state_),
       prediction_(state_, inertial_, map_, keyframe_memory),
       random_(profile.sampling_seed),
-      path_(state_, inertial_, keyframe_memory, profile.initial_frames) {
+      path_(state_, inertial_, keyframe_memory, profile.frames_that_wait(rig.frame_rate)) {
   if (profile.loop.enabled) loop_.emplace(state_, loop_memory);
 }
 
@@ -37,7 +37,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   report.keyframe = true;
   still_ = rests_ = false;
   correct_path(input.dt, report);
-  path_.take_motion();
+  path_.take_motion(input.dt);
   if (state_.started) look_for_motion(frame);
   frame.matches.list.count = 0;  // their memory is free again
   if (!state_.started) {
@@ -68,6 +68,8 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   prediction_.remember(frame, report);
   if (initialises()) hold_position(frame);
   complete<P>(state_, frame, report);
+  if (initialises()) report.state = static_cast<int>(PoseState::Initialising);
+  report.at_rest = inertial_.rest() || images_rest() ? 1 : 0;
   if (loop_) loop_->correct(frame, frame.dt, report);
   return report;
 }
@@ -195,7 +197,7 @@ float NextFrontEnd<P>::any_depth() const {
 /// Whether the map waits for its alignment.
 template <class P>
 bool NextFrontEnd<P>::initialises() const {
-  return state_.profile.alignment.enabled && state_.profile.optimiser.joint && !map_.aligned;
+  return state_.profile.initialises() && !map_.aligned;
 }
 
 /// From where on the map tells how far the camera has gone, all poses since images were first seen
@@ -203,7 +205,7 @@ bool NextFrontEnd<P>::initialises() const {
 template <class P>
 void NextFrontEnd<P>::correct_path(float dt, FrameReport& report) {
   if (initialises() && !map_.converged) return;
-  report.earlier = path_.poses();
+  report.earlier = path_.poses(dt);
   settling_ = initialises() ? 0 : settling_ + dt;
   if (settling_ > state_.profile.settling_time) path_.clear();
 }
@@ -363,6 +365,7 @@ InitialPath<P>::InitialPath(const FrontEndState<P>& state, const InertialPart<P>
                             work::Arena& arena, int frames)
     : state_(state), inertial_(inertial), frames_(frames) {
   if (frames_ == 0) return;
+  taken_s_.resize(static_cast<std::size_t>(frames_));
   motions_ = arena.alloc<Floats>("motion of the first frames", kFloats * frames_);
   since_ = {arena.alloc<Ids>("keyframes before the first frames", frames_).data(), frames_};
   became_ = {arena.alloc<Ids>("keyframes of the first frames", frames_).data(), frames_};
@@ -386,8 +389,10 @@ std::optional<KeyframeState<P>> InitialPath<P>::keyframe(I32 id) const {
 }
 
 template <class P>
-void InitialPath<P>::take_motion() {
+void InitialPath<P>::take_motion(float dt) {
   if (frames_ == 0) return;
+  now_s_ = count_ > 0 ? now_s_ + dt : 0;
+  taken_s_[static_cast<std::size_t>(count_ % frames_)] = now_s_;  // uncounted: a place a frame
   work::Machine& machine = state_.machine;
   const work::Arena::Frame memory(machine.local());
   const auto stage = machine.stage(stages::kGuided);
@@ -407,7 +412,7 @@ void InitialPath<P>::remember() {
 }
 
 template <class P>
-std::vector<EarlierPose> InitialPath<P>::poses() const {
+std::vector<EarlierPose> InitialPath<P>::poses(float dt) const {
   std::vector<EarlierPose> poses;
   if (count_ == 0) return poses;
   work::Machine& machine = state_.machine;
@@ -417,6 +422,7 @@ std::vector<EarlierPose> InitialPath<P>::poses() const {
   std::optional<KeyframeState<P>> state = keyframe(newest_keyframe());
   for (int n = count_ - 1; n >= std::max(0, count_ - frames_) && state; --n) {
     const int at = n % frames_;
+    if (now_s_ + dt - taken_s_[static_cast<std::size_t>(at)] > state_.profile.initial_wait) break;
     const I32 since = since_[at], became = became_[at];  // uncounted: places a frame
     machine.copy_in(record, motions_.subspan(at * kFloats, kFloats));
     const auto motion = [&] {

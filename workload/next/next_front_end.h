@@ -32,14 +32,15 @@ class InitialPath {
               int frames);
 
   /// Takes the motion since the last keyframe, before the present frame becomes one.
-  void take_motion();
+  /// @param dt  since the frame before [s]
+  void take_motion(float dt);
   /// The present frame, after it has become a keyframe or not.
   void remember();
   bool empty() const { return count_ == 0; }
   void clear() { count_ = 0; }
-  /// Where the frames were. Call it with the frame after the last one that was remembered, before
-  /// take_motion().
-  std::vector<EarlierPose> poses() const;
+  /// Where the frames were, as far as their poses wait still. Call it with the frame after the last
+  /// one that was remembered, before take_motion(). @param dt  since that one [s]
+  std::vector<EarlierPose> poses(float dt) const;
 
  private:
   static constexpr int kFloats = Preintegration<P>::kMotionFloats;
@@ -52,6 +53,8 @@ class InitialPath {
   const InertialPart<P>& inertial_;
   int frames_;
   int count_ = 0;  ///< frames remembered since they were cleared, forgotten ones included
+  float now_s_ = 0;
+  std::vector<float> taken_s_;  ///< when the frames were
   Floats motions_;
   L2Ids since_;   ///< serial numbers of the keyframes before, -1 for the first frame of all
   L2Ids became_;  ///< of the frame as a keyframe, or that of the keyframe before

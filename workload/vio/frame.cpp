@@ -52,6 +52,7 @@ void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport&
   report.features = frame.features.list.count;
   report.frame_matches = frame.matches.list.count;
   report.landmarks = work::value(state.graph.landmark_count());
+  report.state = static_cast<int>(state_of(report.source));
   static_cast<CameraPose&>(report) = plain(frame.T_world_camera);
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace leviosim::vio {
@@ -21,30 +22,56 @@ enum class PoseSource : std::uint8_t {
   Initialising
 };
 
+/// What a pose is worth.
+enum class PoseState : std::uint8_t {
+  Located,      ///< from what the camera sees
+  Predicted,    ///< moved on by the IMU, since too little was seen again
+  Kept,         ///< that of the last keyframe: nothing tells where the camera is
+  Initialising  ///< a guess: velocity, gravity and scale are not known yet
+};
+
+/// In files, by number.
+inline constexpr std::array<std::string_view, 4> kPoseStateNames{"located", "predicted", "kept",
+                                                                 "initialising"};
+
+/// Absent for other words.
+constexpr std::optional<PoseState> state_named(std::string_view name) {
+  for (std::size_t i = 0; i < kPoseStateNames.size(); ++i)
+    if (kPoseStateNames[i] == name) return static_cast<PoseState>(i);
+  return std::nullopt;
+}
+
 struct PoseSourceInfo {
   PoseSource source;
   std::string_view name;   ///< in files
   std::string_view words;  ///< in what people read
   int rank;                ///< there, from the usual to the rare
   std::string_view meaning;
+  PoseState state = PoseState::Located;  ///< of its poses, as long as nothing corrects them
 };
 
 /// All of them, by number.
 inline constexpr std::array kPoseSources{
-    PoseSourceInfo{PoseSource::First, "first", "first of a map", 6,
-                   "the first frame defines the world"},
+    PoseSourceInfo{PoseSource::First, "first", "at rest or first of a map", 6,
+                   "where a map begins; at rest, before the first window is full, anew each frame"},
     PoseSourceInfo{PoseSource::Epnp, "epnp", "EPnP", 1, "from matches with landmarks"},
     PoseSourceInfo{PoseSource::EightPoint, "eight_point", "8-point", 2,
                    "from matches with the previous keyframe"},
     PoseSourceInfo{PoseSource::Kept, "kept", "pose kept", 5,
-                   "too few matches: the last keyframe's pose"},
+                   "too few matches: the last keyframe's pose", PoseState::Kept},
     PoseSourceInfo{PoseSource::Predicted, "predicted", "predicted", 3,
-                   "EPnP found too few inliers: the last keyframe's pose, moved on"},
+                   "EPnP found too few inliers: the last keyframe's pose, moved on",
+                   PoseState::Predicted},
     PoseSourceInfo{PoseSource::Tracked, "tracked", "tracked", 0,
                    "refined from landmarks that a predicted pose found, or from EPnP's pose"},
     PoseSourceInfo{PoseSource::Initialising, "initialising", "initialising", 4,
-                   "moved on by the IMU before velocity, gravity and scale are known"},
+                   "moved on by the IMU before velocity, gravity and scale are known",
+                   PoseState::Initialising},
 };
+
+constexpr PoseState state_of(PoseSource source) {
+  return kPoseSources[static_cast<std::size_t>(source)].state;
+}
 
 constexpr std::string_view name_of(PoseSource source) {
   return kPoseSources[static_cast<std::size_t>(source)].name;
@@ -101,14 +128,26 @@ struct FrameFacts {
   int loop_closures = 0;
   int health = 0;          ///< as Health numbers it
   int health_reasons = 0;  ///< bits of HealthReason; 0 for a map that is good or not judged
+  int at_rest = 0;         ///< 1: images and IMU show that the vehicle neither moves nor turns
+  int state = 0;           ///< of the pose, as PoseState numbers it
+
+  PoseState pose_state() const { return static_cast<PoseState>(state); }
 };
+
+/// FrameFacts::state after a later frame, of state `by`, has corrected the pose: a map that is
+/// aligned locates it.
+constexpr int state_after(int state, int by) {
+  constexpr int kGuess = static_cast<int>(PoseState::Initialising);
+  return state == kGuess && by != kGuess ? static_cast<int>(PoseState::Located) : state;
+}
 
 /// A number that is never negative.
 struct FrameFact {
   std::string_view name;  ///< in files
   std::string_view meaning;
   int FrameFacts::*of;
-  bool adds_up = true;  ///< over frames
+  bool adds_up = true;                           ///< over frames
+  std::span<const std::string_view> words = {};  ///< in CSV files, by number; else the number
 };
 
 inline constexpr std::array kFrameFacts{
@@ -132,6 +171,9 @@ inline constexpr std::array kFrameFacts{
         "why it is 1 or 2, summed: 1 no scale yet, 2 images and IMU contradict each other, 4 no "
         "landmark seen, 8 few matches agree, 16 accelerometer bias, 32 drift, 64 begun again",
         &FrameFacts::health_reasons, false},
+    FrameFact{"at_rest", "frames at rest, as images and IMU show it", &FrameFacts::at_rest},
+    FrameFact{"state", "what the pose is worth: located, predicted, kept, initialising (a guess)",
+              &FrameFacts::state, false, kPoseStateNames},
 };
 
 }  // namespace leviosim::vio

@@ -50,6 +50,7 @@ void make_next(Profile& p) {
   p.recovery.min_tracked = 150;
   p.max_observations = 4000;
   p.alignment.enabled = true;
+  p.initial_wait = 2.0f;  // an alignment takes one to two seconds on a chip
   p.keyframe_parallax = 0.06f;
   p.optimiser_keyframes = 12;
   p.max_observation_error_sq = 9.0f;
@@ -95,6 +96,15 @@ const NamedProfile* find(std::string_view name) {
 }
 
 }  // namespace
+
+/// What waits takes memory: more than so many frames do not, however many a camera sends.
+constexpr float kMostWaiting = 200;
+
+int Profile::frames_that_wait(float frame_rate) const {
+  const float frames = initialises() ? std::min(initial_wait * frame_rate, kMostWaiting) : 0;
+  const int whole = static_cast<int>(frames);
+  return whole + (static_cast<float>(whole) < frames ? 1 : 0);
+}
 
 Profile profile_named(std::string_view name, std::uint32_t seed) {
   expect_profile(name);

@@ -131,7 +131,7 @@ struct Profile {
   AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser
   float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
   float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]
-  int initial_frames = 0;            ///< whose poses wait until the alignment has settled
+  float initial_wait = 0;            ///< of poses for the alignment that corrects them, at most [s]
   float settling_time = 1.5f;        ///< of those poses after the alignment, s
   LoopOptions loop;
 
@@ -160,6 +160,11 @@ struct Profile {
   int max_snapshots = 10;
 
   int l1_alignment = 1;  ///< bytes; the release's allocator packs blocks
+
+  /// Whether a map that begins in motion waits for its alignment.
+  bool initialises() const { return alignment.enabled && optimiser.joint; }
+  /// Of a camera, whose poses may wait.
+  int frames_that_wait(float frame_rate) const;
 };
 
 /// @throws InputError for an unknown name, with the nearest known one.

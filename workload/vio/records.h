@@ -33,6 +33,7 @@ struct Rig {
   int height;
   std::array<float, 9> R_camera_body;    ///< row-major
   std::array<float, 3> p_camera_body{};  ///< of the body (IMU) in the camera frame [m]
+  float frame_rate = 20;                 ///< [1/s]
 };
 
 struct CameraPose {

@@ -75,17 +75,20 @@ class Table {
 /// The columns of frames.csv that are read; native runs have no latency.
 struct Columns {
   explicit Columns(const Table& table)
-      : t_ns(table.column("t_ns")),
+      : number(table.column("frame")),
+        t_ns(table.column("t_ns")),
         source(table.column("source")),
         features(table.column("features")),
         restarts(table.column("map_restarts")),
         health(table.column("health")),
         health_reasons(table.column("health_reasons")) {
     if (table.has("latency_ns")) latency = table.column("latency_ns");
+    if (table.has("state")) state = table.column("state");  // not in folders of older programs
+    if (table.has("at_rest")) at_rest = table.column("at_rest");
   }
 
-  std::size_t t_ns, source, features, restarts, health, health_reasons;
-  std::optional<std::size_t> latency;
+  std::size_t number, t_ns, source, features, restarts, health, health_reasons;
+  std::optional<std::size_t> latency, state, at_rest;
 };
 
 int whole(const base::CsvRow& row, std::size_t column) {
@@ -104,6 +107,8 @@ void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& fram
   frame.map_restarts = whole(row, at.restarts);
   frame.health = whole(row, at.health);
   frame.health_reasons = whole(row, at.health_reasons);
+  if (at.state) frame.state = vio::state_named(row.text(*at.state)).value_or(frame.state);
+  frame.at_rest = at.at_rest && whole(row, *at.at_rest) > 0;
 }
 
 constexpr const char* kFrame = "frame";
@@ -254,6 +259,7 @@ std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const 
   std::vector<RecordedFrame> frames;
   while (const base::CsvRow* row = table.next()) {
     RecordedFrame& frame = frames.emplace_back();
+    frame.number = whole(*row, at.number);
     frame.t_ns = row->nanoseconds(at.t_ns);
     const bool is_dropped = at.latency && row->text(*at.latency).empty();
     if (!is_dropped) read_result(*row, at, frame);

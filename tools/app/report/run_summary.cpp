@@ -133,6 +133,8 @@ std::vector<std::string> trajectory_lines(const RunResult& run) {
       run.frames.begin(), run.frames.end(),
       [](const FrameResult& frame) { return frame.source == PoseSource::Initialising; });
   if (initialising > 0) again += fmt::format(", initialising for {} frames", initialising);
+  if (const std::optional<int> rests = figures_of(run).map.at_rest_since)
+    again += fmt::format(", at rest since frame {}", *rests);
   const std::string length = fmt::format("trajectory: {} poses, {} m", run.trajectory.size(),
                                          readable(path_length(run.trajectory), 2));
   if (const std::string why = why_incomparable(run); !why.empty())
@@ -141,7 +143,7 @@ std::vector<std::string> trajectory_lines(const RunResult& run) {
   std::string text =
       fmt::format("trajectory: ATE {} m RMSE", readable(run.ate->translation.rmse, 3));
   if (run.ate->located_rmse_m)
-    text += fmt::format(" ({} m without initialisation)", readable(*run.ate->located_rmse_m, 3));
+    text += fmt::format(" ({} m without guesses)", readable(*run.ate->located_rmse_m, 3));
   text += fmt::format(", {} m worst", readable(run.ate->translation.max, 3));
   if (const auto attitude = traces::attitude_errors(*run.ate))
     text += fmt::format(", tilt {:.1f}°, heading {:.1f}°{}", attitude->tilt_rmse_deg,
@@ -347,7 +349,7 @@ std::string ate_text(const Evaluation& evaluation) {
              "{}     {}\n",
              readable(t.rmse, 3), readable(t.mean, 3), readable(t.median, 3), readable(t.max, 3),
              evaluation.located_rmse_m
-                 ? fmt::format("     {} m RMSE without the frames of the initialisation\n",
+                 ? fmt::format("     {} m RMSE without the poses that are guesses\n",
                                readable(*evaluation.located_rmse_m, 3))
                  : "",
              evaluation.protocol) +
@@ -396,7 +398,7 @@ void add_ate(StatisticList& list, const Evaluation& evaluation,
   add("ate.median", "m", "absolute trajectory error, median", rounded(t.median));
   add("ate.worst", "m", "absolute trajectory error, worst", rounded(t.max));
   if (evaluation.located_rmse_m)
-    add("ate.located", "m", "absolute trajectory error without initialising frames, RMS",
+    add("ate.located", "m", "absolute trajectory error without poses that are guesses, RMS",
         rounded(*evaluation.located_rmse_m));
   if (attitude) {
     add("tilt.rmse", "deg", "of the vertical, attitudes best aligned, root mean square",

@@ -39,7 +39,7 @@ constexpr std::array kFigureRows{
     FigureRow{"energy.frame", "mJ", "energy per frame", "energy of a frame", "mJ", 1},
     FigureRow{"energy.mean_power", "mW", "mean power", "mean power", "mW", 1},
     FigureRow{"accuracy.ate.rmse", "m", "ATE", "ATE (RMSE)", "m", 1},
-    FigureRow{"accuracy.ate.located", "m", "located ATE", "ATE without initialisation", "m", 1},
+    FigureRow{"accuracy.ate.located", "m", "located ATE", "ATE without guesses", "m", 1},
     FigureRow{"accuracy.completion", "1", "completion"},
     FigureRow{"verdict.time", "time verdict", "time verdict"},
     FigureRow{"verdict.memory", "memory verdict", "memory verdict"},
@@ -48,12 +48,15 @@ constexpr std::array kFigureRows{
 
 RecordedFrame recorded(const FrameResult& frame) {
   RecordedFrame row;
+  row.number = frame.index;
   row.t_ns = frame.t_ns;
   row.source = frame.source;
   row.features = frame.features;
   row.map_restarts = frame.map_restarts;
   row.health = frame.health;
   row.health_reasons = frame.health_reasons;
+  row.state = frame.pose_state();
+  row.at_rest = frame.at_rest > 0;
   return row;
 }
 
@@ -124,12 +127,31 @@ std::vector<RecordedFrame> recorded_frames(const RunResult& run) {
         next();
         continue;
       }
-      frames.emplace_back().t_ns = delivery.t_ns;
+      RecordedFrame& dropped = frames.emplace_back();
+      dropped.number = delivery.frame;
+      dropped.t_ns = delivery.t_ns;
     }
   return frames;
 }
 
 namespace {
+
+/// The number of the first of the last frames that all are so; absent if the last one is not.
+template <class Is>
+std::optional<int> since(const std::vector<RecordedFrame>& frames, const Is& is) {
+  const auto last_other = std::find_if_not(frames.rbegin(), frames.rend(), is);
+  return last_other == frames.rbegin() ? std::nullopt : std::optional(last_other.base()->number);
+}
+
+void add_guesses(const std::vector<RecordedFrame>& frames, MapSigns& signs) {
+  const auto guessed = [](const RecordedFrame& f) {
+    return f.state == vio::PoseState::Initialising;
+  };
+  signs.guesses = std::count_if(frames.begin(), frames.end(), guessed);
+  const auto located = std::find_if_not(frames.begin(), frames.end(), guessed);
+  if (signs.guesses > 0 && located != frames.end() && located - frames.begin() == signs.guesses)
+    signs.located_from = located->number;
+}
 
 /// What frames and the ground truth say.
 MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& truth,
@@ -153,8 +175,16 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& t
   for (const RecordedFrame& frame : processed) {
     features += frame.features;
     signs.restarts += frame.map_restarts;
-    signs.lost_frames += frame.health == static_cast<int>(vio::Health::lost) ? 1 : 0;
+    if (frame.health != static_cast<int>(vio::Health::lost)) continue;
+    if (signs.lost_frames++ == 0) signs.lost.first = frame.number;
+    signs.lost.last = frame.number;
   }
+  for (std::size_t i = 0; i < signs.reason_since.size(); ++i)
+    signs.reason_since[i] = since(processed, [&](const RecordedFrame& f) {
+                              return (f.health_reasons >> i & 1) != 0;
+                            }).value_or(0);
+  signs.at_rest_since = since(processed, [](const RecordedFrame& f) { return f.at_rest; });
+  add_guesses(processed, signs);
   signs.features = features / static_cast<double>(processed.size());
   return signs;
 }

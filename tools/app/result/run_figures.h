@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -49,12 +50,15 @@ struct StageName {
 
 /// A frame of the camera, as a row of frames.csv has it.
 struct RecordedFrame {
+  int number = 0;  ///< in the data set, or of the camera
   std::int64_t t_ns = 0;
   std::optional<PoseSource> source;  ///< absent if it was dropped
   int features = 0;
   int map_restarts = 0;
   std::optional<int> health;  ///< of the map, as vio::Health numbers it; absent if not recorded
   int health_reasons = 0;     ///< bits of vio::HealthReason
+  vio::PoseState state = vio::PoseState::Located;  ///< of its pose
+  bool at_rest = false;
 };
 
 /// What the ground truth says of a run; nothing is known without one.
@@ -62,7 +66,13 @@ struct TruthSigns {
   std::optional<double> error_m;    ///< RMSE of the positions
   std::optional<double> path_m;     ///< length of the true path
   std::optional<double> scale;      ///< size of the estimated path over that of the true one
-  std::optional<double> located_m;  ///< error_m without initialising frames, if there are any
+  std::optional<double> located_m;  ///< error_m without guesses, if there are any
+};
+
+/// Frames in a row, by their numbers.
+struct FrameSpan {
+  int first = 0;
+  int last = 0;
 };
 
 /// What says whether a map can be right.
@@ -77,7 +87,13 @@ struct MapSigns {
   std::optional<double> features;   ///< of a mean frame
   std::optional<int> health;        ///< of the last frame
   int health_reasons = 0;           ///< likewise
-  std::int64_t lost_frames = 0;     ///< of health 2
+  /// By number of the reason: the frame from which on it holds until the end.
+  std::array<int, vio::kHealthReasons.size()> reason_since{};
+  std::int64_t lost_frames = 0;      ///< of health 2
+  FrameSpan lost;                    ///< from the first to the last of them
+  std::int64_t guesses = 0;          ///< poses from before there was a map
+  std::optional<int> located_from;   ///< the frame after all guesses, if they come first
+  std::optional<int> at_rest_since;  ///< the frame from which on the vehicle rests until the end
 };
 
 struct RunFigures {

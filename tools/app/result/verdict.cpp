@@ -110,10 +110,12 @@ std::optional<RunVerdict> memory_verdict(const RunFigures& run) {
 }
 
 /// Why the estimator ends with a map that is not good.
-std::vector<std::string> reasons_of(vio::Health health, int bits) {
+std::vector<std::string> reasons_of(vio::Health health, const MapSigns& signs) {
   std::vector<std::string> reasons;
   for (std::size_t i = 0; i < vio::kHealthReasons.size(); ++i)
-    if ((bits >> i & 1) != 0) reasons.emplace_back(vio::kHealthReasons[i]);
+    if ((signs.health_reasons >> i & 1) != 0)
+      reasons.push_back(
+          fmt::format("{} (since frame {})", vio::kHealthReasons[i], signs.reason_since[i]));
   if (reasons.empty())  // replays of traces that do not have them
     reasons.push_back(fmt::format("the estimator ends with a map that is {}",
                                   vio::kHealthNames[static_cast<std::size_t>(health)]));
@@ -158,7 +160,7 @@ std::string RunVerdict::reason() const { return fmt::format("{}", fmt::join(reas
 
 std::string RunVerdict::text() const {
   std::string text = fmt::format("{} {}", about, word());
-  const bool says_why = grade != Grade::good || about == "time";
+  const bool says_why = grade != Grade::good || about != "memory";
   return says_why && !reasons.empty() ? text + ": " + reason() : text;
 }
 
@@ -184,24 +186,33 @@ namespace {
 
 using Fault = std::function<void(bool is_lost, std::string reason)>;
 
-/// On a short path the error counts as on one of kShortestPath_m.
+/// Of the poses that are no guesses. On a short path the error counts as on one of kShortestPath_m.
 void judge_by_truth(const TruthSigns& truth, const MapLimits& limits, const Fault& fault) {
   if (!truth.error_m || !truth.path_m) return;
   const bool is_short = *truth.path_m < kShortestPath_m;
   const double path_m = std::max(*truth.path_m, kShortestPath_m);
-  const double share = *truth.error_m / path_m;
-  if (share > limits.error_share) {
-    std::string reason =
-        is_short ? fmt::format("the error is {} m on a path of {} m", readable(*truth.error_m, 2),
-                               readable(*truth.path_m, 2))
-                 : fmt::format("the error is {} % of the path", readable(100 * share, 1));
-    if (truth.located_m && *truth.located_m <= limits.error_share * path_m)
-      reason += fmt::format(" ({} m without the initialisation)", readable(*truth.located_m, 2));
-    fault(share > limits.lost_error_share, std::move(reason));
-  }
+  const double error_m = truth.located_m.value_or(*truth.error_m);
+  const double share = error_m / path_m;
+  if (share > limits.error_share)
+    fault(share > limits.lost_error_share,
+          is_short ? fmt::format("the error is {} m on a path of {} m", readable(error_m, 2),
+                                 readable(*truth.path_m, 2))
+                   : fmt::format("the error is {} % of the path", readable(100 * share, 1)));
   if (!is_short && truth.scale && !(off(*truth.scale) < limits.scale))
     fault(!(off(*truth.scale) < limits.lost_scale),
           fmt::format("the scale is {}", readable(*truth.scale, 2)));
+}
+
+}  // namespace
+
+namespace {
+
+/// Which poses the verdict does not judge.
+std::string guesses_text(const MapSigns& signs) {
+  const std::string poses = signs.guesses == 1 ? "a pose" : fmt::format("{} poses", signs.guesses);
+  const char* const are = signs.guesses == 1 ? "is a guess" : "are guesses";
+  if (!signs.located_from) return fmt::format("{} {}", poses, are);
+  return fmt::format("from frame {} on; {} before {}", *signs.located_from, poses, are);
 }
 
 }  // namespace
@@ -224,11 +235,13 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   const auto health =
       static_cast<vio::Health>(signs.health.value_or(static_cast<int>(vio::Health::not_judged)));
   if (health == vio::Health::unreliable || health == vio::Health::lost)
-    for (std::string& reason : reasons_of(health, signs.health_reasons))
+    for (std::string& reason : reasons_of(health, signs))
       fault(health == vio::Health::lost, std::move(reason));
   else if (signs.lost_frames > 0)
-    fault(false, fmt::format("the estimator had lost its map in {} frames", signs.lost_frames));
+    fault(false, fmt::format("the estimator had lost its map in {} frames, from {} to {}",
+                             signs.lost_frames, signs.lost.first, signs.lost.last));
   if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));
+  if (signs.guesses > 0) verdict.reasons.push_back(guesses_text(signs));
   if (verdict.grade > Grade::unknown && signs.features && *signs.features < limits.features)
     verdict.reasons.push_back(
         fmt::format("images have {} features on average", readable(*signs.features, 1)));

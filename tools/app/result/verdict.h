@@ -5,7 +5,8 @@
 //           the camera's period, so that frames pile up or are lost
 //   memory  fits; does not fit
 //   map     good; not judged: there is no truth, and the estimator does not watch its map;
-//           unreliable; lost: the poses are worth nothing
+//           unreliable; lost: the poses are worth nothing. Poses from before there was a map are
+//           guesses: they are named, and not judged
 #pragma once
 
 #include <optional>

@@ -48,12 +48,6 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .code = &platform::compiled_code()};
 }
 
-/// With room for the frames whose poses may wait for the map to settle.
-vio::Profile with_delay(vio::Profile profile, double frames) {
-  if (frames > 0) profile.initial_frames = static_cast<int>(std::ceil(frames));
-  return profile;
-}
-
 /// The pose that the workload reports for the camera, of the body and in double precision.
 traces::StampedPose body_pose(const vio::CameraPose& report, const traces::CameraModel& camera,
                               std::int64_t t_ns) {
@@ -71,8 +65,10 @@ traces::StampedPose body_pose(const vio::CameraPose& report, const traces::Camer
   return {t_ns, T_world_camera * camera.T_body_camera.inverse()};
 }
 
-vio::Rig make_rig(const traces::CameraModel& camera, const traces::PinholeIntrinsics& k) {
+vio::Rig make_rig(const traces::CameraModel& camera, const traces::PinholeIntrinsics& k,
+                  double frame_rate) {
   vio::Rig rig{};
+  rig.frame_rate = static_cast<float>(frame_rate);
   rig.camera = {static_cast<float>(k.fx), static_cast<float>(k.fy), static_cast<float>(k.cx),
                 static_cast<float>(k.cy)};
   rig.width = k.width;
@@ -110,14 +106,14 @@ std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
 /// Fewer poses are fitted by their alignment, whatever they are.
 constexpr std::size_t kFewestLocated = 20;
 
-/// Without those of frames that waited for a map.
+/// Without those that are guesses.
 traces::Trajectory located_poses(const RunResult& run) {
-  std::set<std::int64_t> initialising_ns;
+  std::set<std::int64_t> guessed_ns;
   for (const FrameResult& frame : run.frames)
-    if (frame.source == PoseSource::Initialising) initialising_ns.insert(frame.t_ns);
+    if (frame.pose_state() == vio::PoseState::Initialising) guessed_ns.insert(frame.t_ns);
   traces::Trajectory poses = run.trajectory;
-  std::erase_if(
-      poses, [&](const traces::StampedPose& pose) { return initialising_ns.contains(pose.t_ns); });
+  std::erase_if(poses,
+                [&](const traces::StampedPose& pose) { return guessed_ns.contains(pose.t_ns); });
   return poses;
 }
 
@@ -152,9 +148,7 @@ LiveSource::LiveSource(const RunRequest& request)
       feed_(request),
       cluster_(cluster_machine(request, profile_.l1_alignment)),
       controller_(controller_machine(request)),
-      odometry_(vio::make_odometry(!request.native,
-                                   with_delay(profile_, request.initial_delay_s * feed_.rate_hz()),
-                                   feed_.rig(), cluster_, controller_)) {
+      odometry_(vio::make_odometry(!request.native, profile_, feed_.rig(), cluster_, controller_)) {
   if (profile_.use_imu && feed_.data().imu.empty())
     throw InputError(fmt::format(
         "--data {}: the recording has no gyroscope, and profile '{}' needs one; expected --profile "
@@ -195,6 +189,10 @@ void LiveSource::publish() {
   controller_.take_job();
 }
 
+int LiveSource::frames_that_wait() const {
+  return profile_.frames_that_wait(feed_.rig().frame_rate);
+}
+
 std::vector<StageResult> LiveSource::empty_stages() const {
   return named_stages(vio::stage_names(profile_));
 }
@@ -222,8 +220,11 @@ void LiveSource::evaluate(RunResult& result) const {
     result.ate =
         traces::evaluate(result.trajectory, truth, {.expected_poses = expected_poses(result)});
     const traces::Trajectory located = located_poses(result);
-    if (located.size() < result.trajectory.size() && located.size() >= kFewestLocated)
-      result.ate->located_rmse_m = traces::evaluate(located, truth).translation.rmse;
+    if (located.size() < result.trajectory.size() && located.size() >= kFewestLocated) {
+      const traces::Evaluation without_guesses = traces::evaluate(located, truth);
+      result.ate->located_rmse_m = without_guesses.translation.rmse;
+      result.ate->size_ratio = without_guesses.size_ratio;
+    }
   } catch (const InputError& failure) {
     if (!result.ate) result.not_comparable = failure.what();
   }
@@ -235,7 +236,7 @@ Feed::Feed(const RunRequest& request)
       frames_(camera_frames(request, data_)),
       rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),
       images_(data_, request.image_size),
-      rig_(make_rig(data_.camera, images_.intrinsics())) {}
+      rig_(make_rig(data_.camera, images_.intrinsics(), rate_hz_)) {}
 
 /// Read while the frame before was worked on, if no frame was dropped since that was not dropped
 /// before: what comes next is taken to be as far away as the last one was.

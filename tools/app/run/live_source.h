@@ -65,6 +65,7 @@ class LiveSource : public RunSource {
   bool begin_frame(const soc::FrameStart& start) override;
   const work::Job& process(FrameResult& result) override;
   int iterations() const override { return profile_.optimiser_iterations; }
+  int frames_that_wait() const override;
   const work::Job& optimise() override;
   void publish() override;
   std::vector<StageResult> empty_stages() const override;

@@ -75,7 +75,10 @@ CsvTable<FrameRow> frame_table_of(const RunResult& run) {
   add(of_result("source", [](const F& f) { return name_of(f.source); }));
   add(of_result("keyframe", [](const F& f) { return int{f.keyframe}; }));
   for (const vio::FrameFact& fact : vio::kFrameFacts)
-    add(of_result(std::string(fact.name), [&fact](const F& f) { return f.*fact.of; }));
+    add(of_result(std::string(fact.name), [&fact](const F& f) {
+      const auto value = static_cast<std::size_t>(f.*fact.of);
+      return value < fact.words.size() ? Cell(fact.words[value]) : Cell(f.*fact.of);
+    }));
   if (run.timed) {
     table.add("arrival_ns", [](const FrameRow& r) {
       return r.result ? r.result->arrival_ns : r.delivery->arrival_ns;

@@ -74,20 +74,30 @@ RunRequest make_workload_request(const RunOptions& options) {
   return request;
 }
 
-/// What waits is bounded by the memory for it.
-double parse_initial_delay(const std::string& text, const vio::Profile& profile) {
-  if (text.empty()) return 0;
-  constexpr double kLongest = 10;
+constexpr const char* kWait = "workload.initialisation.wait";
+
+/// How long poses wait, as --initial-delay and --online say it, among the workload's parameters.
+void set_initial_wait(const RunOptions& options, RunRequest& request) {
+  if (options.initial_delay.empty() && !options.online) return;
+  const char* const option = options.online ? "--online" : "--initial-delay";
+  if (options.online && !options.initial_delay.empty())
+    throw InputError("run: --online and --initial-delay exclude each other; expected one of them");
+  const vio::Parameter& wait = workload_parameter(option, kWait);
+  for (const vio::Assignment& set : request.workload)
+    if (set.parameter == &wait)
+      throw InputError(fmt::format("{}: -p {} says the same; expected one of them", option, kWait));
   double seconds = 0;
-  if (!base::parse_number(text, seconds) || seconds < 0 || seconds > kLongest)
-    throw InputError(fmt::format("--initial-delay '{}': expected a number from 0 to {:g}, in s",
-                                 text, kLongest));
-  if (seconds > 0 && !profile.alignment.enabled)
+  if (!options.online && (!base::parse_number(options.initial_delay, seconds) ||
+                          seconds < wait.low || seconds > wait.high))
+    throw InputError(fmt::format("--initial-delay '{}': expected a number from {:g} to {:g}, in s",
+                                 options.initial_delay, wait.low, wait.high));
+  if (profile_of(request).initialises())
+    request.workload.push_back({&wait, seconds});
+  else if (seconds > 0)
     throw InputError(fmt::format(
         "--initial-delay: profile '{}' has no initialisation that would correct poses; expected "
         "--profile next",
-        profile.name));
-  return seconds;
+        request.profile));
 }
 
 void resolve_chip(const RunOptions& options, RunRequest& request) {
@@ -171,7 +181,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   add("--deadline", options.deadline, "drop|queue",
       "closed loop: what becomes of a frame that finds the front end busy [drop]");
   add("--initial-delay", options.initial_delay, "S",
-      "seconds that the first poses may wait for the map to settle, which corrects them [0]");
+      "seconds that the first poses wait at most for the map to settle, which corrects them [2; 0 "
+      "for profiles without an initialisation]");
+  command.add_flag("--online", options.online, "give every pose at once: the first are guesses");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
   add_out_options(command, options);
   command.get_option("--out")->description(
@@ -227,18 +239,12 @@ traces::ImageSize parse_size(const std::string& text) {
 
 RunRequest make_request(const CLI::App& command, const RunOptions& options) {
   RunRequest request = make_workload_request(options);
-  const vio::Profile profile = profile_of(request);
-  request.initial_delay_s = parse_initial_delay(options.initial_delay, profile);
+  set_initial_wait(options, request);
   if (options.native) {
     refuse_chip_options(command, request);
   } else {
     resolve_chip(options, request);
     request.camera = parse_camera(options.camera_fps, options.deadline);
-    const bool waits = request.initial_delay_s > 0 || profile.initial_frames > 0;
-    if (waits && options.record)
-      throw InputError(
-          "run: --record keeps poses as they were when their frames were processed; leave out "
-          "--initial-delay and workload.initialisation.frames");
     if (request.camera && options.record)
       throw InputError(
           "run: --record is for open loops, whose trace holds the work of every frame; with "

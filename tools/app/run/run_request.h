@@ -54,9 +54,7 @@ struct RunRequest {
   /// Whether the trajectory is compared with the truth. What diverged cannot be, and is refused.
   bool evaluate = true;
   TimeBandsOf time_bands = TimeBandsOf::nothing;
-  bool on_one_core = true;  ///< whether jobs are also timed on one core
-  /// Poses may wait for so long that the initialisation corrects them; 0: as the workload says. [s]
-  double initial_delay_s = 0;
+  bool on_one_core = true;             ///< whether jobs are also timed on one core
   RunObserver* observer = nullptr;     ///< sees every job; unused if native
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
 };
@@ -81,6 +79,7 @@ struct RunOptions {
   std::string camera_fps;
   std::string deadline;
   std::string initial_delay;
+  bool online = false;  ///< no pose waits
   std::string out;
   std::vector<std::string> overrides;
   bool native = false;

@@ -30,10 +30,13 @@ std::vector<StageCycles> stage_cycles(const sim::JobTiming& timing) {
   return list;
 }
 
-/// The last frame may tell where others were after all.
+/// The last frame may tell where others were after all, which locates them if its map is aligned.
 void correct_earlier(std::vector<FrameResult>& frames) {
-  for (const auto& [ago, pose] : frames.back().earlier)
-    frames[frames.size() - 1 - static_cast<std::size_t>(ago)].pose = pose;
+  for (const auto& [ago, pose] : frames.back().earlier) {
+    FrameResult& frame = frames[frames.size() - 1 - static_cast<std::size_t>(ago)];
+    frame.pose = pose;
+    frame.state = state_after(frame.state, frames.back().state);
+  }
 }
 
 /// Joins what the frames yielded with when they were processed.

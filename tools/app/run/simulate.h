@@ -20,6 +20,8 @@ class RunSource : public soc::JobSource {
   }
   /// The same. `result` is filled in but for times.
   virtual const work::Job& process(FrameResult& result) = 0;
+  /// Frames before the last one whose poses it may correct, at most.
+  virtual int frames_that_wait() const { return 0; }
   /// What the frame that was processed last yielded.
   const FrameResult& frame() const { return frame_; }
 

@@ -145,7 +145,7 @@ Replay replay(const traces::WorkTrace& trace, const RunRequest& request,
 }
 
 bool RecordingSource::begin_frame(const soc::FrameStart& start) {
-  write_complete_frames();
+  write_complete_frames(source_.frames_that_wait());
   const bool begun = source_.begin_frame(start);
   if (begun) {
     check_equal(iterations_left_, std::size_t{0}, "iterations left of the optimisation before");
@@ -170,7 +170,21 @@ const work::Job& RecordingSource::process(FrameResult& result) {
   for (const vio::FrameFact& fact : vio::kFrameFacts) frame.facts.push_back(result.*fact.of);
   frame.T_world_body = result.pose.T_world_body;
   frame.front_end = job;
+  correct_earlier(result);
   return job;
+}
+
+/// As the run itself does (simulate.cpp).
+void RecordingSource::correct_earlier(const FrameResult& result) {
+  const auto state = static_cast<std::size_t>(
+      std::find_if(vio::kFrameFacts.begin(), vio::kFrameFacts.end(),
+                   [](const vio::FrameFact& f) { return f.of == &vio::FrameFacts::state; }) -
+      vio::kFrameFacts.begin());
+  for (const auto& [ago, pose] : result.earlier) {
+    traces::WorkFrame& frame = frames_[frames_.size() - 1 - static_cast<std::size_t>(ago)];
+    frame.T_world_body = pose.T_world_body;
+    frame.facts[state] = vio::state_after(frame.facts[state], result.state);
+  }
 }
 
 const work::Job& RecordingSource::optimise() {
@@ -183,8 +197,8 @@ const work::Job& RecordingSource::optimise() {
   return job;
 }
 
-void RecordingSource::write_complete_frames() {
-  for (; !frames_.empty(); frames_.pop_front()) {
+void RecordingSource::write_complete_frames(int waiting) {
+  for (; frames_.size() > static_cast<std::size_t>(waiting); frames_.pop_front()) {
     const bool in_progress = frames_.front().optimised && iterations_left_ > 0 &&
                              std::none_of(frames_.begin() + 1, frames_.end(),
                                           [](const auto& frame) { return frame.optimised; });
@@ -195,7 +209,7 @@ void RecordingSource::write_complete_frames() {
 
 void RecordingSource::finish() {
   while (iterations_left_ > 0) optimise();
-  write_complete_frames();
+  write_complete_frames(0);
 }
 
 void RecordingSource::describe(RunResult& result) const {

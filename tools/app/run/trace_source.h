@@ -134,12 +134,14 @@ class RecordingSource : public RunSource {
   void finish();
 
  private:
-  /// Hands over the frames whose optimisation is complete, in order.
-  void write_complete_frames();
+  /// Hands over the frames whose optimisation is complete, in order, but for the last `waiting`.
+  void write_complete_frames(int waiting);
+  void correct_earlier(const FrameResult& result);
 
   RunSource& source_;
   WorkRecording& recording_;
-  /// Not yet written; the first may wait for its optimisation, which goes on during later frames.
+  /// Not yet written: the first may wait for its optimisation, which goes on during later frames,
+  /// or for a frame that corrects its pose.
   std::deque<traces::WorkFrame> frames_;
   std::size_t iterations_left_ = 0;
 };

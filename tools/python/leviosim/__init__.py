@@ -183,11 +183,14 @@ def workload_parameters(profile: str = "levio") -> List[Dict[str, Any]]:
 def run(platform: Optional[Platform] = None, *, data: str = "synthetic", profile: str = "levio",
         frames: Optional[str] = None, cores: Optional[int] = None, seed: int = 1, size: str = "160x120",
         fps: Optional[float] = None, deadline: Optional[str] = None, initial_delay: Optional[float] = None,
+        online: bool = False,
         set: Optional[Settings] = None, record: bool = False,  # noqa: A002
         progress: Optional[Progress] = None) -> Run:
-    """As `leviosim run`; without a platform natively, without timing. `set`: {"workload.window": 6}."""
+    """As `leviosim run`; without a platform natively, without timing. `set`: {"workload.window": 6}.
+
+    A row of `frames` says what its pose is worth (`state`): located, predicted, kept, or initialising, a guess."""
     words: Dict[str, Any] = {"data": data, "profile": profile, "seed": str(seed), "size": size,
-                             "record": record, "set": _words(set or {})}
+                             "record": record, "online": online, "set": _words(set or {})}
     if platform is None:
         words["native"] = True
     else:

@@ -32,7 +32,7 @@ BackEnd<P>::BackEnd(const Profile& profile, const Rig& rig, work::Machine& contr
 
 template <class P>
 bool BackEnd<P>::begin() {
-  aligns_ = profile_.alignment.enabled && options_.joint && !map_.aligned;
+  aligns_ = profile_.initialises() && !map_.aligned;
   const int least = aligns_ ? profile_.alignment.min_keyframes : 2;
   if (work::value(graph_.keyframe_count()) < least) return false;
   if (options_.joint && is_settled()) return false;
@@ -279,9 +279,7 @@ float length_of(std::span<const EarlierPose> poses) {
 void MapHealth::take_window() { inconsistent_ = !fits(map_.fit, profile_.health.mean_square); }
 
 /// Whether the map waits for its alignment.
-bool MapHealth::waits() const {
-  return profile_.alignment.enabled && profile_.optimiser.joint && !map_.aligned;
-}
+bool MapHealth::waits() const { return profile_.initialises() && !map_.aligned; }
 
 /// What images see has another scale or another direction of gravity than what the IMU feels. The
 /// images may contradict each other alone, where something else moves.

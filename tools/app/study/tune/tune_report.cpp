@@ -74,15 +74,6 @@ std::string lucky_text(const Choice& choice) {
                      fmt::join(lucky, ", "), short_text(*choice.highest_failing));
 }
 
-/// Runs that err by more than the limit, or diverged.
-std::size_t failures(const TunePoint& point, const TunePlan& plan) {
-  return static_cast<std::size_t>(
-      std::count_if(point.outcomes.begin(), point.outcomes.end(), [&](const RunOutcome& outcome) {
-        const std::optional<double> error = error_of(outcome);
-        return !error || *error > plan.ate_m;
-      }));
-}
-
 std::string choice_line(const Choice& choice) {
   const std::string rate = fmt::format("  {:g} frames/s: ", choice.fps);
   const std::string lucky = lucky_text(choice);
@@ -191,7 +182,10 @@ std::string tune_notes(const TunePlan& plan) {
       info_of(plan.deadline).description, name_of(plan.measure.alignment));
   if (plan.variations.size() < 2) return text;
   if (!plan.perturbs)
-    return text + fmt::format("medians over {} seeds; poses: the least\n", plan.variations.size());
+    return text + fmt::format(
+                      "medians over {} seeds, whose share of 95 % must meet the error; "
+                      "poses: the least\n",
+                      plan.variations.size());
   std::vector<std::string> names;
   for (const Variation& variation : plan.variations) names.push_back(variation.name);
   return text +
@@ -218,14 +212,15 @@ std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choic
     box.good = choice.lowest != nullptr;
     box.mark = fmt::format("{:g} frames/s", choice.fps);
     if (!*box.good) {
-      box.sentence =
-          fmt::format("None of these clocks has at most {:g} % missed and {:g} m of ATE.",
-                      100 * plan.miss_rate, plan.ate_m);
+      box.sentence = fmt::format(
+          "None of these clocks has at most {:g} % missed and {:g} m of ATE in 95 % of the runs.",
+          100 * plan.miss_rate, plan.ate_m);
       continue;
     }
-    box.sentence =
-        fmt::format("{}: the lowest of these clocks with at most {:g} % missed and {:g} m of ATE.",
-                    clock_text(choice.lowest->setting), 100 * plan.miss_rate, plan.ate_m);
+    box.sentence = fmt::format(
+        "{}: the lowest of these clocks with at most {:g} % missed and {:g} m of ATE in 95 % of "
+        "the runs.",
+        clock_text(choice.lowest->setting), 100 * plan.miss_rate, plan.ate_m);
     box.lines.push_back(point_text(*choice.lowest));
     if (std::string lucky = lucky_text(choice); !lucky.empty())
       box.lines.push_back(std::move(lucky));
@@ -413,7 +408,7 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
     table.add({"least … greatest", kRight, 2}, [](P p) {
       return fmt::format("{} … {}", error_text(p.ate().low, 3), error_text(p.ate().high, 3));
     });
-  if (plan.perturbs) table.add({"failed", kRight, 1}, [&](P p) { return failures(p, plan); });
+  if (plan.perturbs) table.add({"failed", kRight, 1}, [&](P p) { return p.failures(plan.ate_m); });
   table.add({"poses %", kRight, 2}, [](P p) { return percent(p.completion()); });
   table.add({"meets limits", kLeft}, [&](P p) { return is_enough(p, plan) ? "yes" : ""; });
   return table.with(points).str();
@@ -426,7 +421,7 @@ std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points)
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
   std::string text = fmt::format(
       "the lowest clocks from which on all have at most {:g} % missed and an ATE of {:g} "
-      "m:\n",
+      "m in 95 % of the runs:\n",
       100 * plan.miss_rate, plan.ate_m);
   for (const Choice& choice : choices) text += choice_line(choice);
   return text;
