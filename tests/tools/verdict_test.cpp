@@ -173,8 +173,10 @@ TEST(MapVerdict, SaysWhyAnEstimatorDoubtsItself) {
   signs.health = 1;
   EXPECT_EQ(map_verdict(signs).reason(), "the estimator ends with a map that is unreliable");
   signs.health_reasons = bit(vio::HealthReason::FewInliers) | bit(vio::HealthReason::Drift);
+  signs.reason_since[static_cast<std::size_t>(vio::HealthReason::Drift)] = 1335;
   EXPECT_EQ(map_verdict(signs).reason(),
-            "too few matches agree with the pose, too much of the path is uncertain");
+            "too few matches agree with the pose (since frame 0), too much of the path is "
+            "uncertain (since frame 1335)");
 }
 
 TEST(MapVerdict, WithoutTruthAndWithoutHealthNothingIsJudged) {

@@ -171,7 +171,7 @@ inline constexpr std::array kFrameFacts{
         "why it is 1 or 2, summed: 1 no scale yet, 2 images and IMU contradict each other, 4 no "
         "landmark seen, 8 few matches agree, 16 accelerometer bias, 32 drift, 64 begun again",
         &FrameFacts::health_reasons, false},
-    FrameFact{"at_rest", "frames at rest, as images and IMU show it", &FrameFacts::at_rest},
+    FrameFact{"at_rest", "the vehicle rests, as images and IMU show it", &FrameFacts::at_rest},
     FrameFact{"state", "what the pose is worth: located, predicted, kept, initialising (a guess)",
               &FrameFacts::state, false, kPoseStateNames},
 };
