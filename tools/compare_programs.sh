@@ -73,6 +73,41 @@ commands() { # commands LEVIOSIM DATA FRAMES
   step eval "$leviosim" eval run/trajectory.tum "$data" --json eval.json
   step flow "$leviosim" flow --platform gap8 -p cluster.clock=50MHz -p controller.clock=50MHz \
     -p supply.voltage=1.0V --data "$data" "${part[@]}" --quiet --out flow
+  studies "$leviosim" "$data" "${part[@]}"
+  tables "$leviosim"
+}
+
+# What asks about a run or a data set, on stdout as lines and as JSON.
+studies() { # studies LEVIOSIM DATA --frames FRAMES
+  local leviosim=$1 data=$2 part=("${@:3}")
+  both whatif "$leviosim" whatif run --quiet
+  both whatif-some "$leviosim" whatif run cluster.fpu.units=2,4 gap9-hamming --quiet
+  both sensitivity "$leviosim" sensitivity --data "$data" "${part[@]}" --quiet
+  both feasibility "$leviosim" platforms feasibility --data "$data" "${part[@]}" --quiet
+  both stages "$leviosim" platforms stages gap9 gap9-eigen --data "$data" "${part[@]}" --quiet
+  both systems "$leviosim" platforms systems --data "$data" "${part[@]}" --quiet
+  both explore "$leviosim" explore --data "$data" "${part[@]}" --profile levio \
+    --vary workload.window=6:12 --points 3 --seed 1 --relative 0.05 --cache explore-cache \
+    --quiet --force --out explore
+  both compare "$leviosim" compare run replay-gap8
+  step compare-md "$leviosim" compare run replay-gap8 --format markdown
+  step compare-csv "$leviosim" compare run replay-gap8 --format csv
+  step report "$leviosim" report run next native loop --out report.html
+}
+
+# What prints tables without running anything.
+tables() { # tables LEVIOSIM
+  both platforms "$1" platforms
+  both show "$1" platforms show gap9
+  both diff "$1" platforms diff gap9 gap8
+  both area "$1" platforms area gap9
+  both workload "$1" workload
+  both microbench "$1" microbench
+}
+
+both() { # both NAME LEVIOSIM ARGUMENT...
+  step "$1" "${@:2}" --all
+  step "$1-json" "${@:2}" --json
 }
 
 all() { # all NAME LEVIOSIM
@@ -93,7 +128,7 @@ wait -n && wait -n || exit 1
 
 mapfile -t files < <(cd "$results/old" && find . -type f \
   \( -name '*.json' -o -name '*.csv' -o -name '*.tum' -o -name '*.md' -o -name '*.png' \
-     -o -name sensor.yaml \) ! -name manifest.json ! -path '*-cache/*' | sort)
+     -o -name '*.out' -o -name sensor.yaml \) ! -name manifest.json ! -path '*-cache/*' | sort)
 status=0
 for file in "${files[@]}"; do
   cmp "$results/old/$file" "$results/new/$file" || status=1

@@ -222,7 +222,7 @@ class Batch : public ::testing::Test {
   std::string run(const std::string& cache, unsigned threads) {
     const std::vector<RunOutcome> outcomes =
         run_outcomes(runs_, {.length_m = 1}, {.threads = threads, .cache = folder_ / cache});
-    return runs_csv(runs_, outcomes, {.length_m = 1});
+    return csv_text(run_rows(runs_, outcomes, {.length_m = 1}));
   }
   /// Of outcomes that are kept.
   std::size_t kept(const std::string& cache) const {

@@ -275,7 +275,7 @@ TEST(ClosedLoop, PercentilesAreValuesOfTheirRank) {
 
 TEST(ClosedLoop, FilesSayOfEveryFrameWhatBecameOfIt) {
   const RunResult run = example_loop();
-  const std::string csv = frames_csv(run);
+  const std::string csv = csv_text(frame_rows(run));
   for (const char* part :
        {"single_cycles,cycles_feature_extraction,cycles_epnp_ransac,found_in_"
         "buffers,dropped,missed\n",
@@ -310,7 +310,7 @@ RunResult on_gap9(const std::string& data, std::optional<CameraRequest> camera,
 }
 
 std::vector<std::string> files_of(const RunResult& run) {
-  return {statistics_text(run), frames_csv(run), energy_csv(run),
+  return {statistics_text(run), csv_text(frame_rows(run)), csv_text(energy_rows(run)),
           traces::format_tum(run.trajectory)};
 }
 

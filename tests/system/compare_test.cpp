@@ -7,7 +7,7 @@
 #include "tests/support/program_suite.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/comparison/run_record.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "tests/support/run_program.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -9,7 +9,7 @@
 #include "tests/support/run_program.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

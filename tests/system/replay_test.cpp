@@ -75,8 +75,9 @@ Replay replayed(const traces::WorkTrace& trace, const std::vector<std::string>& 
 
 /// Everything that a run folder holds of a run, but the manifest.
 std::vector<std::string> files_of(const RunResult& run) {
-  return {statistics_text(run), stages_csv(run), frames_csv(run),
-          memory_csv(run),      energy_csv(run), traces::format_tum(run.trajectory)};
+  return {statistics_text(run),       csv_text(stage_rows(run)),
+          csv_text(frame_rows(run)),  csv_text(memory_rows(run)),
+          csv_text(energy_rows(run)), traces::format_tum(run.trajectory)};
 }
 
 bool all_the_same(const Replay& replay) {

@@ -93,7 +93,8 @@ TEST_F(Report, OfASweepThatMissesItsBudgetSaysSo) {
 /// Stages add up to the frame but for the call of the cluster and its answer; on one core, the
 /// breakdown of a stage to its cycles.
 TEST_F(Report, CyclesOfTheTablesAddUp) {
-  const Json frames = csv_json("frames.csv", base::read_text_file(path("a/frames.csv")));
+  const Json frames =
+      columns_json(read_csv("frames.csv", base::read_text_file(path("a/frames.csv"))));
   for (std::size_t i = 0; i < frames["frame"].size(); ++i) {
     double sum = 0;
     for (const auto& [name, cells] : frames.items())
@@ -102,7 +103,8 @@ TEST_F(Report, CyclesOfTheTablesAddUp) {
     EXPECT_LE(sum, all);
     EXPECT_GT(sum, 0.99 * all);
   }
-  const Json stages = csv_json("stages.csv", base::read_text_file(path("a/stages.csv")));
+  const Json stages =
+      columns_json(read_csv("stages.csv", base::read_text_file(path("a/stages.csv"))));
   for (std::size_t i = 0; i < stages["stage"].size(); ++i) {
     double sum = 0;
     for (const auto& [name, cells] : stages.items())
@@ -115,7 +117,8 @@ TEST_F(Report, CyclesOfTheTablesAddUp) {
 
 /// The mean square of the errors is that of the statistics.
 TEST_F(Report, ErrorsOfTheTableAreThoseOfTheAte) {
-  const Json errors = csv_json("errors.csv", base::read_text_file(path("a/errors.csv")));
+  const Json errors =
+      columns_json(read_csv("errors.csv", base::read_text_file(path("a/errors.csv"))));
   double squares = 0;
   for (const Json& error : errors["position_error_m"]) squares += std::pow(error.get<double>(), 2);
   const double count = static_cast<double>(errors["position_error_m"].size());
@@ -323,7 +326,8 @@ TEST_F(InBrowser, APageOfAHistoryIsToo) {
 TEST_F(InBrowser, FramesOfAMapThatIsNotTrustedAreMarked) {
   expect_done({"run", "--profile", "next", "--data", path("flight"), "--out", path("next"),
                "--quiet", "--report", path("next.html")});
-  const Json frames = csv_json("frames.csv", base::read_text_file(path("next/frames.csv")));
+  const Json frames =
+      columns_json(read_csv("frames.csv", base::read_text_file(path("next/frames.csv"))));
   Json expected = Json::array();
   for (std::size_t i = 0; i < frames["health"].size(); ++i)
     if (frames["health"][i] == 1) expected.push_back(fmt::format("{} map: unreliable", i));
@@ -337,7 +341,7 @@ TEST_F(InBrowser, FramesThatInitialiseHaveAColour) {
   fs::remove(path("initialising/.leviosim-files"));
   std::string frames = base::read_text_file(path("a/frames.csv"));
   const std::string source =
-      ',' + csv_json("frames.csv", frames)["source"].back().get<std::string>() + ',';
+      ',' + columns_json(read_csv("frames.csv", frames))["source"].back().get<std::string>() + ',';
   for (std::size_t at = frames.find(source); at != std::string::npos; at = frames.find(source))
     frames.replace(at, source.size(), ",initialising,");
   ASSERT_NE(frames.find(",initialising,"), std::string::npos);

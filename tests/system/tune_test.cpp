@@ -199,7 +199,7 @@ TEST(Tuning, SaysWhatItFound) {
         "--deadline drop --out chosen\n"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
   EXPECT_NE(tune_table(example.plan, example.points).find("diverged"), std::string::npos);
-  const std::string csv = tune_csv(example.plan, example.points);
+  const std::string csv = csv_text(tune_rows(example.plan, example.points));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
   const auto columns = [](const std::string& line) {
     return std::count(line.begin(), line.end(), ',');

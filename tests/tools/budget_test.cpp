@@ -11,7 +11,7 @@
 #include "tests/traces/test_folder.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {

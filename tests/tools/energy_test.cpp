@@ -116,7 +116,7 @@ TEST(RunEnergy, WithoutFiguresOrTimingThereIsNone) {
   EXPECT_EQ(energy_table(testing::example_run()), "");
   EXPECT_EQ(power_table(testing::example_run()), "");
   EXPECT_EQ(operating_point_table(testing::example_run()), "");
-  EXPECT_EQ(energy_csv(testing::example_run()), "");
+  EXPECT_EQ(csv_text(energy_rows(testing::example_run())), "");
   RunResult native = example_with_energy();
   native.timed = false;
   EXPECT_FALSE(energy_of(native));
@@ -162,7 +162,7 @@ TEST(EnergyCsv, DomainsAndStagesAddUp) {
   double stages = 0;
   double domain_total = 0;
   double all = 0;
-  for (const CsvRow& row : rows_of(energy_csv(example_with_energy()))) {
+  for (const CsvRow& row : rows_of(csv_text(energy_rows(example_with_energy())))) {
     const double value = std::stod(row.value);
     EXPECT_LE(std::stod(row.low), value);
     EXPECT_GE(std::stod(row.high), value);

@@ -36,15 +36,6 @@ RunResult punctual_run() {
   return run;
 }
 
-TEST(CsvJson, KeepsNumbersTextsAndNothingApart) {
-  const Json table = csv_json("x.csv", "a,b\n1,\"x, \"\"y\"\"\"\n2.5,\n");
-  EXPECT_EQ(table, Json::parse(R"({"a":[1,2.5],"b":["x, \"y\"",null]})"));
-}
-
-TEST(CsvJson, RefusesRowsOfAnotherWidth) {
-  expect_input_error([] { csv_json("x.csv", "a,b\n1\n"); }, {"x.csv", "row 2", "1 cells", "2"});
-}
-
 TEST(Verdict, HasAGradeAndThreeVerdictsWithReasons) {
   const Json run = json_of(example_run());  // one of five takes 60 ms
   EXPECT_EQ(run["verdict"]["grade"], "doubtful");

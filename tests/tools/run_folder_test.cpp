@@ -66,7 +66,7 @@ void write_to(const fs::path& folder, const RunResult& run, const std::string& p
 }
 
 TEST(StagesCsv, HasARowPerStageAndBreakdownsThatAddUp) {
-  const std::vector<Row> rows = parse_csv(stages_csv(example_run()));
+  const std::vector<Row> rows = parse_csv(csv_text(stage_rows(example_run())));
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].at("stage"), "feature extraction");
   EXPECT_EQ(rows[0].at("speedup"), "4.000");
@@ -80,7 +80,7 @@ TEST(StagesCsv, HasARowPerStageAndBreakdownsThatAddUp) {
 }
 
 TEST(FramesCsv, HasARowPerFrameAndLatenciesFromArrivalToPose) {
-  const std::vector<Row> rows = parse_csv(frames_csv(example_run()));
+  const std::vector<Row> rows = parse_csv(csv_text(frame_rows(example_run())));
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[3].at("source"), "epnp");
   EXPECT_EQ(rows[2].at("keyframe"), "1");
@@ -93,7 +93,7 @@ TEST(FramesCsv, HasARowPerFrameAndLatenciesFromArrivalToPose) {
 TEST(FramesCsv, EveryFactOfAFrameIsAColumn) {
   RunResult run = example_run();
   run.frames[3].map_restarts = 1;
-  const std::vector<Row> rows = parse_csv(frames_csv(run));
+  const std::vector<Row> rows = parse_csv(csv_text(frame_rows(run)));
   for (const vio::FrameFact& fact : vio::kFrameFacts)
     if (fact.words.empty()) {
       EXPECT_EQ(rows[3].at(std::string(fact.name)), std::to_string(run.frames[3].*fact.of));
@@ -109,7 +109,7 @@ TEST(FramesCsv, EveryFactOfAFrameIsAColumn) {
 TEST(FramesCsv, HasTheCyclesOfEachStageOfTheCluster) {
   RunResult run = example_run();
   run.frames[3].stage_cycles = {{"feature extraction", Cycles(700)}, {"EPnP RANSAC", Cycles(30)}};
-  const std::vector<Row> rows = parse_csv(frames_csv(run));
+  const std::vector<Row> rows = parse_csv(csv_text(frame_rows(run)));
   EXPECT_EQ(rows[3].at("cycles_feature_extraction"), "700");
   EXPECT_EQ(rows[3].at("cycles_epnp_ransac"), "30");
   EXPECT_EQ(rows[2].at("cycles_epnp_ransac"), "0");
@@ -118,13 +118,13 @@ TEST(FramesCsv, HasTheCyclesOfEachStageOfTheCluster) {
 
 TEST(ErrorsCsv, HasARowPerPoseWithATruth) {
   RunResult run = example_run();
-  EXPECT_EQ(errors_csv(run), "");
+  EXPECT_EQ(csv_text(error_rows(run)), "");
   traces::MatchedPose pose;
   pose.t_ns = 5;
   pose.estimate.translation() = Eigen::Vector3d(3, 4, 1);
   pose.truth.translation() = Eigen::Vector3d(0, 0, 1);
   run.ate->poses = {pose};
-  const std::vector<Row> rows = parse_csv(errors_csv(run));
+  const std::vector<Row> rows = parse_csv(csv_text(error_rows(run)));
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].at("t_ns"), "5");
   EXPECT_EQ(rows[0].at("position_error_m"), "5.000000000");
@@ -135,14 +135,14 @@ TEST(ErrorsCsv, HasARowPerPoseWithATruth) {
 TEST(FramesCsv, OfANativeRunHasNoTimingColumns) {
   RunResult run = example_run();
   run.timed = false;
-  const std::vector<Row> rows = parse_csv(frames_csv(run));
+  const std::vector<Row> rows = parse_csv(csv_text(frame_rows(run)));
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[0].count("latency_ns"), 0u);
   EXPECT_EQ(rows[0].at("landmarks"), "200");
 }
 
 TEST(MemoryCsv, BlocksOfTheExampleAddUp) {
-  const std::vector<Row> rows = parse_csv(memory_csv(example_run()));
+  const std::vector<Row> rows = parse_csv(csv_text(memory_rows(example_run())));
   std::int64_t bytes = 0;
   for (const Row& row : rows)
     if (row.at("owner") == "feature extraction" && row.at("what") == "block")
@@ -162,7 +162,7 @@ TEST(RunFolder, HoldsFilesThatParse) {
   EXPECT_EQ(manifest.at("platform").at("overrides").at(0), "cluster.workers=4");
   EXPECT_EQ(manifest.at("inputs").at(0).at("sha256"), "abc");
   EXPECT_EQ(traces::read_tum(folder / "trajectory.tum").size(), 5u);
-  EXPECT_EQ(read("stages.csv"), stages_csv(example_run()));
+  EXPECT_EQ(read("stages.csv"), csv_text(stage_rows(example_run())));
   EXPECT_EQ(platform::resolve_platform((folder / "platform.yaml").string()).name, platform.name);
 }
 

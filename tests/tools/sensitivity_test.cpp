@@ -197,7 +197,7 @@ TEST(Sensitivity, NamesUncertainNumbersWithoutARange) {
 }
 
 TEST(Sensitivity, DoesNotDependOnTheHostsThreads) {
-  EXPECT_EQ(sensitivity_csv(sweep(1)), sensitivity_csv(sweep(4)));
+  EXPECT_EQ(csv_text(sensitivity_rows(sweep(1))), csv_text(sensitivity_rows(sweep(4))));
 }
 
 TEST(Sensitivity, WhatARunDoesNotHaveIsAbsent) {
@@ -216,7 +216,7 @@ TEST(Sensitivity, TableAndFileShowTheEffect) {
       100 * 10'000 * (1.4 - factor) / (10'000 * factor + kOffloads));
   EXPECT_NE(text.find(effect), std::string::npos) << effect << '\n' << text;
   EXPECT_NE(text.find("changing nothing"), std::string::npos);
-  const std::string csv = sensitivity_csv(s);
+  const std::string csv = csv_text(sensitivity_rows(s));
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
             s.swings.size() + 1);
   EXPECT_NE(csv.find(fmt::format("isa.instruction_overhead,calibrated,ratio,{},0.9,1.4,", factor)),

@@ -74,13 +74,13 @@ TEST(SystemsReport, PredictionsStandBesideTheirSystems) {
                            "1.51 (1.51–1.51)", "29.9", "LEVIO as though it fitted: 7 kB short",
                            "Jetson Xavier NX", "BotVIO: Wei et al. 2025"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in:\n" << table;
-  const std::string csv = systems_csv(example_systems());
+  const std::string csv = csv_text(systems_rows(example_systems()));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 10);
   EXPECT_NE(csv.find(",levio on gap9,20,29.9,30.2"), std::string::npos) << csv;
 }
 
 TEST(SystemsReport, ThePageHasAPointForEachRateWithAPower) {
-  const Json table = systems_page(example_systems()).at("study").at("table");
+  const Json table = study_report(systems_page(example_systems())).at("study").at("table");
   const auto spot = [&](const char* system, const char* by) {
     for (std::size_t i = 0; i < table.at("system").size(); ++i)
       if (table.at("system")[i] == system && table.at("by")[i] == by) return static_cast<int>(i);
@@ -95,7 +95,7 @@ TEST(SystemsReport, ThePageHasAPointForEachRateWithAPower) {
   EXPECT_NEAR(table.at("low")[here].get<double>(), 20.2, 1e-9);
   EXPECT_NEAR(table.at("energy")[here].get<double>(), 1.51, 1e-9);
   EXPECT_EQ(spot("Bahnam et al.", "published"), -1);
-  EXPECT_TRUE(systems_page({}).at("study").at("table").empty());
+  EXPECT_TRUE(study_report(systems_page({})).at("study").at("table").empty());
 }
 
 /// Of two sequences with two seeds, of which one run of the second failed.

@@ -8,8 +8,8 @@
 
 #include "tests/support/text_lines.h"
 #include "tests/tools/example_run.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -34,80 +34,93 @@ std::vector<std::string> cells_after(const std::string& line, std::size_t skippe
 
 using Cells = std::vector<std::string>;
 
-TEST(TextTable, AlignsByCodePointsAndTrimsLineEnds) {
-  TextTable table({{"a", TextTable::Align::Left}, {"n"}, {"t", TextTable::Align::Left}});
+TEST(TerminalTable, AlignsByCodePointsAndTrimsLineEnds) {
+  Table table({{"a", kLeft}, {"n"}, {"t", kLeft}});
   table.add({"é–×", "1", "x"});
   table.add({"b", "1000", ""});
-  EXPECT_EQ(table.str(),
+  EXPECT_EQ(terminal_text(table),
             "a       n  t\n"
             "────────────\n"
             "é–×     1  x\n"
             "b    1000\n");
 }
 
-TEST(TextTable, LeavesOutColumnsThatDoNotFit) {
-  constexpr auto kRight = TextTable::Align::Right;
-  TextTable table({{"name", TextTable::Align::Left}, {"a", kRight, 1}, {"b"}, {"c", kRight, 1}});
+TEST(TerminalTable, LeavesOutColumnsThatDoNotFit) {
+  Table table({{"name", kLeft}, {"a", kRight, 1}, {"b"}, {"c", kRight, 1}});
   table.add({"x", "100", "200", "300"});
   const auto titles = [&](int width) {
-    std::istringstream in(table.str(width));
+    std::istringstream in(terminal_text(table, width));
     std::string line;
     std::getline(in, line);
     return line;
   };
-  EXPECT_EQ(table.str(19), table.str());
+  EXPECT_EQ(terminal_text(table, 19), terminal_text(table));
   EXPECT_EQ(titles(19), "name    a    b    c");
   EXPECT_EQ(titles(18), "name    a    b …");
   EXPECT_EQ(titles(15), "name    b …");
   EXPECT_EQ(titles(8), "name …");
   EXPECT_EQ(titles(5), "na… …") << "the first column stays";
   EXPECT_EQ(titles(1), "… …");
-  EXPECT_EQ(table.str(13),
+  EXPECT_EQ(terminal_text(table, 13),
             "name    b …\n"
             "─────────\n"
             "x     200\n");
 }
 
-TEST(TextTable, CutsLongTextBeforeItLeavesOutColumns) {
+TEST(TerminalTable, CutsLongTextBeforeItLeavesOutColumns) {
   const std::string text = "a text of thirty-two characters.";
-  TextTable table({{"name", kLeft}, {"a"}, {"text", kLeft}});
+  Table table({{"name", kLeft}, {"a"}, {"text", kLeft}});
   table.add({"x", "100", text});
-  EXPECT_EQ(table.str(43), table.str());
-  EXPECT_EQ(table.str(42),
+  EXPECT_EQ(terminal_text(table, 43), terminal_text(table));
+  EXPECT_EQ(terminal_text(table, 42),
             "name    a  text\n"
             "──────────────────────────────────────────\n"
             "x     100  a text of thirty-two character…\n");
-  const std::string least = table.str(31);
+  const std::string least = terminal_text(table, 31);
   EXPECT_NE(least.find("x     100  a text of thirty-tw…\n"), std::string::npos) << least;
-  EXPECT_EQ(table.str(30),
+  EXPECT_EQ(terminal_text(table, 30),
             "name    a …\n"
             "─────────\n"
             "x     100\n");
 }
 
-TEST(TextTable, CutsNamesOfRowsToHalfOfTheWidthOnly) {
-  TextTable table({{"text", kLeft}, {"a"}});
+TEST(TerminalTable, CutsNamesOfRowsToHalfOfTheWidthOnly) {
+  Table table({{"text", kLeft}, {"a"}});
   table.add({"a text of thirty-two characters.", "100"});
-  EXPECT_EQ(table.str(29),
+  EXPECT_EQ(terminal_text(table, 29),
             "text                        a\n"
             "─────────────────────────────\n"
             "a text of thirty-two ch…  100\n");
-  EXPECT_EQ(table.str(24),
+  EXPECT_EQ(terminal_text(table, 24),
             "text …\n"
             "────────────────────\n"
             "a text of thirty-tw…\n");
 }
 
-TEST(TextTable, HasTheWidthOfTheProgramWhereNoneIsAskedFor) {
-  TextTable table({{"name", kLeft}, {"a"}});
+TEST(TerminalTable, HasTheWidthOfTheProgramWhereNoneIsAskedFor) {
+  Table table({{"name", kLeft}, {"a"}});
   table.add({"x", "100"});
-  const std::string whole = table.str(kAnyWidth);
-  EXPECT_EQ(table.str(), whole);
+  const std::string whole = terminal_text(table, kAnyWidth);
+  EXPECT_EQ(terminal_text(table), whole);
   set_table_width(8);
-  const std::string narrow = table.str();
+  const std::string narrow = terminal_text(table);
   set_table_width(kAnyWidth);
-  EXPECT_EQ(narrow, table.str(8));
+  EXPECT_EQ(narrow, terminal_text(table, 8));
   EXPECT_NE(narrow, whole);
+}
+
+TEST(TerminalTable, ShowsNumbersInTheUnitOfTheirColumn) {
+  Table table({{"name", kLeft},
+               {.title = "ms", .shown = 2, .scale = 1e-6},
+               {.title = "mW", .shown = 1, .nothing = "unknown"},
+               {.key = "only_in_files"}});
+  table.add({"a", 1'234'567, Banded{2, 1.5, 2.5}, 1});
+  table.add({"b", Cell(), Cell(), 1});
+  EXPECT_EQ(terminal_text(table),
+            "name    ms             mW\n"
+            "─────────────────────────\n"
+            "a     1.23  2.0 (1.5–2.5)\n"
+            "b        –        unknown\n");
 }
 
 TEST(Tables, FitTheWidth) {
@@ -122,7 +135,7 @@ TEST(Tables, FitTheWidth) {
   EXPECT_EQ(header(breakdown_table(run, 80)).find("core-Mcycles"), std::string::npos);
 }
 
-TEST(TextTable, WrapsListsWhereTheyWouldExceedTheWidth) {
+TEST(TerminalTable, WrapsListsWhereTheyWouldExceedTheWidth) {
   EXPECT_EQ(wrap({"aaaa", "bbbb", "cccc"}, " · ", 2, 13), "aaaa · bbbb\n  cccc");
   EXPECT_EQ(wrap({"aaaa", "bbbb"}, " · ", 2, 12), "aaaa\n  bbbb");
   EXPECT_EQ(wrap({}, " · ", 2, 12), "");

@@ -20,7 +20,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/run_summary.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory_errors.h"
 #include "traces/trajectories/trajectory_file.h"
@@ -247,7 +247,7 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
       return figure_text(found ? std::optional(*found.*error) : std::nullopt, 2);
     };
   };
-  TableOf<Evaluated> table{
+  Columns<Evaluated> table{
       {{"estimate", kLeft}, [](E e) { return printable(e.pair.estimate.file.string()); }},
       {{"ATE m"}, fixed([](const Evaluation& e) { return e.translation.rmse; }, 4)},
       {{"median"}, fixed([](const Evaluation& e) { return e.translation.median; }, 4)},
@@ -259,11 +259,11 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
       {{"complete %"}, fixed([](const Evaluation& e) { return 100 * e.completion; }, 1)}};
   const std::vector<RelativeErrors>& lengths = all.front().accuracy.relative;
   for (std::size_t i = 0; i < lengths.size(); ++i)
-    table.add({fmt::format("drift over {:g} m %", lengths[i].length_m)}, [i](E e) {
-      const RelativeErrors& errors = e.accuracy.relative[i];
-      return errors.count > 0 ? figure_text(errors.translation.mean, 3) : kNothing;
-    });
-  return table.with(all).str();
+    table.push_back({{fmt::format("drift over {:g} m %", lengths[i].length_m)}, [i](E e) {
+                       const RelativeErrors& errors = e.accuracy.relative[i];
+                       return errors.count > 0 ? figure_text(errors.translation.mean, 3) : kNothing;
+                     }});
+  return terminal_text(table_of(table, all));
 }
 
 /// The least error, with the share of the path that it is.

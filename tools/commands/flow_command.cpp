@@ -61,11 +61,11 @@ void write_folder(outputs::OutputFolder& out, const FlowRun& flow, const Manifes
   };
   write("manifest.json", json_text(manifest_json(manifest, flow.run), 2) + '\n');
   write("platform.yaml", platform_yaml);
-  write("flow.csv", flow_csv(flow));
-  write("stages.csv", stages_csv(flow.run));
-  write("memory.csv", memory_csv(flow.run));
-  write("energy.csv", energy_csv(flow.rate ? at_rate(flow.run, *flow.rate) : flow.run));
-  write("published.csv", published_csv(flow));
+  write("flow.csv", csv_text(flow_rows(flow)));
+  write("stages.csv", csv_text(stage_rows(flow.run)));
+  write("memory.csv", csv_text(memory_rows(flow.run)));
+  write("energy.csv", csv_text(energy_rows(flow.rate ? at_rate(flow.run, *flow.rate) : flow.run)));
+  write("published.csv", csv_text(published_rows(flow)));
 }
 
 void run(const CLI::App& command, const FlowOptions& options, const Words& words) {
@@ -88,7 +88,7 @@ void run(const CLI::App& command, const FlowOptions& options, const Words& words
         return Printout(std::move(parts))
             .ending(flow_conclusion(flow), {"leviosim platforms systems"});
       },
-      [&] { return table_document("flow", flow_csv(flow)); });
+      [&] { return table_document("flow", flow_rows(flow)); });
   publish(out, shown,
           [&] { write_folder(out, flow, manifest, platform::to_yaml(request.platform)); });
 }

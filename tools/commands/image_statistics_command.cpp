@@ -65,7 +65,7 @@ void run(const CLI::App& command, const ImageStatisticsOptions& options) {
             .ending(conclusion(all), {fmt::format("leviosim image-statistics {} --json",
                                                   shell_word(options.folders.front()))});
       },
-      [&] { return table_document("image statistics", image_statistics_csv(all)); }));
+      [&] { return table_document("image statistics", image_statistics_rows(all)); }));
 }
 
 }  // namespace

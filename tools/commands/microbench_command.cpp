@@ -66,13 +66,13 @@ void run(const MicrobenchOptions& options) {
   add_needed(kernels, board);
   std::sort(needed.begin(), needed.end());
   tables.push_back(coverage_text(rows, needed));
-  publish({{out, microbench_csv(rows), ""}},
+  publish({{out, csv_text(microbench_rows(rows)), ""}},
           printout(
               options.json,
               [&] {
                 return Printout(tables).ending(microbench_conclusion(rows), {"leviosim validate"});
               },
-              [&] { return table_document("microbenchmarks", microbench_csv(rows)); }));
+              [&] { return table_document("microbenchmarks", microbench_rows(rows)); }));
   if (std::any_of(rows.begin(), rows.end(),
                   [](const MicrobenchRow& row) { return row.verdict() == Verdict::Worse; }))
     throw LimitNotMet();

@@ -21,11 +21,12 @@
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/report/tables.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/study/feasibility/feasibility.h"
+#include "tools/app/study/study.h"
 #include "tools/app/study/systems/systems_report.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -33,9 +34,7 @@ namespace {
 struct PlatformsOptions {
   std::string action = "list";
   std::vector<std::string> names;
-  RunOptions run;  ///< of feasibility and stages; the overrides are those of all actions
-  std::string jobs;
-  std::string report;
+  StudyOptions run;           ///< of feasibility and stages; the overrides are those of all actions
   std::string from = "gap9";  ///< of a new chip
   bool yaml = false;
 };
@@ -56,11 +55,11 @@ void list(const PlatformsOptions& options) {
         {"leviosim platforms show gap9", "leviosim platforms feasibility"});
   };
   const auto document = [] {
-    const base::CsvTable<std::string> table{{"name", [](const std::string& name) { return name; }},
-                                            {"description", [](const std::string& name) {
-                                               return platform::resolve_platform(name).description;
-                                             }}};
-    return table_document("platforms", table.text(platform::platform_names()));
+    const Columns<std::string> table{
+        {{.key = "name"}, [](const std::string& name) { return name; }},
+        {{.key = "description"},
+         [](const std::string& name) { return platform::resolve_platform(name).description; }}};
+    return table_document("platforms", table_of(table, platform::platform_names()));
   };
   print(printout(options.run.json, lines, document));
 }
@@ -103,9 +102,9 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
           const std::vector<std::string>& typed, bool json) {
   const std::vector<Difference> all = differences(a, b);
   const auto lines = [&] {
-    TextTable table({{"parameter", TextTable::Align::Left}, {a.name}, {b.name}});
+    Table table({{"parameter", kLeft}, {a.name}, {b.name}});
     for (const Difference& d : all) table.add({d.path, in_words(d.a), in_words(d.b)});
-    return Printout(all.empty() ? std::string() : table.str())
+    return Printout(all.empty() ? std::string() : terminal_text(table))
         .ending(fmt::format("in short: {} of {} parameters differ", all.size(),
                             std::max(a.parameters.size(), b.parameters.size())),
                 {fmt::format("leviosim platforms stages {} {}", shell_word(typed[0]),
@@ -113,42 +112,49 @@ void diff(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform&
   };
   const auto document = [&] {
     using D = Difference;
-    const auto value = [](const platform::Parameter* p) { return p == nullptr ? "" : p->value; };
-    const base::CsvTable<D> table{
-        {"parameter", [](const D& d) { return d.path; }},
-        {"a", [&](const D& d) { return value(d.a); }},
-        {"b", [&](const D& d) { return value(d.b); }},
-        {"unit", [](const D& d) { return d.a == nullptr ? d.b->unit : d.a->unit; }}};
-    return table_document(fmt::format("differences of {} and {}", a.name, b.name), table.text(all));
+    const auto value = [](const platform::Parameter* p) {
+      return p == nullptr ? std::string() : p->value;
+    };
+    const Columns<D> table{
+        {{.key = "parameter"}, [](const D& d) { return d.path; }},
+        {{.key = "a"}, [&](const D& d) { return spelled(value(d.a)); }},
+        {{.key = "b"}, [&](const D& d) { return spelled(value(d.b)); }},
+        {{.key = "unit"}, [](const D& d) { return d.a == nullptr ? d.b->unit : d.a->unit; }}};
+    return table_document(fmt::format("differences of {} and {}", a.name, b.name),
+                          table_of(table, all));
   };
   print(printout(json, lines, document));
 }
 
 /// Computes the work and times it on the chips: on all workers of each, and, if `alone`, on one.
-std::vector<Feasibility> rows_for(const PlatformsOptions& options, bool alone) {
+std::vector<Feasibility> rows_for(const PlatformsOptions& options, const RunnerOptions& runner,
+                                  bool alone) {
   const RunOptions& run = options.run;
   const std::vector<std::string> names =
       options.names.empty() ? platform::platform_names() : options.names;
   const SplitOverrides overrides = split_overrides(run.overrides);
-  const unsigned jobs = parse_jobs(options.jobs);
   RunOptions recording = run;
   recording.platform = "gap9";
   recording.overrides = overrides.workload;
   RunRequest request = make_chip_request(recording);
-  std::vector<platform::ResolvedPlatform> chips;
-  for (const std::string& name : names)
-    chips.push_back(platform::resolve_platform(name, overrides.chip));
   std::vector<FeasibilityPoint> points;
-  for (std::size_t i = 0; i < chips.size(); ++i) {
-    const int workers = chips[i].config.cluster.workers;
-    points.push_back({names[i], chips[i], workers});
-    if (alone && workers > 1) points.push_back({names[i], chips[i], 1});
+  for (const std::string& name : names) {
+    const platform::ResolvedPlatform chip = platform::resolve_platform(name, overrides.chip);
+    const int workers = chip.config.cluster.workers;
+    points.push_back({name, chip, workers});
+    if (alone && workers > 1) points.push_back({name, chip, 1});
   }
-  const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
-  request.data = data_folder(run, style);
-  ProgressLine line(style);
+  request.data = data_folder(run, runner.progress);
+  ProgressLine line(runner.progress);
   FeasibilityStudy study(request, shown_on(line));
-  return study.on(points, {.noun = "chip", .threads = jobs, .progress = style});
+  return study.on(points, runner);
+}
+
+/// What a study of chips reads.
+std::vector<std::filesystem::path> inputs_of(const PlatformsOptions& options) {
+  std::vector<std::filesystem::path> inputs = data_inputs(options.run.data);
+  inputs.insert(inputs.end(), options.names.begin(), options.names.end());
+  return inputs;
 }
 
 /// The workload on a chip.
@@ -159,21 +165,18 @@ std::string run_on(const std::string& platform, const RunOptions& options) {
 
 void feasibility(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
-  outputs::OutputRequest wanted = out_request(run, "--csv");
-  wanted.inputs.insert(wanted.inputs.end(), options.names.begin(), options.names.end());
-  std::optional<outputs::OutputFile> out = claimed_file(wanted);
-  const std::vector<Feasibility> rows = rows_for(options, true);
-  const auto lines = [&] {
-    return Printout(fmt::format("{} on {}\n\n{}", run.profile, printable(run.data),
-                                feasibility_table(rows)))
-        .ending(feasibility_conclusion(rows), {run_on(rows.front().platform, run)});
-  };
-  publish({{out, feasibility_csv(rows), "table"}}, printout(run.json, lines, [&] {
-            return table_document("feasibility", feasibility_csv(rows));
-          }));
-  const bool all_fit =
-      std::all_of(rows.begin(), rows.end(), [](const Feasibility& row) { return row.fits(); });
-  if (!options.names.empty() && !all_fit) throw LimitNotMet();
+  run_study({"feasibility", "What a workload takes on chips", "chip", {}}, options.run,
+            inputs_of(options), [&](const RunnerOptions& runner) {
+              const std::vector<Feasibility> rows = rows_for(options, runner, true);
+              Answer answer{.parts = {fmt::format("{} on {}\n\n{}", run.profile,
+                                                  printable(run.data), feasibility_table(rows))},
+                            .conclusion = feasibility_conclusion(rows),
+                            .next = {run_on(rows.front().platform, run)},
+                            .rows = feasibility_rows(rows)};
+              for (const Feasibility& row : rows)
+                if (!options.names.empty() && !row.fits()) answer.is_met = false;
+              return answer;
+            });
 }
 
 /// Takes out the chips that are too small, on which a run is refused.
@@ -196,58 +199,53 @@ std::string without_small_chips(std::vector<Feasibility>& rows, bool by_name) {
 }
 
 void stages(const PlatformsOptions& options) {
-  std::vector<Feasibility> rows = rows_for(options, false);
-  const std::string left_out = without_small_chips(rows, !options.names.empty());
-  const auto lines = [&] {
-    return Printout({fmt::format("{} on {}\n\n{}", options.run.profile, printable(options.run.data),
-                                 stage_comparison(rows)),
-                     left_out})
-        .ending(feasibility_conclusion(rows), {run_on(rows.front().platform, options.run)});
-  };
-  const auto document = [&] { return table_document("stages", stage_comparison_csv(rows)); };
-  print(printout(options.run.json, lines, document));
+  run_study({"stages", "Stages of a workload on chips", "chip", {}}, options.run,
+            inputs_of(options), [&](const RunnerOptions& runner) {
+              std::vector<Feasibility> rows = rows_for(options, runner, false);
+              const std::string left_out = without_small_chips(rows, !options.names.empty());
+              return Answer{
+                  .parts = {fmt::format("{} on {}\n\n{}", options.run.profile,
+                                        printable(options.run.data), stage_comparison(rows)),
+                            left_out},
+                  .conclusion = feasibility_conclusion(rows),
+                  .next = {run_on(rows.front().platform, options.run)},
+                  .rows = stage_comparison_rows(rows)};
+            });
 }
 
 /// Each system has its own workload and chip.
 void systems(const PlatformsOptions& options) {
-  const RunOptions& run = options.run;
-  if (!run.overrides.empty())
+  if (!options.run.overrides.empty())
     throw InputError("platforms systems: the chips are those of the systems; leave out --set");
-  RunOptions any_chip = run;
+  RunOptions any_chip = options.run;
   any_chip.platform = "gap9";
   RunRequest request = make_chip_request(any_chip);
-  const outputs::OutputRequest wanted = out_request(run, "--csv");
-  std::optional<outputs::OutputFile> csv = claimed_file(wanted);
-  std::optional<outputs::OutputFile> page =
-      claimed_report(options.report, run.force, wanted.inputs);
-  expect_different(csv, "--csv", page, "--report");
-  const ProgressLine::Style style = ProgressLine::style_of_stderr(run.quiet);
-  request.data = data_folder(run, style);
-  ProgressLine line(style);
-  const std::vector<SystemRow> rows = predict_systems(published_systems(), request, shown_on(line));
-  line.clear();
-  publish({{csv, systems_csv(rows), "table"},
-           {page, page ? html_page(systems_page(rows)) : std::string(), "report"}},
-          printout(
-              run.json,
-              [&] {
-                return Printout(fmt::format("systems that estimate motion; predictions on {}\n\n{}",
-                                            printable(run.data), systems_table(rows)))
-                    .ending(systems_conclusion(rows), {"leviosim platforms feasibility"});
-              },
-              [&] { return table_document("systems", systems_csv(rows)); }));
+  run_study({"systems", "Systems that estimate motion", "system", {}}, options.run,
+            data_inputs(options.run.data), [&](const RunnerOptions& runner) {
+              request.data = data_folder(options.run, runner.progress);
+              ProgressLine line(runner.progress);
+              const std::vector<SystemRow> rows =
+                  predict_systems(published_systems(), request, shown_on(line));
+              return Answer{
+                  .parts = {fmt::format("systems that estimate motion; predictions on {}\n\n{}",
+                                        printable(options.run.data), systems_table(rows))},
+                  .conclusion = systems_conclusion(rows),
+                  .next = {"leviosim platforms feasibility"},
+                  .rows = systems_rows(rows),
+                  .page = systems_page(rows)};
+            });
 }
 
 std::string mm2(sim::SquareMicrometres area) { return fmt::format("{:.2f}", area.count() * 1e-6); }
 
-std::string csv_of(const std::vector<platform::Parameter>& parameters) {
+Table rows_of(const std::vector<platform::Parameter>& parameters) {
   using P = platform::Parameter;
-  const base::CsvTable<P> table{{"parameter", [](const P& p) { return p.path; }},
-                                {"value", [](const P& p) { return p.value; }},
-                                {"unit", [](const P& p) { return p.unit; }},
-                                {"confidence", [](const P& p) { return p.confidence; }},
-                                {"source", [](const P& p) { return p.source; }}};
-  return table.text(parameters);
+  const Columns<P> table{{{.key = "parameter"}, [](const P& p) { return p.path; }},
+                         {{.key = "value"}, [](const P& p) { return spelled(p.value); }},
+                         {{.key = "unit"}, [](const P& p) { return p.unit; }},
+                         {{.key = "confidence"}, [](const P& p) { return p.confidence; }},
+                         {{.key = "source"}, [](const P& p) { return p.source; }}};
+  return table_of(table, parameters);
 }
 
 /// Parts with their bands, then the numbers that they follow from, with ranges and sources.
@@ -263,11 +261,11 @@ void area(const PlatformsOptions& options) {
   for (const platform::Parameter& p : chip.parameters)
     if (p.path.starts_with("area.") || p.path.ends_with(".area")) numbers.push_back(p);
   const auto lines = [&] {
-    TextTable sources({{"number", TextTable::Align::Left},
-                       {"value"},
-                       {"range", TextTable::Align::Right, 1},
-                       {"confidence", TextTable::Align::Left, 1},
-                       {"source", TextTable::Align::Left, 2}});
+    Table sources({{"number", kLeft},
+                   {"value"},
+                   {"range", kRight, 1},
+                   {"confidence", kLeft, 1},
+                   {"source", kLeft, 2}});
     for (const platform::Parameter& p : numbers)
       sources.add({p.path, in_words(&p),
                    p.range ? fmt::format("{:g}–{:g}", p.range->low, p.range->high) : "–",
@@ -275,14 +273,14 @@ void area(const PlatformsOptions& options) {
     const sim::AreaItem total = sim::total_area(chip.config);
     return Printout(
                {fmt::format("area of {}\n\n{}\n", printable(chip.name), area_table(chip.config)),
-                sources.str()})
+                terminal_text(sources)})
         .ending(fmt::format("in short: {} mm2 ({}–{})", mm2(total.area), mm2(total.low),
                             mm2(total.high)),
                 {"leviosim whatif"});
   };
   print(printout(options.run.json, lines, [&] {
-    return table_document("area of " + chip.name, area_csv(chip.config),
-                          {{"numbers", rows_of_csv(csv_of(numbers))}});
+    return table_document("area of " + chip.name, area_rows(chip.config),
+                          {{"numbers", rows_json(rows_of(numbers))}});
   }));
 }
 
@@ -290,14 +288,14 @@ void show(const PlatformsOptions& options) {
   const platform::ResolvedPlatform chip =
       platform::resolve_platform(options.names[0], options.run.overrides);
   const auto document = [&] {
-    return table_document("platform " + chip.name, csv_of(chip.parameters));
+    return table_document("platform " + chip.name, rows_of(chip.parameters));
   };
   const auto lines = [&] {
-    TextTable table({{"number", kLeft}, {"value"}, {"confidence", kLeft}, {"source", kLeft, 1}});
+    Table table({{"number", kLeft}, {"value"}, {"confidence", kLeft}, {"source", kLeft, 1}});
     for (const platform::Parameter& p : chip.parameters)
       table.add({p.path, in_words(&p), p.confidence, printable(p.source)});
     return Printout(fmt::format("{}: {}\n\n{}", printable(chip.name), printable(chip.description),
-                                table.str()))
+                                terminal_text(table)))
         .ending(fmt::format("in short: {} numbers, each with its source", chip.parameters.size()),
                 {fmt::format("leviosim platforms show {} --yaml", shell_word(options.names[0]))});
   };
@@ -337,7 +335,7 @@ void begin_new(const PlatformsOptions& options) {
                                          options.run.json, [] { return std::string(); },
                                          [&] {
                                            return table_document("platform " + file.stem().string(),
-                                                                 csv_of(from.parameters));
+                                                                 rows_of(from.parameters));
                                          }));
 }
 
@@ -400,7 +398,7 @@ Command add_platforms_command(CLI::App& app, const Words&) {
                                          "List the chips, show one with its sources, compare two, "
                                          "or ask what a workload takes on them");
   const auto options = std::make_shared<PlatformsOptions>();
-  RunOptions& run_options = options->run;
+  StudyOptions& run_options = options->run;
   run_options.data = "synthetic";
   command->add_option("ACTION", options->action,
                       "list (the default), show NAME, new NAME, diff NAME NAME, area NAME, "
@@ -420,10 +418,10 @@ Command add_platforms_command(CLI::App& app, const Words&) {
   add("--profile", run_options.profile, "NAME", "of the workload [levio]; not of systems");
   add("--seed", run_options.seed, "N", "of the workload's random draws [1]");
   add("--csv", run_options.out, "FILE", "write the rows to a file; not of stages");
-  add("--report", options->report, "FILE.html", "systems: page with power over frame rate");
+  add("--report", run_options.report, "FILE.html", "systems: page with power over frame rate");
   command->add_flag("--force", run_options.force, "replace these files")->group(group);
   command->add_flag("--yaml", options->yaml, "show: the platform file, all of it");
-  add_jobs_option(*command, options->jobs, "chip");
+  add_jobs_option(*command, run_options.jobs, "chip");
   command->get_option("--jobs")->group(group);
   command->add_flag("--quiet", run_options.quiet, "no progress")->group(group);
   add_examples(*command,

@@ -11,10 +11,10 @@
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/run_record.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/trace_source.h"
+#include "tools/app/table/terminal_table.h"
 #include "tools/app/why/late_frame.h"
 #include "tools/commands/commands.h"
 
@@ -36,11 +36,11 @@ int asked_frame(const WhyOptions& options, const std::vector<FrameResult>& frame
 }
 
 std::string stage_table(const ExplainedFrame& median, const ExplainedFrame& frame) {
-  TextTable table({{"stage", kLeft},
-                   {fmt::format("frame {}", median.number)},
-                   {fmt::format("frame {}", frame.number)},
-                   {"change, ms"},
-                   {"most of it", kLeft}});
+  Table table({{"stage", kLeft},
+               {fmt::format("frame {}", median.number)},
+               {fmt::format("frame {}", frame.number)},
+               {"change, ms"},
+               {"most of it", kLeft}});
   constexpr double kShown_ms = 0.005;  // else it is printed as 0.00
   for (const StageDifference& d : stage_differences(median, frame)) {
     const bool is_shown = std::abs(d.cause_ms) >= kShown_ms;
@@ -48,7 +48,7 @@ std::string stage_table(const ExplainedFrame& median, const ExplainedFrame& fram
                fmt::format("{:+.2f}", d.change_ms()),
                is_shown ? fmt::format("{:+.2f} {}", d.cause_ms, d.cause) : ""});
   }
-  return table.str();
+  return terminal_text(table);
 }
 
 std::string fact_lines(const ExplainedFrame& median, const ExplainedFrame& frame) {

@@ -9,8 +9,9 @@
 #include "sim/base/csv.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
+#include "tools/app/table/table_files.h"
+#include "tools/app/table/terminal_table.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {
@@ -38,29 +39,31 @@ double value_in(const vio::Profile& profile, const vio::Parameter& p) {
 
 std::string document(const WorkloadOptions& options, const vio::Profile& profile) {
   using P = vio::Parameter;
-  const base::CsvTable<P> table{
-      {"name", [](const P& p) { return p.name; }},
-      {"value", [&](const P& p) { return vio::value_text(p, value_in(profile, p)); }},
-      {"low", [](const P& p) { return vio::value_text(p, p.low); }},
-      {"high", [](const P& p) { return vio::value_text(p, p.high); }},
-      {"unit", [](const P& p) { return p.unit; }},
-      {"meaning", [](const P& p) { return p.description; }}};
-  return table_document("parameters of " + options.profile, table.text(parameters_of(options)));
+  const Columns<P> table{
+      {{.key = "name"}, [](const P& p) { return p.name; }},
+      {{.key = "value"},
+       [&](const P& p) { return spelled(vio::value_text(p, value_in(profile, p))); }},
+      {{.key = "low"}, [](const P& p) { return spelled(vio::value_text(p, p.low)); }},
+      {{.key = "high"}, [](const P& p) { return spelled(vio::value_text(p, p.high)); }},
+      {{.key = "unit"}, [](const P& p) { return p.unit; }},
+      {{.key = "meaning"}, [](const P& p) { return p.description; }}};
+  return table_document("parameters of " + options.profile,
+                        table_of(table, parameters_of(options)));
 }
 
 Printout lines(const WorkloadOptions& options, const vio::Profile& profile) {
   std::string text = "profiles (--profile NAME)\n";
   for (const std::string& name : vio::profile_names())
     text += fmt::format("  {}: {}\n", name, vio::profile_description(name));
-  TextTable table({{"parameter (-p NAME=VALUE)", kLeft},
-                   {"in " + options.profile},
-                   {"range", kLeft},
-                   {"unit", kLeft},
-                   {"meaning", kLeft}});
+  Table table({{"parameter (-p NAME=VALUE)", kLeft},
+               {"in " + options.profile},
+               {"range", kLeft},
+               {"unit", kLeft},
+               {"meaning", kLeft}});
   for (const vio::Parameter& p : parameters_of(options))
     table.add({std::string(p.name), vio::value_text(p, value_in(profile, p)), range_text(p),
                std::string(p.unit), std::string(p.description)});
-  return Printout({text + '\n', table.str()})
+  return Printout({text + '\n', terminal_text(table)})
       .ending(fmt::format("in short: {} profiles, {} parameters of {}", vio::profile_names().size(),
                           vio::parameters().size(), options.profile),
               {fmt::format("leviosim run --profile {} -p workload.window=8 --out mine",

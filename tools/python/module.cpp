@@ -159,7 +159,7 @@ std::string what_if(const std::string& name, const py::bytes& bytes,
   for (const std::string& change : changes)
     for (Variant& variant : asked.variants(change)) variants.push_back(std::move(variant));
   if (changes.empty()) variants = asked.standard_variants();
-  return whatif_csv(asked.results(variants, {.noun = "variant", .threads = threads}));
+  return csv_text(whatif_rows(asked.results(variants, {.noun = "variant", .threads = threads})));
 }
 
 /// Statistics of an estimate against the truth, both files or folders as `leviosim eval` takes
@@ -230,7 +230,8 @@ PYBIND11_MODULE(_core, m) {
       .def("yaml", &platform::to_yaml)
       .def("parameters", &tools::parameters_of)
       .def("area_csv", [](const platform::ResolvedPlatform& p) {
-        return sim::knows_area(p.config) ? tools::area_csv(p.config) : std::string();
+        return sim::knows_area(p.config) ? tools::csv_text(tools::area_rows(p.config))
+                                         : std::string();
       });
   m.def("platform_names", &platform::platform_names);
   m.def("profiles", [] {

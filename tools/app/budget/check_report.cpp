@@ -12,8 +12,8 @@
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/verdict.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -58,7 +58,7 @@ std::string table_of(const CheckResult& result) {
   if (!result.not_measured.empty())
     text += fmt::format("left out, since it was not measured: {}\n",
                         printable(fmt::format("{}", fmt::join(result.not_measured, ", "))));
-  TextTable table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
+  Table table({{"", kLeft}, {"limit", kLeft, 1}, {"found"}, {"margin"}});
   for (const Finding& f : result.findings)
     table.add({f.better()  ? "better"
                : f.met     ? "met"
@@ -66,7 +66,7 @@ std::string table_of(const CheckResult& result) {
                            : "warning",
                shortened(f.title(), kWidest),
                f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–", margin(f)});
-  return text + table.str();
+  return text + terminal_text(table);
 }
 
 std::string misses_of(const CheckResult& result) {
@@ -266,7 +266,7 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
     text += fmt::format("\n<details><summary>What changed since {}</summary>\n\n{}\n</details>\n",
                         markdown_text(baseline->name),
                         comparison_report(compare_runs(*baseline, run), ReportFormat::markdown));
-  TextTable table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"bound"}});
+  Table table({{"", kLeft}, {"limit", kLeft}, {"found"}, {"bound"}});
   for (const Finding& f : result.findings)
     table.add({f.met       ? "met"
                : f.fails() ? "✗ not met"
@@ -274,7 +274,7 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
                f.title(), f.value ? figure_text(*f.value, f.unit, f.limit->bound) : "–",
                f.bound ? figure_text(*f.bound, f.unit, f.limit->bound) : "–"});
   return text + fmt::format("\n<details><summary>All {} limits</summary>\n\n{}\n</details>\n",
-                            result.findings.size(), table.markdown());
+                            result.findings.size(), markdown_table(table));
 }
 
 std::string github_annotations(const CheckResult& result) {

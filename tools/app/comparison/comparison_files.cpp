@@ -9,8 +9,9 @@
 #include "sim/base/text.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/comparison/run_record.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/verdict.h"
+#include "tools/app/table/table_files.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -56,18 +57,23 @@ class CsvRows {
  public:
   void add(const std::string& subject, const std::string& quantity, const ComparedQuantity& q,
            const std::string& part = {}, const std::string& subpart = {}) {
-    const auto number = [](std::optional<double> v) { return v ? fmt::format("{}", *v) : ""; };
-    text_ += base::csv_line({printable(subject), printable(quantity), printable(part),
-                             printable(subpart), printable(q.unit), number(q.a), number(q.b),
-                             number(q.difference())});
+    table_.add({printable(subject), printable(quantity), printable(part), printable(subpart),
+                printable(q.unit), q.a, q.b, q.difference()});
     for (const ComparedQuantity& below : q.parts)
       add(subject, quantity, below, part.empty() ? below.name : part,
           part.empty() ? "" : below.name);
   }
-  std::string take() { return std::move(text_); }
+  std::string text() const { return csv_text(table_); }
 
  private:
-  std::string text_ = "subject,quantity,part,subpart,unit,a,b,difference\n";
+  Table table_{{{.key = "subject"},
+                {.key = "quantity"},
+                {.key = "part"},
+                {.key = "subpart"},
+                {.key = "unit"},
+                {.key = "a"},
+                {.key = "b"},
+                {.key = "difference"}}};
 };
 
 // What fits on a screen of a comparison: figures of the run, the stages that differ most, and why.
@@ -115,7 +121,7 @@ std::string verdict_line(const RunComparison& c) {
 
 /// Those that differ, in their order, after the mean frame.
 std::string figure_lines(const RunComparison& c) {
-  TextTable table({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
+  Table table({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
   std::size_t rows = 0;
   for (const ComparedQuantity& q : c.figures) {
     const bool is_first = &q == &c.figures.front();
@@ -125,7 +131,7 @@ std::string figure_lines(const RunComparison& c) {
     table.add({q.name, figure_text(q.a, decimals), figure_text(q.b, decimals), q.unit,
                q.percent() ? fmt::format("{:+.1f} %", *q.percent()) : kNothing});
   }
-  return table.str(kScreenColumns);
+  return terminal_text(table, kScreenColumns);
 }
 
 /// Those whose part of a frame differs most.
@@ -139,12 +145,12 @@ std::string stages_of_summary(const RunComparison& c) {
   if (stages.empty()) return {};
   std::stable_sort(stages.begin(), stages.end(),
                    [&](const auto* x, const auto* y) { return size(x) > size(y); });
-  TextTable table({{"kcycles of a mean frame", kLeft}, {"A"}, {"B"}, {"change"}});
+  Table table({{"kcycles of a mean frame", kLeft}, {"A"}, {"B"}, {"change"}});
   for (std::size_t i = 0; i < std::min(stages.size(), kMostStages); ++i)
     table.add({shortened(stages[i]->name, 30), figure_text(*stages[i]->a / kPerKilo, 1),
                figure_text(*stages[i]->b / kPerKilo, 1),
                stages[i]->percent() ? fmt::format("{:+.1f} %", *stages[i]->percent()) : kNothing});
-  return table.str(kScreenColumns);
+  return terminal_text(table, kScreenColumns);
 }
 
 std::vector<std::string> cause_lines(const RunComparison& c) {
@@ -227,7 +233,7 @@ std::string comparison_csv(const RunComparison& c) {
   for (const ComparedQuantity& q : c.blocks) rows.add("memory", q.name, q);
   rows.add("energy", "by stage", c.energy_by_stage);
   rows.add("energy", "by domain", c.energy_by_domain);
-  return rows.take();
+  return rows.text();
 }
 
 std::string comparison_summary(const RunComparison& c) {
@@ -275,7 +281,7 @@ std::string measured_report(const RunComparison& c, bool markdown) {
   line("measured: " + printable(measured.name));
   line(fmt::format("{}: {}", what, printable(other.name)));
   for (const std::string& note : c.notes) line("note: " + printable(note));
-  TextTable table({{"kcycles of a call", kLeft}, {"measured"}, {what}, {"error"}});
+  Table table({{"kcycles of a call", kLeft}, {"measured"}, {what}, {"error"}});
   std::vector<std::string> missing;
   double sum = 0;
   std::size_t stages = 0;
@@ -297,7 +303,7 @@ std::string measured_report(const RunComparison& c, bool markdown) {
     sum += std::abs(*e.percent);
     if (worst == nullptr || std::abs(*e.percent) > std::abs(*worst->percent)) worst = &e;
   }
-  text += (markdown ? "\n" + table.markdown() + "\n" : table.str());
+  text += (markdown ? "\n" + markdown_table(table) + "\n" : terminal_text(table));
   if (!missing.empty()) {
     missing.front().insert(0, "not measured: ");
     for (std::size_t i = 0; i + 1 < missing.size(); ++i) missing[i] += ',';

@@ -8,7 +8,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/text.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -70,7 +70,9 @@ class Writer {
     text_ +=
         markdown_ ? fmt::format("\n### {}\n\n", markdown_text(name)) : fmt::format("\n{}\n", name);
   }
-  void table(const TextTable& t) { text_ += markdown_ ? with_dots(t.markdown()) : t.str(); }
+  void table(const Table& t) {
+    text_ += markdown_ ? with_dots(markdown_table(t)) : terminal_text(t);
+  }
   /// Blanks at the begin of a cell, which say what is part of what, are lost in Markdown.
   static std::string with_dots(std::string text) {
     constexpr std::string_view kBegin = "| ";
@@ -113,7 +115,7 @@ class Writer {
 
   void figures() {
     title("the run as a whole");
-    TextTable t({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
+    Table t({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
     for (const ComparedQuantity& q : c_.figures)
       t.add({q.name, figure_text(q.a, decimals_of(q.unit)), figure_text(q.b, decimals_of(q.unit)),
              q.unit, percent(q.percent())});
@@ -129,8 +131,8 @@ class Writer {
   void stages() {
     if (c_.stages.empty()) return;
     title("stages on N cores: kcycles of a call, share of a frame's cycles [%]");
-    TextTable all({{"stage", kLeft}, {"calls"}, {"A"}, {"B"}, {"change"}, {"% A"}, {"% B"}});
-    TextTable one({{"stage on one core", kLeft}, {"A"}, {"B"}, {"change"}});
+    Table all({{"stage", kLeft}, {"calls"}, {"A"}, {"B"}, {"change"}, {"% A"}, {"% B"}});
+    Table one({{"stage on one core", kLeft}, {"A"}, {"B"}, {"change"}});
     bool any_single = false;
     for (const StageComparison& s : c_.stages) {
       if (!s.parallel.a && !s.parallel.b) continue;  // it did not run
@@ -159,7 +161,7 @@ class Writer {
       return;
     }
     title("why: kcycles of a mean frame on N cores");
-    TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}});
+    Table t({{"", kLeft}, {"A"}, {"B"}, {"difference"}});
     const auto row = [&](const std::string& name, const ComparedQuantity& q) {
       t.add({name, kilocycles(q.a), kilocycles(q.b),
              signed_kilocycles(q.b.value_or(0) - q.a.value_or(0))});
@@ -186,13 +188,13 @@ class Writer {
     return !leaves.empty() && std::abs(leaves.front().difference) > kLeastShare * most;
   }
 
-  static void add_cause(TextTable& t, const char* name, double cycles) {
+  static void add_cause(Table& t, const char* name, double cycles) {
     if (std::abs(cycles) >= kLeastShown)
       t.add({fmt::format("  {}", name), "", "", signed_kilocycles(cycles)});
   }
 
   /// The largest, and the sum of the others.
-  static void add_leaves(TextTable& t, const ComparedQuantity& whole) {
+  static void add_leaves(Table& t, const ComparedQuantity& whole) {
     double others = 0;
     std::size_t shown = 0;
     for (const Leaf& leaf : leaves_by_difference(whole)) {
@@ -209,7 +211,7 @@ class Writer {
   }
 
   /// Only if a fork or the serial part differs.
-  static void add_places(TextTable& t, const ComparedQuantity& whole) {
+  static void add_places(Table& t, const ComparedQuantity& whole) {
     const auto differs = [](const ComparedQuantity& place) {
       return std::abs(place.b.value_or(0) - place.a.value_or(0)) >= kLeastShown;
     };
@@ -236,7 +238,7 @@ class Writer {
         sorted.begin(), sorted.end(),
         [&](const ComparedQuantity& x, const ComparedQuantity& y) { return size(x) > size(y); });
     title("blocks at a peak that differ [kB]");
-    TextTable t({{"owner: block", kLeft}, {"A"}, {"B"}, {"difference"}});
+    Table t({{"owner: block", kLeft}, {"A"}, {"B"}, {"difference"}});
     for (std::size_t i = 0; i < std::min(sorted.size(), kMostBlocks); ++i) {
       const ComparedQuantity& q = sorted[i];
       t.add({shortened(q.name, 44), kilocycles(q.a), kilocycles(q.b),
@@ -251,7 +253,7 @@ class Writer {
     if (whole.parts.empty()) return;
     constexpr double kLeastEnergy = 5e-5;  // rows that show as they were are left out
     title(name);
-    TextTable t({{"", kLeft}, {"A"}, {"B"}, {"difference"}, {"change"}});
+    Table t({{"", kLeft}, {"A"}, {"B"}, {"difference"}, {"change"}});
     const auto row = [&](const ComparedQuantity& q) {
       t.add({shortened(q.name, 24), figure_text(q.a, 4), figure_text(q.b, 4),
              q.difference() ? fmt::format("{:+.4f}", *q.difference()) : "–", percent(q.percent())});

@@ -46,9 +46,9 @@ std::vector<std::string> titles_of(const std::string& csv) {
 }
 
 /// A CSV file whose first row holds the titles of its columns.
-class Table {
+class FrameTable {
  public:
-  Table(const std::filesystem::path& file, const std::string& csv)
+  FrameTable(const std::filesystem::path& file, const std::string& csv)
       : titles_(titles_of(csv)), reader_(file, base::Separator::comma, titles_, csv) {
     if (csv.empty() || csv.back() != '\n')
       throw InputError(fmt::format("{}: ends within a line: it was cut off", file.string()));
@@ -73,8 +73,8 @@ class Table {
 };
 
 /// The columns of frames.csv that are read; native runs have no latency.
-struct Columns {
-  explicit Columns(const Table& table)
+struct FrameColumns {
+  explicit FrameColumns(const FrameTable& table)
       : number(table.column("frame")),
         t_ns(table.column("t_ns")),
         source(table.column("source")),
@@ -100,7 +100,7 @@ int whole(const base::CsvRow& row, std::size_t column) {
 }
 
 /// Of a frame that was not dropped.
-void read_result(const base::CsvRow& row, const Columns& at, RecordedFrame& frame) {
+void read_result(const base::CsvRow& row, const FrameColumns& at, RecordedFrame& frame) {
   for (const vio::PoseSourceInfo& info : vio::kPoseSources)
     if (info.name == row.text(at.source)) frame.source = info.source;
   frame.features = whole(row, at.features);
@@ -254,8 +254,8 @@ RunRecord read_record(const std::string& name, const RecordOptions& options, Run
 }
 
 std::vector<RecordedFrame> read_frames(const std::filesystem::path& file, const std::string& csv) {
-  Table table(file, csv);
-  const Columns at(table);
+  FrameTable table(file, csv);
+  const FrameColumns at(table);
   std::vector<RecordedFrame> frames;
   while (const base::CsvRow* row = table.next()) {
     RecordedFrame& frame = frames.emplace_back();

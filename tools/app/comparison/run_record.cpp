@@ -154,8 +154,8 @@ void name_stages(RunRecord& record, std::vector<std::string> names) {
 /// Of all stages, also of those that were never called.
 std::vector<std::string> names_in(const std::string& file, const std::string& stages_csv) {
   constexpr const char* kTitle = "stage";
-  const Json table =
-      csv_json(file, stages_csv, [](const std::string& title) { return title == kTitle; });
+  const Json table = columns_json(read_csv(file, stages_csv),
+                                  [](const std::string& title) { return title == kTitle; });
   std::vector<std::string> names;
   for (const Json& name : table.value(kTitle, Json::array()))
     if (name.is_string()) names.push_back(name.get<std::string>());

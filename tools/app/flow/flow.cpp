@@ -12,8 +12,8 @@
 #include "sim/base/error.h"
 #include "sim/energy/model.h"
 #include "tools/app/report/tables.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/table/terminal_table.h"
 #include "tools/app/validation/references.h"
 #include "traces/datasets/dataset.h"
 #include "traces/recordings/recording.h"
@@ -181,7 +181,7 @@ std::string frame_rate_table(const FlowRun& flow) {
   const std::optional<FlowCycles> cycles = flow_cycles(flow.run);
   if (!cycles) return {};
   const double hertz = static_cast<double>(flow.run.cluster_clock.count());
-  TextTable table({{"cores"}, {"kcycles of a frame"}, {"frames/s"}, {"speed-up"}});
+  Table table({{"cores"}, {"kcycles of a frame"}, {"frames/s"}, {"speed-up"}});
   table.add({"1", fmt::format("{:.2f}", cycles->single * 1e-3),
              fmt::format("{:.1f}", hertz / cycles->single), "1.00"});
   if (flow.run.cores > 1)
@@ -190,20 +190,20 @@ std::string frame_rate_table(const FlowRun& flow) {
                fmt::format("{:.2f}", cycles->single / cycles->parallel)});
   return fmt::format("frames that the chip could do at {:g} MHz, offload included\n",
                      megahertz(flow.run.cluster_clock)) +
-         table.str();
+         terminal_text(table);
 }
 
 std::string published_table(const FlowRun& flow) {
   const std::vector<PublishedFlow> rows = published_of(flow);
   if (rows.empty()) return {};
-  TextTable table({{"figure", kLeft},
-                   {"cores"},
-                   {"MHz"},
-                   {"unit", kLeft},
-                   {"published"},
-                   {"here"},
-                   {"difference %"},
-                   {"source", kLeft}});
+  Table table({{"figure", kLeft},
+               {"cores"},
+               {"MHz"},
+               {"unit", kLeft},
+               {"published"},
+               {"here"},
+               {"difference %"},
+               {"source", kLeft}});
   for (const PublishedFlow& row : rows) {
     const std::optional<double> here = predicted(row, flow.run);
     table.add(
@@ -211,7 +211,7 @@ std::string published_table(const FlowRun& flow) {
          row.unit, fmt::format("{:g}", row.value), here ? fmt::format("{:.4g}", *here) : kNothing,
          here ? fmt::format("{:+.1f}", 100 * (*here / row.value - 1)) : kNothing, row.source});
   }
-  return "published figures (all clocks in proportion, the same cycles)\n" + table.str();
+  return "published figures (all clocks in proportion, the same cycles)\n" + terminal_text(table);
 }
 
 std::string flow_summary(const FlowRun& flow) {
@@ -259,28 +259,44 @@ std::string flow_conclusion(const FlowRun& flow) {
                      keeps_up ? "fits" : "too slow", flow.run.cores, most, rate_of(flow));
 }
 
-std::string flow_csv(const FlowRun& flow) {
-  std::string text =
-      "frame,t_ns,dx_px,dy_px,quality,textured,matched,parallel_cycles,single_cycles\n";
-  for (std::size_t i = 0; i < flow.flows.size(); ++i) {
-    const flow::Flow& f = flow.flows[i];
-    const FrameResult& frame = flow.run.frames[i];
-    text += fmt::format("{},{},{:.4f},{:.4f},{},{},{},{},{}\n", frame.index, frame.t_ns,
-                        f.x / kPixel, f.y / kPixel, f.quality, f.textured, f.matched,
-                        frame.cycles.count(), frame.single_cycles.count());
-  }
-  return text;
+Table flow_rows(const FlowRun& flow) {
+  struct Row {
+    const flow::Flow& flow;
+    const FrameResult& frame;
+  };
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < flow.flows.size(); ++i)
+    rows.push_back({flow.flows[i], flow.run.frames[i]});
+  using R = const Row&;
+  return table_of(
+      Columns<Row>{{{.key = "frame"}, [](R r) { return r.frame.index; }},
+                   {{.key = "t_ns"}, [](R r) { return r.frame.t_ns; }},
+                   {{.key = "dx_px", .decimals = 4}, [](R r) { return r.flow.x / kPixel; }},
+                   {{.key = "dy_px", .decimals = 4}, [](R r) { return r.flow.y / kPixel; }},
+                   {{.key = "quality"}, [](R r) { return r.flow.quality; }},
+                   {{.key = "textured"}, [](R r) { return r.flow.textured; }},
+                   {{.key = "matched"}, [](R r) { return r.flow.matched; }},
+                   {{.key = "parallel_cycles"}, [](R r) { return r.frame.cycles; }},
+                   {{.key = "single_cycles"}, [](R r) { return r.frame.single_cycles; }}},
+      rows);
 }
 
-std::string published_csv(const FlowRun& flow) {
-  std::string text = "platform,figure,cores,clock_mhz,rate,unit,published,here\n";
-  for (const PublishedFlow& row : published_of(flow)) {
-    const std::optional<double> here = predicted(row, flow.run);
-    text += fmt::format("{},{},{},{:g},{},{},{:g},{}\n", row.platform, name_of(row.figure),
-                        row.cores, row.clock_mhz, row.rate ? fmt::format("{:g}", *row.rate) : "",
-                        row.unit, row.value, here ? fmt::format("{:.6g}", *here) : "");
-  }
-  return text;
+Table published_rows(const FlowRun& flow) {
+  using P = const PublishedFlow&;
+  return table_of(
+      Columns<PublishedFlow>{{{.key = "platform"}, [](P p) { return p.platform; }},
+                             {{.key = "figure"}, [](P p) { return name_of(p.figure); }},
+                             {{.key = "cores"}, [](P p) { return p.cores; }},
+                             {{.key = "clock_mhz"}, [](P p) { return p.clock_mhz; }},
+                             {{.key = "rate"}, [](P p) { return p.rate; }},
+                             {{.key = "unit"}, [](P p) { return p.unit; }},
+                             {{.key = "published"}, [](P p) { return p.value; }},
+                             {{.key = "here"},
+                              [&](P p) {
+                                const std::optional<double> here = predicted(p, flow.run);
+                                return here ? spelled(fmt::format("{:.6g}", *here)) : Cell();
+                              }}},
+      published_of(flow));
 }
 
 std::string_view name_of(FlowFigure figure) { return kNames[static_cast<std::size_t>(figure)]; }

@@ -14,6 +14,7 @@
 #include "tools/app/result/run_result.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/table/table_files.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_preparation.h"
 #include "workload/flow/estimator.h"
@@ -150,9 +151,9 @@ std::vector<std::string> flow_report(const FlowRun& flow);
 std::string flow_conclusion(const FlowRun& flow);
 
 /// A row per frame.
-std::string flow_csv(const FlowRun& flow);
+Table flow_rows(const FlowRun& flow);
 
 /// The rows of published_table().
-std::string published_csv(const FlowRun& flow);
+Table published_rows(const FlowRun& flow);
 
 }  // namespace leviosim::tools

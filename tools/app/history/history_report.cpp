@@ -15,7 +15,7 @@
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -190,18 +190,22 @@ void show_points(const std::vector<const PastRun*>& runs, const std::vector<Page
     const PastRun& run;
   };
   using R = const Row&;
-  StudyTable<Row> table{
-      {{"run", "commits", "", true}, [](R r) { return r.number; }},
-      {{"commit", "commit", "", true}, [](R r) { return r.run.record.name; }},
-      {{"subject", "subject", "", true}, [](R r) { return r.run.origin.subject; }},
-      {{"date", "date", "", true}, [](R r) { return date_text(r.run.origin.time_s); }},
-      {{"limits", "limits", ""}, [](R r) { return limits_text(r.run.limits); }}};
+  Columns<Row> table{
+      {{.title = "commits", .key = "run", .is_setup = true}, [](R r) { return r.number; }},
+      {{.title = "commit", .key = "commit", .is_setup = true},
+       [](R r) { return r.run.record.name; }},
+      {{.title = "subject", .key = "subject", .is_setup = true},
+       [](R r) { return r.run.origin.subject; }},
+      {{.title = "date", .key = "date", .is_setup = true},
+       [](R r) { return date_text(r.run.origin.time_s); }},
+      {{.title = "limits", .key = "limits"}, [](R r) { return limits_text(r.run.limits); }}};
   for (const PageFigure& q : figures)
-    table.add({q.statistic, q.title, q.unit, false, false, q.scale},
-              [&q](R r) { return base::fixed(r.run.record.value(q.statistic), 6); });
+    table.push_back(
+        {{.title = q.title, .key = q.statistic, .decimals = 6, .unit = q.unit, .scale = q.scale},
+         [&q](R r) { return r.run.record.value(q.statistic); }});
   std::vector<Row> rows;
   for (const PastRun* run : runs) rows.push_back({rows.size(), *run});
-  table.show(page, rows);
+  page.points = table_of(table, rows);
 }
 
 /// Of each figure with steps, those runs of the page that made them.
@@ -266,7 +270,7 @@ Printout history_printout(const std::vector<PastRun>& runs, const Budget* budget
   const auto figure = [](const char* statistic, double scale, int decimals) {
     return [=](R r) { return figure_text(scaled(r->record.value(statistic), scale), decimals); };
   };
-  const TableOf<const PastRun*> table{
+  const Columns<const PastRun*> table{
       {{"commit", kLeft}, [](R r) { return r->record.name; }},
       {{"date", kLeft, 1}, [](R r) { return date_text(r->origin.time_s); }},
       {{"kcycles of a frame"}, figure(kFrameCycles, 1e-3, 1)},
@@ -286,7 +290,7 @@ Printout history_printout(const std::vector<PastRun>& runs, const Budget* budget
   const std::string head =
       fmt::format("{} on {}, {} cores, {} frames; the newest run first\n", printable(facts.profile),
                   printable(facts.platform), facts.cores, facts.frames);
-  return Printout({head + table.with(newest_first).str(),
+  return Printout({head + terminal_text(table_of(table, newest_first)),
                    budget == nullptr ? "" : trend_lines(runs, *budget)})
       .ending(conclusion_of(runs), std::move(next));
 }

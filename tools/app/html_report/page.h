@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "sim/base/builtin_file.h"
-#include "sim/base/csv.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/table/table_files.h"
 
 namespace CLI {
 class App;
@@ -38,15 +38,6 @@ Json run_json(const RunRecord& record, const RunFiles& files);
 
 // A study of many points as data of a report: the points as a table of what was set and what came
 // out of it, curves over one of the settings, and the axes that the scatter begins with.
-
-struct StudyColumn {
-  std::string name;        ///< in the table of points
-  std::string title = {};  ///< empty: not on the page
-  std::string unit = {};
-  bool is_setup = false;  ///< what was set; else what came out of it
-  bool more_is_better = false;
-  double scale = 1;  ///< from the table to the unit
-};
 
 /// Figures over a setting, a line for each value of another.
 struct StudyCurves {
@@ -78,43 +69,15 @@ struct StudyPage {
   std::vector<StudyBox> boxes = {};
   std::string summary;                              ///< lines below the boxes
   std::vector<std::vector<std::string>> best = {};  ///< a table: titles, then rows; may be empty
-  std::string points;                               ///< CSV, a row per point
-  std::vector<StudyColumn> columns;                 ///< those that the table lacks are left out
+  Table points{{}};                                 ///< a row per point
+  /// Of the table of points, those with key and title; empty: as the table has them.
+  std::vector<Head> columns = {};
   std::optional<StudyCurves> curves = {};
   std::optional<StudyBars> bars = {};
   std::map<std::string, double> limits = {};  ///< column → what it should not exceed
   std::string x;                              ///< of the scatter
   std::string y;
   std::string colour;  ///< setting that colours the points; may be empty
-};
-
-/// A table of a study, each column described once: for the CSV file and for the page.
-template <class Record>
-class StudyTable {
- public:
-  using Of = std::function<base::Cell(const Record&)>;
-  struct Column {
-    StudyColumn shown;
-    Of of;
-  };
-
-  StudyTable() = default;
-  StudyTable(std::initializer_list<Column> columns) {
-    for (const Column& column : columns) add(column.shown, column.of);
-  }
-  void add(const StudyColumn& shown, Of of) {
-    csv_.add(shown.name, std::move(of));
-    if (!shown.title.empty()) shown_.push_back(shown);
-  }
-  std::string csv(const std::vector<Record>& rows) const { return csv_.text(rows); }
-  void show(StudyPage& page, const std::vector<Record>& rows) const {
-    page.points = csv(rows);
-    page.columns = shown_;
-  }
-
- private:
-  base::CsvTable<Record> csv_;
-  std::vector<StudyColumn> shown_;
 };
 
 /// The data of a page: report_json() without runs.

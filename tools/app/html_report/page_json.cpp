@@ -31,8 +31,8 @@ Json table_of(const RunRecord& record, const RunFiles& files, const char* name) 
   const auto file = files.find(name);
   if (file == files.end()) return nullptr;
   const std::string where = record.name + '/' + name;
-  Json table = csv_json(where, file->second,
-                        [](const std::string& column) { return !column.ends_with("_ops"); });
+  Json table = columns_json(read_csv(where, file->second),
+                            [](const std::string& column) { return !column.ends_with("_ops"); });
   try {
     use_seconds(table);
   } catch (const nlohmann::json::exception&) {
@@ -303,17 +303,18 @@ Json study_report(const StudyPage& page) {
                               {"sentence", box.sentence},
                               {"lines", box.lines}});
   study["best"] = page.best;
-  const Json table = csv_json("points", page.points);
+  const Json table = columns_json(page.points);
   study["columns"] = Json::array();
   study["table"] = Json::object();
-  for (const StudyColumn& column : page.columns) {
-    if (!table.contains(column.name) || is_empty(table.at(column.name))) continue;
-    study["columns"].push_back({{"name", column.name},
+  for (const Head& column : page.columns.empty() ? page.points.heads() : page.columns) {
+    if (column.title.empty() || !table.contains(column.key) || is_empty(table.at(column.key)))
+      continue;
+    study["columns"].push_back({{"name", column.key},
                                 {"title", column.title},
                                 {"unit", column.unit},
                                 {"kind", column.is_setup ? "setup" : "figure"},
                                 {"more", column.more_is_better}});
-    study["table"][column.name] = scaled_cells(table.at(column.name), column.scale);
+    study["table"][column.key] = scaled_cells(table.at(column.key), column.scale);
   }
   const auto known = [&](const std::string& name) { return study["table"].contains(name); };
   const auto axis = [&](const std::string& wanted, std::size_t other) {

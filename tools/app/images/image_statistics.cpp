@@ -11,7 +11,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/interruption.h"
 #include "tools/app/images/feature_tracks.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/trajectories/evaluation.h"
 
 namespace leviosim::tools {
@@ -318,16 +318,16 @@ ImageStatistics image_statistics(const std::string& name, const traces::Dataset&
 }
 
 std::string image_statistics_table(const std::vector<ImageStatistics>& all) {
-  std::vector<TextTable::Column> columns{{"quantity", kLeft}, {"unit", kLeft, 2}};
+  std::vector<Head> columns{{"quantity", kLeft}, {"unit", kLeft, 2}};
   for (const ImageStatistics& one : all) {
     columns.push_back({"10 %", kRight, 1});
     columns.push_back({one.name});
     columns.push_back({"90 %", kRight, 1});
   }
   if (all.size() > 1) columns.push_back({"ratio"});
-  TextTable table(columns);
+  Table table(columns);
   for (std::size_t i = 0; i < kQuantities; ++i) {
-    std::vector<std::string> cells{kRows[i].name, kRows[i].unit};
+    std::vector<Cell> cells{kRows[i].name, kRows[i].unit};
     for (const ImageStatistics& one : all)
       for (const double value : {one.rows[i].tenth, one.rows[i].median, one.rows[i].ninth_tenth})
         cells.push_back(number(one.rows[i], value));
@@ -337,19 +337,31 @@ std::string image_statistics_table(const std::vector<ImageStatistics>& all) {
     }
     table.add(std::move(cells));
   }
-  return table.str();
+  return terminal_text(table);
 }
 
-std::string image_statistics_csv(const std::vector<ImageStatistics>& all) {
-  std::string csv = base::csv_line(
-      {"recording", "quantity", "unit", "over", "count", "tenth", "median", "ninth_tenth"});
+Table image_statistics_rows(const std::vector<ImageStatistics>& all) {
+  struct Row {
+    const std::string& recording;
+    const ImageStatistic& at;
+  };
+  std::vector<Row> rows;
   for (const ImageStatistics& one : all)
-    for (const ImageStatistic& row : one.rows) {
-      const auto value = [&](double v) { return row.count == 0 ? "" : fmt::format("{:.6g}", v); };
-      csv += base::csv_line({one.name, row.name, row.unit, row.over, row.count, value(row.tenth),
-                             value(row.median), value(row.ninth_tenth)});
-    }
-  return csv;
+    for (const ImageStatistic& row : one.rows) rows.push_back({one.name, row});
+  const auto value = [](double ImageStatistic::*of) {
+    return [of](const Row& r) {
+      return r.at.count == 0 ? Cell() : spelled(fmt::format("{:.6g}", r.at.*of));
+    };
+  };
+  return table_of(Columns<Row>{{{.key = "recording"}, [](const Row& r) { return r.recording; }},
+                               {{.key = "quantity"}, [](const Row& r) { return r.at.name; }},
+                               {{.key = "unit"}, [](const Row& r) { return r.at.unit; }},
+                               {{.key = "over"}, [](const Row& r) { return r.at.over; }},
+                               {{.key = "count"}, [](const Row& r) { return r.at.count; }},
+                               {{.key = "tenth"}, value(&ImageStatistic::tenth)},
+                               {{.key = "median"}, value(&ImageStatistic::median)},
+                               {{.key = "ninth_tenth"}, value(&ImageStatistic::ninth_tenth)}},
+                  rows);
 }
 
 std::vector<std::string> different_quantities(const ImageStatistics& a, const ImageStatistics& b) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/app/table/table_files.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_preparation.h"
 
@@ -44,7 +45,7 @@ std::string image_statistics_table(const std::vector<ImageStatistics>& all);
 
 /// The same with all quantiles, as CSV: recording, quantity, unit, over, count, tenth, median,
 /// ninth_tenth.
-std::string image_statistics_csv(const std::vector<ImageStatistics>& all);
+Table image_statistics_rows(const std::vector<ImageStatistics>& all);
 
 /// Names of the quantities whose medians differ by more than a factor of 1.25; of two recordings.
 std::vector<std::string> different_quantities(const ImageStatistics& a, const ImageStatistics& b);

@@ -169,7 +169,7 @@ std::string stage_lines(const RunResult& run, int rows, int width) {
     });
     left_out = fmt::format("… {} more with fewer cycles\n", all - shown);
   }
-  return stages_of(run, stages, "").str(width) + left_out + unmeasured_note(run);
+  return terminal_text(stages_of(run, stages, ""), width) + left_out + unmeasured_note(run);
 }
 
 std::string waiting_line(const RunResult& run) {
@@ -199,18 +199,18 @@ std::string relative_protocol(const Evaluation& evaluation) {
 }
 
 std::string table_of(const std::vector<RelativeErrors>& errors) {
-  TextTable table({{"length"},
-                   {"number"},
-                   {"translation %: mean"},
-                   {"median"},
-                   {"RMSE"},
-                   {"worst"},
-                   {"rotation deg/m: mean"},
-                   {"median"},
-                   {"RMSE"},
-                   {"worst"}});
+  Table table({{"length"},
+               {"number"},
+               {"translation %: mean"},
+               {"median"},
+               {"RMSE"},
+               {"worst"},
+               {"rotation deg/m: mean"},
+               {"median"},
+               {"RMSE"},
+               {"worst"}});
   for (const RelativeErrors& e : errors) {
-    std::vector<std::string> cells{fmt::format("{:g} m", e.length_m), fmt::format("{}", e.count)};
+    std::vector<Cell> cells{fmt::format("{:g} m", e.length_m), fmt::format("{}", e.count)};
     const ErrorSummary& t = e.translation;
     const ErrorSummary& r = e.rotation_deg_per_m;
     for (const double value : {t.mean, t.median, t.rmse, t.max})
@@ -219,7 +219,7 @@ std::string table_of(const std::vector<RelativeErrors>& errors) {
       cells.push_back(fmt::format("{:.4f}", value));
     table.add(std::move(cells));
   }
-  return table.str();
+  return terminal_text(table);
 }
 
 }  // namespace
@@ -259,7 +259,7 @@ std::string latency_table(const RunResult& run, int width) {
     return figure_text(ns ? std::optional(100.0 * *ns / period_ns) : std::nullopt, 1);
   };
   const auto ms = [](std::optional<double> ns) { return figure_text(scaled(ns, 1e-6), 2); };
-  const TableOf<Scenario> table{
+  const Columns<Scenario> table{
       {{"pose from", kLeft}, [](S s) { return s.name; }},
       {{"frames"}, [](S s) { return s.frames; }},
       {{"mean ms"}, [=](S s) { return ms(s.mean_latency_ns()); }},
@@ -270,7 +270,7 @@ std::string latency_table(const RunResult& run, int width) {
   return fmt::format(
              "frame latency, from the camera's frame to its pose (frame period {:.2f} ms)\n",
              period_ns * 1e-6) +
-         table.with(scenarios(run)).str(width) + waiting_line(run);
+         terminal_text(table_of(table, scenarios(run)), width) + waiting_line(run);
 }
 
 std::string camera_summary(const RunResult& run) {

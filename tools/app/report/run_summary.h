@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/run_result.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory_errors.h"
 

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <optional>
 
-#include "sim/base/csv.h"
 #include "sim/base/text.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/result/summary.h"
@@ -71,12 +70,12 @@ std::vector<BreakdownColumn> breakdown_columns(const RunResult& run) {
   return columns;
 }
 
-std::vector<std::string> breakdown_cells(const std::vector<BreakdownColumn>& columns,
-                                         const sim::MechanismCycles& cycles) {
-  if (!(cycles.total() > 0)) return std::vector<std::string>(columns.size() + 1, kNothing);
+std::vector<Cell> breakdown_cells(const std::vector<BreakdownColumn>& columns,
+                                  const sim::MechanismCycles& cycles) {
+  if (!(cycles.total() > 0)) return std::vector<Cell>(columns.size() + 1);
   std::vector<double> sums;
   for (const BreakdownColumn& column : columns) sums.push_back(column.sum(cycles));
-  std::vector<std::string> cells;
+  std::vector<Cell> cells;
   for (const double percent : tenths_of_percent(sums)) cells.push_back(figure_text(percent, 1));
   cells.push_back(figure_text(cycles.total() * 1e-6, 1));
   return cells;
@@ -164,8 +163,7 @@ using sim::Estimate;
 
 /// "12.34" and "9.87–15.43".
 template <class T>
-void add_figure(std::vector<std::string>& cells, const std::optional<Estimate<T>>& figure,
-                double unit) {
+void add_figure(std::vector<Cell>& cells, const std::optional<Estimate<T>>& figure, double unit) {
   if (!figure) {
     cells.insert(cells.end(), {kNothing, kNothing});
     return;
@@ -245,25 +243,26 @@ std::vector<double> tenths_of_percent(const std::vector<double>& parts) {
   return tenths;
 }
 
-TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
-                    std::string_view mark_of_controller) {
+Table stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
+                std::string_view mark_of_controller) {
   using S = const StageResult* const&;
   const auto in_ms = [&](S s, std::optional<double> cycles) {
     return milliseconds_text(cycles, clock_of(run, *s));
   };
-  return TableOf<const StageResult*>{
-      {{"stage", kLeft},
-       [&](S s) { return s->name + std::string(s->on_controller ? mark_of_controller : ""); }},
-      {{"call", kLeft, 3}, [](S s) { return s->unit; }},
-      {{"calls", kRight, 2}, [](S s) { return s->calls; }},
-      {{"kcycles, 1 core"}, [](S s) { return kilo(mean(s->single, s->calls), 2); }},
-      {{"kcycles, " + on_cores(run.cores)},
-       [](S s) { return kilo(mean(s->parallel, s->calls), 2); }},
-      {{"speed-up"}, [](S s) { return figure_text(speedup(*s), 2); }},
-      {{"ms"}, [&](S s) { return in_ms(s, mean(s->parallel, s->calls)); }},
-      {{"worst ms", kRight, 1},
-       [&](S s) { return in_ms(s, mean(s->worst_parallel, s->calls > 0 ? 1 : 0)); }}}
-      .with(stages);
+  return table_of(
+      Columns<const StageResult*>{
+          {{"stage", kLeft},
+           [&](S s) { return s->name + std::string(s->on_controller ? mark_of_controller : ""); }},
+          {{"call", kLeft, 3}, [](S s) { return s->unit; }},
+          {{"calls", kRight, 2}, [](S s) { return s->calls; }},
+          {{"kcycles, 1 core"}, [](S s) { return kilo(mean(s->single, s->calls), 2); }},
+          {{"kcycles, " + on_cores(run.cores)},
+           [](S s) { return kilo(mean(s->parallel, s->calls), 2); }},
+          {{"speed-up"}, [](S s) { return figure_text(speedup(*s), 2); }},
+          {{"ms"}, [&](S s) { return in_ms(s, mean(s->parallel, s->calls)); }},
+          {{"worst ms", kRight, 1},
+           [&](S s) { return in_ms(s, mean(s->worst_parallel, s->calls > 0 ? 1 : 0)); }}},
+      stages);
 }
 
 std::string unmeasured_note(const RunResult& run) {
@@ -284,7 +283,7 @@ std::string stage_table(const RunResult& run, int width) {
   const bool any_on_controller = std::any_of(run.stages.begin(), run.stages.end(),
                                              [](const StageResult& s) { return s.on_controller; });
   return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) +
-         stages_of(run, all, " ¹").str(width) +
+         terminal_text(stages_of(run, all, " ¹"), width) +
          (run.cores == 1 ? ""
                          : "1 core: this program on the master alone (--cores 1: the program for "
                            "one core)\n") +
@@ -293,20 +292,20 @@ std::string stage_table(const RunResult& run, int width) {
 }
 
 std::string breakdown_table(const RunResult& run, int width) {
-  std::vector<TextTable::Column> columns{{"stage", kLeft}};
+  std::vector<Head> columns{{"stage", kLeft}};
   const std::vector<BreakdownColumn> parts = breakdown_columns(run);
   for (const BreakdownColumn& part : parts)
     columns.push_back({std::string(part.name), kRight, rank_of(part.name)});
   columns.push_back({"core-Mcycles", kRight, 2});
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;
-    std::vector<std::string> cells = breakdown_cells(parts, stage.account.team);
+    std::vector<Cell> cells = breakdown_cells(parts, stage.account.team);
     cells.insert(cells.begin(), stage.name);
     table.add(std::move(cells));
   }
   return fmt::format("where the core-cycles go on {} [%]\n", on_cores(run.cores)) +
-         table.str(width) +
+         terminal_text(table, width) +
          "serial: the team idles while the master works alone; imbalance: waiting for the slowest "
          "core of a fork\n";
 }
@@ -317,7 +316,7 @@ std::string memory_table(const RunResult& run, int width) {
   const auto percent = [](O o, std::optional<Bytes> b) {
     return b ? figure_text(percent_of_nominal(*b, o.size), 2) : kNothing;
   };
-  const TableOf<Occupant> table{
+  const Columns<Occupant> table{
       {{"peak", kLeft}, [](O o) { return o.name; }},
       {{"memory", kLeft}, [](O o) { return o.memory; }},
       {{"kB, 1 core"}, [=](O o) { return kb(o.single); }},
@@ -327,7 +326,8 @@ std::string memory_table(const RunResult& run, int width) {
   const std::vector<Occupant> rows = occupants(run);
   return fmt::format("memory (kB of 1000 bytes, % of {} kB L1 and {} kB L2)\n",
                      run.l1_size.count() / 1024, run.l2_size.count() / 1024) +
-         table.with(rows).str(width) + blocks_at_peak(rows, std::min(width, kWidth));
+         terminal_text(table_of(table, rows), width) +
+         blocks_at_peak(rows, std::min(width, kWidth));
 }
 
 std::vector<std::string> table_names() {
@@ -352,10 +352,9 @@ std::string report(const RunResult& run, const std::vector<std::string>& names, 
 std::string energy_table(const RunResult& run, int width) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return {};
-  TextTable table(
-      {{"stage", kLeft}, {"call", kLeft, 1}, {"uJ of a call"}, {"band"}, {"mW"}, {"band"}});
+  Table table({{"stage", kLeft}, {"call", kLeft, 1}, {"uJ of a call"}, {"band"}, {"mW"}, {"band"}});
   for (const EnergyRow& row : energy->rows) {
-    std::vector<std::string> cells{name_of(row), row.unit};
+    std::vector<Cell> cells{name_of(row), row.unit};
     add_figure(cells, row.per_call(), 1e-6);
     add_figure(cells, row.power(), 1e-3);
     table.add(std::move(cells));
@@ -363,7 +362,7 @@ std::string energy_table(const RunResult& run, int width) {
   return fmt::format("energy at {:g} V, cluster {:g} MHz, controller {:g} MHz\n",
                      run.chip.supply.voltage.count(), megahertz(run.cluster_clock),
                      megahertz(run.controller_clock)) +
-         table.str(width) +
+         terminal_text(table, width) +
          (any_on_controller(*energy) ? "¹ what the controller adds; the rest of the chip is in the "
                                        "rows of the cluster\n"
                                      : "") +
@@ -374,13 +373,13 @@ std::string energy_table(const RunResult& run, int width) {
 std::string power_table(const RunResult& run, int width) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return {};
-  std::vector<TextTable::Column> columns{{"stage", kLeft}};
+  std::vector<Head> columns{{"stage", kLeft}};
   for (const sim::DomainInfo& info : sim::kDomains)
-    columns.push_back({std::string(info.name), TextTable::Align::Right, 1});
+    columns.push_back({std::string(info.name), kRight, 1});
   columns.push_back({"total"});
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   const auto add = [&](std::string name, const sim::DomainEnergies& energies, Seconds time) {
-    std::vector<std::string> cells{std::move(name)};
+    std::vector<Cell> cells{std::move(name)};
     const auto cell = [&](const Estimate<Joules>& e) {
       return time > Seconds(0) ? fmt::format("{:.2f}", (e.value / time).count() * 1e3) : kNothing;
     };
@@ -390,44 +389,43 @@ std::string power_table(const RunResult& run, int width) {
   };
   for (const EnergyRow& row : energy->rows) add(name_of(row), row.energy, row.time);
   add("all the time", energy->total(), energy->time);
-  return "where the power goes while a stage runs [mW]\n" + table.str(width);
+  return "where the power goes while a stage runs [mW]\n" + terminal_text(table, width);
 }
 
 std::string operating_point_table(const RunResult& run, int width) {
   if (!energy_of(run) || run.camera || run.frames.empty()) return {};
-  TextTable table({{"supply", kLeft},
-                   {"clock"},
-                   {"front end ms"},
-                   {"mJ of a frame"},
-                   {"band"},
-                   {"frames/s", TextTable::Align::Right, 1},
-                   {"mean mW"},
-                   {"band"}});
+  Table table({{"supply", kLeft},
+               {"clock"},
+               {"front end ms"},
+               {"mJ of a frame"},
+               {"band"},
+               {"frames/s", kRight, 1},
+               {"mean mW"},
+               {"band"}});
   const sim::SupplyConfig& supply = run.chip.supply;
   for (const sim::OperatingPoint& point : {supply.lowest, supply.highest}) {
     const std::optional<RunEnergy> energy = energy_at(run, point);
     const Hertz faster = std::max(run.cluster_clock, run.controller_clock);
     const double slower = megahertz(faster) / megahertz(point.clock);
-    std::vector<std::string> cells{
-        fmt::format("{:g} V", point.voltage.count()),
-        fmt::format("{:g} MHz", megahertz(point.clock)),
-        fmt::format("{:.2f}", front_end_ms(run, run.cluster_clock) * slower)};
+    std::vector<Cell> cells{fmt::format("{:g} V", point.voltage.count()),
+                            fmt::format("{:g} MHz", megahertz(point.clock)),
+                            fmt::format("{:.2f}", front_end_ms(run, run.cluster_clock) * slower)};
     add_figure(cells, energy->per_frame(), 1e-3);
     cells.push_back(
         fmt::format("{:.1f}", static_cast<double>(energy->frames) / energy->time.count()));
     add_figure(cells, energy->mean_power(), 1e-3);
     table.add(std::move(cells));
   }
-  return "the same cycles at the ends of the supply\n" + table.str(width);
+  return "the same cycles at the ends of the supply\n" + terminal_text(table, width);
 }
 
 std::string area_table(const sim::ChipConfig& chip, int width) {
-  TextTable table({{"part", TextTable::Align::Left},
-                   {"number", TextTable::Align::Right, 2},
-                   {"kGE", TextTable::Align::Right, 1},
-                   {"1000 um2"},
-                   {"band"},
-                   {"share %", TextTable::Align::Right, 3}});
+  Table table({{"part", kLeft},
+               {"number", kRight, 2},
+               {"kGE", kRight, 1},
+               {"1000 um2"},
+               {"band"},
+               {"share %", kRight, 3}});
   const std::vector<AreaItem> rows = rows_of(chip);
   const double whole = rows.back().area.count();
   for (const AreaItem& row : rows) {
@@ -446,24 +444,25 @@ std::string area_table(const sim::ChipConfig& chip, int width) {
       "{}kGE: thousands of gate equivalents; memories that are part of the logic "
       "count as much logic as would have their area.\nPads, supplies, clock "
       "generators, analogue parts and non-volatile memory are not in it.{}\n",
-      table.str(width),
+      terminal_text(table, width),
       all ? "" : "\nThe sums leave out what is unknown: they are at least so large.");
 }
 
-std::string area_csv(const sim::ChipConfig& chip) {
-  const auto um2 = [](const AreaItem& row, sim::SquareMicrometres area) {
-    return base::fixed(
-        row.area > sim::SquareMicrometres(0) ? std::optional(area.count()) : std::nullopt, 0);
+Table area_rows(const sim::ChipConfig& chip) {
+  using A = const AreaItem&;
+  const auto um2 = [](A row, sim::SquareMicrometres area) {
+    return row.area > sim::SquareMicrometres(0) ? Cell(area.count()) : Cell();
   };
-  const base::CsvTable<AreaItem> table{
-      {"part", [](const AreaItem& row) { return row.name; }},
-      {"number", [](const AreaItem& row) { return base::fixed(row.count, 0); }},
-      {"kilo_gates", [](const AreaItem& row) { return base::fixed(row.gates.count(), 2); }},
-      {"um2", [&](const AreaItem& row) { return um2(row, row.area); }},
-      {"um2_low", [&](const AreaItem& row) { return um2(row, row.low); }},
-      {"um2_high", [&](const AreaItem& row) { return um2(row, row.high); }},
-      {"complete", [](const AreaItem& row) { return row.known ? "yes" : "no"; }}};
-  return table.text(rows_of(chip));
+  return table_of(
+      Columns<AreaItem>{
+          {{.key = "part"}, [](A row) { return row.name; }},
+          {{.key = "number", .decimals = 0}, [](A row) { return row.count; }},
+          {{.key = "kilo_gates", .decimals = 2}, [](A row) { return row.gates.count(); }},
+          {{.key = "um2", .decimals = 0}, [&](A row) { return um2(row, row.area); }},
+          {{.key = "um2_low", .decimals = 0}, [&](A row) { return um2(row, row.low); }},
+          {{.key = "um2_high", .decimals = 0}, [&](A row) { return um2(row, row.high); }},
+          {{.key = "complete"}, [](A row) { return row.known ? "yes" : "no"; }}},
+      rows_of(chip));
 }
 
 }  // namespace leviosim::tools

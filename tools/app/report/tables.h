@@ -8,8 +8,8 @@
 
 #include "sim/energy/area.h"
 #include "tools/app/report/run_summary.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/run_result.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 
@@ -22,8 +22,8 @@ std::string unmeasured_note(const RunResult& run);
 
 /// The stage table of these stages, without a title.
 /// @param mark_of_controller  behind names of stages there
-TextTable stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
-                    std::string_view mark_of_controller);
+Table stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
+                std::string_view mark_of_controller);
 
 /// Where the core-cycles of the team went in the stages of the cluster, in per cent. Each row adds
 /// up to 100.0 as printed.
@@ -62,6 +62,6 @@ std::string operating_point_table(const RunResult& run, int width = table_width(
 std::string area_table(const sim::ChipConfig& chip, int width = table_width());
 
 /// The same rows, in um2.
-std::string area_csv(const sim::ChipConfig& chip);
+Table area_rows(const sim::ChipConfig& chip);
 
 }  // namespace leviosim::tools

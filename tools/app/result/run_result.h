@@ -15,7 +15,7 @@
 #include "sim/soc/observer.h"
 #include "sim/soc/run_account.h"
 #include "sim/work/program.h"
-#include "tools/app/result/banded.h"
+#include "tools/app/table/banded.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
 #include "workload/vio/records.h"

@@ -13,9 +13,9 @@
 
 #include "platform_models/loader/variants.h"
 #include "sim/work/program.h"
-#include "tools/app/result/banded.h"
 #include "tools/app/result/run_result.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/table/banded.h"
 
 namespace leviosim::tools {
 
@@ -54,9 +54,8 @@ std::vector<AtEnds<T>> at_ends(const platform::Variants& platform,
     for (const auto& [outcome, end] : {std::pair(&ends.low, range.low), {&ends.high, range.high}})
       if (!is_end(*ends.parameter, end)) jobs.push_back({outcome, {ends.parameter->path, end}});
   }
-  run(jobs.size(), [&](std::size_t i) {
-    *jobs[i].first = of(platform.config(with(jobs[i].second)));
-  });
+  run(jobs.size(),
+      [&](std::size_t i) { *jobs[i].first = of(platform.config(with(jobs[i].second))); });
   return all;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "sim/base/csv.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
@@ -14,39 +13,38 @@
 namespace leviosim::tools {
 namespace {
 
-using base::Cell;
-using base::CsvTable;
-using base::fixed;
-
-CsvTable<StageResult> stage_table_of(const RunResult& run) {
+Columns<StageResult> stage_table_of(const RunResult& run) {
   using S = StageResult;
-  CsvTable<S> table{
-      {"stage", [](const S& s) { return s.name; }},
-      {"call", [](const S& s) { return s.unit; }},
-      {"runs_on", [](const S& s) { return s.on_controller ? "controller" : "cluster"; }},
-      {"calls", [](const S& s) { return s.calls; }},
-      {"single_cycles", [](const S& s) { return s.single; }},
-      {"parallel_cycles", [](const S& s) { return s.parallel; }},
-      {"single_cycles_per_call", [](const S& s) { return fixed(mean(s.single, s.calls), 3); }},
-      {"parallel_cycles_per_call", [](const S& s) { return fixed(mean(s.parallel, s.calls), 3); }},
-      {"worst_parallel_cycles", [](const S& s) { return s.worst_parallel; }},
-      {"speedup", [](const S& s) { return fixed(speedup(s), 3); }},
-      {"parallel_ms_per_call",
+  Columns<S> table{
+      {{.key = "stage"}, [](const S& s) { return s.name; }},
+      {{.key = "call"}, [](const S& s) { return s.unit; }},
+      {{.key = "runs_on"}, [](const S& s) { return s.on_controller ? "controller" : "cluster"; }},
+      {{.key = "calls"}, [](const S& s) { return s.calls; }},
+      {{.key = "single_cycles"}, [](const S& s) { return s.single; }},
+      {{.key = "parallel_cycles"}, [](const S& s) { return s.parallel; }},
+      {{.key = "single_cycles_per_call", .decimals = 3},
+       [](const S& s) { return mean(s.single, s.calls); }},
+      {{.key = "parallel_cycles_per_call", .decimals = 3},
+       [](const S& s) { return mean(s.parallel, s.calls); }},
+      {{.key = "worst_parallel_cycles"}, [](const S& s) { return s.worst_parallel; }},
+      {{.key = "speedup", .decimals = 3}, [](const S& s) { return speedup(s); }},
+      {{.key = "parallel_ms_per_call", .decimals = 3},
        [&run](const S& s) {
          const std::optional<double> cycles = mean(s.parallel, s.calls);
-         return cycles ? fixed(milliseconds(*cycles, clock_of(run, s)), 3) : Cell();
+         return cycles ? Cell(milliseconds(*cycles, clock_of(run, s))) : Cell();
        }},
-      {"memory_single_bytes", [](const S& s) { return s.memory.single; }},
-      {"memory_parallel_bytes", [](const S& s) { return s.memory.parallel; }},
+      {{.key = "memory_single_bytes"}, [](const S& s) { return s.memory.single; }},
+      {{.key = "memory_parallel_bytes"}, [](const S& s) { return s.memory.parallel; }},
   };
   for (const sim::MechanismInfo& part : breakdown_parts(run))
-    table.add(fmt::format("{}_core_cycles", part.key),
-              [part](const S& s) { return fixed(s.account.team[part.mechanism], 3); });
+    table.push_back({{.key = fmt::format("{}_core_cycles", part.key), .decimals = 3},
+                     [part](const S& s) { return s.account.team[part.mechanism]; }});
   for (const sim::MechanismInfo& part : breakdown_parts(run))
-    table.add(fmt::format("single_{}_cycles", part.key),
-              [part](const S& s) { return fixed(s.single_account[part.mechanism], 3); });
+    table.push_back({{.key = fmt::format("single_{}_cycles", part.key), .decimals = 3},
+                     [part](const S& s) { return s.single_account[part.mechanism]; }});
   for (const work::OpInfo& op : work::kOps)
-    table.add(fmt::format("{}_ops", op.name), [&op](const S& s) { return s.counts[op.op]; });
+    table.push_back(
+        {{.key = fmt::format("{}_ops", op.name)}, [&op](const S& s) { return s.counts[op.op]; }});
   return table;
 }
 
@@ -59,50 +57,53 @@ struct FrameRow {
 
 /// A column about what came of the frame: empty for one that was dropped.
 template <class Of>
-base::Column<FrameRow> of_result(std::string name, Of of) {
-  return {std::move(name), [of](const FrameRow& row) {
+Column<FrameRow> of_result(std::string key, Of of) {
+  return {{.key = std::move(key)}, [of](const FrameRow& row) {
             return row.result == nullptr ? Cell() : Cell(of(*row.result));
           }};
 }
 
-CsvTable<FrameRow> frame_table_of(const RunResult& run) {
+Columns<FrameRow> frame_table_of(const RunResult& run) {
   using F = FrameResult;
-  CsvTable<FrameRow> table;
-  const auto add = [&](base::Column<FrameRow> c) { table.add(std::move(c.name), std::move(c.of)); };
-  table.add("frame",
-            [](const FrameRow& r) { return r.result ? r.result->index : r.delivery->frame; });
-  table.add("t_ns", [](const FrameRow& r) { return r.result ? r.result->t_ns : r.delivery->t_ns; });
-  add(of_result("source", [](const F& f) { return name_of(f.source); }));
-  add(of_result("keyframe", [](const F& f) { return int{f.keyframe}; }));
+  Columns<FrameRow> table;
+  table.push_back({{.key = "frame"}, [](const FrameRow& r) {
+                     return r.result ? r.result->index : r.delivery->frame;
+                   }});
+  table.push_back({{.key = "t_ns"},
+                   [](const FrameRow& r) { return r.result ? r.result->t_ns : r.delivery->t_ns; }});
+  table.push_back(of_result("source", [](const F& f) { return name_of(f.source); }));
+  table.push_back(of_result("keyframe", [](const F& f) { return int{f.keyframe}; }));
   for (const vio::FrameFact& fact : vio::kFrameFacts)
-    add(of_result(std::string(fact.name), [&fact](const F& f) {
+    table.push_back(of_result(std::string(fact.name), [&fact](const F& f) {
       const auto value = static_cast<std::size_t>(f.*fact.of);
       return value < fact.words.size() ? Cell(fact.words[value]) : Cell(f.*fact.of);
     }));
   if (run.timed) {
-    table.add("arrival_ns", [](const FrameRow& r) {
-      return r.result ? r.result->arrival_ns : r.delivery->arrival_ns;
-    });
-    add(of_result("start_ns", [](const F& f) { return f.start_ns; }));
-    add(of_result("end_ns", [](const F& f) { return f.end_ns; }));
-    add(of_result("latency_ns", [](const F& f) { return f.end_ns - f.arrival_ns; }));
-    add(of_result("parallel_cycles", [](const F& f) { return f.cycles; }));
-    add(of_result("single_cycles", [](const F& f) { return f.single_cycles; }));
+    table.push_back({{.key = "arrival_ns"}, [](const FrameRow& r) {
+                       return r.result ? r.result->arrival_ns : r.delivery->arrival_ns;
+                     }});
+    table.push_back(of_result("start_ns", [](const F& f) { return f.start_ns; }));
+    table.push_back(of_result("end_ns", [](const F& f) { return f.end_ns; }));
+    table.push_back(of_result("latency_ns", [](const F& f) { return f.end_ns - f.arrival_ns; }));
+    table.push_back(of_result("parallel_cycles", [](const F& f) { return f.cycles; }));
+    table.push_back(of_result("single_cycles", [](const F& f) { return f.single_cycles; }));
     for (const StageResult& stage : run.stages)
       if (!stage.on_controller)
-        add(of_result(kStageColumn + key_of(stage.name),
-                      [name = stage.name](const F& f) { return f.cycles_of(name); }));
+        table.push_back(of_result(kStageColumn + key_of(stage.name),
+                                  [name = stage.name](const F& f) { return f.cycles_of(name); }));
   }
   if (run.camera) {
-    table.add("found_in_buffers", [](const FrameRow& r) { return r.delivery->found; });
-    table.add("dropped", [](const FrameRow& r) { return int{r.delivery->dropped}; });
-    table.add("missed", [](const FrameRow& r) { return int{r.missed}; });
+    table.push_back(
+        {{.key = "found_in_buffers"}, [](const FrameRow& r) { return r.delivery->found; }});
+    table.push_back(
+        {{.key = "dropped"}, [](const FrameRow& r) { return int{r.delivery->dropped}; }});
+    table.push_back({{.key = "missed"}, [](const FrameRow& r) { return int{r.missed}; }});
   }
   return table;
 }
 
 /// All frames; in a closed loop those of the camera, dropped or not.
-std::vector<FrameRow> frame_rows(const RunResult& run) {
+std::vector<FrameRow> frames_of_camera(const RunResult& run) {
   std::vector<FrameRow> rows;
   if (!run.camera) {
     for (const FrameResult& frame : run.frames) rows.push_back({&frame, nullptr, false});
@@ -131,17 +132,17 @@ struct MemoryRow {
   Bytes bytes;
 };
 
-const CsvTable<MemoryRow>& memory_table() {
+const Columns<MemoryRow>& memory_table() {
   using M = MemoryRow;
-  static const CsvTable<M> table{
-      {"memory", [](const M& m) { return m.memory; }},
-      {"owner", [](const M& m) { return m.owner; }},
-      {"what", [](const M& m) { return m.what; }},
-      {"block", [](const M& m) { return m.block; }},
-      {"copies", [](const M& m) { return m.copies; }},
-      {"bytes", [](const M& m) { return m.bytes; }},
-      {"percent_of_nominal",
-       [](const M& m) { return fixed(percent_of_nominal(m.bytes, m.size), 3); }},
+  static const Columns<M> table{
+      {{.key = "memory"}, [](const M& m) { return m.memory; }},
+      {{.key = "owner"}, [](const M& m) { return m.owner; }},
+      {{.key = "what"}, [](const M& m) { return m.what; }},
+      {{.key = "block"}, [](const M& m) { return m.block; }},
+      {{.key = "copies"}, [](const M& m) { return m.copies; }},
+      {{.key = "bytes"}, [](const M& m) { return m.bytes; }},
+      {{.key = "percent_of_nominal", .decimals = 3},
+       [](const M& m) { return percent_of_nominal(m.bytes, m.size); }},
   };
   return table;
 }
@@ -164,16 +165,18 @@ struct EnergyCsvRow {
   std::string_view unit;
 };
 
-const CsvTable<EnergyCsvRow>& energy_table() {
+const Columns<EnergyCsvRow>& energy_table() {
   using E = EnergyCsvRow;
-  static const CsvTable<E> table{
-      {"stage", [](const E& e) { return e.stage; }},
-      {"quantity", [](const E& e) { return e.quantity; }},
-      {"domain", [](const E& e) { return e.domain; }},
-      {"value", [](const E& e) { return fixed(e.energy.value.count() * e.scale, 6); }},
-      {"unit", [](const E& e) { return e.unit; }},
-      {"low", [](const E& e) { return fixed(e.energy.low().count() * e.scale, 6); }},
-      {"high", [](const E& e) { return fixed(e.energy.high().count() * e.scale, 6); }},
+  static const Columns<E> table{
+      {{.key = "stage"}, [](const E& e) { return e.stage; }},
+      {{.key = "quantity"}, [](const E& e) { return e.quantity; }},
+      {{.key = "domain"}, [](const E& e) { return e.domain; }},
+      {{.key = "value", .decimals = 6},
+       [](const E& e) { return e.energy.value.count() * e.scale; }},
+      {{.key = "unit"}, [](const E& e) { return e.unit; }},
+      {{.key = "low", .decimals = 6}, [](const E& e) { return e.energy.low().count() * e.scale; }},
+      {{.key = "high", .decimals = 6},
+       [](const E& e) { return e.energy.high().count() * e.scale; }},
   };
   return table;
 }
@@ -191,17 +194,16 @@ void add_energy(std::vector<EnergyCsvRow>& rows, const EnergyRow& row) {
 }
 
 /// With the decimals of trajectory files.
-CsvTable<traces::MatchedPose> error_table() {
+Columns<traces::MatchedPose> error_table() {
   using P = traces::MatchedPose;
   constexpr int kDecimals = 9;
-  CsvTable<P> table{{"t_ns", [](const P& p) { return p.t_ns; }},
-                    {"position_error_m",
-                     [](const P& p) { return fixed(traces::translation_error(p), kDecimals); }}};
+  Columns<P> table{{{.key = "t_ns"}, [](const P& p) { return p.t_ns; }},
+                   {{.key = "position_error_m", .decimals = kDecimals},
+                    [](const P& p) { return traces::translation_error(p); }}};
   for (const auto& [name, pose] : {std::pair{"estimate", &P::estimate}, {"truth", &P::truth}})
     for (int axis = 0; axis < 3; ++axis)
-      table.add(fmt::format("{}_{}_m", name, "xyz"[axis]), [pose = pose, axis](const P& p) {
-        return fixed((p.*pose).translation()[axis], kDecimals);
-      });
+      table.push_back({{.key = fmt::format("{}_{}_m", name, "xyz"[axis]), .decimals = kDecimals},
+                       [pose = pose, axis](const P& p) { return (p.*pose).translation()[axis]; }});
   return table;
 }
 
@@ -243,11 +245,13 @@ InputDigest digest_of(std::string name, const std::vector<fs::path>& files, base
 
 }  // namespace
 
-std::string stages_csv(const RunResult& run) { return stage_table_of(run).text(run.stages); }
+Table stage_rows(const RunResult& run) { return table_of(stage_table_of(run), run.stages); }
 
-std::string frames_csv(const RunResult& run) { return frame_table_of(run).text(frame_rows(run)); }
+Table frame_rows(const RunResult& run) {
+  return table_of(frame_table_of(run), frames_of_camera(run));
+}
 
-std::string memory_csv(const RunResult& run) {
+Table memory_rows(const RunResult& run) {
   std::vector<MemoryRow> rows;
   for (const StageResult& stage : run.stages) {
     if (stage.on_controller) continue;  // it is one of the rows of L2
@@ -258,35 +262,37 @@ std::string memory_csv(const RunResult& run) {
   }
   for (const L2Row& row : run.l2)
     add_peak(rows, {"L2", run.l2_size, row.name, "peak", "", 1, row.bytes}, row.blocks);
-  return memory_table().text(rows);
+  return table_of(memory_table(), rows);
 }
 
-std::string errors_csv(const RunResult& run) {
-  if (!run.ate || run.ate->poses.empty()) return {};
-  return error_table().text(run.ate->poses);
+Table error_rows(const RunResult& run) {
+  if (!run.ate || run.ate->poses.empty()) return Table{{}};
+  return table_of(error_table(), run.ate->poses);
 }
 
-std::string energy_csv(const RunResult& run) {
+Table energy_rows(const RunResult& run) {
   const std::optional<RunEnergy> energy = energy_of(run);
-  if (!energy) return {};
+  if (!energy) return Table{{}};
   std::vector<EnergyCsvRow> rows;
   for (const EnergyRow& row : energy->rows) add_energy(rows, row);
   add_energy(rows, {"all", "frame", false, energy->frames, energy->time, energy->total()});
-  return energy_table().text(rows);
+  return table_of(energy_table(), rows);
 }
 
 RunFiles run_files(const RunResult& run, const Manifest& manifest,
                    const std::string& platform_yaml) {
   RunFiles files{{"manifest.json", json_text(manifest_json(manifest, run), 2) + '\n'},
                  {"stats.json", statistics_text(run)},
-                 {kFramesFile, frames_csv(run)},
+                 {kFramesFile, csv_text(frame_rows(run))},
                  {"trajectory.tum", traces::format_tum(run.trajectory)}};
-  if (std::string errors = errors_csv(run); !errors.empty()) files[kErrorsFile] = std::move(errors);
+  if (std::string errors = csv_text(error_rows(run)); !errors.empty())
+    files[kErrorsFile] = std::move(errors);
   if (!run.timed) return files;
   files["platform.yaml"] = platform_yaml;
-  files[kStagesFile] = stages_csv(run);
-  files[kMemoryFile] = memory_csv(run);
-  if (std::string energy = energy_csv(run); !energy.empty()) files[kEnergyFile] = std::move(energy);
+  files[kStagesFile] = csv_text(stage_rows(run));
+  files[kMemoryFile] = csv_text(memory_rows(run));
+  if (std::string energy = csv_text(energy_rows(run)); !energy.empty())
+    files[kEnergyFile] = std::move(energy);
   return files;
 }
 

@@ -26,6 +26,7 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/run_result.h"
+#include "tools/app/table/table_files.h"
 #include "traces/datasets/dataset.h"
 
 namespace leviosim::tools {
@@ -94,12 +95,12 @@ void write_run_files(outputs::OutputFolder& out, const RunFiles& files,
 void write_run_folder(outputs::OutputFolder& out, const RunResult& run, const Manifest& manifest,
                       const std::string& platform_yaml, const std::string& below = {});
 
-/// The texts of the CSV files; the units stand in the column names.
-std::string stages_csv(const RunResult& run);
-std::string frames_csv(const RunResult& run);
-std::string memory_csv(const RunResult& run);
-std::string energy_csv(const RunResult& run);
+/// The tables of the CSV files; the units stand in the keys.
+Table stage_rows(const RunResult& run);
+Table frame_rows(const RunResult& run);
+Table memory_rows(const RunResult& run);
+Table energy_rows(const RunResult& run);
 /// Empty where there is no truth, and for replays, whose traces hold no poses of it.
-std::string errors_csv(const RunResult& run);
+Table error_rows(const RunResult& run);
 
 }  // namespace leviosim::tools

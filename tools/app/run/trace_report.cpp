@@ -8,8 +8,8 @@
 #include "sim/base/text.h"
 #include "sim/work/op.h"
 #include "sim/work/transfers.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/trace_source.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -35,13 +35,13 @@ std::string seen_text(int seen) { return seen < 0 ? "none" : fmt::format("frame 
 std::string ms(std::int64_t ns) { return fmt::format("{:.2f}", static_cast<double>(ns) * 1e-6); }
 
 std::string differing_frames(const Replay& replay) {
-  TextTable table({{"frame"},
-                   {"optimiser: recorded", kLeft},
-                   {"here", kLeft},
-                   {"result seen: recorded", kLeft},
-                   {"here", kLeft},
-                   {"waited ms: recorded"},
-                   {"here"}});
+  Table table({{"frame"},
+               {"optimiser: recorded", kLeft},
+               {"here", kLeft},
+               {"result seen: recorded", kLeft},
+               {"here", kLeft},
+               {"waited ms: recorded"},
+               {"here"}});
   std::size_t rows = 0;
   for (const FrameComparison& frame : replay.frames) {
     if (!is_worth_a_row(frame) || ++rows > kMostRows) continue;
@@ -52,7 +52,7 @@ std::string differing_frames(const Replay& replay) {
                ms(b.waited_ns)});
   }
   if (rows == 0) return {};
-  std::string text = table.str();
+  std::string text = terminal_text(table);
   if (rows > kMostRows) text += fmt::format("… and {} more in replay.csv\n", rows - kMostRows);
   return text;
 }
@@ -133,15 +133,15 @@ class Contents {
 };
 
 std::string stage_table(const traces::WorkTrace& trace, const Contents& contents) {
-  TextTable table({{"stage", kLeft},
-                   {"call", kLeft},
-                   {"calls"},
-                   {"forks"},
-                   {"work segments"},
-                   {"million operations"},
-                   {"transfers"},
-                   {"kB moved"},
-                   {"peak bytes"}});
+  Table table({{"stage", kLeft},
+               {"call", kLeft},
+               {"calls"},
+               {"forks"},
+               {"work segments"},
+               {"million operations"},
+               {"transfers"},
+               {"kB moved"},
+               {"peak bytes"}});
   for (const traces::WorkTraceInfo::Stage& stage : trace.info().stages) {
     const StageSum& sum = contents.of(stage.name);
     table.add({stage.name, stage.unit, fmt::format("{}", sum.calls), fmt::format("{}", sum.forks),
@@ -151,7 +151,7 @@ std::string stage_table(const traces::WorkTrace& trace, const Contents& contents
                fmt::format("{:.1f}", static_cast<double>(sum.transfers.bytes.count()) * 1e-3),
                fmt::format("{}", sum.peak.count())});
   }
-  return table.str();
+  return terminal_text(table);
 }
 
 /// What an accelerator might serve.

@@ -15,12 +15,12 @@
 #include "sim/base/text.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/workload.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -261,46 +261,42 @@ std::vector<std::vector<RunOutcome>> by_row(const std::vector<Point>& points,
   return all;
 }
 
-std::string plain_cell(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return c == ',' || c == '"' || c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
-
-std::string runs_csv(const std::vector<Point>& points, const std::vector<RunOutcome>& outcomes,
-                     const Measure& how, RunColumns columns) {
+Table run_rows(const std::vector<Point>& points, const std::vector<RunOutcome>& outcomes,
+               const Measure& how, RunColumns columns) {
   check_equal(points.size(), outcomes.size(), "an outcome per run");
-  using Run = const FinishedRun&;
-  using base::fixed;
-  const auto add_of_point = [&](const char* name, auto of) {
-    columns.add(name, [of](Run r) { return base::Cell(of(r.point, r.point.request)); });
-  };
-  const auto add = [&](const char* name, auto of) {
-    columns.add(name, [of](Run r) { return base::Cell(of(r.outcome)); });
-  };
-  using P = const Point&;
-  using R = const RunRequest&;
-  using O = const RunOutcome&;
-  add_of_point("sequence", [](P p, R) { return plain_cell(p.sequence->name); });
-  add_of_point("folder", [](P p, R) { return plain_cell(p.sequence->folder); });
-  add_of_point("width", [](P, R r) { return r.image_size.width; });
-  add_of_point("height", [](P, R r) { return r.image_size.height; });
-  add_of_point("profile", [](P, R r) { return r.profile; });
-  add_of_point("seed", [](P, R r) { return r.seed; });
-  add("frames", [](O o) { return o.frames; });
-  add("alignment", [how](O) { return name_of(how.alignment); });
-  add("ate_rmse_m", [](O o) { return fixed(o.ate_m, 9); });
-  add("relative_length_m", [how](O) { return fmt::format("{:g}", how.length_m); });
-  add("relative_translation_mean_percent", [](O o) { return fixed(o.relative_percent, 9); });
-  add("sub_trajectories", [](O o) { return o.sub_trajectories; });
-  add("matched", [](O o) { return o.matched; });
-  add("completion", [](O o) { return fixed(o.completion, 9); });
-  add("path_m", [](O o) { return fixed(o.path_m, 9); });
-  add("failure", [](O o) { return plain_cell(o.failure); });
+  using R = const FinishedRun&;
+  for (const RunColumns::value_type& column :
+       RunColumns{{{.title = "motion", .key = "sequence", .is_setup = true},
+                   [](R r) { return r.point.sequence->name; }},
+                  {{.key = "folder"}, [](R r) { return r.point.sequence->folder; }},
+                  {{.key = "width"}, [](R r) { return r.point.request.image_size.width; }},
+                  {{.key = "height"}, [](R r) { return r.point.request.image_size.height; }},
+                  {{.key = "profile"}, [](R r) { return r.point.request.profile; }},
+                  {{.title = "seed", .key = "seed", .is_setup = true},
+                   [](R r) { return r.point.request.seed; }},
+                  {{.key = "frames"}, [](R r) { return r.outcome.frames; }},
+                  {{.key = "alignment"}, [how](R) { return name_of(how.alignment); }},
+                  {{.title = "error (ATE)", .key = "ate_rmse_m", .decimals = 9, .unit = "m"},
+                   [](R r) { return r.outcome.ate_m; }},
+                  {{.key = "relative_length_m"}, [how](R) { return how.length_m; }},
+                  {{.key = "relative_translation_mean_percent", .decimals = 9},
+                   [](R r) { return r.outcome.relative_percent; }},
+                  {{.key = "sub_trajectories"}, [](R r) { return r.outcome.sub_trajectories; }},
+                  {{.key = "matched"}, [](R r) { return r.outcome.matched; }},
+                  {{.title = "completion",
+                  .key = "completion",
+                  .decimals = 9,
+                  .unit = "%",
+                  .scale = 100,
+                  .more_is_better = true},
+                   [](R r) { return r.outcome.completion; }},
+                  {{.title = "path", .key = "path_m", .decimals = 9, .unit = "m", .is_setup = true},
+                   [](R r) { return r.outcome.path_m; }},
+                  {{.title = "failure", .key = "failure"}, [](R r) { return r.outcome.failure; }}})
+    columns.push_back(column);
   std::vector<FinishedRun> runs;
   for (std::size_t i = 0; i < points.size(); ++i) runs.push_back({points[i], outcomes[i]});
-  return columns.text(runs);
+  return table_of(columns, runs);
 }
 
 std::vector<std::uint32_t> batch_seeds(const std::vector<std::string>& words) {

@@ -12,9 +12,10 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/result/banded.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/study/engine.h"
+#include "tools/app/table/banded.h"
+#include "tools/app/table/table_files.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
 #include "traces/trajectories/trajectory_errors.h"
@@ -95,20 +96,17 @@ std::vector<std::vector<RunOutcome>> by_row(const std::vector<Point>& points,
                                             const std::vector<RunOutcome>& outcomes,
                                             std::size_t rows);
 
-// The runs of a study of accuracy as a tidy CSV: a row per run.
+// The runs of a study of accuracy as a tidy table: a row per run.
 
 struct FinishedRun {
   const Point& point;
   const RunOutcome& outcome;
 };
-using RunColumns = base::CsvTable<FinishedRun>;
+using RunColumns = Columns<FinishedRun>;
 
 /// @param columns  those before the others, such as the values of a sweep
-std::string runs_csv(const std::vector<Point>& points, const std::vector<RunOutcome>& outcomes,
-                     const Measure& how, RunColumns columns = {});
-
-/// Text of others as a cell that needs no quotes: what would end it becomes a blank.
-std::string plain_cell(std::string text);
+Table run_rows(const std::vector<Point>& points, const std::vector<RunOutcome>& outcomes,
+               const Measure& how, RunColumns columns = {});
 
 // What studies of accuracy have in common, which make native runs of many profiles, image sizes and
 // seeds over sequences: options, points, the manifest.

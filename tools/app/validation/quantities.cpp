@@ -7,8 +7,8 @@
 #include <functional>
 #include <map>
 
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/table/terminal_table.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {

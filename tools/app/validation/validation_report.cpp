@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {
@@ -48,7 +48,7 @@ bool is_of_compute_table(const std::string& name) {
   return false;
 }
 
-void add_cells(std::vector<std::string>& cells, const Comparison* c, int decimals) {
+void add_cells(std::vector<Cell>& cells, const Comparison* c, int decimals) {
   cells.push_back(c == nullptr ? kNothing : figure_text(c->reference.value, decimals));
   cells.push_back(c == nullptr ? kNothing : figure_text(c->value, decimals));
   cells.push_back(c == nullptr ? kNothing : error_text(*c));
@@ -66,18 +66,18 @@ constexpr const char* kHowToRead =
 }  // namespace
 
 std::string compute_table(const Validation& validation, int cores) {
-  TextTable table({{"stage", kLeft},
-                   {"kcycles, 1 core"},
-                   {"simulated"},
-                   {"error"},
-                   {"8 cores", kRight, 1},
-                   {fmt::format("simulated on {}", cores)},
-                   {"error"},
-                   {"speed-up", kRight, 2},
-                   {"simulated", kRight, 2},
-                   {"error", kRight, 2}});
+  Table table({{"stage", kLeft},
+               {"kcycles, 1 core"},
+               {"simulated"},
+               {"error"},
+               {"8 cores", kRight, 1},
+               {fmt::format("simulated on {}", cores)},
+               {"error"},
+               {"speed-up", kRight, 2},
+               {"simulated", kRight, 2},
+               {"error", kRight, 2}});
   for (const PaperStage& stage : kPaperStages) {
-    std::vector<std::string> cells{std::string(stage.title)};
+    std::vector<Cell> cells{std::string(stage.title)};
     const std::string path = fmt::format("compute.{}.", stage.key);
     add_cells(cells, find(validation, path + "single"), 0);
     add_cells(cells, find(validation, path + "multi"), 0);
@@ -85,12 +85,12 @@ std::string compute_table(const Validation& validation, int cores) {
     table.add(std::move(cells));
   }
   return "compute: the paper's averages and the simulated means over the same kind of frame\n" +
-         table.str();
+         terminal_text(table);
 }
 
 std::string reference_table(const Validation& validation) {
   using C = const Comparison&;
-  const TableOf<Comparison> table{
+  const Columns<Comparison> table{
       {{"quantity", kLeft}, [](C c) { return c.reference.name; }},
       {{"unit", kLeft}, [](C c) { return c.reference.unit; }},
       {{"paper"},
@@ -101,30 +101,31 @@ std::string reference_table(const Validation& validation) {
       {{"within", kLeft}, [](C c) { return within_text(c); }}};
   std::vector<Comparison> rows = validation.comparisons;
   std::erase_if(rows, [](C c) { return is_of_compute_table(c.reference.name); });
-  return "shares, latencies, memory and limits (kB of 1000 bytes)\n" + table.with(rows).str();
+  return "shares, latencies, memory and limits (kB of 1000 bytes)\n" +
+         terminal_text(table_of(table, rows));
 }
 
 std::string input_table(const Validation& validation) {
   using I = const InputFigure&;
-  const TableOf<InputFigure> table{
+  const Columns<InputFigure> table{
       {{"input, mean", kLeft}, [](I i) { return i.name; }},
       {{"unit", kLeft}, [](I i) { return i.unit == "1" ? "" : i.unit; }},
       {{"paper"}, [](I i) { return readable(i.paper); }},
       {{"simulated"}, [](I i) { return readable(i.value); }},
       {{"paper's", kLeft}, [](I i) { return i.source; }}};
-  return "what the figures depend on\n" + table.with(validation.inputs).str();
+  return "what the figures depend on\n" + terminal_text(table_of(table, validation.inputs));
 }
 
 std::string distribution_table(const Validation& validation) {
   if (validation.distributions.empty()) return "";
-  std::vector<TextTable::Column> columns{{"input", kLeft}, {"of", kLeft}};
+  std::vector<Head> columns{{"input", kLeft}, {"of", kLeft}};
   for (const std::string_view column : kDistributionColumns)
     columns.push_back({std::string(column)});
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   for (const InputDistribution& d : validation.distributions) {
     const auto add = [&](std::string name, std::string program,
                          const InputDistribution::Cells& values) {
-      std::vector<std::string> cells{std::move(name), std::move(program)};
+      std::vector<Cell> cells{std::move(name), std::move(program)};
       for (const std::optional<double>& value : values) cells.push_back(readable(value));
       table.add(std::move(cells));
     };
@@ -133,7 +134,7 @@ std::string distribution_table(const Validation& validation) {
   }
   return "inputs of the stages on these frames, and of the released program on the 300 of MH_01\n"
          "(percentiles are linear between order statistics; shares are of frames, in per cent)\n" +
-         table.str() + "\n";
+         terminal_text(table) + "\n";
 }
 
 std::string normalised_table(const Validation& validation, int cores) {
@@ -141,7 +142,7 @@ std::string normalised_table(const Validation& validation, int cores) {
   const auto whole = [](std::optional<double> units) {
     return readable(units ? std::optional(std::round(*units)) : std::nullopt);
   };
-  const TableOf<NormalisedFigure> table{
+  const Columns<NormalisedFigure> table{
       {{"cycles of", kLeft}, [](N n) { return n.stage; }},
       {{"for a", kLeft}, [](N n) { return n.unit; }},
       {{"1 core"}, [](N n) { return readable(n.single); }},
@@ -150,20 +151,20 @@ std::string normalised_table(const Validation& validation, int cores) {
       {{"in a call"}, [=](N n) { return whole(n.units); }},
       {{"needed"}, [=](N n) { return whole(n.explaining_units); }}};
   return "cycles for a unit of work, which depend less on the input\n" +
-         table.with(validation.normalised).str() + kHowToRead;
+         terminal_text(table_of(table, validation.normalised)) + kHowToRead;
 }
 
 std::string path_table(const Validation& validation, int cores) {
-  TextTable table({{"kcycles of", kLeft},
-                   {"EPnP"},
-                   {"8-point"},
-                   {"weighed"},
-                   {"error"},
-                   {fmt::format("EPnP, {} cores", cores), kRight, 1},
-                   {"8-point"},
-                   {"weighed"},
-                   {"error"}});
-  const auto add = [](std::vector<std::string>& cells, const StageOnPaths::Means& means,
+  Table table({{"kcycles of", kLeft},
+               {"EPnP"},
+               {"8-point"},
+               {"weighed"},
+               {"error"},
+               {fmt::format("EPnP, {} cores", cores), kRight, 1},
+               {"8-point"},
+               {"weighed"},
+               {"error"}});
+  const auto add = [](std::vector<Cell>& cells, const StageOnPaths::Means& means,
                       const Comparison* paper) {
     for (const std::optional<double>& mean : {means.epnp, means.eight_point, means.weighed})
       cells.push_back(figure_text(mean ? std::optional(*mean / 1e3) : std::nullopt, 0));
@@ -173,7 +174,7 @@ std::string path_table(const Validation& validation, int cores) {
                         : kNothing);
   };
   for (const StageOnPaths& stage : validation.paths) {
-    std::vector<std::string> cells{std::string(stage.title)};
+    std::vector<Cell> cells{std::string(stage.title)};
     add(cells, stage.single, find(validation, fmt::format("compute.{}.single", stage.key)));
     add(cells, stage.parallel, find(validation, fmt::format("compute.{}.multi", stage.key)));
     table.add(std::move(cells));
@@ -182,14 +183,14 @@ std::string path_table(const Validation& validation, int cores) {
       "stages of frames that run either RANSAC, and weighed as the paper's frames: {:g} and {:g} "
       "%\n"
       "{}",
-      kPaperEpnpFrames, kPaperEightPointFrames, table.str());
+      kPaperEpnpFrames, kPaperEightPointFrames, terminal_text(table));
 }
 
 std::string band_table(const Validation& validation, int cores) {
   if (validation.bands.empty()) return "";
   using B = const BandedStage&;
   const auto ends = [](const Banded& b) { return fmt::format("{:.0f} … {:.0f}", b.low, b.high); };
-  const TableOf<BandedStage> table{
+  const Columns<BandedStage> table{
       {{"stage", kLeft}, [](B b) { return b.title; }},
       {{"cores"}, [=](B b) { return b.single ? 1 : cores; }},
       {{"paper"}, [](B b) { return figure_text(b.paper, 0); }},
@@ -205,7 +206,7 @@ std::string band_table(const Validation& validation, int cores) {
       "kcycles with the band that the platform's ranges leave, of this run and weighed as the "
       "paper's frames\n{}{} of {} of the paper's figures lie inside; of this run's own means "
       "{}\n\n",
-      table.with(validation.bands).str(), count([](B b) { return b.is_inside(); }),
+      terminal_text(table_of(table, validation.bands)), count([](B b) { return b.is_inside(); }),
       validation.bands.size(), count([](B b) { return b.simulated.holds(b.paper); }));
 }
 

@@ -11,7 +11,7 @@
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -106,25 +106,27 @@ std::string range_text(const AblationRow& row, const Spread& spread, int count) 
   return fmt::format("{} … {}", figure_text(spread.low, count), error_text(spread.high, count));
 }
 
-TextTable table_of(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
+Table ablation_table(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
   using R = const AblationRow&;
-  return TableOf<AblationRow>{
-      {{"sequence", kLeft}, [](R r) { return r.sequence.empty() ? kMean : r.sequence; }},
-      {{"images", kRight, 1}, [](R r) { return size_text(r.size); }},
-      {{"profile", kLeft}, [](R r) { return r.profile; }},
-      {{"runs", kRight, 3}, [](R r) { return r.ate.runs; }},
-      {{"absolute [m]"}, [](R r) { return median_text(r.ate, 3); }},
-      {{"least … greatest", kRight, 2}, [](R r) { return range_text(r, r.ate, 3); }},
-      {{"paper", kRight, 2}, [](R r) { return paper_text(r.paper_ate, r, 3); }},
-      {{fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
-       [](R r) { return median_text(r.relative, 2); }},
-      {{"least … greatest", kRight, 2}, [](R r) { return range_text(r, r.relative, 2); }},
-      {{"paper", kRight, 2}, [](R r) { return paper_text(r.paper_relative, r, 2); }},
-      {{"completion", kRight, 1},
-       [](R r) {
-         return r.least_completion ? fmt::format("{:.1f} %", 100 * *r.least_completion) : kNothing;
-       }}}
-      .with(rows);
+  return table_of(
+      Columns<AblationRow>{
+          {{"sequence", kLeft}, [](R r) { return r.sequence.empty() ? kMean : r.sequence; }},
+          {{"images", kRight, 1}, [](R r) { return size_text(r.size); }},
+          {{"profile", kLeft}, [](R r) { return r.profile; }},
+          {{"runs", kRight, 3}, [](R r) { return r.ate.runs; }},
+          {{"absolute [m]"}, [](R r) { return median_text(r.ate, 3); }},
+          {{"least … greatest", kRight, 2}, [](R r) { return range_text(r, r.ate, 3); }},
+          {{"paper", kRight, 2}, [](R r) { return paper_text(r.paper_ate, r, 3); }},
+          {{fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
+           [](R r) { return median_text(r.relative, 2); }},
+          {{"least … greatest", kRight, 2}, [](R r) { return range_text(r, r.relative, 2); }},
+          {{"paper", kRight, 2}, [](R r) { return paper_text(r.paper_relative, r, 2); }},
+          {{"completion", kRight, 1},
+           [](R r) {
+             return r.least_completion ? fmt::format("{:.1f} %", 100 * *r.least_completion)
+                                       : kNothing;
+           }}},
+      rows);
 }
 
 std::vector<std::string> protocols_of(const std::string& sequence,
@@ -207,7 +209,7 @@ std::string ablation_conclusion(const std::vector<AblationRow>& rows) {
 }
 
 std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
-  return table_of(plan, rows).markdown() + '\n' + notes(plan, rows, "- ");
+  return markdown_table(ablation_table(plan, rows)) + '\n' + notes(plan, rows, "- ");
 }
 
 const std::vector<std::string> kColumns{"sequence", "estimator", "loop_closure", "width",
@@ -278,7 +280,7 @@ void run(const CLI::App& command, const BatchWords& words, const Words& command_
       },
       [&] { return json_text(ablation_json(plan, rows), 2) + '\n'; });
   publish(*plan.out, text, [&] {
-    plan.out->write("runs.csv", runs_csv(runs, outcomes, plan.measure));
+    plan.out->write("runs.csv", csv_text(run_rows(runs, outcomes, plan.measure)));
     plan.out->write("table.md", ablation_markdown(plan, rows));
     plan.out->write("table.json", json_text(ablation_json(plan, rows), 2) + '\n');
     plan.out->write("manifest.json", json_text(batch_manifest(plan, command_line), 2) + '\n');
@@ -329,7 +331,7 @@ std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<
 }
 
 std::string ablation_text(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
-  return table_of(plan, rows).str() + notes(plan, rows, "  ");
+  return terminal_text(ablation_table(plan, rows)) + notes(plan, rows, "  ");
 }
 
 Json ablation_json(const BatchPlan& plan, const std::vector<AblationRow>& rows) {
@@ -370,17 +372,16 @@ std::string accuracy_comparison(const BatchPlan& plan, const std::vector<Ablatio
       row_for(table, {p.chosen_by ? "LEVIO" : p.estimator, size_text(p.size),
                       p.closes_loops ? "yes" : "no"})
           .errors[p.sequence] = metres(p.value);
-  std::vector<TextTable::Column> columns{
-      {"absolute [m]", TextTable::Align::Left}, {"images"}, {"loop closure"}};
+  std::vector<Head> columns{{"absolute [m]", kLeft}, {"images"}, {"loop closure"}};
   for (const std::string& sequence : sequences) columns.push_back({sequence});
-  TextTable text(std::move(columns));
+  Table text(std::move(columns));
   for (Estimator& row : table) {
-    std::vector<std::string> cells{row.name, row.images, row.loop_closure};
+    std::vector<Cell> cells{row.name, row.images, row.loop_closure};
     for (const std::string& sequence : sequences)
       cells.push_back(row.errors.count(sequence) > 0 ? row.errors[sequence] : "–");
     text.add(std::move(cells));
   }
-  return '\n' + text.str() +
+  return '\n' + terminal_text(text) +
          "  published: LEVIO's paper, over whole sequences; loop closure takes out the drift\n";
 }
 

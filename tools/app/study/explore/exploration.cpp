@@ -16,9 +16,9 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/study/sweep/points.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -112,13 +112,13 @@ std::string set_text(const ExploredPoint& point) {
   return texts.empty() ? "as it is" : fmt::format("{}", fmt::join(texts, " "));
 }
 
-TextTable best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
-  TextTable table({{"profile", kLeft},
-                   {"parameters of", kLeft},
-                   {"point"},
-                   {"absolute [m]"},
-                   {fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
-                   {"set (workload.…)", kLeft}});
+Table best_table(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
+  Table table({{"profile", kLeft},
+               {"parameters of", kLeft},
+               {"point"},
+               {"absolute [m]"},
+               {fmt::format("relative, {:g} m [%]", plan.measure.length_m)},
+               {"set (workload.…)", kLeft}});
   const auto add = [&](const char* what, const std::string& profile, const ExploredPoint* point) {
     if (point == nullptr)
       table.add({profile, what, "–", kDiverged, kDiverged, "–"});
@@ -157,7 +157,7 @@ std::string gain_text(const std::string& profile, const std::vector<ExploredPoin
 
 /// Per profile: as it is, the point of least absolute error, and that of least relative error.
 std::string best_text(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
-  return best_table(plan, explored).str() + "  " + note(plan);
+  return terminal_text(best_table(plan, explored)) + "  " + note(plan);
 }
 
 /// What the first profile gains by its best point, in a sentence.
@@ -169,7 +169,7 @@ std::string exploration_conclusion(const BatchPlan& plan,
 }
 
 std::string best_markdown(const BatchPlan& plan, const std::vector<ExploredPoint>& explored) {
-  return best_table(plan, explored).markdown() + '\n' + note(plan);
+  return markdown_table(best_table(plan, explored)) + '\n' + note(plan);
 }
 
 /// A point over a sequence.
@@ -185,26 +185,32 @@ std::vector<PointRow> point_rows(const std::vector<ExploredPoint>& explored) {
   return rows;
 }
 
-StudyTable<PointRow> points_table(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
+Table points_table(const BatchPlan& plan, const std::vector<Dimension>& dimensions,
+                   const std::vector<ExploredPoint>& explored) {
   using R = const PointRow&;
-  StudyTable<PointRow> table{
-      {{"point", "point", "", true}, [](R r) { return r.point.point; }},
-      {{"profile", "profile", "", true}, [](R r) { return r.point.profile; }}};
+  Columns<PointRow> columns{
+      {{.title = "point", .key = "point", .is_setup = true}, [](R r) { return r.point.point; }},
+      {{.title = "profile", .key = "profile", .is_setup = true},
+       [](R r) { return r.point.profile; }}};
   for (std::size_t i = 0; i < dimensions.size(); ++i) {
     const vio::Parameter& parameter = *dimensions[i].parameter;
-    table.add({std::string(parameter.name),
-               std::string(parameter.name.substr(vio::kParameterPrefix.size())),
-               std::string(parameter.unit), true},
-              [i](R r) { return r.point.values[i]; });
+    columns.push_back({{.title = std::string(parameter.name.substr(vio::kParameterPrefix.size())),
+                        .key = std::string(parameter.name),
+                        .unit = std::string(parameter.unit),
+                        .is_setup = true},
+                       [i](R r) { return spelled(r.point.values[i]); }});
   }
-  table.add({"sequence", "sequence", "", true}, [](R r) { return r.at.sequence; });
-  table.add({"runs"}, [](R r) { return r.at.ate.runs; });
-  table.add({"failed", "diverged runs"}, [](R r) { return r.at.ate.failed; });
-  const auto add_spread = [&](const std::string& name, const char* unit, const std::string& title,
-                              const char* shown_unit, auto figure) {
+  columns.push_back({{.title = "sequence", .key = "sequence", .is_setup = true},
+                     [](R r) { return r.at.sequence; }});
+  columns.push_back({{.key = "runs"}, [](R r) { return r.at.ate.runs; }});
+  columns.push_back(
+      {{.title = "diverged runs", .key = "failed"}, [](R r) { return r.at.ate.failed; }});
+  const auto add_spread = [&](const std::string& name, const char* key_unit,
+                              const std::string& title, const char* unit, auto figure) {
     const auto add = [&](const char* part, const std::string& shown, auto of) {
-      table.add({name + part + unit, shown, shown_unit},
-                [=](R r) { return base::fixed(r.at.*figure.*of, 9); });
+      columns.push_back(
+          {{.title = shown, .key = name + part + key_unit, .decimals = 9, .unit = unit},
+           [=](R r) { return r.at.*figure.*of; }});
     };
     add("_median_", title, &Spread::median);
     add("_least_", "", &Spread::low);
@@ -213,7 +219,7 @@ StudyTable<PointRow> points_table(const BatchPlan& plan, const std::vector<Dimen
   add_spread("ate", "m", "absolute error", "m", &ExploredPoint::OfSequence::ate);
   add_spread("relative", "percent", fmt::format("relative error, {:g} m", plan.measure.length_m),
              "%", &ExploredPoint::OfSequence::relative);
-  return table;
+  return table_of(columns, point_rows(explored));
 }
 
 /// The data of a page, as the paper's figure has it: the absolute over the relative error of every
@@ -231,19 +237,20 @@ Json exploration_page(const BatchPlan& plan, const std::vector<Dimension>& dimen
       box.lines.push_back("best: " + set_text(*best));
   }
   page.summary = note(plan);
-  points_table(plan, dimensions).show(page, point_rows(explored));
+  page.points = points_table(plan, dimensions, explored);
   page.x = "relative_median_percent";
   page.y = "ate_median_m";
   page.colour = "profile";
   return study_report(page);
 }
 
-/// Point and dimensions of every run, for runs_csv(). @param plan,dimensions  outlive the columns
+/// Point and dimensions of every run, for run_rows(). @param plan,dimensions  outlive the columns
 RunColumns point_columns(const BatchPlan& plan, const std::vector<Dimension>& dimensions) {
   using R = const FinishedRun&;
-  RunColumns columns{{"point", [&plan](R r) { return point_of_row(plan, r.point.row); }}};
+  RunColumns columns{{{.key = "point"}, [&plan](R r) { return point_of_row(plan, r.point.row); }}};
   for (const Dimension& d : dimensions)
-    columns.add(std::string(d.parameter->name), [&d](R r) { return value_of(d, r.point.request); });
+    columns.push_back({{.key = std::string(d.parameter->name)},
+                       [&d](R r) { return spelled(value_of(d, r.point.request)); }});
   return columns;
 }
 
@@ -360,7 +367,7 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
   const std::vector<ExploredPoint> explored =
       explored_points(plan, dimensions, points, runs, outcomes);
-  const std::string csv = points_table(plan, dimensions).csv(point_rows(explored));
+  const Table table = points_table(plan, dimensions, explored);
   const Printout text = printout(
       words.batch.json,
       [&] {
@@ -368,11 +375,12 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
                                     points.size(), runs.size(), best_text(plan, explored)))
             .ending(exploration_conclusion(plan, explored), after_batch(plan));
       },
-      [&] { return table_document("exploration", csv); });
+      [&] { return table_document("exploration", table); });
   publish(*plan.out, text, [&] {
     outputs::OutputFolder& out = *plan.out;
-    out.write("runs.csv", runs_csv(runs, outcomes, plan.measure, point_columns(plan, dimensions)));
-    out.write("points.csv", csv);
+    out.write("runs.csv",
+              csv_text(run_rows(runs, outcomes, plan.measure, point_columns(plan, dimensions))));
+    out.write("points.csv", csv_text(table));
     out.write("best.md", best_markdown(plan, explored));
     out.write("manifest.json",
               json_text(manifest_of(plan, words, dimensions, command_line), 2) + '\n');

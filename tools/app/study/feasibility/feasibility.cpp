@@ -10,10 +10,10 @@
 #include "sim/base/csv.h"
 #include "sim/base/interruption.h"
 #include "sim/chip/accelerator.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/trace_source.h"
+#include "tools/app/table/terminal_table.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -194,8 +194,8 @@ std::string feasibility_table(const std::vector<Feasibility>& rows) {
   const auto marked = [](double value, F f) {
     return fmt::format("{:.1f}{}", value, f.fits() ? "" : "*");
   };
-  std::string text =
-      TableOf<Feasibility>{
+  std::string text = terminal_text(table_of(
+      Columns<Feasibility>{
           {{"chip", kLeft}, [](F f) { return f.platform; }},
           {{"cores", kRight, 1}, [](F f) { return f.cores; }},
           {{"MHz"}, [](F f) { return fmt::format("{:g}", megahertz(f.clock)); }},
@@ -206,9 +206,8 @@ std::string feasibility_table(const std::vector<Feasibility>& rows) {
           {{"frames/s"}, [=](F f) { return marked(f.frames_per_second(), f); }},
           {{"mJ/frame"}, [](F f) { return banded(f.energy_per_frame, 1e3, 2); }},
           {{"mW", kRight, 1}, [](F f) { return banded(f.power, 1e3, 1); }},
-          {{"memory", kLeft}, [](F f) { return memory_verdict(f); }}}
-          .with(rows)
-          .str();
+          {{"memory", kLeft}, [](F f) { return memory_verdict(f); }}},
+      rows));
   text +=
       "frame: front end, mean and worst; optimiser: per frame. A chip with one core does one after "
       "the other, others both at once\n"
@@ -240,15 +239,16 @@ std::string feasibility_conclusion(const std::vector<Feasibility>& rows) {
 }
 
 std::string stage_comparison(const std::vector<Feasibility>& rows) {
-  std::vector<TextTable::Column> columns{{"kilocycles of a call", TextTable::Align::Left}};
+  std::vector<Head> columns{{"kilocycles of a call", kLeft}};
   for (const Feasibility& row : rows) columns.push_back({row.platform});
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   const auto add = [&](const std::string& name, int decimals, auto&& of) {
-    std::vector<std::string> cells{name};
+    std::vector<Cell> cells{name};
     for (const Feasibility& row : rows) {
-      cells.push_back(fmt::format("{:.{}f}", of(row), decimals));
-      if (&row != &rows.front())
-        cells.back() += fmt::format(" (×{:.2f})", of(rows.front()) / of(row));
+      const std::string value = figure_text(of(row), decimals);
+      cells.push_back(&row == &rows.front()
+                          ? value
+                          : fmt::format("{} (×{:.2f})", value, of(rows.front()) / of(row)));
     }
     table.add(std::move(cells));
   };
@@ -263,7 +263,7 @@ std::string stage_comparison(const std::vector<Feasibility>& rows) {
     });
   const auto add_memory = [&](const char* name, MemoryVerdict Feasibility::*memory) {
     constexpr double kKilo = 1e-3;
-    std::vector<std::string> cells{name};
+    std::vector<Cell> cells{name};
     for (const Feasibility& row : rows)
       cells.push_back(fmt::format("{:.1f} of {:.1f}",
                                   kKilo * static_cast<double>((row.*memory).occupied.count()),
@@ -272,10 +272,10 @@ std::string stage_comparison(const std::vector<Feasibility>& rows) {
   };
   add_memory("L1 peak kB", &Feasibility::l1);
   add_memory("L2 peak kB", &Feasibility::l2);
-  return table.str();
+  return terminal_text(table);
 }
 
-std::string stage_comparison_csv(const std::vector<Feasibility>& rows) {
+Table stage_comparison_rows(const std::vector<Feasibility>& rows) {
   struct Row {
     const Feasibility& chip;
     const StageTime& stage;
@@ -283,30 +283,29 @@ std::string stage_comparison_csv(const std::vector<Feasibility>& rows) {
   std::vector<Row> all;
   for (const Feasibility& chip : rows)
     for (const StageTime& stage : chip.stages) all.push_back({chip, stage});
-  const base::CsvTable<Row> table{
-      {"platform", [](const Row& row) { return row.chip.platform; }},
-      {"cores", [](const Row& row) { return row.chip.cores; }},
-      {"stage", [](const Row& row) { return row.stage.name; }},
-      {"kilocycles", [](const Row& row) { return fmt::format("{}", row.stage.kilocycles); }}};
-  return table.text(all);
+  return table_of(
+      Columns<Row>{{{.key = "platform"}, [](const Row& row) { return row.chip.platform; }},
+                   {{.key = "cores"}, [](const Row& row) { return row.chip.cores; }},
+                   {{.key = "stage"}, [](const Row& row) { return row.stage.name; }},
+                   {{.key = "kilocycles"}, [](const Row& row) { return row.stage.kilocycles; }}},
+      all);
 }
 
-std::string feasibility_csv(const std::vector<Feasibility>& rows) {
+Table feasibility_rows(const std::vector<Feasibility>& rows) {
   using F = const Feasibility&;
-  const auto text = [](double value) { return fmt::format("{}", value); };
-  base::CsvTable<Feasibility> table{
-      {"platform", [](F f) { return f.platform; }},
-      {"cores", [](F f) { return f.cores; }},
-      {"clock_hz", [](F f) { return f.clock; }},
-      {"front_end_ms", [=](F f) { return text(f.front_end_ms); }},
-      {"worst_ms", [=](F f) { return text(f.worst_ms); }},
-      {"published_ms", [](F f) { return published(f); }},
-      {"optimiser_ms", [=](F f) { return text(f.optimiser_ms); }},
-      {"frames_per_s", [=](F f) { return text(f.frames_per_second()); }}};
-  const auto add_end = [&](const char* name, auto figure, auto end) {
-    table.add(name, [=](F f) {
-      return f.*figure ? text(std::invoke(end, *(f.*figure)).count()) : std::string();
-    });
+  Columns<Feasibility> columns{
+      {{.key = "platform"}, [](F f) { return f.platform; }},
+      {{.key = "cores"}, [](F f) { return f.cores; }},
+      {{.key = "clock_hz"}, [](F f) { return f.clock; }},
+      {{.key = "front_end_ms"}, [](F f) { return f.front_end_ms; }},
+      {{.key = "worst_ms"}, [](F f) { return f.worst_ms; }},
+      {{.key = "published_ms"}, [](F f) { return published(f); }},
+      {{.key = "optimiser_ms"}, [](F f) { return f.optimiser_ms; }},
+      {{.key = "frames_per_s"}, [](F f) { return f.frames_per_second(); }}};
+  const auto add_end = [&](const char* key, auto figure, auto end) {
+    columns.push_back({{.key = key}, [=](F f) {
+                         return f.*figure ? Cell(std::invoke(end, *(f.*figure)).count()) : Cell();
+                       }});
   };
   using Energy = sim::Estimate<Joules>;
   using Power = sim::Estimate<Watts>;
@@ -316,15 +315,15 @@ std::string feasibility_csv(const std::vector<Feasibility>& rows) {
   add_end("power_w", &Feasibility::power, &Power::value);
   add_end("power_low_w", &Feasibility::power, &Power::low);
   add_end("power_high_w", &Feasibility::power, &Power::high);
-  table.add("fits", [](F f) { return f.fits() ? 1 : 0; });
-  const auto add_memory = [&](const std::string& name, auto of) {
-    table.add(name + "_bytes", [=](F f) { return (f.*of).occupied; });
-    table.add(name + "_size", [=](F f) { return (f.*of).size; });
-    table.add(name + "_block", [=](F f) { return (f.*of).block; });
+  columns.push_back({{.key = "fits"}, [](F f) { return f.fits(); }});
+  const auto add_memory = [&](const std::string& name, MemoryVerdict Feasibility::*of) {
+    columns.push_back({{.key = name + "_bytes"}, [=](F f) { return (f.*of).occupied; }});
+    columns.push_back({{.key = name + "_size"}, [=](F f) { return (f.*of).size; }});
+    columns.push_back({{.key = name + "_block"}, [=](F f) { return (f.*of).block; }});
   };
   add_memory("l1", &Feasibility::l1);
   add_memory("l2", &Feasibility::l2);
-  return table.text(rows);
+  return table_of(columns, rows);
 }
 
 }  // namespace leviosim::tools

@@ -16,6 +16,7 @@
 #include "sim/energy/estimate.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/engine.h"
+#include "tools/app/table/table_files.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -101,9 +102,9 @@ std::string feasibility_conclusion(const std::vector<Feasibility>& rows);
 std::string stage_comparison(const std::vector<Feasibility>& rows);
 
 /// The first table with all digits.
-std::string feasibility_csv(const std::vector<Feasibility>& rows);
+Table feasibility_rows(const std::vector<Feasibility>& rows);
 
 /// Kilocycles of a call: a row per chip and stage.
-std::string stage_comparison_csv(const std::vector<Feasibility>& rows);
+Table stage_comparison_rows(const std::vector<Feasibility>& rows);
 
 }  // namespace leviosim::tools

@@ -34,9 +34,9 @@
 #include "sim/base/builtin_file.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/engine.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/disturbance.h"
 #include "traces/datasets/image_preparation.h"
@@ -287,12 +287,11 @@ Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result);
 // browser.
 
 /// A row for each run. @param runs  benchmark_runs()
-std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Point>& runs,
-                               const std::vector<RunOutcome>& outcomes, const Measure& how);
+Table benchmark_runs_table(const Benchmark& benchmark, const std::vector<Point>& runs,
+                           const std::vector<RunOutcome>& outcomes, const Measure& how);
 
-/// The data of the page. @param csv  benchmark_runs_csv()
-Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
-                    const std::string& csv);
+/// The data of the page. @param runs  benchmark_runs_table()
+Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result, Table runs);
 
 /// `leviosim benchmark-flights` (tools/commands/commands.h).
 Command add_benchmark_flights_command(CLI::App& app, const Words& words);

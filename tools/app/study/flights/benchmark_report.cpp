@@ -11,9 +11,9 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/flights/benchmark.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -37,35 +37,37 @@ std::string alarm_text(const Alarms& alarms, std::size_t count, std::size_t of) 
 }
 
 /// Percent of the path for pieces, which differ in length; metres as well for whole flights.
-TextTable table_of(const Benchmark& benchmark, const BenchmarkResult& result) {
+Table benchmark_table(const Benchmark& benchmark, const BenchmarkResult& result) {
   using R = const BenchmarkRow&;
   const FlightPlan& plan = benchmark.plan;
-  return TableOf<BenchmarkRow>{
-      {{"profile", kLeft, 1}, [&](R r) { return plan.variants[r.variant].name(); }},
-      {{"piece", kLeft, 1}, [](R r) { return length_text(r.length); }},
-      {{"set", kLeft}, [&](R r) { return plan.sets[r.set].name; }},
-      {{"disturbance", kLeft, 1}, [&](R r) { return plan.disturbances[r.disturbance].text(); }},
-      {{"motion", kLeft}, [&](R r) { return motion_name(benchmark, r); }},
-      {{"pieces", kRight, 4}, [](R r) { return r.pieces; }},
-      {{"ATE %"}, [](R r) { return error_text(r.percent.median, 2); }},
-      {{"of pieces", kRight, 2}, [](R r) { return interval_text(r.percent.over_pieces, 2); }},
-      {{"of seeds", kRight, 3}, [](R r) { return interval_text(r.percent.over_seeds, 2); }},
-      {{"worst %"}, [](R r) { return error_text(r.percent.worst, 2); }},
-      {{"ATE m"}, [](R r) { return error_text(r.metres.median, 3); }},
-      {{"worst m", kRight, 1}, [](R r) { return error_text(r.metres.worst, 3); }},
-      {{"end m", kRight, 1}, [](R r) { return figure_text(r.end_drift.median, 3); }},
-      {{"scale", kRight, 4}, [](R r) { return figure_text(r.scale.median, 3); }},
-      {{"σ %", kRight, 3}, [](R r) { return figure_text(scaled(r.scale_sigma.median, 100), 1); }},
-      {{"diverged"}, [](R r) { return fmt::format("{} of {}", r.diverged, r.runs); }},
-      {{"failed"}, [](R r) { return r.failed; }},
-      {{"detected", kRight, 1},
-       [](R r) { return alarm_text(r.alarms, r.alarms.detected, r.alarms.failed); }},
-      {{"false", kRight, 1},
-       [](R r) { return alarm_text(r.alarms, r.alarms.false_alarms, r.alarms.right); }},
-      {{"silent", kRight, 1},
-       [](R r) { return r.alarms.runs > 0 ? std::to_string(r.alarms.silent) : kNothing; }},
-      {{"restarts", kRight, 5}, [](R r) { return r.map_restarts; }}}
-      .with(result.rows);
+  return table_of(
+      Columns<BenchmarkRow>{
+          {{"profile", kLeft, 1}, [&](R r) { return plan.variants[r.variant].name(); }},
+          {{"piece", kLeft, 1}, [](R r) { return length_text(r.length); }},
+          {{"set", kLeft}, [&](R r) { return plan.sets[r.set].name; }},
+          {{"disturbance", kLeft, 1}, [&](R r) { return plan.disturbances[r.disturbance].text(); }},
+          {{"motion", kLeft}, [&](R r) { return motion_name(benchmark, r); }},
+          {{"pieces", kRight, 4}, [](R r) { return r.pieces; }},
+          {{"ATE %"}, [](R r) { return error_text(r.percent.median, 2); }},
+          {{"of pieces", kRight, 2}, [](R r) { return interval_text(r.percent.over_pieces, 2); }},
+          {{"of seeds", kRight, 3}, [](R r) { return interval_text(r.percent.over_seeds, 2); }},
+          {{"worst %"}, [](R r) { return error_text(r.percent.worst, 2); }},
+          {{"ATE m"}, [](R r) { return error_text(r.metres.median, 3); }},
+          {{"worst m", kRight, 1}, [](R r) { return error_text(r.metres.worst, 3); }},
+          {{"end m", kRight, 1}, [](R r) { return figure_text(r.end_drift.median, 3); }},
+          {{"scale", kRight, 4}, [](R r) { return figure_text(r.scale.median, 3); }},
+          {{"σ %", kRight, 3},
+           [](R r) { return figure_text(scaled(r.scale_sigma.median, 100), 1); }},
+          {{"diverged"}, [](R r) { return fmt::format("{} of {}", r.diverged, r.runs); }},
+          {{"failed"}, [](R r) { return r.failed; }},
+          {{"detected", kRight, 1},
+           [](R r) { return alarm_text(r.alarms, r.alarms.detected, r.alarms.failed); }},
+          {{"false", kRight, 1},
+           [](R r) { return alarm_text(r.alarms, r.alarms.false_alarms, r.alarms.right); }},
+          {{"silent", kRight, 1},
+           [](R r) { return r.alarms.runs > 0 ? std::to_string(r.alarms.silent) : kNothing; }},
+          {{"restarts", kRight, 5}, [](R r) { return r.map_restarts; }}},
+      result.rows);
 }
 
 /// "75 % (3 values), 96 % (9 values)".
@@ -163,43 +165,45 @@ Json row_json(const Benchmark& benchmark, const BenchmarkRow& row) {
 }
 
 /// A row for each variant and piece.
-std::string pieces_csv(const Benchmark& benchmark, const BenchmarkResult& result) {
+Table piece_rows(const Benchmark& benchmark, const BenchmarkResult& result) {
   using R = const PieceRow&;
-  using base::fixed;
   const FlightPlan& plan = benchmark.plan;
-  const auto piece_of = [&](R row) -> const FlightPiece& { return benchmark.pieces[row.piece]; };
-  base::CsvTable<PieceRow> table;
-  table.add("variant", [&](R r) { return plan.variants[r.variant].name(); });
-  table.add("piece", [=](R r) { return length_text(piece_of(r).length); });
-  table.add("set", [=, &plan](R r) { return plan.sets[piece_of(r).set].name; });
-  table.add("motion",
-            [=, &benchmark](R r) { return benchmark.motions[piece_of(r).motion].sequence.name; });
-  table.add("world", [=](R r) { return piece_of(r).world.text(); });
-  table.add("disturbance",
-            [=, &plan](R r) { return plan.disturbances[piece_of(r).disturbance].text(); });
-  table.add("start_s", [=](R r) { return fixed(piece_of(r).start_s, 3); });
-  table.add("first_frame", [=](R r) { return piece_of(r).frames.begin; });
-  table.add("frames", [=](R r) { return piece_of(r).frames.end - piece_of(r).frames.begin; });
-  table.add("path_m", [=](R r) { return fixed(piece_of(r).path_m, 6); });
-  table.add("runs", [](R r) { return r.percent.runs; });
-  const auto add = [&](const std::string& name, auto of) {
-    table.add(name, [of](R r) { return fixed(of(r), 6); });
+  const auto of_piece = [&](auto of) {
+    return [=, &benchmark](R r) { return Cell(of(benchmark.pieces[r.piece])); };
   };
-  const auto add_spread = [&](const std::string& name, Spread PieceRow::*of) {
-    add(name, [of](R r) { return (r.*of).median; });
-    add(name + "_low", [of](R r) { return (r.*of).low; });
-    add(name + "_high", [of](R r) { return (r.*of).high; });
+  using P = const FlightPiece&;
+  Columns<PieceRow> columns{
+      {{.key = "variant"}, [&](R r) { return plan.variants[r.variant].name(); }},
+      {{.key = "piece"}, of_piece([](P p) { return length_text(p.length); })},
+      {{.key = "set"}, of_piece([&](P p) { return plan.sets[p.set].name; })},
+      {{.key = "motion"}, of_piece([&](P p) { return benchmark.motions[p.motion].sequence.name; })},
+      {{.key = "world"}, of_piece([](P p) { return p.world.text(); })},
+      {{.key = "disturbance"},
+       of_piece([&](P p) { return plan.disturbances[p.disturbance].text(); })},
+      {{.key = "start_s", .decimals = 3}, of_piece([](P p) { return p.start_s; })},
+      {{.key = "first_frame"}, of_piece([](P p) { return p.frames.begin; })},
+      {{.key = "frames"}, of_piece([](P p) { return p.frames.end - p.frames.begin; })},
+      {{.key = "path_m", .decimals = 6}, of_piece([](P p) { return p.path_m; })},
+      {{.key = "runs"}, [](R r) { return r.percent.runs; }}};
+  const auto add = [&](const std::string& key, Spread PieceRow::*of,
+                       std::optional<double> Spread::*part) {
+    columns.push_back({{.key = key, .decimals = 6}, [=](R r) { return r.*of.*part; }});
+  };
+  const auto add_spread = [&](const std::string& key, Spread PieceRow::*of) {
+    add(key, of, &Spread::median);
+    add(key + "_low", of, &Spread::low);
+    add(key + "_high", of, &Spread::high);
   };
   add_spread("ate_percent", &PieceRow::percent);
   add_spread("ate_m", &PieceRow::metres);
   add_spread("scale", &PieceRow::scale);
-  add("scale_sigma", [](R r) { return r.scale_sigma.median; });
-  add("end_drift_m", [](R r) { return r.end_drift.median; });
-  table.add("diverged", [](R r) { return r.diverged; });
-  table.add("failed", [](R r) { return r.failed; });
-  table.add("silent", [](R r) { return r.alarms.silent; });
-  table.add("map_restarts", [](R r) { return r.map_restarts; });
-  return table.text(result.pieces);
+  add("scale_sigma", &PieceRow::scale_sigma, &Spread::median);
+  add("end_drift_m", &PieceRow::end_drift, &Spread::median);
+  columns.push_back({{.key = "diverged"}, [](R r) { return r.diverged; }});
+  columns.push_back({{.key = "failed"}, [](R r) { return r.failed; }});
+  columns.push_back({{.key = "silent"}, [](R r) { return r.alarms.silent; }});
+  columns.push_back({{.key = "map_restarts"}, [](R r) { return r.map_restarts; }});
+  return table_of(columns, result.pieces);
 }
 
 /// Of each variant the worst median of all motions, in a sentence.
@@ -221,7 +225,7 @@ std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResu
 }
 
 std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult& result) {
-  return table_of(benchmark, result).markdown() + '\n' + notes(benchmark, result, "- ");
+  return markdown_table(benchmark_table(benchmark, result)) + '\n' + notes(benchmark, result, "- ");
 }
 
 std::string health_text(const std::optional<Health>& health) {
@@ -322,7 +326,7 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
   draw_flights(benchmark, how, options, runs);
   const std::vector<RunOutcome> outcomes = run_outcomes(runs, how, options);
   const BenchmarkResult result = condense(benchmark, runs, outcomes);
-  const std::string csv = benchmark_runs_csv(benchmark, runs, outcomes, how);
+  const Table rows = benchmark_runs_table(benchmark, runs, outcomes, how);
   const std::string json = json_text(benchmark_json(benchmark, result), 1) + '\n';
   const std::vector<std::string> next{
       fmt::format("leviosim run --profile {} --data {} --record --out mine",
@@ -338,14 +342,14 @@ void run(const CLI::App& command, const FlightWords& words, const Words& command
       },
       [&] { return json; });
   publish(out, text, [&] {
-    out.write("runs.csv", csv);
-    out.write("pieces.csv", pieces_csv(benchmark, result));
+    out.write("runs.csv", csv_text(rows));
+    out.write("pieces.csv", csv_text(piece_rows(benchmark, result)));
     out.write("table.md", benchmark_markdown(benchmark, result));
     out.write("table.json", json);
     out.write("manifest.json",
               json_text(benchmark_manifest(benchmark, how, command_line), 2) + '\n');
   });
-  if (page) publish_report(page, benchmark_page(benchmark, result, csv), !words.json);
+  if (page) publish_report(page, benchmark_page(benchmark, result, rows), !words.json);
 }
 
 std::string plan_names() {
@@ -357,7 +361,7 @@ std::string plan_names() {
 }  // namespace
 
 std::string benchmark_text(const Benchmark& benchmark, const BenchmarkResult& result, int width) {
-  return table_of(benchmark, result).str(width) + notes(benchmark, result, "  ");
+  return terminal_text(benchmark_table(benchmark, result), width) + notes(benchmark, result, "  ");
 }
 
 Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result) {
@@ -367,59 +371,56 @@ Json benchmark_json(const Benchmark& benchmark, const BenchmarkResult& result) {
   document["plan"] = benchmark.plan.name;
   document["rows"] = Json::array();
   for (const BenchmarkRow& row : result.rows) document["rows"].push_back(row_json(benchmark, row));
-  document["pieces"] = rows_of_csv(pieces_csv(benchmark, result));
+  document["pieces"] = rows_json(piece_rows(benchmark, result));
   return document;
 }
 
-std::string benchmark_runs_csv(const Benchmark& benchmark, const std::vector<Point>& runs,
-                               const std::vector<RunOutcome>& outcomes, const Measure& how) {
-  using Run = const FinishedRun&;
+Table benchmark_runs_table(const Benchmark& benchmark, const std::vector<Point>& runs,
+                           const std::vector<RunOutcome>& outcomes, const Measure& how) {
+  using R = const FinishedRun&;
+  using P = const FlightPiece&;
   const FlightPlan& plan = benchmark.plan;
-  const auto piece_of = [&](Run r) -> const FlightPiece& {
-    return benchmark.pieces[r.point.row % benchmark.pieces.size()];
+  const auto setup = [](const char* title, const char* key, const char* unit = "") -> Head {
+    return {.title = title, .key = key, .unit = unit, .is_setup = true};
   };
-  RunColumns columns;
-  columns.add("variant",
-              [&](Run r) { return plan.variants[r.point.row / benchmark.pieces.size()].name(); });
-  columns.add("set", [=, &plan](Run r) { return plan.sets[piece_of(r).set].name; });
-  columns.add("world", [=](Run r) { return piece_of(r).world.text(); });
-  columns.add("disturbance",
-              [=, &plan](Run r) { return plan.disturbances[piece_of(r).disturbance].text(); });
-  columns.add("piece", [=](Run r) { return length_text(piece_of(r).length); });
-  columns.add("start_s", [=](Run r) { return base::fixed(piece_of(r).start_s, 3); });
-  columns.add("first_frame", [=](Run r) { return piece_of(r).frames.begin; });
-  columns.add("ate_percent", [](Run r) { return base::fixed(error_percent(r.outcome), 6); });
-  columns.add("scale_mean", [](Run r) { return base::fixed(r.outcome.scale.mean, 6); });
-  columns.add("scale_sigma", [](Run r) { return base::fixed(r.outcome.scale.sigma, 6); });
-  columns.add("end_drift_m", [](Run r) { return base::fixed(r.outcome.end_drift_m, 6); });
-  columns.add("map_restarts", [](Run r) { return r.outcome.map_restarts; });
-  columns.add("health", [](Run r) { return health_text(r.outcome.health); });
-  return runs_csv(runs, outcomes, how, std::move(columns));
+  const auto figure = [](const char* title, const char* key, const char* unit,
+                         double scale = 1) -> Head {
+    return {.title = title, .key = key, .decimals = 6, .unit = unit, .scale = scale};
+  };
+  const auto of_piece = [&](auto of) {
+    return [=, &benchmark](R r) {
+      return Cell(of(benchmark.pieces[r.point.row % benchmark.pieces.size()]));
+    };
+  };
+  Head start = setup("start", "start_s", "s");
+  start.decimals = 3;
+  RunColumns columns{
+      {setup("profile", "variant"),
+       [&](R r) { return plan.variants[r.point.row / benchmark.pieces.size()].name(); }},
+      {setup("set", "set"), of_piece([&](P p) { return plan.sets[p.set].name; })},
+      {setup("world", "world"), of_piece([](P p) { return p.world.text(); })},
+      {setup("disturbance", "disturbance"),
+       of_piece([&](P p) { return plan.disturbances[p.disturbance].text(); })},
+      {setup("piece", "piece"), of_piece([](P p) { return length_text(p.length); })},
+      {start, of_piece([](P p) { return p.start_s; })},
+      {{.key = "first_frame"}, of_piece([](P p) { return p.frames.begin; })},
+      {figure("error (ATE) over the path", "ate_percent", "%"),
+       [](R r) { return error_percent(r.outcome); }},
+      {figure("scale", "scale_mean", "1"), [](R r) { return r.outcome.scale.mean; }},
+      {figure("wander of the scale", "scale_sigma", "%", 100),
+       [](R r) { return r.outcome.scale.sigma; }},
+      {figure("drift at the end", "end_drift_m", "m"), [](R r) { return r.outcome.end_drift_m; }},
+      {{.title = "restarts of the map", .key = "map_restarts"},
+       [](R r) { return r.outcome.map_restarts; }},
+      {{.key = "health"}, [](R r) { return health_text(r.outcome.health); }}};
+  return run_rows(runs, outcomes, how, std::move(columns));
 }
 
-Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result,
-                    const std::string& csv) {
+Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result, Table runs) {
   StudyPage page;
   page.title = fmt::format("Flights: {}", benchmark.plan.name);
   page.summary = benchmark_text(benchmark, result, kAnyWidth);
-  page.points = csv;
-  page.columns = {{"variant", "profile", "", true},
-                  {"piece", "piece", "", true},
-                  {"set", "set", "", true},
-                  {"sequence", "motion", "", true},
-                  {"world", "world", "", true},
-                  {"disturbance", "disturbance", "", true},
-                  {"start_s", "start", "s", true},
-                  {"seed", "seed", "", true},
-                  {"path_m", "path", "m", true},
-                  {"ate_percent", "error (ATE) over the path", "%"},
-                  {"ate_rmse_m", "error (ATE)", "m"},
-                  {"scale_mean", "scale", "1"},
-                  {"scale_sigma", "wander of the scale", "%", false, false, 100},
-                  {"end_drift_m", "drift at the end", "m"},
-                  {"map_restarts", "restarts of the map", ""},
-                  {"completion", "completion", "%", false, true, 100},
-                  {"failure", "failure", ""}};
+  page.points = std::move(runs);
   page.x = "path_m";
   page.y = "ate_percent";
   page.colour = "set";

@@ -6,18 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 
 #include "sim/base/csv.h"
 #include "sim/chip/accelerator.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/range_bands.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/trace_source.h"
+#include "tools/app/study/study.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/work_traces/work_frames.h"
 
 namespace leviosim::tools {
@@ -110,7 +110,7 @@ std::string list_line(const std::string& title, const std::vector<std::string>& 
 }
 
 std::string bands_table(const Sensitivity& sensitivity) {
-  TextTable table({{"stage", kLeft}, {"kcycles"}, {"band"}, {"per cent"}});
+  Table table({{"stage", kLeft}, {"kcycles"}, {"band"}, {"per cent"}});
   for (const auto& [stage, band] : stage_bands(sensitivity))
     table.add({stage, fmt::format("{:.1f}", band.value),
                fmt::format("{:.1f} … {:.1f}", band.low, band.high),
@@ -119,7 +119,7 @@ std::string bands_table(const Sensitivity& sensitivity) {
   return "\na mean call of each stage if all these numbers are uncertain at once (root of the sum "
          "of\n"
          "squares; of what compilers make of operations, the factors of all together)\n" +
-         table.str();
+         terminal_text(table);
 }
 
 /// The number with the largest effect, in a sentence.
@@ -136,34 +136,36 @@ std::string sensitivity_conclusion(const Sensitivity& sensitivity) {
 
 constexpr const char* kFramesByDefault = "0:100";
 
-struct SensitivityOptions : RunOptions {
-  std::string jobs;
-};
+void declare(CLI::App& command, StudyOptions& options) {
+  options.frames = kFramesByDefault;
+  add_chip_run_options(command, options);
+}
 
-void run(const SensitivityOptions& options) {
-  const unsigned jobs = parse_jobs(options.jobs);
+Answer answer(const StudyOptions& options, const RunnerOptions& runner, const Words&) {
   RunRequest request = make_chip_request(options);
-  std::optional<outputs::OutputFile> out = claimed_file(out_request(options, "--csv"));
-  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
-  request.data = data_folder(options, style);
+  request.data = data_folder(options, runner.progress);
   WorkRecording recording(request.cores);
   request.recording = &recording;
-  const RunResult result = simulate_with_progress(request, style);
+  const RunResult result = simulate_with_progress(request, runner.progress);
   const traces::WorkTrace trace("recorded run", recording.writer.finish(recording.info));
   const Sensitivity found =
-      sensitivity(platform::Variants(std::move(request.platform)), request.cores, trace,
-                  {.noun = "chip", .threads = jobs, .progress = style});
-  publish({{out, sensitivity_csv(found), "table"}},
-          printout(
-              options.json,
-              [&] {
-                std::vector<std::string> parts = sensitivity_tables(found, result.cores);
-                parts.front().insert(0, heading(options, result));
-                return Printout(std::move(parts))
-                    .ending(sensitivity_conclusion(found), {"leviosim microbench"});
-              },
-              [&] { return table_document("sensitivity", sensitivity_csv(found)); }));
+      sensitivity(platform::Variants(std::move(request.platform)), request.cores, trace, runner);
+  Answer answer{.parts = sensitivity_tables(found, result.cores),
+                .conclusion = sensitivity_conclusion(found),
+                .next = {"leviosim microbench"},
+                .rows = sensitivity_rows(found)};
+  answer.parts.front().insert(0, heading(options, result));
+  answer.page.bars = {"number", {"frame_low_percent", "frame_high_percent"}};
+  answer.page.x = "frame_low_percent";
+  answer.page.y = "frame_high_percent";
+  answer.page.colour = "confidence";
+  return answer;
 }
+
+const Study kStudy{"sensitivity",
+                   "Sweep every uncertain number of a chip over its range, one at a time",
+                   "chip",
+                   {"leviosim sensitivity --data flight --frames 0:20 --csv sensitivity.csv"}};
 
 }  // namespace
 
@@ -247,10 +249,10 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
 }
 
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers) {
-  std::vector<TextTable::Column> columns{
+  std::vector<Head> columns{
       {"number", kLeft}, {"confidence", kLeft, 2}, {"value"}, {"range", kLeft, 1}};
   for (const TimeColumn& column : kTimeColumns) columns.push_back({column.title});
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   std::vector<std::string> without_effect;
   for (const Swing& swing : sensitivity.swings) {
     const platform::Parameter& p = swing.parameter;
@@ -259,8 +261,8 @@ std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int 
       without_effect.push_back(p.path);
       continue;
     }
-    std::vector<std::string> cells{p.path, p.confidence, fmt::format("{} {}", p.value, p.unit),
-                                   fmt::format("{:g} … {:g}", p.range->low, p.range->high)};
+    std::vector<Cell> cells{p.path, p.confidence, fmt::format("{} {}", p.value, p.unit),
+                            fmt::format("{:g} … {:g}", p.range->low, p.range->high)};
     for (const TimeColumn& column : kTimeColumns)
       cells.push_back(change_text(swing, sensitivity.base, column.of));
     table.add(std::move(cells));
@@ -271,60 +273,52 @@ std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int 
               "{}), optimiser {} for an iteration\n"
               "change of them in per cent at the low and at the high end of a number's range\n{}",
               ms(base.frame), workers, ms(base.epnp), ms(base.eight_point), ms(base.iteration),
-              table.str()),
+              terminal_text(table)),
           bands_table(sensitivity),
           list_line("changing nothing by 0.005 % or more:", without_effect) +
               list_line("not certain, but without a range:", sensitivity.unbounded)};
 }
 
-std::string sensitivity_csv(const Sensitivity& sensitivity) {
+Table sensitivity_rows(const Sensitivity& sensitivity) {
   using S = const Swing&;
-  base::CsvTable<Swing> table{
-      {"number", [](S s) { return s.parameter.path; }},
-      {"confidence", [](S s) { return s.parameter.confidence; }},
-      {"unit", [](S s) { return s.parameter.unit; }},
-      {"value", [](S s) { return s.parameter.value; }},
-      {"low", [](S s) { return fmt::format("{}", s.parameter.range->low); }},
-      {"high", [](S s) { return fmt::format("{}", s.parameter.range->high); }}};
+  Columns<Swing> columns{{{.key = "number"}, [](S s) { return s.parameter.path; }},
+                         {{.key = "confidence"}, [](S s) { return s.parameter.confidence; }},
+                         {{.key = "unit"}, [](S s) { return s.parameter.unit; }},
+                         {{.key = "value"}, [](S s) { return spelled(s.parameter.value); }},
+                         {{.key = "low"}, [](S s) { return s.parameter.range->low; }},
+                         {{.key = "high"}, [](S s) { return s.parameter.range->high; }}};
+  const auto add = [&](const std::string& key, auto value, std::string title = {}) {
+    columns.push_back({{.title = std::move(title), .key = key, .decimals = 6, .unit = "%"},
+                       [=](S s) { return Cell(value(s)); }});
+  };
   for (const TimeColumn& column : kTimeColumns) {
     const auto of = column.of;
     const std::optional<double> base_ms = sensitivity.base.*of;
-    const auto add = [&](const char* name, auto value) {
-      table.add(fmt::format("{}_{}", column.key, name),
-                [=](S s) { return base::fixed(value(s), 6); });
-    };
-    add("base_ms", [=](S) { return base_ms; });
-    add("low_ms", [=](S s) { return s.low.*of; });
-    add("high_ms", [=](S s) { return s.high.*of; });
-    add("low_percent", [=](S s) { return percent_change(s.low.*of, base_ms); });
-    add("high_percent", [=](S s) { return percent_change(s.high.*of, base_ms); });
+    const std::string key = column.key;
+    add(key + "_base_ms", [=](S) { return base_ms; });
+    add(key + "_low_ms", [=](S s) { return s.low.*of; });
+    add(key + "_high_ms", [=](S s) { return s.high.*of; });
+    const std::string of_what = column.title;
+    add(
+        key + "_low_percent", [=](S s) { return percent_change(s.low.*of, base_ms); },
+        of_what + " at the low end");
+    add(
+        key + "_high_percent", [=](S s) { return percent_change(s.high.*of, base_ms); },
+        of_what + " at the high end");
   }
-  for (const auto& [stage, kcycles] : sensitivity.base.stages) {
-    const auto add = [&table, stage = stage, kcycles = kcycles](const char* name,
-                                                                MeanTimes Swing::*end) {
-      table.add(fmt::format("{}_{}", key_of(stage), name), [=](S s) {
-        return base::fixed(percent_change((s.*end).stage(stage), kcycles), 6);
+  for (const auto& [stage, kcycles] : sensitivity.base.stages)
+    for (const auto& [name, end] :
+         {std::pair{"_low_percent", &Swing::low}, {"_high_percent", &Swing::high}})
+      add(key_of(stage) + name, [stage = stage, kcycles = kcycles, end = end](S s) {
+        return percent_change((s.*end).stage(stage), kcycles);
       });
-    };
-    add("low_percent", &Swing::low);
-    add("high_percent", &Swing::high);
-  }
-  return table.text(sensitivity.swings);
+  return table_of(columns, sensitivity.swings);
 }
 
-Command add_sensitivity_command(CLI::App& app, const Words&) {
-  CLI::App* command = app.add_subcommand(
-      "sensitivity", "Sweep every uncertain number of a chip over its range, one at a time");
-  const auto options = std::make_shared<SensitivityOptions>();
-  options->frames = kFramesByDefault;
-  add_chip_run_options(*command, *options);
-  TextOptions{*command}("--csv", options->out, "FILE", "write the rows to a file");
-  command->add_flag("--force", options->force, "replace the file");
-  add_jobs_option(*command, options->jobs, "chip");
-  add_examples(*command,
-               {"leviosim sensitivity --data flight --frames 0:20 --csv sensitivity.csv"});
-  add_json_option(*command, options->json);
-  return {command, [=] { run(*options); }};
+Command add_sensitivity_command(CLI::App& app, const Words& words) {
+  return add_study<StudyOptions>(
+      app, words, kStudy, declare,
+      [](const StudyOptions& options) { return data_inputs(options.data); }, answer);
 }
 
 }  // namespace leviosim::tools

@@ -15,8 +15,9 @@
 
 #include "platform_models/loader/variants.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/result/banded.h"
 #include "tools/app/study/engine.h"
+#include "tools/app/table/banded.h"
+#include "tools/app/table/table_files.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -75,7 +76,7 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
 std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers);
 
 /// A row per number with both ends of its range, times in ms, changes in per cent.
-std::string sensitivity_csv(const Sensitivity& sensitivity);
+Table sensitivity_rows(const Sensitivity& sensitivity);
 
 /// `leviosim sensitivity` (tools/commands/commands.h).
 Command add_sensitivity_command(CLI::App& app, const Words& words);

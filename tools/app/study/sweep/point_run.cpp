@@ -16,7 +16,6 @@
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistics.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
@@ -25,6 +24,7 @@
 #include "tools/app/run/workload.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_store.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -231,10 +231,7 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
                        SweepStore& store) {
   SweepCheck check;
   std::optional<RunRecord> first;
-  TextTable table({{"point"},
-                   {"limit", TextTable::Align::Left},
-                   {"found", TextTable::Align::Left},
-                   {"set", TextTable::Align::Left}});
+  Table table({{"point"}, {"limit", kLeft}, {"found", kLeft}, {"set", kLeft}});
   for (std::size_t i = 0; i < points.size(); ++i) {
     throw_if_interrupted();
     const int number = static_cast<int>(i) + 1;
@@ -263,7 +260,7 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
                       ? fmt::format("verdict: met: all {} points meet {}", check.held, budget.file)
                       : fmt::format("verdict: NOT met by {} of {} points, first {}", check.missed,
                                     check.held, check.verdict);
-  if (check.missed > 0) check.text += table.str();
+  if (check.missed > 0) check.text += terminal_text(table);
   if (check.missed > kMostMisses)
     check.text += fmt::format("  and {} more\n", check.missed - kMostMisses);
   return check;

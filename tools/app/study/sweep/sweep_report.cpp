@@ -16,11 +16,11 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/engine.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_store.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -63,12 +63,13 @@ std::vector<std::vector<std::string>> front_cells(SweepStore& store,
 std::string front_table(SweepStore& store, const std::vector<SweepOutcome>& front,
                         const std::vector<std::size_t>& objectives) {
   const auto rows = front_cells(store, front, objectives, kMostRows);
-  std::vector<TextTable::Column> columns;
+  std::vector<Head> columns;
   for (const std::string& title : rows[0]) columns.push_back({title});
-  columns.back().align = TextTable::Align::Left;
-  TextTable table(columns);
-  for (std::size_t i = 1; i < rows.size(); ++i) table.add(rows[i]);
-  std::string text = table.str();
+  columns.back().align = kLeft;
+  Table table(columns);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    table.add(std::vector<Cell>(rows[i].begin(), rows[i].end()));
+  std::string text = terminal_text(table);
   if (front.size() > kMostRows)
     text += fmt::format("  and {} more: rows of sweep.csv\n", front.size() - kMostRows);
   return text;
@@ -194,25 +195,32 @@ Json sweep_page(SweepStore& store, const std::optional<SweepCheck>& check) {
   page.boxes = {sweep_box(store)};
   if (check) add_check(*check, page.boxes);
   page.best = sweep_front(store);
-  page.points = store.csv();
-  page.columns = {{"point", "point", "", true}};
-  for (const std::string& name : parameters)
-    page.columns.push_back({name, title_of(name), "", true});
-  const std::vector<StudyColumn> figures{
-      {"objective.frame_time", "mean frame", "ms"},
-      {"objective.energy", "energy per frame", "mJ"},
-      {"objective.l1_peak", "L1 peak", "kB", false, false, 1e-3},
-      {"objective.ate", "position error (ATE)", "m"},
-      {"objective.area", "area", "mm2"},
-      {"frame.latency.p50", "median latency", "ms", false, false, kNsToMs},
-      {"frame.latency.p99", "latency of 99 %", "ms", false, false, kNsToMs},
-      {"frame.latency.worst", "worst latency", "ms", false, false, kNsToMs},
-      {"frame.missed_share", "missed frames", "%", false, false, 100},
-      {"energy.mean_power", "mean power", "mW"},
-      {"energy.front_end_power", "power of the front end", "mW"},
-      {"accuracy.completion", "completion", "%", false, true, 100},
-      {"failure", "failure", ""}};
-  page.columns.insert(page.columns.end(), figures.begin(), figures.end());
+  page.points = read_csv(kSweepCsv, store.csv());
+  const auto setup = [](std::string title, std::string key) -> Head {
+    return {.title = std::move(title), .key = std::move(key), .is_setup = true};
+  };
+  const auto figure = [](const char* title, const char* key, const char* unit,
+                         double scale = 1) -> Head {
+    return {.title = title, .key = key, .unit = unit, .scale = scale};
+  };
+  page.columns = {setup("point", "point")};
+  for (const std::string& name : parameters) page.columns.push_back(setup(title_of(name), name));
+  Head completion = figure("completion", "accuracy.completion", "%", 100);
+  completion.more_is_better = true;
+  for (const Head& head :
+       std::vector<Head>{figure("mean frame", "objective.frame_time", "ms"),
+                         figure("energy per frame", "objective.energy", "mJ"),
+                         figure("L1 peak", "objective.l1_peak", "kB", 1e-3),
+                         figure("position error (ATE)", "objective.ate", "m"),
+                         figure("area", "objective.area", "mm2"),
+                         figure("median latency", "frame.latency.p50", "ms", kNsToMs),
+                         figure("latency of 99 %", "frame.latency.p99", "ms", kNsToMs),
+                         figure("worst latency", "frame.latency.worst", "ms", kNsToMs),
+                         figure("missed frames", "frame.missed_share", "%", 100),
+                         figure("mean power", "energy.mean_power", "mW"),
+                         figure("power of the front end", "energy.front_end_power", "mW"),
+                         completion, figure("failure", "failure", "")})
+    page.columns.push_back(head);
   if (!parameters.empty() && parameters.size() <= 2)
     page.curves = {parameters.front(),
                    parameters.size() == 2 ? parameters.back() : std::string(),
@@ -278,7 +286,9 @@ struct Sweep {
 
 /// The rows of sweep.csv, wherever it was put.
 std::string document(const outputs::OutputFile& csv) {
-  return table_document("sweep", base::read_file(csv.shown_path(), base::InputKind::table));
+  return table_document(
+      "sweep",
+      read_csv(csv.shown_path(), base::read_file(csv.shown_path(), base::InputKind::table)));
 }
 
 /// What of the points is neither in the file nor in the cache.

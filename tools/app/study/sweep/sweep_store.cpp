@@ -7,7 +7,6 @@
 
 #include "platform_models/loader/schema.h"
 #include "sim/base/check.h"
-#include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
@@ -329,11 +328,11 @@ std::string SweepStore::csv() const {
   std::unordered_map<std::string, std::size_t> column_of;
   for (std::size_t c = 0; c < columns.size(); ++c) column_of.emplace(columns[c], c);
 
-  std::vector<base::Cell> cells{"point", "status"};
+  std::vector<std::string> cells{"point", "status"};
   cells.insert(cells.end(), about_.parameters.begin(), about_.parameters.end());
   cells.insert(cells.end(), columns.begin(), columns.end());
   cells.emplace_back("failure");
-  std::string text = base::csv_line(cells);
+  std::string text = csv_line(cells);
   for (const auto& [point, kept] : points_) {
     throw_if_interrupted();
     cells = {std::to_string(point), kept.failure.empty() ? "done" : "failed"};
@@ -343,7 +342,7 @@ std::string SweepStore::csv() const {
       values[column_of.at(figure_names_[place].first)] = platform::number_text(value);
     cells.insert(cells.end(), values.begin(), values.end());
     cells.emplace_back(kept.failure);
-    text += base::csv_line(cells);
+    text += csv_line(cells);
   }
   return text;
 }

@@ -9,10 +9,10 @@
 #include "sim/base/csv.h"
 #include "tools/app/flow/flow.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/study/feasibility/feasibility.h"
+#include "tools/app/table/terminal_table.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -137,7 +137,7 @@ std::string systems_table(const std::vector<SystemRow>& rows) {
     return [of](S s) { return s.here ? of(*s.here) : std::string(); };
   };
   using P = const Prediction&;
-  const TableOf<SystemRow> table{
+  const Columns<SystemRow> table{
       {{"system", kLeft},
        [](S s) { return fmt::format("{}, {}", s.published.name, s.published.year); }},
       {{"class", kLeft, 3}, [](S s) { return s.published.kind; }},
@@ -157,7 +157,7 @@ std::string systems_table(const std::vector<SystemRow>& rows) {
     if (row.here && row.here->memory != "fits")
       small += fmt::format("{} as though it fitted: {}\n", row.published.name, row.here->memory);
   }
-  return table.with(rows).str() +
+  return terminal_text(table_of(table, rows)) +
          "published: of whole systems, as their authors define them; < is a bound\n"
          "here: what leviosim predicts for the chip alone, at that rate, with bands; most: what "
          "the computing would allow. Where it is empty, the system is not modelled\n" +
@@ -180,46 +180,40 @@ std::string systems_conclusion(const std::vector<SystemRow>& rows) {
   return text;
 }
 
-std::string systems_csv(const std::vector<SystemRow>& rows) {
+Table systems_rows(const std::vector<SystemRow>& rows) {
   using S = const SystemRow&;
-  const auto text = [](const std::optional<double>& value) {
-    return value ? fmt::format("{}", *value) : std::string();
-  };
-  base::CsvTable<SystemRow> table{
-      {"system", [](S s) { return s.published.name; }},
-      {"year", [](S s) { return s.published.year; }},
-      {"class", [](S s) { return s.published.kind; }},
-      {"chip", [](S s) { return s.published.chip; }},
-      {"frames_per_s", [=](S s) { return text(s.published.frames_per_s); }},
-      {"power_mw", [=](S s) { return text(s.published.power_mw); }},
-      {"power_is_bound", [](S s) { return s.published.is_bound ? 1 : 0; }},
-      {"frame_mj", [=](S s) { return text(s.published.frame_mj()); }},
-      {"source", [](S s) { return s.published.source; }},
-      {"here", [](S s) { return model_of(s); }}};
-  const auto add = [&](const char* name, auto of) {
-    table.add(name, [=](S s) { return s.here ? text(of(*s.here)) : std::string(); });
-  };
   using P = const Prediction&;
-  using Value = std::optional<double>;
-  add("here_frames_per_s", [](P p) { return Value(p.frames_per_s); });
-  add("here_most_frames_per_s", [](P p) { return Value(p.most_frames_per_s); });
-  const auto add_banded = [&](const std::string& name, auto figure) {
-    const auto end = [&](const std::string& suffix, auto value) {
-      add((name + suffix).c_str(), [=](P p) {
-        return p.*figure ? Value(value(*(p.*figure)).count() * kMilli) : std::nullopt;
-      });
-    };
-    end("", [](const auto& e) { return e.value; });
-    end("_low", [](const auto& e) { return e.low(); });
-    end("_high", [](const auto& e) { return e.high(); });
+  const auto here = [](auto of) {
+    return [of](S s) { return s.here ? Cell(of(*s.here)) : Cell(); };
   };
-  add_banded("here_power_mw", &Prediction::power);
-  add_banded("here_frame_mj", &Prediction::frame);
-  table.add("here_memory", [](S s) { return s.here ? s.here->memory : std::string(); });
-  return table.text(rows);
+  const auto milli = [&](auto figure) {
+    return here([=](P p) {
+      const auto& e = p.*figure;
+      return e ? Cell(kMilli * Banded{e->value.count(), e->low().count(), e->high().count()})
+               : Cell();
+    });
+  };
+  return table_of(
+      Columns<SystemRow>{
+          {{.key = "system"}, [](S s) { return s.published.name; }},
+          {{.key = "year"}, [](S s) { return s.published.year; }},
+          {{.key = "class"}, [](S s) { return s.published.kind; }},
+          {{.key = "chip"}, [](S s) { return s.published.chip; }},
+          {{.key = "frames_per_s"}, [](S s) { return s.published.frames_per_s; }},
+          {{.key = "power_mw"}, [](S s) { return s.published.power_mw; }},
+          {{.key = "power_is_bound"}, [](S s) { return s.published.is_bound; }},
+          {{.key = "frame_mj"}, [](S s) { return s.published.frame_mj(); }},
+          {{.key = "source"}, [](S s) { return s.published.source; }},
+          {{.key = "here"}, [](S s) { return model_of(s); }},
+          {{.key = "here_frames_per_s"}, here([](P p) { return p.frames_per_s; })},
+          {{.key = "here_most_frames_per_s"}, here([](P p) { return p.most_frames_per_s; })},
+          {{.key = "here_power_mw", .is_banded = true}, milli(&Prediction::power)},
+          {{.key = "here_frame_mj", .is_banded = true}, milli(&Prediction::frame)},
+          {{.key = "here_memory"}, here([](P p) { return p.memory; })}},
+      rows);
 }
 
-Json systems_page(const std::vector<SystemRow>& rows) {
+StudyPage systems_page(const std::vector<SystemRow>& rows) {
   struct Spot {
     std::string system;
     const char* by;
@@ -242,23 +236,31 @@ Json systems_page(const std::vector<SystemRow>& rows) {
                      mw(power.low()), mw(power.high())});
   }
   using S = const Spot&;
-  const StudyTable<Spot> table{
-      {{"system", "system", "", true}, [](S s) { return s.system; }},
-      {{"by", "known from", "", true}, [](S s) { return s.by; }},
-      {{"rate", "frame rate", "frames/s", false, true}, [](S s) { return base::fixed(s.rate, 6); }},
-      {{"power", "power", "mW"}, [](S s) { return base::fixed(s.power_mw, 6); }},
-      {{"low", "power, low end", "mW"}, [](S s) { return base::fixed(s.low_mw, 6); }},
-      {{"high", "power, high end", "mW"}, [](S s) { return base::fixed(s.high_mw, 6); }},
-      {{"energy", "energy per frame", "mJ"},
-       [](S s) { return base::fixed(*s.power_mw / *s.rate, 6); }}};
+  const auto milliwatts = [](const char* title, const char* key) -> Head {
+    return {.title = title, .key = key, .decimals = 6, .unit = "mW"};
+  };
+  const Columns<Spot> columns{
+      {{.title = "system", .key = "system", .is_setup = true}, [](S s) { return s.system; }},
+      {{.title = "known from", .key = "by", .is_setup = true}, [](S s) { return s.by; }},
+      {{.title = "frame rate",
+        .key = "rate",
+        .decimals = 6,
+        .unit = "frames/s",
+        .more_is_better = true},
+       [](S s) { return s.rate; }},
+      {milliwatts("power", "power"), [](S s) { return s.power_mw; }},
+      {milliwatts("power, low end", "low"), [](S s) { return s.low_mw; }},
+      {milliwatts("power, high end", "high"), [](S s) { return s.high_mw; }},
+      {{.title = "energy per frame", .key = "energy", .decimals = 6, .unit = "mJ"},
+       [](S s) { return *s.power_mw / *s.rate; }}};
   StudyPage page;
   page.title = "Power over frame rate of systems that estimate motion";
   page.summary = systems_conclusion(rows);
-  table.show(page, spots);
+  page.points = table_of(columns, spots);
   page.x = "rate";
   page.y = "power";
   page.colour = "by";
-  return study_report(page);
+  return page;
 }
 
 std::vector<SystemRow> predict_systems(const std::vector<PublishedSystem>& systems,

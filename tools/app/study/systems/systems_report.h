@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "sim/energy/estimate.h"
+#include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/engine.h"
+#include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {
 
@@ -79,10 +81,10 @@ std::string systems_table(const std::vector<SystemRow>& rows);
 std::string systems_conclusion(const std::vector<SystemRow>& rows);
 
 /// The rows of systems_table() with all digits, as CSV.
-std::string systems_csv(const std::vector<SystemRow>& rows);
+Table systems_rows(const std::vector<SystemRow>& rows);
 
 /// The data of a page: power over frame rate, what was published and what is predicted, each as a
 /// point. Systems without a rate or a power have none.
-Json systems_page(const std::vector<SystemRow>& rows);
+StudyPage systems_page(const std::vector<SystemRow>& rows);
 
 }  // namespace leviosim::tools

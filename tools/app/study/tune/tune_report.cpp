@@ -15,12 +15,12 @@
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/tune/tuning.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -88,21 +88,23 @@ Json banded_json(const std::optional<Banded>& figure) {
   return figure ? Json(figure->value) : Json(nullptr);
 }
 
-/// A percentile of the latency, in runs.csv and on the page, and in the table.
+/// A percentile of the latency, in the files and on the page, and in the table.
 struct LatencyColumn {
-  StudyColumn column;
-  TextTable::Column shown;
+  const char* key;
+  const char* title;  ///< on the page, if it is there
+  Head shown;
   std::int64_t CameraFigures::Latencies::*of;
 };
 const std::array kLatencies{
-    LatencyColumn{{"latency_p50_ns", "median latency", "ms", false, false, kNsToMs},
+    LatencyColumn{"latency_p50_ns",
+                  "median latency",
                   {"p50 ms", kRight, 3},
                   &CameraFigures::Latencies::p50_ns},
-    LatencyColumn{{"latency_p95_ns"}, {"p95 ms", kRight, 3}, &CameraFigures::Latencies::p95_ns},
-    LatencyColumn{{"latency_p99_ns", "latency of 99 %", "ms", false, false, kNsToMs},
-                  {"p99 ms"},
-                  &CameraFigures::Latencies::p99_ns},
-    LatencyColumn{{"latency_worst_ns", "worst latency", "ms", false, false, kNsToMs},
+    LatencyColumn{"latency_p95_ns", "", {"p95 ms", kRight, 3}, &CameraFigures::Latencies::p95_ns},
+    LatencyColumn{
+        "latency_p99_ns", "latency of 99 %", {"p99 ms"}, &CameraFigures::Latencies::p99_ns},
+    LatencyColumn{"latency_worst_ns",
+                  "worst latency",
                   {"worst ms", kRight, 3},
                   &CameraFigures::Latencies::max_ns}};
 
@@ -113,62 +115,71 @@ struct Run {
   const Variation& variation;
 };
 
-StudyTable<Run> runs_table(const TunePlan& plan) {
-  using base::fixed;
-  StudyTable<Run> table;
-  const auto general = [](double value) { return fmt::format("{:g}", value); };
-  const auto add_of_point = [&](const StudyColumn& column, auto of) {
-    table.add(column, [of](const Run& r) { return base::Cell(of(r.point)); });
-  };
-  const auto add_of_camera = [&](const StudyColumn& column, auto of) {
-    table.add(column, [of](const Run& r) { return base::Cell(of(r.outcome.loop->camera)); });
-  };
-  const auto add = [&](const StudyColumn& column, auto of) {
-    table.add(column, [of](const Run& r) { return base::Cell(of(r.outcome)); });
-  };
-  using P = const TunePoint&;
+Columns<Run> run_columns(const TunePlan& plan) {
+  using R = const Run&;
   using C = const CameraFigures&;
-  using O = const RunOutcome&;
-  add_of_point({"fps", "frame rate", "frames/s", true}, [=](P p) { return general(p.fps); });
-  add_of_point({"clock_mhz", "clock", "MHz", true},
-               [=](P p) { return general(megahertz(p.setting.clock)); });
-  add_of_point({"voltage", "supply", "V", true}, [=](P p) {
-    return p.setting.voltage ? general(p.setting.voltage->count()) : std::string();
-  });
-  add({"deadline"}, [&plan](O) { return info_of(plan.deadline).name; });
-  table.add({"seed"}, [](const Run& r) { return r.variation.seed; });
-  table.add({"variation", "variation", "", true}, [](const Run& r) { return r.variation.name; });
-  add_of_camera({"arrived"}, [](C c) { return c.arrived; });
-  add_of_camera({"processed"}, [](C c) { return c.processed; });
-  add_of_camera({"dropped"}, [](C c) { return c.dropped; });
-  add_of_camera({"late"}, [](C c) { return c.late; });
-  add_of_camera({"missed"}, [](C c) { return c.missed(); });
-  add_of_camera({"missed_share", "missed frames", "%", false, false, 100},
-                [](C c) { return fixed(c.share_of(c.missed()), 6); });
-  add_of_camera({"waited"}, [](C c) { return c.waited; });
-  add_of_camera({"most_found"}, [](C c) { return c.most_found; });
-  for (const LatencyColumn& latency : kLatencies)
-    add_of_camera(latency.column, [of = latency.of](C c) { return c.latency.*of; });
-  const auto add_milli = [&](const StudyColumn& column, auto figure, double Banded::*part) {
-    add(column, [=](O o) {
-      const std::optional<Banded>& banded = *o.loop.*figure;
-      return banded ? fixed(*banded.*part * 1e3, 9) : base::Cell();
-    });
+  const auto setup = [](const char* title, const char* key, const char* unit = "") -> Head {
+    return {.title = title, .key = key, .unit = unit, .is_setup = true};
   };
-  add_milli({"power_mw", "power", "mW"}, &LoopOutcome::power_w, &Banded::value);
-  add_milli({"power_low_mw"}, &LoopOutcome::power_w, &Banded::low);
-  add_milli({"power_high_mw"}, &LoopOutcome::power_w, &Banded::high);
-  add_milli({"frame_mj", "energy per frame", "mJ"}, &LoopOutcome::frame_j, &Banded::value);
-  add_milli({"frame_low_mj"}, &LoopOutcome::frame_j, &Banded::low);
-  add_milli({"frame_high_mj"}, &LoopOutcome::frame_j, &Banded::high);
-  add({"ate_rmse_m", "position error (ATE)", "m"}, [](O o) { return fixed(o.ate_m, 9); });
-  add({"matched"}, [](O o) { return o.matched; });
-  add({"completion", "completion", "%", false, true, 100},
-      [](O o) { return fixed(o.completion, 9); });
-  add({"path_m"}, [](O o) { return fixed(o.path_m, 9); });
-  add({"failure", "failure", ""}, [](O o) { return plain_cell(o.failure); });
-  add_of_point({"point_meets_limits"}, [&plan](P p) { return int{is_enough(p, plan)}; });
-  return table;
+  const auto camera = [](auto of) {
+    return [of](R r) { return Cell(of(r.outcome.loop->camera)); };
+  };
+  const auto milli = [](std::optional<Banded> LoopOutcome::*figure, double Banded::*part) {
+    return [=](R r) {
+      const std::optional<Banded>& banded = *r.outcome.loop.*figure;
+      return banded ? Cell(*banded.*part * 1e3) : Cell();
+    };
+  };
+  Columns<Run> columns{
+      {setup("frame rate", "fps", "frames/s"), [](R r) { return r.point.fps; }},
+      {setup("clock", "clock_mhz", "MHz"), [](R r) { return megahertz(r.point.setting.clock); }},
+      {setup("supply", "voltage", "V"),
+       [](R r) {
+         const auto& voltage = r.point.setting.voltage;
+         return voltage ? Cell(voltage->count()) : Cell();
+       }},
+      {{.key = "deadline"}, [&plan](R) { return info_of(plan.deadline).name; }},
+      {{.key = "seed"}, [](R r) { return r.variation.seed; }},
+      {setup("variation", "variation"), [](R r) { return r.variation.name; }},
+      {{.key = "arrived"}, camera([](C c) { return c.arrived; })},
+      {{.key = "processed"}, camera([](C c) { return c.processed; })},
+      {{.key = "dropped"}, camera([](C c) { return c.dropped; })},
+      {{.key = "late"}, camera([](C c) { return c.late; })},
+      {{.key = "missed"}, camera([](C c) { return c.missed(); })},
+      {{.title = "missed frames", .key = "missed_share", .decimals = 6, .unit = "%", .scale = 100},
+       camera([](C c) { return c.share_of(c.missed()); })},
+      {{.key = "waited"}, camera([](C c) { return c.waited; })},
+      {{.key = "most_found"}, camera([](C c) { return c.most_found; })}};
+  for (const LatencyColumn& latency : kLatencies)
+    columns.push_back({{.title = latency.title, .key = latency.key, .unit = "ms", .scale = kNsToMs},
+                       camera([of = latency.of](C c) { return c.latency.*of; })});
+  const auto add_milli = [&](const char* title, const char* unit, const char* key, auto figure,
+                             double Banded::*part) {
+    columns.push_back(
+        {{.title = title, .key = key, .decimals = 9, .unit = unit}, milli(figure, part)});
+  };
+  add_milli("power", "mW", "power_mw", &LoopOutcome::power_w, &Banded::value);
+  add_milli("", "", "power_low_mw", &LoopOutcome::power_w, &Banded::low);
+  add_milli("", "", "power_high_mw", &LoopOutcome::power_w, &Banded::high);
+  add_milli("energy per frame", "mJ", "frame_mj", &LoopOutcome::frame_j, &Banded::value);
+  add_milli("", "", "frame_low_mj", &LoopOutcome::frame_j, &Banded::low);
+  add_milli("", "", "frame_high_mj", &LoopOutcome::frame_j, &Banded::high);
+  columns.insert(
+      columns.end(),
+      {{{.title = "position error (ATE)", .key = "ate_rmse_m", .decimals = 9, .unit = "m"},
+        [](R r) { return r.outcome.ate_m; }},
+       {{.key = "matched"}, [](R r) { return r.outcome.matched; }},
+       {{.title = "completion",
+         .key = "completion",
+         .decimals = 9,
+         .unit = "%",
+         .scale = 100,
+         .more_is_better = true},
+        [](R r) { return r.outcome.completion; }},
+       {{.key = "path_m", .decimals = 9}, [](R r) { return r.outcome.path_m; }},
+       {{.title = "failure", .key = "failure"}, [](R r) { return r.outcome.failure; }},
+       {{.key = "point_meets_limits"}, [&plan](R r) { return is_enough(r.point, plan); }}});
+  return columns;
 }
 
 /// What stands below the table: what its figures are, with the protocol of the errors.
@@ -277,7 +288,7 @@ Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
   page.title = fmt::format("Clocks for {} on {}", plan.request.profile, plan.options.platform);
   page.boxes = choice_boxes(plan, choices);
   page.summary = tune_notes(plan);
-  runs_table(plan).show(page, runs_of(plan, points));
+  page.points = tune_rows(plan, points);
   page.curves = {"clock_mhz", "fps", {"missed_share", "ate_rmse_m", "power_mw", "latency_p99_ns"}};
   page.limits = {{"missed_share", 100 * plan.miss_rate}, {"ate_rmse_m", plan.ate_m}};
   page.x = "power_mw";
@@ -330,7 +341,7 @@ Manifest manifest_of(const TunePlan& plan, const TunePoint& point, const ChosenR
 void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
                   const std::optional<ChosenRun>& again, const Words& command_line) {
   const std::vector<Choice> all = choices(plan, points);
-  plan.out->write("runs.csv", tune_csv(plan, points));
+  plan.out->write("runs.csv", csv_text(tune_rows(plan, points)));
   if (again)
     write_run_folder(*plan.out, again->result,
                      manifest_of(plan, *chosen(all), *again, command_line),
@@ -375,7 +386,7 @@ void run(const CLI::App& command, const GatedTuneWords& words, const Words& comm
         .ending(tune_conclusion(all), next);
   };
   const Printout shown = printout(words.run.json, lines, [&] {
-    return table_document("tuning", tune_csv(plan, points), choice_json(plan, all));
+    return table_document("tuning", tune_rows(plan, points), choice_json(plan, all));
   });
   if (plan.out)
     publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });
@@ -390,32 +401,37 @@ void run(const CLI::App& command, const GatedTuneWords& words, const Words& comm
 
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
   using P = const TunePoint&;
-  TableOf<TunePoint> table{
+  Columns<TunePoint> table{
       {{"frames/s"}, [](P p) { return fmt::format("{:g}", p.fps); }},
       {{"MHz"}, [](P p) { return fmt::format("{:g}", megahertz(p.setting.clock)); }},
       {{"V", kRight, 1}, [](P p) { return volts(p.setting); }},
       {{"missed %"}, [](P p) { return percent(p.miss_rate()); }},
       {{"dropped %", kRight, 3}, [](P p) { return percent(p.drop_rate()); }}};
   for (const LatencyColumn& latency : kLatencies)
-    table.add(latency.shown, [of = latency.of](P p) {
-      return ms(p.median([of](const LoopOutcome& l) { return double(l.camera.latency.*of); }));
-    });
-  table.add({"mW"}, [](P p) { return milli(p.median(&LoopOutcome::power_w), 2); });
-  table.add({"band", kRight, 2}, [](P p) { return milli_band(p.median(&LoopOutcome::power_w)); });
-  table.add({"mJ/frame", kRight, 1}, [](P p) { return milli(p.median(&LoopOutcome::frame_j), 3); });
-  table.add({"ATE m"}, [](P p) { return error_text(p.ate().median, 3); });
+    table.push_back(
+        {latency.shown, [of = latency.of](P p) {
+           return ms(p.median([of](const LoopOutcome& l) { return double(l.camera.latency.*of); }));
+         }});
+  table.push_back({{"mW"}, [](P p) { return milli(p.median(&LoopOutcome::power_w), 2); }});
+  table.push_back(
+      {{"band", kRight, 2}, [](P p) { return milli_band(p.median(&LoopOutcome::power_w)); }});
+  table.push_back(
+      {{"mJ/frame", kRight, 1}, [](P p) { return milli(p.median(&LoopOutcome::frame_j), 3); }});
+  table.push_back({{"ATE m"}, [](P p) { return error_text(p.ate().median, 3); }});
   if (plan.variations.size() > 1)
-    table.add({"least … greatest", kRight, 2}, [](P p) {
-      return fmt::format("{} … {}", error_text(p.ate().low, 3), error_text(p.ate().high, 3));
-    });
-  if (plan.perturbs) table.add({"failed", kRight, 1}, [&](P p) { return p.failures(plan.ate_m); });
-  table.add({"poses %", kRight, 2}, [](P p) { return percent(p.completion()); });
-  table.add({"meets limits", kLeft}, [&](P p) { return is_enough(p, plan) ? "yes" : ""; });
-  return table.with(points).str();
+    table.push_back({{"least … greatest", kRight, 2}, [](P p) {
+                       return fmt::format("{} … {}", error_text(p.ate().low, 3),
+                                          error_text(p.ate().high, 3));
+                     }});
+  if (plan.perturbs)
+    table.push_back({{"failed", kRight, 1}, [&](P p) { return p.failures(plan.ate_m); }});
+  table.push_back({{"poses %", kRight, 2}, [](P p) { return percent(p.completion()); }});
+  table.push_back({{"meets limits", kLeft}, [&](P p) { return is_enough(p, plan) ? "yes" : ""; }});
+  return terminal_text(table_of(table, points));
 }
 
-std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points) {
-  return runs_table(plan).csv(runs_of(plan, points));
+Table tune_rows(const TunePlan& plan, const std::vector<TunePoint>& points) {
+  return table_of(run_columns(plan), runs_of(plan, points));
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {

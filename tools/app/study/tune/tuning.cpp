@@ -12,9 +12,9 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "sim/energy/model.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/datasets/disturbance.h"
 #include "traces/recordings/recording.h"
 

@@ -14,6 +14,7 @@
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/engine.h"
+#include "tools/app/table/table_files.h"
 
 namespace CLI {
 class App;
@@ -156,7 +157,7 @@ RunOptions run_options_of(const TunePlan& plan, const TunePoint& point);
 
 /// A row per point.
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points);
-std::string tune_csv(const TunePlan& plan, const std::vector<TunePoint>& points);
+Table tune_rows(const TunePlan& plan, const std::vector<TunePoint>& points);
 
 /// The lowest clock at each frame rate.
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices);

@@ -17,6 +17,7 @@
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/engine.h"
 #include "tools/app/study/sweep/points.h"
+#include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {
 
@@ -86,7 +87,7 @@ std::string whatif_bars(const std::vector<VariantResult>& results);
 /// In one line, why a variant takes another time: "waiting for code -11.2 ms, most in EPnP RANSAC".
 std::string reason_of(const VariantResult& base, const VariantResult& variant);
 
-std::string whatif_csv(const std::vector<VariantResult>& results);
+Table whatif_rows(const std::vector<VariantResult>& results);
 
 /// `leviosim whatif` (tools/commands/commands.h).
 Command add_whatif_command(CLI::App& app, const Words& words);

@@ -17,10 +17,11 @@
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/study/study.h"
 #include "tools/app/study/whatif/whatif.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -75,7 +76,7 @@ std::string number(std::optional<double> value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "–";
 }
 
-std::vector<std::string> cells_of(const VariantResult& result) {
+std::vector<Cell> cells_of(const VariantResult& result) {
   const std::string name = shortened(printable(result.name), kNameWidth);
   if (!result.failure.empty()) return {name, "–", "–", "–", "cannot run", "–", "–"};
   std::optional<double> energy;
@@ -91,16 +92,16 @@ std::vector<std::string> cells_of(const VariantResult& result) {
 
 /// Rows with a line of reasons below each but the first.
 std::string table_of(const VariantResult& base, const std::vector<const VariantResult*>& rows) {
-  TextTable table({{"", kLeft},
-                   {"mean ms", kRight},
-                   {"p99 ms", kRight, 2},
-                   {"fps", kRight, 3},
-                   {"verdict", kLeft},
-                   {"mJ", kRight, 1},
-                   {"mm2", kRight, 1}});
+  Table table({{"", kLeft},
+               {"mean ms", kRight},
+               {"p99 ms", kRight, 2},
+               {"fps", kRight, 3},
+               {"verdict", kLeft},
+               {"mJ", kRight, 1},
+               {"mm2", kRight, 1}});
   table.add(cells_of(base));
   for (const VariantResult* row : rows) table.add(cells_of(*row));
-  const std::string lines = table.str(std::min(table_width(), kWidth));
+  const std::string lines = terminal_text(table, std::min(table_width(), kWidth));
   std::string text;
   std::size_t begin = 0;
   constexpr std::size_t kBefore = 3;  // titles, rule, the run as it is
@@ -205,13 +206,10 @@ std::string advice_text(const std::vector<VariantResult>& results) {
 }
 
 /// @param results  outlive the table
-StudyTable<VariantResult> variants_table(const std::vector<VariantResult>& results) {
+Columns<VariantResult> variant_columns(const std::vector<VariantResult>& results) {
   using R = const VariantResult&;
-  const auto time = [](Banded FrameTimes::*figure, double Banded::*part) {
-    return [=](R r) {
-      return base::fixed(
-          r.failure.empty() ? std::optional((r.times.*figure).*part * 1e-6) : std::nullopt, 4);
-    };
+  const auto time = [](Banded FrameTimes::*figure) {
+    return [=](R r) { return r.failure.empty() ? Cell(1e-6 * (r.times.*figure)) : Cell(); };
   };
   const auto word = [](std::string_view about) {
     return [about](R r) {
@@ -220,72 +218,55 @@ StudyTable<VariantResult> variants_table(const std::vector<VariantResult>& resul
       return std::string(r.failure.empty() ? "" : "cannot run");
     };
   };
-  const auto energy = [](double Banded::*part) {
-    return [part](R r) {
-      return base::fixed(r.energy_mj ? std::optional((*r.energy_mj).*part) : std::nullopt, 6);
-    };
+  const auto milliseconds = [](const char* title, const char* key) -> Head {
+    return {.title = title, .key = key, .decimals = 4, .unit = "ms", .is_banded = true};
   };
-  return StudyTable<VariantResult>{
-      {{"variant", "variant", "", true}, [](R r) { return r.name; }},
-      {{"frame_mean_ms", "mean frame", "ms"}, time(&FrameTimes::mean_ns, &Banded::value)},
-      {{"frame_mean_ms_low"}, time(&FrameTimes::mean_ns, &Banded::low)},
-      {{"frame_mean_ms_high"}, time(&FrameTimes::mean_ns, &Banded::high)},
-      {{"frame_p99_ms", "frame time of 99 %", "ms"}, time(&FrameTimes::p99_ns, &Banded::value)},
-      {{"frame_p99_ms_low"}, time(&FrameTimes::p99_ns, &Banded::low)},
-      {{"frame_p99_ms_high"}, time(&FrameTimes::p99_ns, &Banded::high)},
-      {{"frame_worst_ms", "worst frame", "ms"}, time(&FrameTimes::worst_ns, &Banded::value)},
-      {{"frame_worst_ms_low"}, time(&FrameTimes::worst_ns, &Banded::low)},
-      {{"frame_worst_ms_high"}, time(&FrameTimes::worst_ns, &Banded::high)},
-      {{"sustainable_fps", "sustainable rate", "frames/s", false, true},
-       [](R r) {
-         return base::fixed(
-             r.failure.empty() ? std::optional(r.times.sustainable_rate()) : std::nullopt, 3);
-       }},
-      {{"frames"}, [](R r) { return fmt::format("{}", r.frames); }},
-      {{"late", "late frames", ""}, [](R r) { return fmt::format("{}", r.times.late); }},
-      {{"verdict", "verdict", ""},
-       [](R r) { return r.failure.empty() ? r.verdict() : "cannot run"; }},
-      {{"time", "time", ""}, word("time")},
-      {{"memory", "memory", ""}, word("memory")},
-      {{"map", "map", ""}, word("map")},
-      {{"energy_mj", "energy per frame", "mJ"}, energy(&Banded::value)},
-      {{"energy_mj_low"}, energy(&Banded::low)},
-      {{"energy_mj_high"}, energy(&Banded::high)},
-      {{"area_mm2", "area", "mm2"}, [](R r) { return base::fixed(r.area_mm2, 4); }},
-      {{"area"}, [](R r) { return std::string(r.is_whole_area ? "whole" : "at least"); }},
-      {{"computed"}, [](R r) { return std::string(r.is_run ? "run again" : "replayed"); }},
-      {{"why", "why", ""},
-       [&](R r) {
-         return &r == &results.front() || !r.failure.empty() ? std::string()
-                                                             : reason_of(results.front(), r);
-       }},
-      {{"failure", "failure", ""}, [](R r) { return r.failure; }}};
-}
-
-/// @param title   of the page
-/// @param summary  lines
-Json whatif_page(const std::string& title, const std::string& summary,
-                 const std::vector<VariantResult>& results) {
-  StudyPage page;
-  page.title = title;
-  page.summary = summary;
-  variants_table(results).show(page, results);
-  page.bars = {"variant", {"frame_mean_ms", "energy_mj", "area_mm2"}};
-  page.x = "area_mm2";
-  page.y = "frame_mean_ms";
-  return study_report(page);
+  return {{{.title = "variant", .key = "variant", .is_setup = true}, [](R r) { return r.name; }},
+          {milliseconds("mean frame", "frame_mean_ms"), time(&FrameTimes::mean_ns)},
+          {milliseconds("frame time of 99 %", "frame_p99_ms"), time(&FrameTimes::p99_ns)},
+          {milliseconds("worst frame", "frame_worst_ms"), time(&FrameTimes::worst_ns)},
+          {{.title = "sustainable rate",
+            .key = "sustainable_fps",
+            .decimals = 3,
+            .unit = "frames/s",
+            .more_is_better = true},
+           [](R r) { return r.failure.empty() ? Cell(r.times.sustainable_rate()) : Cell(); }},
+          {{.key = "frames"}, [](R r) { return r.frames; }},
+          {{.title = "late frames", .key = "late"}, [](R r) { return r.times.late; }},
+          {{.title = "verdict", .key = "verdict"},
+           [](R r) { return r.failure.empty() ? r.verdict() : "cannot run"; }},
+          {{.title = "time", .key = "time"}, word("time")},
+          {{.title = "memory", .key = "memory"}, word("memory")},
+          {{.title = "map", .key = "map"}, word("map")},
+          {{.title = "energy per frame",
+            .key = "energy_mj",
+            .decimals = 6,
+            .unit = "mJ",
+            .is_banded = true},
+           [](R r) { return r.energy_mj; }},
+          {{.title = "area", .key = "area_mm2", .decimals = 4, .unit = "mm2"},
+           [](R r) { return r.area_mm2; }},
+          {{.key = "area"}, [](R r) { return r.is_whole_area ? "whole" : "at least"; }},
+          {{.key = "computed"}, [](R r) { return r.is_run ? "run again" : "replayed"; }},
+          {{.title = "why", .key = "why"},
+           [&](R r) {
+             return &r == &results.front() || !r.failure.empty() ? std::string()
+                                                                 : reason_of(results.front(), r);
+           }},
+          {{.title = "failure", .key = "failure"}, [](R r) { return r.failure; }}};
 }
 
 // leviosim whatif: a recorded run on other chips, a row a variant; without a change, advice.
 
-struct WhatIfWords {
+struct WhatIfOptions : StudyOptions {
   std::vector<std::string> words;  ///< the run, if the first one is one, and the changes
-  std::string report;
-  std::string jobs;
   std::string memory;
-  bool force = false;
-  bool quiet = false;
-  bool json = false;
+
+  /// Empty: the shipped flight. A folder is one in any case, and may be refused.
+  std::string run() const;
+  std::vector<std::string> changes() const {
+    return {words.begin() + (run().empty() ? 0 : 1), words.end()};
+  }
 };
 
 /// The settings that compute a run again.
@@ -365,48 +346,58 @@ std::vector<std::string> after(const std::string& run, const std::vector<std::st
   return {fmt::format("leviosim whatif {} --report whatif.html", shell_word(run))};
 }
 
-void run(const WhatIfWords& typed, const Words& words) {
-  const ProgressLine::Style style = ProgressLine::style_of_stderr(typed.quiet);
-  std::vector<std::string> changes = typed.words;
-  std::string name;
-  if (!changes.empty() && is_run(changes.front())) {
-    name = changes.front();
-    changes.erase(changes.begin());
-  } else if (!changes.empty() && base::is_folder(changes.front())) {
-    name = changes.front();  // refused below
-  }
-  std::optional<outputs::OutputFile> page =
-      claimed_report(typed.report, typed.force,
-                     name.empty() ? std::vector<std::filesystem::path>{}
-                                  : std::vector<std::filesystem::path>{trace_of(name)});
-  SweepInputs inputs(std::filesystem::current_path(), style, trace_memory(typed.memory));
+std::string WhatIfOptions::run() const {
+  const bool names_run =
+      !words.empty() && (is_run(words.front()) || base::is_folder(words.front()));
+  return names_run ? words.front() : std::string();
+}
+
+Answer answer(const WhatIfOptions& typed, const RunnerOptions& runner, const Words& words) {
+  const std::string name = typed.run();
+  const std::vector<std::string> changes = typed.changes();
+  SweepInputs inputs(std::filesystem::current_path(), runner.progress, trace_memory(typed.memory));
   // Refused before a flight is drawn, which takes a while.
   for (const std::string& change : changes)
     if (change.find('=') == std::string::npos) inputs.platform(change, {change});
-  const RunnerOptions options{
-      .noun = "variant", .threads = parse_jobs(typed.jobs), .progress = style};
-  const Asked asked = asked_of(name, inputs, words, style);
+  const Asked asked = asked_of(name, inputs, words, runner.progress);
   WhatIf what_if(inputs, asked.name, asked.again);
   std::vector<Variant> variants;
   for (const std::string& change : changes)
     for (Variant& variant : what_if.variants(change)) variants.push_back(std::move(variant));
   const bool advises = changes.empty();
   if (advises) variants = what_if.standard_variants();
-  const std::vector<VariantResult> results = what_if.results(variants, options);
+  const std::vector<VariantResult> results = what_if.results(variants, runner);
   const traces::WorkTrace& trace = *inputs.trace(asked.name, {asked.name}).work;
   const std::string head = heading(asked.name, trace.info(), trace.frames());
-  print(printout(
-      typed.json,
-      [&] {
-        return Printout(head + (advises ? advice_text(results) : whatif_table(results)))
-            .ending(whatif_conclusion(results), after(name, changes));
-      },
-      [&] { return table_document("whatif", whatif_csv(results)); }));
-  if (page) publish_report(page, whatif_page("What if", head, results), !typed.json);
-  const bool failed = std::any_of(results.begin(), results.end(),
-                                  [](const VariantResult& r) { return !r.failure.empty(); });
-  if (failed && !advises) throw LimitNotMet();
+  Answer answer{.parts = {head + (advises ? advice_text(results) : whatif_table(results))},
+                .conclusion = whatif_conclusion(results),
+                .next = after(name, changes),
+                .rows = whatif_rows(results)};
+  answer.page.title = "What if";
+  answer.page.summary = head;
+  answer.page.bars = {"variant", {"frame_mean_ms", "energy_mj", "area_mm2"}};
+  answer.page.x = "area_mm2";
+  answer.page.y = "frame_mean_ms";
+  answer.is_met = advises || std::all_of(results.begin(), results.end(),
+                                         [](const auto& r) { return r.failure.empty(); });
+  return answer;
 }
+
+void declare(CLI::App& command, WhatIfOptions& options) {
+  command
+      .add_option("RUN CHANGE", options.words,
+                  "folder of a run with --record, or a work trace [the shipped flight]; then "
+                  "changes: PATH=V,V…, a platform, PLATFORM:PATH=V,PATH=V")
+      ->type_name("");
+  add_memory_option(command, options.memory);
+  command.add_flag("--quiet", options.quiet, "no progress");
+}
+
+const Study kWhatIf{
+    "whatif",
+    "A recorded run on other chips; without a change, advice",
+    "variant",
+    {"leviosim whatif recorded cluster.fpu.units=2,4,8 gap9-eigen", "leviosim whatif recorded"}};
 
 }  // namespace
 
@@ -440,28 +431,19 @@ std::string whatif_bars(const std::vector<VariantResult>& results) {
   return text;
 }
 
-std::string whatif_csv(const std::vector<VariantResult>& results) {
-  return variants_table(results).csv(results);
+Table whatif_rows(const std::vector<VariantResult>& results) {
+  return table_of(variant_columns(results), results);
 }
 
 Command add_whatif_command(CLI::App& app, const Words& words) {
-  CLI::App* command =
-      app.add_subcommand("whatif", "A recorded run on other chips; without a change, advice");
-  const auto typed = std::make_shared<WhatIfWords>();
-  command
-      ->add_option("RUN CHANGE", typed->words,
-                   "folder of a run with --record, or a work trace [the shipped flight]; then "
-                   "changes: PATH=V,V…, a platform, PLATFORM:PATH=V,PATH=V")
-      ->type_name("");
-  add_report_option(*command, typed->report);
-  command->add_flag("--force", typed->force, "replace that file");
-  add_jobs_option(*command, typed->jobs, "variant");
-  add_memory_option(*command, typed->memory);
-  command->add_flag("--quiet", typed->quiet, "no progress");
-  add_json_option(*command, typed->json);
-  add_examples(*command, {"leviosim whatif recorded cluster.fpu.units=2,4,8 gap9-eigen",
-                          "leviosim whatif recorded"});
-  return {command, [=, &words] { run(*typed, words); }};
+  return add_study<WhatIfOptions>(
+      app, words, kWhatIf, declare,
+      [](const WhatIfOptions& options) {
+        const std::string run = options.run();
+        return run.empty() ? std::vector<std::filesystem::path>{}
+                           : std::vector<std::filesystem::path>{trace_of(run)};
+      },
+      answer);
 }
 
 }  // namespace leviosim::tools

@@ -11,7 +11,7 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/base/text.h"
-#include "tools/app/report/text_table.h"
+#include "tools/app/table/terminal_table.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -264,12 +264,12 @@ platform::ResolvedPlatform calibrated_platform(const platform::Variants& platfor
 }
 
 std::string constants_table(const Calibration& calibration) {
-  TextTable table({{"constant", kLeft},
-                   {"before"},
-                   {"fitted"},
-                   {"range", kLeft},
-                   {"", kLeft},
-                   {"what it stands for", kLeft}});
+  Table table({{"constant", kLeft},
+               {"before"},
+               {"fitted"},
+               {"range", kLeft},
+               {"", kLeft},
+               {"what it stands for", kLeft}});
   for (std::size_t i = 0; i < calibration.constants.size(); ++i) {
     const Bounded& constant = calibration.constants[i];
     const double fitted = calibration.fitted[i];
@@ -279,33 +279,33 @@ std::string constants_table(const Calibration& calibration) {
                bound_text(constant, fitted), std::string(mechanism_of(constant.path))});
   }
   return "constants, fitted to the single-core values by least squares of log ratios\n" +
-         table.str();
+         terminal_text(table);
 }
 
 std::string residual_table(const Calibration& calibration) {
   using R = const Residual&;
-  const TableOf<Residual> table{{{"stage, 1 core", kLeft}, [](R r) { return r.stage; }},
+  const Columns<Residual> table{{{"stage, 1 core", kLeft}, [](R r) { return r.stage; }},
                                 {{"paper, kcycles"}, [](R r) { return kilo(r.reference); }},
                                 {{"before"}, [](R r) { return kilo(r.before); }},
                                 {{"error"}, [](R r) { return percent(r.before, r.reference); }},
                                 {{"fitted"}, [](R r) { return kilo(r.after); }},
                                 {{"error"}, [](R r) { return percent(r.after, r.reference); }}};
-  return "residuals\n" + table.with(calibration.residuals).str() +
+  return "residuals\n" + terminal_text(table_of(table, calibration.residuals)) +
          fmt::format("mean absolute error: {:.1f} % before, {:.1f} % fitted\n",
                      mean_error_before(calibration), mean_error_after(calibration));
 }
 
 std::string left_out_table(const Calibration& calibration) {
   using L = const LeftOut&;
-  TableOf<LeftOut> table{{{"stage, left out", kLeft}, [](L l) { return l.stage; }},
+  Columns<LeftOut> table{{{"stage, left out", kLeft}, [](L l) { return l.stage; }},
                          {{"paper, kcycles"}, [](L l) { return kilo(l.reference); }},
                          {{"predicted"}, [](L l) { return kilo(l.predicted); }},
                          {{"error"}, [](L l) { return percent(l.predicted, l.reference); }}};
   for (std::size_t i = 0; i < calibration.constants.size(); ++i)
-    table.add({calibration.constants[i].path},
-              [i](L l) { return fmt::format("{:.4f}", l.constants[i]); });
+    table.push_back({{.title = calibration.constants[i].path, .shown = 4},
+                     [i](L l) { return l.constants[i]; }});
   return "each stage as the constants fitted to the others predict it\n" +
-         table.with(calibration.left_out).str() +
+         terminal_text(table_of(table, calibration.left_out)) +
          fmt::format("mean absolute error: {:.1f} %\n", mean_error_left_out(calibration));
 }
 

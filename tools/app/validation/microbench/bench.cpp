@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "sim/base/csv.h"
 #include "sim/base/interruption.h"
-#include "tools/app/report/text_table.h"
 #include "tools/app/run/range_bands.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -55,9 +54,9 @@ std::string warning_of(const MicrobenchRow& row) {
                      row.guard ? "guard" : "tolerance", 100 * row.guard.value_or(row.tolerance));
 }
 
-const TableOf<MicrobenchRow>& table_of_rows() {
+const Columns<MicrobenchRow>& shown_columns() {
   using R = const MicrobenchRow&;
-  static const TableOf<MicrobenchRow> table{
+  static const Columns<MicrobenchRow> table{
       {{"", kLeft}, [](R r) { return r.name; }},
       {{"cores"}, [](R r) { return r.cores; }},
       {{"unit", kLeft, 1}, [](R r) { return r.unit; }},
@@ -234,8 +233,8 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
   for (auto begin = rows.begin(); begin != rows.end();) {
     const auto end = std::find_if(
         begin, rows.end(), [&](const MicrobenchRow& row) { return row.group != begin->group; });
-    text +=
-        fmt::format("{}\n{}\n", begin->group, table_of_rows().with(std::span(begin, end)).str());
+    text += fmt::format("{}\n{}\n", begin->group,
+                        terminal_text(table_of(shown_columns(), std::span(begin, end))));
     begin = end;
   }
   text += fmt::format("{}: {} of {} rows within their tolerance, mean absolute error {:.1f} %\n",
@@ -283,26 +282,25 @@ std::string microbench_conclusion(const std::vector<MicrobenchRow>& rows) {
                        : fmt::format("verdict: NOT met: {}; {}", text, worse);
 }
 
-std::string microbench_csv(const std::vector<MicrobenchRow>& rows) {
+Table microbench_rows(const std::vector<MicrobenchRow>& rows) {
   using R = MicrobenchRow;
-  const auto all_digits = [](double value) { return fmt::format("{}", value); };
-  const base::CsvTable<R> table{
-      {"group", [](const R& r) { return r.group; }},
-      {"name", [](const R& r) { return r.name; }},
-      {"cores", [](const R& r) { return r.cores; }},
-      {"unit", [](const R& r) { return r.unit; }},
-      {"reference", [=](const R& r) { return all_digits(r.reference); }},
-      {"reference_high", [=](const R& r) { return all_digits(r.reference_high); }},
-      {"simulated", [=](const R& r) { return all_digits(r.simulated); }},
-      {"low", [=](const R& r) { return r.band ? all_digits(r.band->low) : std::string(); }},
-      {"high", [=](const R& r) { return r.band ? all_digits(r.band->high) : std::string(); }},
-      {"error", [=](const R& r) { return all_digits(r.error()); }},
-      {"tolerance", [=](const R& r) { return all_digits(r.tolerance); }},
-      {"guard", [=](const R& r) { return r.guard ? all_digits(*r.guard) : std::string(); }},
-      {"verdict", [](const R& r) { return std::string(name_of(r.verdict())); }},
-      {"tier", [](const R& r) { return r.tier; }},
-      {"source", [](const R& r) { return r.source; }}};
-  return table.text(rows);
+  return table_of(
+      Columns<R>{{{.key = "group"}, [](const R& r) { return r.group; }},
+                 {{.key = "name"}, [](const R& r) { return r.name; }},
+                 {{.key = "cores"}, [](const R& r) { return r.cores; }},
+                 {{.key = "unit"}, [](const R& r) { return r.unit; }},
+                 {{.key = "reference"}, [](const R& r) { return r.reference; }},
+                 {{.key = "reference_high"}, [](const R& r) { return r.reference_high; }},
+                 {{.key = "simulated"}, [](const R& r) { return r.simulated; }},
+                 {{.key = "low"}, [](const R& r) { return r.band ? Cell(r.band->low) : Cell(); }},
+                 {{.key = "high"}, [](const R& r) { return r.band ? Cell(r.band->high) : Cell(); }},
+                 {{.key = "error"}, [](const R& r) { return r.error(); }},
+                 {{.key = "tolerance"}, [](const R& r) { return r.tolerance; }},
+                 {{.key = "guard"}, [](const R& r) { return r.guard; }},
+                 {{.key = "verdict"}, [](const R& r) { return name_of(r.verdict()); }},
+                 {{.key = "tier"}, [](const R& r) { return r.tier; }},
+                 {{.key = "source"}, [](const R& r) { return r.source; }}},
+      rows);
 }
 
 }  // namespace leviosim::tools

@@ -23,7 +23,8 @@
 #include "sim/chip/config.h"
 #include "sim/work/machine.h"
 #include "sim/work/program.h"
-#include "tools/app/result/banded.h"
+#include "tools/app/table/banded.h"
+#include "tools/app/table/table_files.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {
@@ -193,7 +194,7 @@ std::string coverage_text(const std::vector<MicrobenchRow>& rows,
                           const std::vector<double>& needed);
 /// Whether all rows are as near as they have to be, in a sentence.
 std::string microbench_conclusion(const std::vector<MicrobenchRow>& rows);
-std::string microbench_csv(const std::vector<MicrobenchRow>& rows);
+Table microbench_rows(const std::vector<MicrobenchRow>& rows);
 
 /// Mean of the absolute errors.
 double mean_error(const std::vector<MicrobenchRow>& rows);
