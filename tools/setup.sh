@@ -12,6 +12,7 @@ packages=(
   g++ cmake ninja-build git                # compiler, build, revision
   libeigen3-dev libfmt-dev                 # linear algebra, text
   libpng-dev libturbojpeg0-dev             # PNG and JPEG files
+  libopencv-imgproc-dev                    # OpenCV's core and imgproc, without codecs
   libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32
   libjs-chart.js                                              # charts of reports, embedded

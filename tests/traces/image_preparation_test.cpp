@@ -38,11 +38,13 @@ TEST(ImagePreparation, ReadsNoPixelButThoseItNames) {
   EXPECT_LE(std::count(read.begin(), read.end(), 1), 4 * 160 * 120);
 }
 
-/// Positions left of and above the image, far outside, and between its last pixels.
-TEST(ImagePreparation, PixelsAreThoseOfOpenCvsRemap) {
-  for (const double k1 : {-0.45, 0.3, 5.0}) {
+/// Positions left of and above the image, far outside, and between its last pixels; the lens is our
+/// own model of it.
+TEST(ImagePreparation, PixelsAreWhereTheCameraModelSays) {
+  for (const double k1 : {-0.45, 0.3, 5.0, 1000.0}) {
     CameraModel camera = euroc_cam0();
     camera.k1 = k1;
+    if (k1 == 0.3) camera.lens = Lens::equidistant;
     const Pixels image = random_image(camera, 4);
     cv::Mat u(camera.height, camera.width, CV_32F);
     cv::Mat v = u.clone();
@@ -61,6 +63,19 @@ TEST(ImagePreparation, PixelsAreThoseOfOpenCvsRemap) {
     cv::remap(given, expected, u, v, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
     const Pixels got = ImagePreparation(camera, {camera.width, camera.height}).apply(image);
     EXPECT_TRUE(std::equal(got.begin(), got.end(), expected.begin<uchar>())) << k1;
+  }
+}
+
+TEST(ImagePreparation, TakesTheWidestAndTheTallestImage) {
+  for (const ImageSize size : {ImageSize{32766, 2}, {2, 32766}}) {
+    CameraModel camera;
+    camera.fx = camera.fy = 100;
+    camera.width = size.width;
+    camera.height = size.height;
+    const Pixels image = random_image(camera, 5);
+    EXPECT_EQ(ImagePreparation(camera, size).apply(image), image);
+    (size.width > size.height ? camera.width : camera.height) += 1;
+    testing::expect_input_error([&] { ImagePreparation(camera, {1, 1}); }, {"32766 pixels"});
   }
 }
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "sim/base/check.h"
@@ -204,12 +205,6 @@ class Jpeg {
   std::unique_ptr<void, int (*)(tjhandle)> decoder_;
 };
 
-/// Luma of Rec. 601 in units of 1/2^15.
-std::uint8_t luma(const std::uint8_t* rgb) {
-  return static_cast<std::uint8_t>((9798 * rgb[0] + 19235 * rgb[1] + 3735 * rgb[2] + (1 << 14)) >>
-                                   15);
-}
-
 template <class Format>
 std::vector<std::uint8_t> decode_as(std::string_view bytes, ImageSize expected) {
   Format file(bytes);
@@ -219,7 +214,9 @@ std::vector<std::uint8_t> decode_as(std::string_view bytes, ImageSize expected) 
   file.decode(image);
   if (!header.colour) return image;
   std::vector<std::uint8_t> grey(expected.pixels());
-  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = luma(&image[3 * i]);
+  const cv::Mat coloured(expected.height, expected.width, CV_8UC3, image.data());
+  cv::Mat result(expected.height, expected.width, CV_8UC1, grey.data());
+  cv::cvtColor(coloured, result, cv::COLOR_RGB2GRAY);  // luma of Rec. 601, in fixed point
   return grey;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "sim/base/check.h"
 #include "sim/base/csv.h"
@@ -15,55 +17,42 @@
 namespace leviosim::traces {
 namespace {
 
-constexpr int kStepBits = 5;
-constexpr int kSteps = 1 << kStepBits;  ///< of a pixel
-
-/// A position in steps; one that is far from any image is black, as is one that is no number.
-int steps(double pixels) {
-  constexpr double kFar = 1e6;
-  return static_cast<int>(
-      std::lrint(pixels > -kFar && pixels < kFar ? pixels * kSteps : -kFar * kSteps));
+/// An image that others own, as OpenCV takes it.
+cv::Mat view_of(std::span<const std::uint8_t> pixels, int width, int height) {
+  return {height, width, CV_8UC1, const_cast<std::uint8_t*>(pixels.data())};
 }
 
-/// Where each pixel of the prepared image is in the camera's [1/32 px].
-std::vector<Eigen::Vector2i> make_map(const CameraModel& camera, ImageSize size,
-                                      const Decimation& decimation) {
-  std::vector<Eigen::Vector2i> map;
-  map.reserve(size.pixels());
+/// A position rounded to what interpolation distinguishes, 1/32 px; one that is far from any image,
+/// or no number, is black. Single precision is exact to that.
+float rounded(double pixels) {
+  constexpr double kFar = 1e6, kSteps = cv::INTER_TAB_SIZE;
+  return static_cast<float>(pixels > -kFar && pixels < kFar ? std::rint(pixels * kSteps) / kSteps
+                                                            : -kFar);
+}
+
+/// Where each pixel of the prepared image is in the camera's: column, row.
+cv::Mat make_positions(const CameraModel& camera, ImageSize size, const Decimation& decimation) {
+  cv::Mat positions(size.height, size.width, CV_32FC2);
   for (int j = 0; j < size.height; ++j) {
     for (int i = 0; i < size.width; ++i) {
       const double u = decimation.x0 + decimation.factor * i + decimation.shift;
       const double v = decimation.y0 + decimation.factor * j + decimation.shift;
       const Eigen::Vector2d bent =
           camera.distort({(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy});
-      map.emplace_back(steps(camera.fx * bent.x() + camera.cx),
-                       steps(camera.fy * bent.y() + camera.cy));
+      positions.at<cv::Vec2f>(j, i) = {rounded(camera.fx * bent.x() + camera.cx),
+                                       rounded(camera.fy * bent.y() + camera.cy)};
     }
   }
-  return map;
-}
-
-/// Grey level between four pixels, black outside, as cv::remap() rounds it.
-std::uint8_t interpolated(std::span<const std::uint8_t> image, ImageSize size,
-                          const Eigen::Vector2i& at) {
-  const int x = at.x() >> kStepBits;
-  const int y = at.y() >> kStepBits;
-  const int right = at.x() & (kSteps - 1);
-  const int below = at.y() & (kSteps - 1);
-  const auto pixel = [&](int column, int row) -> int {
-    if (column < 0 || row < 0 || column >= size.width || row >= size.height) return 0;
-    return image[static_cast<std::size_t>(row) * size.width + column];
-  };
-  const int above_level = (kSteps - right) * pixel(x, y) + right * pixel(x + 1, y);
-  const int below_level = (kSteps - right) * pixel(x, y + 1) + right * pixel(x + 1, y + 1);
-  constexpr int kHalf = kSteps * kSteps / 2;
-  return static_cast<std::uint8_t>(((kSteps - below) * above_level + below * below_level + kHalf) >>
-                                   (2 * kStepBits));
+  return positions;
 }
 
 }  // namespace
 
 Decimation make_decimation(const CameraModel& camera, ImageSize size) {
+  constexpr int kWidest = std::numeric_limits<std::int16_t>::max() - 1;  // of OpenCV's maps
+  if (std::max(camera.width, camera.height) > kWidest)
+    throw InputError(fmt::format("images of {}x{}: expected at most {} pixels in a row or column",
+                                 camera.width, camera.height, kWidest));
   if (camera.prepared && (size.width != camera.width || size.height != camera.height))
     throw InputError(
         fmt::format("image size {}x{}: the images of this flight are already undistorted and "
@@ -95,16 +84,28 @@ PinholeIntrinsics decimated_intrinsics(const CameraModel& camera, ImageSize size
 }
 
 ImagePreparation::ImagePreparation(const CameraModel& camera, ImageSize size) : camera_(camera) {
+  // An image is the least piece of work that threads share: OpenCV starts none of its own.
+  [[maybe_unused]] static const bool alone = (cv::setNumThreads(1), true);
   const Decimation decimation = make_decimation(camera, size);
   intrinsics_ = decimated_intrinsics(camera, size, decimation);
-  map_ = make_map(camera, size, decimation);
+  corners_.resize(size.pixels());
+  fractions_.resize(size.pixels());
+  cv::Mat corners(size.height, size.width, CV_16SC2, corners_.data());
+  cv::Mat fractions(size.height, size.width, CV_16UC1, fractions_.data());
+  cv::convertMaps(make_positions(camera, size, decimation), cv::noArray(), corners, fractions,
+                  CV_16SC2);
 }
 
 std::vector<std::uint8_t> ImagePreparation::apply(std::span<const std::uint8_t> full) const {
   const ImageSize size{camera_.width, camera_.height};
   check_equal(full.size(), size.pixels(), "ImagePreparation: the camera's image");
-  std::vector<std::uint8_t> pixels(map_.size());
-  for (std::size_t i = 0; i < map_.size(); ++i) pixels[i] = interpolated(full, size, map_[i]);
+  std::vector<std::uint8_t> pixels(corners_.size());
+  const int width = intrinsics_.width, height = intrinsics_.height;
+  cv::Mat prepared = view_of(pixels, width, height);
+  const cv::Mat corners(height, width, CV_16SC2, const_cast<Corner*>(corners_.data()));
+  const cv::Mat fractions(height, width, CV_16UC1, const_cast<std::uint16_t*>(fractions_.data()));
+  cv::remap(view_of(full, size.width, size.height), prepared, corners, fractions, cv::INTER_LINEAR,
+            cv::BORDER_CONSTANT);
   return pixels;
 }
 
@@ -114,9 +115,8 @@ std::vector<std::uint8_t> ImagePreparation::pixels_read() const {
     if (x >= 0 && y >= 0 && x < camera_.width && y < camera_.height)
       read[static_cast<std::size_t>(y) * camera_.width + x] = 1;
   };
-  for (const Eigen::Vector2i& at : map_)
-    for (int corner = 0; corner < 4; ++corner)
-      mark((at.x() >> kStepBits) + corner % 2, (at.y() >> kStepBits) + corner / 2);
+  for (const Corner& at : corners_)
+    for (int corner = 0; corner < 4; ++corner) mark(at[0] + corner % 2, at[1] + corner / 2);
   return read;
 }
 

@@ -10,11 +10,13 @@
 // fx / k and (cx - x0) / k, without the s; we follow them, so for k > 1 the principal point is off
 // by s / k px (a quarter of a pixel at 160x120), as it is there.
 //
-// The maps are double arithmetic and the interpolation is OpenCV's fixed-point one (1/32 px), so
-// the bytes do not depend on the host. Since every output pixel is interpolated by itself, only the
-// pixels that survive the decimation are computed; the result is that of undistorting everything.
+// The maps are double arithmetic, rounded to 1/32 px, and the interpolation is OpenCV's fixed-point
+// one, so the bytes do not depend on the host. Since every output pixel is interpolated by itself,
+// only the pixels that survive the decimation are computed; the result is that of undistorting
+// everything.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -34,8 +36,9 @@ struct Decimation {
   int shift = 0;       ///< of the samples against the origin, in both directions
 };
 
-/// The rule above. Throws InputError if `size` is not positive or exceeds the camera's image, and
-/// if the camera's images are prepared for another size.
+/// The rule above. Throws InputError if `size` is not positive or exceeds the camera's image, if
+/// the camera's images are prepared for another size, or have more than 32 766 pixels in a row or
+/// column.
 Decimation make_decimation(const CameraModel& camera, ImageSize size);
 
 /// Intrinsics of the decimated image.
@@ -62,7 +65,11 @@ class ImagePreparation {
  private:
   CameraModel camera_;
   PinholeIntrinsics intrinsics_;
-  std::vector<Eigen::Vector2i> map_;  // where each output pixel is in the camera's image [1/32 px]
+  // Where each prepared pixel is in the camera's image, as cv::convertMaps() has it: the pixel
+  // above and left of it (column, row), and an index of the fractions, in 1/32 px.
+  using Corner = std::array<std::int16_t, 2>;
+  std::vector<Corner> corners_;
+  std::vector<std::uint16_t> fractions_;
 };
 
 // The frames of a dataset as the pipeline sees them: read, checked and prepared.
