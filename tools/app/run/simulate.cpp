@@ -35,7 +35,7 @@ void correct_earlier(std::vector<FrameResult>& frames) {
   for (const auto& [ago, pose] : frames.back().earlier) {
     FrameResult& frame = frames[frames.size() - 1 - static_cast<std::size_t>(ago)];
     frame.pose = pose;
-    frame.state = state_after(frame.state, frames.back().state);
+    frame.state = vio::state_after(frame.state, frames.back().state);
   }
 }
 
