@@ -10,7 +10,7 @@
 namespace leviosim::tools {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string cell = "\"";
   for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -77,12 +77,10 @@ std::vector<FileColumn> file_columns(const Table& table) {
   return columns;
 }
 
-using Words = std::vector<std::string>;
-
 /// Takes the row that begins at `at`, which moves behind its line break. By RFC 4180: a quoted cell
 /// may hold commas, line breaks, and quotes, which are doubled.
-Words next_row(const std::string& csv, std::size_t& at) {
-  Words cells(1);
+std::vector<std::string> next_row(const std::string& csv, std::size_t& at) {
+  std::vector<std::string> cells(1);
   bool quoted = false;
   while (at < csv.size()) {
     const char c = csv[at++];
@@ -104,14 +102,15 @@ Words next_row(const std::string& csv, std::size_t& at) {
 
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string line;
-  for (const std::string& cell : cells) line += (&cell == &cells.front() ? "" : ",") + quoted(cell);
+  for (const std::string& cell : cells)
+    line += (&cell == &cells.front() ? "" : ",") + csv_cell(cell);
   return line + '\n';
 }
 
 std::string csv_text(const Table& table) {
   const std::vector<FileColumn> columns = file_columns(table);
   if (columns.empty()) return {};
-  Words cells;
+  std::vector<std::string> cells;
   for (const FileColumn& column : columns) cells.push_back(column.key);
   std::string text = csv_line(cells);
   for (const std::vector<Cell>& row : table.rows()) {
@@ -130,7 +129,7 @@ Table read_csv(const std::string& where, const std::string& text) {
   const std::size_t width = heads.size();
   Table table(std::move(heads));
   for (std::size_t row = 2; at < text.size(); ++row) {
-    const Words words = next_row(text, at);
+    const std::vector<std::string> words = next_row(text, at);
     if (words.size() != width)
       throw InputError(fmt::format("{}: row {} has {} cells; expected {}, as its titles", where,
                                    row, words.size(), width));
