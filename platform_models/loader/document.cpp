@@ -224,7 +224,7 @@ void DocumentReader::read_section(const std::vector<YamlEntry>& entries, const s
     } else if (!schema_.record(inner).empty()) {
       read_record(entry, inner);
     } else {
-      place(entry, inner).fail("unknown key" + base::did_you_mean(inner, schema_.keys()));
+      place(entry, inner).fail(why_unknown(inner, schema_.keys()));
     }
   }
 }
@@ -298,8 +298,7 @@ void DocumentReader::check_keys(const std::vector<YamlEntry>& entries,
 
 Provenance DocumentReader::read_provenance(const std::vector<YamlEntry>& entries,
                                            const std::string& path, const Place& record) const {
-  static constexpr std::array<std::string_view, 5> kWords = {"high", "medium", "low", "assumed",
-                                                             "calibrated"};
+  static constexpr std::array<std::string_view, 4> kWords = {"high", "medium", "low", "assumed"};
   const auto text = [&](const std::string& key, bool required) -> std::string {
     const YamlEntry* entry = find(entries, key);
     if (entry == nullptr && required) record.fail(fmt::format("missing key '{}'", key));

@@ -138,11 +138,6 @@ void add_core(Table& table, const CoreSection& section) {
   const auto key = [&](std::string_view name) { return fmt::format("{}.{}", section.path, name); };
   table.add_of_cores(
       section,
-      quantity(key("instruction_overhead"), kRatio, 0.1, 10,
-               "instructions emitted per instruction accounted for by ops that are no routines"),
-      [](auto& core) -> auto& { return core.instruction_overhead; });
-  table.add_of_cores(
-      section,
       optional(quantity(
           key("unmeasured_instructions"), kRatio, 0.1, 10,
           "instructions executed per one accounted for by ops, in code that was not measured")),

@@ -16,7 +16,7 @@ std::string what_is_meant(const Schema& schema, const std::string& path) {
   for (const std::string& known : paths)
     if (known.rfind(path + ".", 0) == 0)
       return fmt::format("has keys of its own, such as '{}'", known);
-  return "unknown key" + base::did_you_mean(path, paths);
+  return why_unknown(path, paths);
 }
 
 std::string default_unit(const Field& field, const std::optional<Setting>& previous) {

@@ -7,6 +7,7 @@
 
 #include "platform_models/loader/fields.h"
 #include "sim/base/check.h"
+#include "sim/base/text.h"
 
 namespace leviosim::platform {
 
@@ -43,6 +44,12 @@ std::vector<std::string> Schema::keys() const {
   std::vector<std::string> keys(sections_.begin(), sections_.end());
   for (const auto& [record, fields] : by_record_) keys.push_back(record);
   return keys;
+}
+
+std::string why_unknown(const std::string& path, const std::vector<std::string>& known) {
+  if (path.ends_with(".instruction_overhead"))
+    return "no such key any more: compiled code is taken as it was measured; delete it";
+  return "unknown key" + base::did_you_mean(path, known);
 }
 
 const Unit* Dimension::find(std::string_view name) const {

@@ -140,4 +140,8 @@ class Schema {
   std::set<std::string, std::less<>> sections_;
 };
 
+/// What to say of a key that there is not: the nearest of those that there are, or, if it was one,
+/// what has become of it.
+std::string why_unknown(const std::string& path, const std::vector<std::string>& known);
+
 }  // namespace leviosim::platform

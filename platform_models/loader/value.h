@@ -22,7 +22,7 @@ struct Parameter {
   std::string value;  ///< number or name, as text that reads back as the same value
   std::string unit;   ///< empty for names
   std::string source;
-  std::string confidence;  ///< high, medium, low, assumed, calibrated
+  std::string confidence;  ///< high, medium, low, assumed
   std::optional<Range> range;
   std::string note;
   std::string description;

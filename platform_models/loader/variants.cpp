@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "platform_models/loader/platform_file.h"
@@ -50,37 +49,11 @@ Settings Variants::changed(const std::vector<Change>& changes) const {
   return settings;
 }
 
-sim::ChipConfig Variants::configured(const Settings& settings) const {
+sim::ChipConfig Variants::config(const std::vector<Change>& changes) const {
+  const Settings settings = changed(changes);
   const sim::ChipConfig config = configure(schema_, platform_.name, settings);
   check_rules(schema_, settings, config);
   return config;
-}
-
-sim::ChipConfig Variants::config(const std::vector<Change>& changes) const {
-  return configured(changed(changes));
-}
-
-ResolvedPlatform Variants::calibrated(const std::vector<Change>& changes, const std::string& how,
-                                      const std::string& meaning) const {
-  const Settings settings = changed(changes);
-  ResolvedPlatform result = platform_;
-  result.config = configured(settings);
-  result.parameters.clear();
-  for (const auto& setting : settings)
-    if (setting) result.parameters.push_back(setting->parameter);
-  for (Parameter& parameter : result.parameters) {
-    const bool is_changed = std::any_of(changes.begin(), changes.end(), [&](const Change& change) {
-      return change.path == parameter.path;
-    });
-    if (!is_changed) continue;
-    parameter.source = fmt::format("{} ({})", kCalibrated, how);
-    parameter.confidence = kCalibrated;
-    parameter.overridden = false;
-  }
-  std::map<std::string, std::string> sources(result.sources.begin(), result.sources.end());
-  sources[kCalibrated] = meaning;
-  result.sources.assign(sources.begin(), sources.end());
-  return result;
 }
 
 }  // namespace leviosim::platform

@@ -1,4 +1,4 @@
-// A platform with some of its numbers changed, many times over: sensitivity sweeps and calibration
+// A platform with some of its numbers changed, many times over: sensitivity sweeps and bands
 // need hundreds of variants of a chip and read its file once. The checks are those of files and -p.
 #pragma once
 
@@ -17,9 +17,6 @@ struct Change {
   double value = 0;
 };
 
-/// What a calibration changed says so in these words (README.md).
-inline constexpr const char* kCalibrated = "calibrated";
-
 class Variants {
  public:
   explicit Variants(ResolvedPlatform platform);
@@ -31,16 +28,8 @@ class Variants {
   /// @throws InputError for unknown paths, values out of limits and broken rules
   sim::ChipConfig config(const std::vector<Change>& changes) const;
 
-  /// The platform with these changes as results of a calibration: their confidence is "calibrated"
-  /// and their source "calibrated (HOW)"; ranges stay.
-  /// @param how      short; without parentheses
-  /// @param meaning  of the source "calibrated", for the list of sources
-  ResolvedPlatform calibrated(const std::vector<Change>& changes, const std::string& how,
-                              const std::string& meaning) const;
-
  private:
   Settings changed(const std::vector<Change>& changes) const;
-  sim::ChipConfig configured(const Settings& settings) const;
 
   ResolvedPlatform platform_;
   Schema schema_;

@@ -8,7 +8,6 @@
 #include "platform_models/loader/loader.h"
 #include "platform_models/loader/override.h"
 #include "platform_models/loader/schema.h"
-#include "platform_models/loader/variants.h"
 #include "sim/base/check.h"
 #include "sim/base/text.h"
 
@@ -48,19 +47,10 @@ std::vector<Record> records_of(const Schema& schema, const ResolvedPlatform& pla
   return records;
 }
 
-/// Changed since the file was read, by -p or by a calibration.
-bool is_changed(const Parameter& parameter, const std::string& original) {
-  return parameter.overridden || parameter.source != original;
-}
-
-/// What the file says of the record. Changed columns have other sources.
+/// What the file says of the record. Columns that -p changed have other sources.
 std::string original_source_of(const Record& record) {
-  const auto begins_with = [](const std::string& text, std::string_view start) {
-    return text.rfind(start, 0) == 0;
-  };
   for (const auto& [field, parameter] : record.columns)
-    if (!parameter->overridden && !begins_with(parameter->source, kCalibrated))
-      return parameter->source;
+    if (!parameter->overridden) return parameter->source;
   return record.columns.front().second->source;
 }
 
@@ -70,7 +60,7 @@ std::string source_of(const Record& record) {
   std::vector<std::pair<std::string, std::string>> changed;  // source → columns
   bool rest = false;
   for (const auto& [field, parameter] : record.columns) {
-    if (!is_changed(*parameter, original)) {
+    if (!parameter->overridden) {
       rest = true;
     } else if (!changed.empty() && changed.back().first == parameter->source) {
       changed.back().second += fmt::format(", {}", field->name);
@@ -87,9 +77,8 @@ std::string source_of(const Record& record) {
 }
 
 std::string confidence_of(const Record& record) {
-  const std::string original = original_source_of(record);
   for (const auto& [field, parameter] : record.columns)
-    if (is_changed(*parameter, original)) return parameter->confidence;
+    if (parameter->overridden) return parameter->confidence;
   return record.columns.front().second->confidence;
 }
 

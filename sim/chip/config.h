@@ -186,10 +186,8 @@ std::array<OpCost, work::kOpCount> default_costs();
 /// How counted operations become instructions of one instruction set, and their latencies.
 struct CoreConfig {
   std::array<OpCost, work::kOpCount> ops = default_costs();
-  /// Instructions emitted per one that ops account for, routines left out. Where functions were
-  /// measured, their ratio (work::CompiledWork) comes on top.
-  double instruction_overhead = 1;
-  /// Instructions executed per one that ops account for, in code that was not measured.
+  /// Instructions executed per one that ops account for, routines left out, in code that was not
+  /// measured. That of measured functions has a ratio of its own (work::CompiledWork).
   double unmeasured_instructions = 1;
   /// Share of loads whose result the next instruction uses, in code that was not measured.
   double load_use_fraction = 0;

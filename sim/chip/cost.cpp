@@ -67,8 +67,8 @@ CompiledRatios::CompiledRatios(const work::CompiledWork& work)
     : measured_(is_measured(work)),
       emitted_loops_(ratio_of_loops(work)),
       emitted_(ratio_of_others(work)),
-      loads_measured_(work[static_cast<std::size_t>(Compiled::Loads)] > 0),
-      used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Loads, 0)) {}
+      // Not of the loads: compiled code may execute fewer or more than were counted.
+      used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Priced, 0)) {}
 
 OperationsOfKind CompiledRatios::apply(Op op, double count) const {
   const bool repeats = op == Op::LoopIteration || op == Op::LoopJump;
@@ -77,8 +77,7 @@ OperationsOfKind CompiledRatios::apply(Op op, double count) const {
           .stalled = measured_ && repeats ? emitted : count,
           .emitted = measured_ ? emitted : 0,
           .unmeasured = measured_ ? 0 : count,
-          .used_at_once = count * used_at_once_,
-          .unmeasured_loads = loads_measured_ ? 0 : count};
+          .used_at_once = count * used_at_once_};
 }
 
 std::array<OpCost, work::kOpCount> default_costs() {
@@ -95,13 +94,14 @@ OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operatio
   result.issue =
       cost.issue *
       (cost.routine ? operations.count
-                    : (operations.emitted + operations.unmeasured * core.unmeasured_instructions) *
-                          core.instruction_overhead);
+                    : operations.emitted + operations.unmeasured * core.unmeasured_instructions);
   result.stall = operations.stalled * cost.stall;
   result.stall_mechanism = stall_mechanism(info.op);
+  // In measured code, the instruction behind a load waits: any one.
+  double used_at_once = cost.routine ? 0 : operations.used_at_once * cost.issue;
   if (info.op == Op::LoadStream || info.op == Op::LoadIndexed)
-    result.load_use = core.load_use_stall * (operations.used_at_once +
-                                             operations.unmeasured_loads * core.load_use_fraction);
+    used_at_once += operations.unmeasured * core.load_use_fraction;
+  result.load_use = core.load_use_stall * used_at_once;
   return result;
 }
 

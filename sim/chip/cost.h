@@ -33,11 +33,11 @@ struct Demand {
 /// Operations of one kind, with what their segments' compiled code makes of them.
 struct OperationsOfKind {
   double count = 0;
-  double stalled = 0;           ///< that stall: of loops that a compiler writes out, those left
-  double emitted = 0;           ///< of measured code, times executed to counted instructions
-  double unmeasured = 0;        ///< of code that was not measured
-  double used_at_once = 0;      ///< of loads: those whose value the next instruction needs
-  double unmeasured_loads = 0;  ///< … of loads: those of which nobody knows
+  double stalled = 0;       ///< that stall: of loops that a compiler writes out, those left
+  double emitted = 0;       ///< of measured code, times executed to counted instructions
+  double unmeasured = 0;    ///< of code that was not measured
+  double used_at_once = 0;  ///< loads whose value the next instruction needs, for each
+                            ///< instruction that the operation is priced at
 
   OperationsOfKind& operator+=(const OperationsOfKind& o) {
     count += o.count;
@@ -45,7 +45,6 @@ struct OperationsOfKind {
     emitted += o.emitted;
     unmeasured += o.unmeasured;
     used_at_once += o.used_at_once;
-    unmeasured_loads += o.unmeasured_loads;
     return *this;
   }
 };
@@ -67,8 +66,7 @@ class CompiledRatios {
   bool measured_;
   double emitted_loops_;  ///< of what repeats loops
   double emitted_;        ///< of all else
-  bool loads_measured_;
-  double used_at_once_;
+  double used_at_once_;   ///< loads, for each counted instruction
 };
 
 /// Cycles that operations of one kind cost a core that runs alone.

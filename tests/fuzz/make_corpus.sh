@@ -44,7 +44,7 @@ cluster.clock=240MHz
 cluster.workers=4
 cluster.l1.size=64 KiB
 isa.base=rv32imfc
-isa.instruction_overhead=1.5
+isa.unmeasured_instructions=1.5
 END
 echo 'cluster.fpu.units=2' >"$folder/overrides/one"
 cat >"$folder/sweep_plan/grid" <<'END'

@@ -43,8 +43,7 @@ TEST_P(Account, AnOperationAloneCostsItsPrice) {
   for (const work::OpInfo& info : work::kOps) {
     const sim::OpCost& cost = core[info.op];
     const bool is_of_l2 = info.op == Op::LoadL2 || info.op == Op::StoreL2;
-    double price = cost.issue * (cost.routine ? 1 : core.instruction_overhead) +
-                   cost.stall * (is_of_l2 ? l2_cycle : 1);
+    double price = cost.issue + cost.stall * (is_of_l2 ? l2_cycle : 1);
     if (info.op == Op::LoadStream || info.op == Op::LoadIndexed)
       price += core.load_use_fraction * core.load_use_stall;
     EXPECT_NEAR(static_cast<double>(time({serial(only(info.op, 10'000))})), 10'000 * price, 1)

@@ -31,7 +31,6 @@ Counts division_by(std::uint32_t divisor) {
 /// A core whose compiler emits what the table says and schedules all loads well.
 sim::CoreConfig ideal_core() {
   sim::CoreConfig core = load_platform("gap9").cluster.core;
-  core.instruction_overhead = 1;
   core.load_use_fraction = 0;
   return core;
 }
@@ -69,9 +68,9 @@ TEST(Gap9, InstructionsCostWhatTheRtlMeasures) {
 }
 
 // What a routine costs was counted with its moves and spills.
-TEST(Gap9, InstructionOverheadSparesLibraryRoutines) {
+TEST(Gap9, FactorsOnInstructionsSpareLibraryRoutines) {
   sim::CoreConfig core = ideal_core();
-  core.instruction_overhead = 1.5;
+  core.unmeasured_instructions = 1.5;
   EXPECT_EQ(cycles(once(Op::F64Compare), core), 24 + 9);
   EXPECT_EQ(cycles(once(Op::IntAlu), core), 1.5);
 }

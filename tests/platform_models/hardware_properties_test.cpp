@@ -59,7 +59,7 @@ std::vector<Improvement> improvements() {
   add("faster forks of the master", [](ChipConfig& c) { c.cluster.events.fork_master /= 2; });
   add("faster forks of the workers", [](ChipConfig& c) { c.cluster.events.fork_worker /= 2; });
   add("faster barriers", [](ChipConfig& c) { c.cluster.events.barrier /= 2; });
-  add("fewer instructions", [](ChipConfig& c) { c.cluster.core.instruction_overhead *= 0.9; });
+  add("fewer instructions", [](ChipConfig& c) { c.cluster.core.unmeasured_instructions *= 0.9; });
   add("loads used later", [](ChipConfig& c) { c.cluster.core.load_use_fraction *= 0.5; });
   add("loads that answer earlier", [](ChipConfig& c) { c.cluster.core.load_use_stall *= 0.5; });
   for (const work::OpInfo& info : work::kOps)
@@ -133,14 +133,14 @@ TEST_P(Hardware, TheClusterDoesNotMatterToTheController) {
   ChipConfig other = chip();
   other.cluster.fpu.units = 1;
   other.cluster.l1.banks = 2;
-  other.cluster.core.instruction_overhead = 3;
+  other.cluster.core.unmeasured_instructions = 3;
   const Job job = job_of({serial(some_work(100))});
   EXPECT_EQ(sum_of_cycles(controlled(other, job)), sum_of_cycles(controlled(chip(), job)));
 }
 
 TEST_P(Hardware, TheControllerDoesNotMatterToTheCluster) {
   ChipConfig other = chip();
-  other.controller.core.instruction_overhead = 3;
+  other.controller.core.unmeasured_instructions = 3;
   other.controller.icache.worker = Bytes(0);
   const int workers = other.cluster.workers;
   EXPECT_EQ(cycles(other, workers, mixed(workers)), cycles(chip(), workers, mixed(workers)));

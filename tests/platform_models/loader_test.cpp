@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "  l1:\n",
                 {"cluster.l1.banks", "missing key", "word-interleaved banks"}},
         BadEdit{"missing_column",
-                "load_l2: { issue: 1, stall: 14.5,",
+                "load_l2: { issue: 1, stall: 14,",
                 "load_l2: { issue: 1,",
                 "load_l2: {",
                 {"isa.ops.load_l2", "missing key 'stall'"}},

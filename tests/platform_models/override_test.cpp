@@ -45,11 +45,12 @@ TEST(Override, IsaSpeaksOfBothKindsOfCore) {
 
 TEST(Override, DifferencesOfACoreWinOverIsa) {
   const sim::ChipConfig chip = with({"cluster.core.ops.f32_add.issue=3", "isa.ops.f32_add.issue=2",
-                                     "controller.core.instruction_overhead=1.5"});
+                                     "controller.core.unmeasured_instructions=1.5"});
   EXPECT_EQ(chip.cluster.core[work::Op::F32Add].issue, 3);
   EXPECT_EQ(chip.controller.core[work::Op::F32Add].issue, 2);
-  EXPECT_EQ(chip.cluster.core.instruction_overhead, with({}).cluster.core.instruction_overhead);
-  EXPECT_EQ(chip.controller.core.instruction_overhead, 1.5);
+  EXPECT_EQ(chip.cluster.core.unmeasured_instructions,
+            with({}).cluster.core.unmeasured_instructions);
+  EXPECT_EQ(chip.controller.core.unmeasured_instructions, 1.5);
   EXPECT_EQ(chip.controller.core[work::Op::F32Div].stall, 14);
 }
 
@@ -184,9 +185,8 @@ TEST(Override, RulesBetweenParametersNameBothSides) {
 
 TEST(Override, CachesHaveALineForEachWay) {
   expect_parts(fault("cluster.icache.line=3"), {"cluster.icache.line is 3 B", "a power of two"});
-  expect_parts(
-      fault("cluster.icache.line=1024"),
-      {"cluster.icache.size is 512 B", "at least 4096 B, a line for each of 4 ways"});
+  expect_parts(fault("cluster.icache.line=1024"),
+               {"cluster.icache.size is 512 B", "at least 4096 B, a line for each of 4 ways"});
   expect_parts(fault("cluster.icache.size=32"), {"cluster.icache.size is 32 B", "at least 64 B"});
   expect_parts(fault("controller.icache.size=8B"), {"controller.icache.size is 8 B", "at least"});
   EXPECT_EQ(with({"cluster.icache.size=64"}).cluster.icache.worker, Bytes(64));

@@ -57,7 +57,6 @@ CoreConfig core() {
   core.ops[work::index(Op::IntAlu)] = {.issue = 1};
   core.ops[work::index(Op::LoadStream)] = {.issue = 1};
   core.ops[work::index(Op::F64Mul)] = {.issue = 200, .routine = true};
-  core.instruction_overhead = 1.5;
   core.unmeasured_instructions = 0.9;
   core.load_use_fraction = 0.25;
   core.load_use_stall = 2;
@@ -76,8 +75,23 @@ TEST(CompiledWork, ScalesInstructionsAndLoadStallsButNoRoutines) {
   Counts counts = counted();
   counts.compiled = of_visit(120, 100, 50, 30);
   const LoneCycles alone = demand_of(counts, core()).alone;
-  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 1.5 * 1.2 + 3 * 200);
-  EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 400 * 0.6 * 2);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 1.2 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 10 * 30 * 2);
+}
+
+/// A visit that executes 10 loads, all used at once, has 10 waits, whether 400 loads were counted
+/// (the compiler keeps values in registers) or 2 (it spills), and without loads it has none.
+TEST(CompiledWork, LoadsWaitAsOftenAsTheyWereExecutedHoweverManyWereCounted) {
+  for (const std::uint64_t counted_loads : {400u, 2u}) {
+    Counts counts;
+    counts[Op::LoadStream] = counted_loads;
+    counts[Op::IntAlu] = 1000 - counted_loads;
+    counts.compiled = of_visit(700, 1000, 10, 10);
+    EXPECT_DOUBLE_EQ(demand_of(counts, core()).alone[Mechanism::LoadUse], 10 * 2);
+    EXPECT_DOUBLE_EQ(WorkSum(counts, core().code).cost(core())[Mechanism::LoadUse], 10 * 2);
+    counts.compiled = of_visit(700, 1000, 0, 0);
+    EXPECT_EQ(demand_of(counts, core()).alone[Mechanism::LoadUse], 0);
+  }
 }
 
 TEST(CompiledWork, OfAnotherInstructionSetChangesItsCoresOnly) {
@@ -86,8 +100,8 @@ TEST(CompiledWork, OfAnotherInstructionSetChangesItsCoresOnly) {
   CoreConfig arm = core();
   arm.code = work::CompiledFor::Thumb2;
   const LoneCycles alone = demand_of(counts, arm).alone;
-  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 1.5 * 1.2 + 3 * 200);
-  EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 400 * 0.6 * 2);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 1.2 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 10 * 30 * 2);
   EXPECT_DOUBLE_EQ(demand_of(counts, core()).alone[Mechanism::Issue],
                    demand_of(counted(), core()).alone[Mechanism::Issue]);
   EXPECT_DOUBLE_EQ(WorkSum(counts, arm.code).cost(arm)[Mechanism::Issue], alone[Mechanism::Issue]);
@@ -105,26 +119,25 @@ TEST(CompiledWork, LoopsHaveARatioOfTheirOwn) {
   CoreConfig with_hardware_loops = core();
   with_hardware_loops.ops[work::index(Op::LoopJump)] = {.issue = 2, .stall = 3};
   const LoneCycles alone = demand_of(counts, with_hardware_loops).alone;
-  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], (600 * 1.0 + 10 * 2 * 0.5) * 1.5);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 600 * 1.0 + 10 * 2 * 0.5);
   EXPECT_DOUBLE_EQ(alone[Mechanism::Control],
                    10 * 3 * 0.5);  // what is written out has no branch to wait for
   CoreConfig without = core();
   without.ops[work::index(Op::LoopIteration)] = {.issue = 2};
-  EXPECT_DOUBLE_EQ(demand_of(counts, without).alone[Mechanism::Issue],
-                   (600 * 1.0 + 400 * 2 * 0.5) * 1.5);
+  EXPECT_DOUBLE_EQ(demand_of(counts, without).alone[Mechanism::Issue], 600 * 1.0 + 400 * 2 * 0.5);
 }
 
 TEST(CompiledWork, OfCodeThatWasNotMeasuredIsWhatThePlatformSays) {
   const LoneCycles alone = demand_of(counted(), core()).alone;
-  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 0.9 * 1.5 + 3 * 200);
+  EXPECT_DOUBLE_EQ(alone[Mechanism::Issue], 1000 * 0.9 + 3 * 200);
   EXPECT_DOUBLE_EQ(alone[Mechanism::LoadUse], 400 * 0.25 * 2);
 }
 
 TEST(CompiledWork, OfTwoSegmentsTogetherIsTheirSum) {
   Counts a = counted(), b = counted();
-  a.compiled = of_visit(300, 100, 10, 0);
-  b.compiled = of_visit(100, 100, 10, 10);
-  EXPECT_DOUBLE_EQ(demand_of(a + b, core()).alone[Mechanism::LoadUse], 800 * 0.5 * 2);
+  a.compiled = of_visit(3000, 1000, 10, 0);
+  b.compiled = of_visit(1000, 1000, 10, 10);
+  EXPECT_DOUBLE_EQ(demand_of(a + b, core()).alone[Mechanism::LoadUse], 10 * 2);
 }
 
 }  // namespace

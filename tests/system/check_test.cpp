@@ -212,7 +212,7 @@ TEST_F(Check, TightenTakesBackUnusedRoom) {
                                        "--baseline", path("baseline.json"), "--quiet"};
   EXPECT_EQ(program(check).status, 0);
   std::vector<std::string> slower = check;
-  slower.insert(slower.end(), {"-p", "isa.instruction_overhead=1.4"});
+  slower.insert(slower.end(), {"-p", "isa.ops.int_alu.issue=1.4"});
   EXPECT_EQ(program(slower).status, 1);
 }
 

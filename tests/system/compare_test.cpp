@@ -71,7 +71,7 @@ std::vector<std::string> random_chip(std::mt19937& random) {
                                      fmt::format("cluster.l1.banks={}", 8 << draw(3)),
                                      fmt::format("cluster.dma.bytes_per_cycle={}", 4 + 4 * draw(2)),
                                      fmt::format("cluster.events.offload={}", 100 + 50 * draw(8)),
-                                     "isa.instruction_overhead=" + tenths(10, 7),
+                                     "isa.ops.int_alu.issue=" + tenths(10, 7),
                                      "isa.load_use_fraction=" + tenths(0, 6),
                                      "isa.ops.f32_fma.issue=" + tenths(10, 20),
                                      "isa.ops.load_stream.issue=" + tenths(10, 10),
@@ -152,7 +152,7 @@ TEST_F(Compare, ACsvOfPartsIsReadBackAsItWas) {
 
 TEST_F(Compare, TextFitsEightyColumns) {
   const RunRecord a = replayed({});
-  const RunRecord b = replayed({"isa.instruction_overhead=1.6"});
+  const RunRecord b = replayed({"isa.ops.load_stream.issue=1.6"});
   const RunComparison c = compare_runs(a, b);
   const std::string text = comparison_report({c}, ReportFormat::text, true);
   EXPECT_EQ(text, comparison_report(c, ReportFormat::text));
@@ -187,7 +187,7 @@ TEST_F(Compare, RunsThatAreTimedOnAnotherChipAreCalledSo) {
 TEST_F(Compare, TheSummaryFitsAScreen) {
   const RunRecord a = replayed({});
   for (const char* change :
-       {"cluster.fpu.units=1", "isa.instruction_overhead=1.4", "cluster.icache.shared_size=16KiB",
+       {"cluster.fpu.units=1", "isa.ops.int_alu.issue=1.4", "cluster.icache.shared_size=16KiB",
         "cluster.clock=185MHz", "isa.ops.popcount.issue=3"}) {
     const RunRecord b = replayed({change});
     const std::string text = comparison_summary(compare_runs(a, b));

@@ -53,7 +53,7 @@ TEST_F(ReplayCommand, TakesThePlatformOfTheRecordingByDefault) {
             0);
   EXPECT_EQ(base::read_text_file(folder_ / "run/stats.json"),
             base::read_text_file(folder_ / "again/stats.json"));
-  ASSERT_EQ(program({"replay", path("run"), "-p", "isa.instruction_overhead=1.5", "--out",
+  ASSERT_EQ(program({"replay", path("run"), "-p", "isa.ops.load_stream.issue=1.5", "--out",
                      path("slower"), "--quiet"})
                 .status,
             0);

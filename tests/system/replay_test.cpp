@@ -114,7 +114,7 @@ TEST_F(Replayed, RecordingChangesNothing) {
 /// Chips on which the optimiser keeps up, so that the algorithm sees the same.
 TEST_F(Replayed, OnAnotherChipIsTheLiveRunThere) {
   for (const std::vector<std::string>& overrides :
-       {std::vector<std::string>{"cluster.fpu.units=1", "isa.instruction_overhead=1.3"},
+       {std::vector<std::string>{"cluster.fpu.units=1", "isa.ops.load_stream.issue=1.3"},
         {"cluster.clock=240MHz", "controller.clock=330MHz"},
         {"cluster.icache.shared_size=2KiB", "cluster.dma.bytes_per_cycle=2",
          "cluster.l1.banks=8"}}) {

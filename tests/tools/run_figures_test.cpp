@@ -109,8 +109,7 @@ TEST(RunFigures, TheBookSaysWhatRestsOnCodeThatWasNotMeasured) {
   const work::Fork fork{"share", {measured, unmeasured}};
   book.add_work({{{"matching", {work::Serial{measured}, fork, work::Serial{unmeasured}}, {}}}});
   StageResult stage = book.stages().front();
-  const double cycles =
-      1000 * chip.cluster.core.instruction_overhead * chip.cluster.core.unmeasured_instructions;
+  const double cycles = 1000 * chip.cluster.core.unmeasured_instructions;
   EXPECT_DOUBLE_EQ(stage.unmeasured, 2 * cycles);
   stage.single = Cycles(static_cast<std::int64_t>(4 * cycles));
   EXPECT_NEAR(*unmeasured_share(stage), 0.5, 1e-3);

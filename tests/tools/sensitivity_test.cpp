@@ -68,9 +68,6 @@ const Swing& swing(const Sensitivity& s, const std::string& path) {
   return *it;
 }
 
-/// What gap9.yaml multiplies instructions by.
-double overhead() { return gap9().config({}).cluster.core.instruction_overhead; }
-
 constexpr double kOffloads = 2 * 300;  // there and back
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -79,26 +76,26 @@ std::string joined(const std::vector<std::string>& parts) {
 
 TEST(Sensitivity, TheBaseIsWhatTheJobsTake) {
   const MeanTimes base = time_on(gap9().config({}), 8, example());
-  EXPECT_NEAR(base.epnp.value(), (10'000 * overhead() + kOffloads) * kMsPerCycle, 1e-9);
+  EXPECT_NEAR(base.epnp.value(), (10'000 + kOffloads) * kMsPerCycle, 1e-9);
   // programming 20, first data 16, 8 bytes per cycle, completion 8
   EXPECT_NEAR(base.eight_point.value(), (20 + 16 + 1'000 + 8 + kOffloads) * kMsPerCycle, 1e-9);
   EXPECT_NEAR(base.frame.value(), (base.epnp.value() + base.eight_point.value()) / 2, 1e-9);
-  EXPECT_NEAR(base.iteration.value(), 1'000 * (12 * overhead() + 2) * kMsPerCycle, 1e-9);
+  EXPECT_NEAR(base.iteration.value(), 1'000 * (12 + 2) * kMsPerCycle, 1e-9);
 }
 
 TEST(Sensitivity, BothEndsOfARangeFollowTheFormula) {
   const Sensitivity s = sweep();
-  const Swing& factor = swing(s, "isa.instruction_overhead");  // 0.9 to 1.4
-  EXPECT_NEAR(factor.low.epnp.value(), (9'000 + kOffloads) * kMsPerCycle, 1e-9);
-  EXPECT_NEAR(factor.high.epnp.value(), (14'000 + kOffloads) * kMsPerCycle, 1e-9);
+  const Swing& factor = swing(s, "isa.unmeasured_instructions");  // 0.86 to 1.6
+  EXPECT_NEAR(factor.low.epnp.value(), (8'600 + kOffloads) * kMsPerCycle, 1e-9);
+  EXPECT_NEAR(factor.high.epnp.value(), (16'000 + kOffloads) * kMsPerCycle, 1e-9);
   EXPECT_EQ(factor.high.eight_point, s.base.eight_point);
-  EXPECT_NEAR(factor.high.iteration.value(), 1'000 * (1.4 * 12 + 2) * kMsPerCycle, 1e-9);
+  EXPECT_NEAR(factor.high.iteration.value(), 1'000 * (1.6 * 12 + 2) * kMsPerCycle, 1e-9);
   const Swing& rate = swing(s, "cluster.dma.bytes_per_cycle");  // 4 to 8
   EXPECT_NEAR(rate.low.eight_point.value() - s.base.eight_point.value(), 1'000 * kMsPerCycle, 1e-9);
   EXPECT_EQ(rate.high.eight_point, s.base.eight_point);
   const Swing& call = swing(s, "isa.ops.call.issue");  // 2 to 30
-  EXPECT_NEAR(percent_change(call.low.iteration, s.base.iteration).value(),
-              -100 * 10 * overhead() / (12 * overhead() + 2), 1e-9);
+  EXPECT_NEAR(percent_change(call.low.iteration, s.base.iteration).value(), -100 * 10.0 / (12 + 2),
+              1e-9);
   EXPECT_EQ(effect_on_frame(call, s.base), 0);
 }
 
@@ -107,17 +104,10 @@ TEST(Sensitivity, BandsOfStagesAreRootsOfSumsOfSquares) {
   const std::vector<StageBand> bands = stage_bands(s);
   ASSERT_EQ(bands.size(), 3u);  // e, o, m
   EXPECT_EQ(bands[0].stage, "e");
-  EXPECT_NEAR(bands[0].kcycles.value, 10 * overhead(), 1e-3);  // whole cycles
-  // Of integer operations, and in code that was not measured, both factors have ranges.
+  EXPECT_NEAR(bands[0].kcycles.value, 10, 1e-3);  // whole cycles
   const auto unmeasured = gap9().find("isa.unmeasured_instructions")->range;
-  EXPECT_NEAR(bands[0].kcycles.low,
-              10 * overhead() -
-                  std::hypot((1 - unmeasured->low) * 10 * overhead(), 10 * (overhead() - 0.9)),
-              2e-3);
-  EXPECT_NEAR(bands[0].kcycles.high,
-              10 * overhead() +
-                  std::hypot((unmeasured->high - 1) * 10 * overhead(), 10 * (1.4 - overhead())),
-              2e-3);
+  EXPECT_NEAR(bands[0].kcycles.low, 10 * unmeasured->low, 2e-3);
+  EXPECT_NEAR(bands[0].kcycles.high, 10 * unmeasured->high, 2e-3);
   // Of the transfer: bytes per cycle 4 … 8, programming 10 … 30, first data 10 … 30, completion
   // 4 … 12. The rest of the call of the API is over long before.
   const double slow = 1.0, programming = 0.01, later = 0.014, earlier = 0.006, completion = 0.004;
@@ -130,8 +120,7 @@ TEST(Sensitivity, BandsOfStagesAreRootsOfSumsOfSquares) {
             std::string::npos);
 }
 
-/// A sample that holds all jobs has the bands of the sweep over all; but of code that was not
-/// measured, one range says what compilers add.
+/// A sample that holds all jobs has the bands of the sweep over all.
 TEST(Sensitivity, BandsOfASampleAreThoseOfTheSweep) {
   JobSample sample;
   sample.add_frame(job_of("m", {work::Transfer{work::Direction::L2ToL1, Bytes(8'000)}}),
@@ -148,10 +137,9 @@ TEST(Sensitivity, BandsOfASampleAreThoseOfTheSweep) {
   EXPECT_NEAR(bands.stages[1].parallel.low, unmeasured->low, 1e-3);
   EXPECT_NEAR(bands.stages[1].parallel.high, unmeasured->high, 1e-3);
   // Offloading takes 150 to 1500 cycles each way, whatever the slowest frame does.
-  const double cycles = 10'000 * overhead() + kOffloads;
+  const double cycles = 10'000 + kOffloads;
   EXPECT_NEAR(bands.slowest.high,
-              1 + std::hypot((unmeasured->high - 1) * 10'000 * overhead(), 2 * 1'200) / cycles,
-              1e-3);
+              1 + std::hypot((unmeasured->high - 1) * 10'000, 2 * 1'200) / cycles, 1e-3);
   const TimeBands slowest = time_bands(chip, 8, sample, TimeBandsOf::slowest_frame);
   EXPECT_EQ(slowest.slowest.high, bands.slowest.high);
 }
@@ -172,7 +160,6 @@ TEST(Sensitivity, TheLargestEffectOnTheFrameComesFirst) {
   const Sensitivity s = sweep();
   EXPECT_EQ(s.swings[0].parameter.path, "isa.unmeasured_instructions");
   EXPECT_EQ(s.swings[1].parameter.path, "cluster.events.offload");
-  EXPECT_EQ(s.swings[2].parameter.path, "isa.instruction_overhead");
   for (std::size_t i = 1; i < s.swings.size(); ++i)
     EXPECT_GE(effect_on_frame(s.swings[i - 1], s.base), effect_on_frame(s.swings[i], s.base));
 }
@@ -210,17 +197,15 @@ TEST(Sensitivity, WhatARunDoesNotHaveIsAbsent) {
 TEST(Sensitivity, TableAndFileShowTheEffect) {
   const Sensitivity s = sweep();
   const std::string text = joined(sensitivity_tables(s, 8));
-  const double factor = overhead();
-  const std::string effect = fmt::format(
-      "{:+.2f} … {:+.2f}", 100 * 10'000 * (0.9 - factor) / (10'000 * factor + kOffloads),
-      100 * 10'000 * (1.4 - factor) / (10'000 * factor + kOffloads));
+  const std::string effect =
+      fmt::format("{:+.2f} … {:+.2f}", 100 * 10'000 * (0.86 - 1) / (10'000 + kOffloads),
+                  100 * 10'000 * (1.6 - 1) / (10'000 + kOffloads));
   EXPECT_NE(text.find(effect), std::string::npos) << effect << '\n' << text;
   EXPECT_NE(text.find("changing nothing"), std::string::npos);
   const std::string csv = csv_text(sensitivity_rows(s));
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
             s.swings.size() + 1);
-  EXPECT_NE(csv.find(fmt::format("isa.instruction_overhead,calibrated,ratio,{},0.9,1.4,", factor)),
-            std::string::npos);
+  EXPECT_NE(csv.find("isa.unmeasured_instructions,low,ratio,1,0.86,1.6,"), std::string::npos);
 }
 
 }  // namespace

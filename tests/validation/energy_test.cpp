@@ -24,13 +24,10 @@ using sim::Domain;
 using work::Counts;
 using work::Op;
 
-// The loads below are instructions: no compiler adds to them.
-sim::ChipConfig gap9_at_370() {
-  return platform::load_platform("gap9", {"isa.instruction_overhead=1"});
-}
+sim::ChipConfig gap9_at_370() { return platform::load_platform("gap9"); }
 sim::ChipConfig gap9_at_240() {
-  return platform::load_platform("gap9", {"isa.instruction_overhead=1", "cluster.clock=240MHz",
-                                          "controller.clock=240MHz", "supply.voltage=0.65V"});
+  return platform::load_platform(
+      "gap9", {"cluster.clock=240MHz", "controller.clock=240MHz", "supply.voltage=0.65V"});
 }
 
 /// Of one job with one stage.

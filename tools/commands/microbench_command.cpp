@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "platform_models/loader/loader.h"
+#include "platform_models/loader/schema.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/report/statistic_list.h"
@@ -27,10 +28,18 @@ struct MicrobenchOptions {
   bool json = false;
 };
 
-/// The chip as the one of the library's figures is.
+/// The chip as the one of the library's figures is, but for what the options say themselves.
 platform::ResolvedPlatform sibling_of(const MicrobenchOptions& options) {
   std::vector<std::string> overrides = options.overrides;
-  overrides.insert(overrides.end(), kLibraryChip.begin(), kLibraryChip.end());
+  const auto key_of = [](std::string_view set) {
+    return platform::trim(set.substr(0, set.find('=')));
+  };
+  for (const std::string_view set : kLibraryChip) {
+    const bool said =
+        std::any_of(options.overrides.begin(), options.overrides.end(),
+                    [&](const std::string& given) { return key_of(given) == key_of(set); });
+    if (!said) overrides.emplace_back(set);
+  }
   return platform::resolve_platform(options.platform, overrides);
 }
 

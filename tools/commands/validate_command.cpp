@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <memory>
+#include <utility>
 
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
@@ -30,19 +31,30 @@ void write_folder(outputs::OutputFolder& out, const Validation& validation, cons
             updated_references("paper.csv", paper_references_text(), values, kNotExamined));
 }
 
+std::pair<RunResult, Validation> validated(RunRequest& request, ProgressLine::Style style) {
+  FrameLog log(request.platform.config.cluster.core.code);
+  request.observer = &log;
+  request.time_bands = TimeBandsOf::team_and_one_core;
+  RunResult result = simulate_with_progress(request, style);
+  Validation validation = validate(result, log, profile_of(request), paper_references());
+  request.observer = nullptr;
+  return {std::move(result), std::move(validation)};
+}
+
 void validate(const RunOptions& given, const Words& words) {
   const RunOptions options = as_released(given);
   RunRequest request = make_chip_request(options);
-  const std::vector<Reference> references = paper_references();
+  const std::optional<RunOptions> second = paper_keypoints(options);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   std::optional<outputs::OutputFolder> out;
   if (!options.out.empty()) out.emplace(out_request(options));
   request.data = data_folder(options, style);
-  FrameLog log(request.platform.config.cluster.core.code);
-  request.observer = &log;
-  request.time_bands = TimeBandsOf::team_and_one_core;
-  const RunResult result = simulate_with_progress(request, style);
-  const Validation validation = validate(result, log, profile_of(request), references);
+  auto [result, validation] = validated(request, style);
+  if (second) {
+    RunRequest other = make_chip_request(*second);
+    other.data = request.data;
+    validation.with_paper_keypoints = part_with_paper_keypoints(validated(other, style).second);
+  }
   const auto lines = [&] {
     std::vector<std::string> parts = validation_report(validation, result.cores);
     parts.front().insert(0, heading(options, result));
@@ -76,7 +88,7 @@ Command add_validate_command(CLI::App& app, const Words& words) {
   command->add_flag("--force", options->force, "replace the results of an earlier run");
   add_examples(*command,
                {"leviosim validate --data flight",
-                "leviosim validate --data flight -p isa.instruction_overhead=1.1 --out validated"});
+                "leviosim validate --data flight -p isa.load_use_fraction=0.2 --out validated"});
   add_json_option(*command, options->json);
   return {command, [=, &words] { validate(*options, words); }};
 }

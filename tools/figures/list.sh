@@ -37,6 +37,11 @@ needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
 cut 'table stage'
 
+figure paper-compute-keypoints
+needs data
+shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
+cut 'sed "1,/number of keypoints (/d" | table stage'
+
 figure paper-others
 needs data
 shows 'leviosim validate --data euroc/MH_01_easy_t05_t20'
@@ -54,8 +59,8 @@ cut 'sed -n "/^kcycles with the band/,/lie inside/p"'
 
 figure more-keypoints
 needs data
-shows 'leviosim calibrate -p workload.fast_threshold=14 --data euroc/MH_01_easy_t05_t20 --constants isa.instruction_overhead'
-cut 'sed -n "/^constant/,/^mean/p"'
+shows 'leviosim calibrate -p workload.fast_threshold=15 -p workload.harris_threshold=4000 --data euroc/MH_01_easy_t05_t20'
+cut 'sed -n "/^stage, 1 core/,\$p"'
 
 figure breakdown
 needs data
@@ -70,8 +75,8 @@ cut 'table number number confidence value range frame optimiser | first 10'
 
 figure calibrate
 needs data
-shows 'leviosim calibrate --data euroc/MH_01_easy_t05_t20 --constants isa.instruction_overhead'
-cut 'sed -n "/^constants,/,/^$/p; /^stage, left/,/^mean/p"'
+shows 'leviosim calibrate --data euroc/MH_01_easy_t05_t20'
+cut 'sed -n "/^stage, 1 core/,\$p"'
 
 figure microbench
 shows 'leviosim microbench'

@@ -12,9 +12,6 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr const char* kOverhead = "isa.instruction_overhead";
-constexpr const char* kUnmeasured = "isa.unmeasured_instructions";
-
 /// Whether it says what compilers make of an operation.
 bool is_of_compiler(const platform::Parameter& parameter, const sim::CoreConfig& core) {
   constexpr std::string_view kOps = ".ops.";
@@ -34,18 +31,6 @@ double value_of(const platform::Parameter& parameter) {
   const auto value = platform::parse_number(parameter.value);
   check(value.has_value(), "a parameter with a range is no number");
   return *value;
-}
-
-/// Of code that was not measured, one range says what compilers add: what another factor for
-/// measured code would add to it is taken off.
-std::vector<platform::Change> with_unmeasured_as_it_is(const platform::Variants& platform,
-                                                       const platform::Change& change) {
-  std::vector<platform::Change> changes{change};
-  const platform::Parameter* unmeasured = platform.find(kUnmeasured);
-  if (change.path == kOverhead && unmeasured != nullptr)
-    changes.push_back(
-        {kUnmeasured, value_of(*unmeasured) * value_of(*platform.find(kOverhead)) / change.value});
-  return changes;
 }
 
 constexpr std::size_t kMostFrames = 6;
@@ -151,10 +136,7 @@ std::vector<Banded> range_bands(const platform::Variants& platform, const ChipFi
   const auto run = [&](std::size_t count, const auto& job) {
     base::parallel_for(count, threads, job);
   };
-  const auto with = [&](const platform::Change& change) {
-    return with_unmeasured_as_it_is(platform, change);
-  };
-  for (const auto& ends : at_ends(platform, parameters, base, figures, run, with))
+  for (const auto& ends : at_ends(platform, parameters, base, figures, run))
     for (std::size_t k = 0; k < bands.size(); ++k) bands[k].add(ends.low[k], ends.high[k]);
   std::vector<Banded> result;
   for (const BandOf& band : bands) result.push_back(band.band());

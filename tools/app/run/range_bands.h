@@ -41,11 +41,10 @@ bool is_end(const platform::Parameter& parameter, double end);
 
 /// @param base  of the platform as it is
 /// @param of    T of a sim::ChipConfig; may be called by several threads
-/// @param with  what else a change of a number changes, if anything
-template <class T, class Of, class With>
+template <class T, class Of>
 std::vector<AtEnds<T>> at_ends(const platform::Variants& platform,
                                const std::vector<const platform::Parameter*>& parameters,
-                               const T& base, const Of& of, const RunJobs& run, const With& with) {
+                               const T& base, const Of& of, const RunJobs& run) {
   std::vector<AtEnds<T>> all;
   std::vector<std::pair<T*, platform::Change>> jobs;
   for (const platform::Parameter* parameter : parameters) all.push_back({parameter, base, base});
@@ -54,15 +53,13 @@ std::vector<AtEnds<T>> at_ends(const platform::Variants& platform,
     for (const auto& [outcome, end] : {std::pair(&ends.low, range.low), {&ends.high, range.high}})
       if (!is_end(*ends.parameter, end)) jobs.push_back({outcome, {ends.parameter->path, end}});
   }
-  run(jobs.size(),
-      [&](std::size_t i) { *jobs[i].first = of(platform.config(with(jobs[i].second))); });
+  run(jobs.size(), [&](std::size_t i) { *jobs[i].first = of(platform.config({jobs[i].second})); });
   return all;
 }
 
 /// Whether bands are of this number, too. They are not of what compilers make of single operations
 /// (isa.ops.*.issue but of routines, isa.ops.loop_*): how many instructions they make of all that
-/// was counted was measured, or has a range, isa.unmeasured_instructions, and so has what the
-/// chip's own compiler does otherwise with measured code, isa.instruction_overhead.
+/// was counted was measured, or has a range, isa.unmeasured_instructions.
 bool is_in_bands(const platform::Parameter& parameter, const sim::ChipConfig& chip);
 
 /// The figures of one chip, always as many.

@@ -68,11 +68,11 @@ std::string deviation_text(const Reference& reference, double value) {
   return fmt::format("{:.6g}{}", value, reference.tolerance.relative ? " %" : "");
 }
 
-std::string comparison_line(const Comparison& c) {
+std::string comparison_line(std::string_view kind, const Comparison& c) {
   const Reference& r = c.reference;
   return fmt::format(
-      "reference,{},{},{}{:.6g},{},{},{},{},{},{},{}\n", r.name, r.unit, r.limit ? "<" : "",
-      r.value, cell(c.value), c.value ? deviation_text(r, *c.error()) : "",
+      "{},{},{},{}{:.6g},{},{},{},{},{},{},{}\n", kind, r.name, r.unit, r.limit ? "<" : "", r.value,
+      cell(c.value), c.value ? deviation_text(r, *c.error()) : "",
       deviation_text(r, r.tolerance.value), r.guard ? deviation_text(r, *r.guard) : "",
       name_of(c.verdict), r.reason, r.source);
 }
@@ -104,6 +104,46 @@ std::string path_lines(const StageOnPaths& stage, std::string_view cores,
     text +=
         fmt::format("path,{}: {}: {},cycles,,{},,,,,,\n", stage.title, cores, frames, cell(mean));
   return text;
+}
+
+std::string band_lines(std::string_view kind, const std::vector<BandedStage>& bands) {
+  std::string text;
+  for (const BandedStage& band : bands)
+    for (const auto& [end, value] : {std::pair("low", band.weighed.value_or(band.simulated).low),
+                                     std::pair("high", band.weighed.value_or(band.simulated).high)})
+      text += fmt::format("{},{}: {}: {},kcycles,{},{},,,,,,\n", kind, band.title,
+                          band.single ? "one core" : "N cores", end, cell(band.paper), cell(value));
+  return text;
+}
+
+Json bands_json(const std::vector<BandedStage>& bands) {
+  Json list = Json::array();
+  for (const BandedStage& band : bands) {
+    const Banded& shown = band.weighed.value_or(band.simulated);
+    list.push_back({{"stage", band.title},
+                    {"cores", band.single ? "one" : "N"},
+                    {"paper", band.paper},
+                    {"simulated", shown.value},
+                    {"low", shown.low},
+                    {"high", shown.high},
+                    {"inside", band.is_inside()}});
+  }
+  return list;
+}
+
+/// Guards and what is said of misses are of the default's number of keypoints.
+Comparison without_guard(Comparison c) {
+  c.reference.guard.reset();
+  c.reference.reason.clear();
+  c.reference.met = true;
+  c.verdict = judge(c.reference, c.value);
+  return c;
+}
+
+bool is_of_paper_table(const std::string& name) {
+  for (const PaperStage& stage : kPaperStages)
+    if (name.starts_with(fmt::format("compute.{}.", stage.key))) return true;
+  return false;
 }
 
 Json means_json(const StageOnPaths::Means& means) {
@@ -261,9 +301,20 @@ Validation validate(const RunResult& run, const FrameLog& log, const vio::Profil
   return validation;
 }
 
+WithPaperKeypoints part_with_paper_keypoints(const Validation& second) {
+  WithPaperKeypoints part;
+  for (const InputDistribution& input : second.distributions)
+    if (input.quantity == kInputs.front().quantity) part.keypoints = input.simulated.front();
+  for (const Comparison& c : second.comparisons)
+    if (is_summary(c.reference) || is_of_paper_table(c.reference.name))
+      part.comparisons.push_back(c);
+  part.bands = second.bands;
+  return part;
+}
+
 std::string validation_csv(const Validation& validation) {
   std::string text = "kind,name,unit,paper,simulated,error,tolerance,guard,verdict,reason,source\n";
-  for (const Comparison& comparison : validation.comparisons) text += comparison_line(comparison);
+  for (const Comparison& c : validation.comparisons) text += comparison_line("reference", c);
   for (const InputFigure& input : validation.inputs)
     text += fmt::format("input,{},{},{},{},,,,,,{}\n", input.key, input.unit, cell(input.paper),
                         cell(input.value), input.source);
@@ -281,11 +332,12 @@ std::string validation_csv(const Validation& validation) {
   for (const StageOnPaths& stage : validation.paths)
     text +=
         path_lines(stage, "one core", stage.single) + path_lines(stage, "N cores", stage.parallel);
-  for (const BandedStage& band : validation.bands)
-    for (const auto& [end, value] : {std::pair("low", band.weighed.value_or(band.simulated).low),
-                                     std::pair("high", band.weighed.value_or(band.simulated).high)})
-      text += fmt::format("band,{}: {}: {},kcycles,{},{},,,,,,\n", band.title,
-                          band.single ? "one core" : "N cores", end, cell(band.paper), cell(value));
+  text += band_lines("band", validation.bands);
+  if (const auto& part = validation.with_paper_keypoints) {
+    constexpr std::string_view kKind = "paper's keypoints";
+    for (const Comparison& c : part->comparisons) text += comparison_line(kKind, without_guard(c));
+    text += band_lines(kKind, part->bands);
+  }
   return text;
 }
 
@@ -324,18 +376,27 @@ Json validation_json(const Validation& validation) {
     document["paths"].push_back({{"stage", stage.title},
                                  {"cycles_single", means_json(stage.single)},
                                  {"cycles_parallel", means_json(stage.parallel)}});
-  document["bands"] = Json::array();
-  for (const BandedStage& band : validation.bands) {
-    const Banded& shown = band.weighed.value_or(band.simulated);
-    document["bands"].push_back({{"stage", band.title},
-                                 {"cores", band.single ? "one" : "N"},
-                                 {"paper", band.paper},
-                                 {"simulated", shown.value},
-                                 {"low", shown.low},
-                                 {"high", shown.high},
-                                 {"inside", band.is_inside()}});
+  document["bands"] = bands_json(validation.bands);
+  if (const auto& part = validation.with_paper_keypoints) {
+    Json& entry = document["with_paper_keypoints"];
+    entry["keypoints"] = value_of(part->keypoints);
+    entry["comparisons"] = Json::array();
+    for (const Comparison& c : part->comparisons)
+      entry["comparisons"].push_back(comparison_json(without_guard(c)));
+    entry["bands"] = bands_json(part->bands);
   }
   return document;
+}
+
+std::optional<RunOptions> paper_keypoints(RunOptions options) {
+  if (options.profile != "levio") return std::nullopt;
+  for (const std::string_view set : kPaperKeypoints) {
+    const std::string_view parameter = set.substr(0, set.find('=') + 1);
+    for (const std::string& given : options.overrides)
+      if (given.starts_with(parameter)) return std::nullopt;
+  }
+  options.overrides.insert(options.overrides.end(), kPaperKeypoints.begin(), kPaperKeypoints.end());
+  return options;
 }
 
 RunOptions as_released(RunOptions options) {

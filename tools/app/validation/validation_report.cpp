@@ -36,8 +36,8 @@ const char* within_text(const Comparison& c) {
   return std::abs(*c.error()) <= c.reference.tolerance.value ? "yes" : "no";
 }
 
-const Comparison* find(const Validation& validation, const std::string& name) {
-  for (const Comparison& comparison : validation.comparisons)
+const Comparison* find(const std::vector<Comparison>& comparisons, const std::string& name) {
+  for (const Comparison& comparison : comparisons)
     if (comparison.reference.name == name) return &comparison;
   return nullptr;
 }
@@ -54,6 +54,30 @@ void add_cells(std::vector<Cell>& cells, const Comparison* c, int decimals) {
   cells.push_back(c == nullptr ? kNothing : error_text(*c));
 }
 
+/// Of the table above it.
+std::string errors_text(const std::vector<Comparison>& comparisons, int cores) {
+  const auto error = [&](const char* name) {
+    const Comparison* c = find(comparisons, name);
+    return c == nullptr ? std::string(kNothing) : figure_text(c->value, 1);
+  };
+  return fmt::format(
+      "mean absolute error {} % on one core, {} % on {} cores; worst on {} cores {} %\n",
+      error("error.single.mean"), error("error.multi.mean"), cores, cores,
+      error("error.multi.worst"));
+}
+
+/// In per cent of what was simulated.
+double median_half_width(const std::vector<BandedStage>& bands) {
+  std::vector<double> widths;
+  for (const BandedStage& band : bands) {
+    const Banded& b = band.weighed.value_or(band.simulated);
+    widths.push_back(50 * (b.high - b.low) / b.value);
+  }
+  std::sort(widths.begin(), widths.end());
+  const std::size_t half = widths.size() / 2;
+  return widths.size() % 2 == 1 ? widths[half] : (widths[half - 1] + widths[half]) / 2;
+}
+
 constexpr const char* kHowToRead =
     "How to read this: the paper's averages are of 1578 frames whose numbers of features, "
     "landmarks\n"
@@ -65,7 +89,7 @@ constexpr const char* kHowToRead =
 
 }  // namespace
 
-std::string compute_table(const Validation& validation, int cores) {
+std::string compute_table(const std::vector<Comparison>& comparisons, int cores) {
   Table table({{"stage", kLeft},
                {"kcycles, 1 core"},
                {"simulated"},
@@ -79,13 +103,12 @@ std::string compute_table(const Validation& validation, int cores) {
   for (const PaperStage& stage : kPaperStages) {
     std::vector<Cell> cells{std::string(stage.title)};
     const std::string path = fmt::format("compute.{}.", stage.key);
-    add_cells(cells, find(validation, path + "single"), 0);
-    add_cells(cells, find(validation, path + "multi"), 0);
-    add_cells(cells, find(validation, path + "speedup"), 2);
+    add_cells(cells, find(comparisons, path + "single"), 0);
+    add_cells(cells, find(comparisons, path + "multi"), 0);
+    add_cells(cells, find(comparisons, path + "speedup"), 2);
     table.add(std::move(cells));
   }
-  return "compute: the paper's averages and the simulated means over the same kind of frame\n" +
-         terminal_text(table);
+  return terminal_text(table) + errors_text(comparisons, cores);
 }
 
 std::string reference_table(const Validation& validation) {
@@ -175,8 +198,10 @@ std::string path_table(const Validation& validation, int cores) {
   };
   for (const StageOnPaths& stage : validation.paths) {
     std::vector<Cell> cells{std::string(stage.title)};
-    add(cells, stage.single, find(validation, fmt::format("compute.{}.single", stage.key)));
-    add(cells, stage.parallel, find(validation, fmt::format("compute.{}.multi", stage.key)));
+    add(cells, stage.single,
+        find(validation.comparisons, fmt::format("compute.{}.single", stage.key)));
+    add(cells, stage.parallel,
+        find(validation.comparisons, fmt::format("compute.{}.multi", stage.key)));
     table.add(std::move(cells));
   }
   return fmt::format(
@@ -186,8 +211,8 @@ std::string path_table(const Validation& validation, int cores) {
       kPaperEpnpFrames, kPaperEightPointFrames, terminal_text(table));
 }
 
-std::string band_table(const Validation& validation, int cores) {
-  if (validation.bands.empty()) return "";
+std::string band_table(const std::vector<BandedStage>& bands, int cores) {
+  if (bands.empty()) return "";
   using B = const BandedStage&;
   const auto ends = [](const Banded& b) { return fmt::format("{:.0f} … {:.0f}", b.low, b.high); };
   const Columns<BandedStage> table{
@@ -199,25 +224,42 @@ std::string band_table(const Validation& validation, int cores) {
       {{"weighed"}, [](B b) { return b.weighed ? figure_text(b.weighed->value, 0) : kNothing; }},
       {{"band"}, [=](B b) { return b.weighed ? ends(*b.weighed) : kNothing; }},
       {{"inside", kLeft}, [](B b) { return b.is_inside() ? "yes" : "no"; }}};
-  const auto count = [&](auto is) {
-    return std::count_if(validation.bands.begin(), validation.bands.end(), is);
-  };
+  const auto count = [&](auto is) { return std::count_if(bands.begin(), bands.end(), is); };
   return fmt::format(
-      "kcycles with the band that the platform's ranges leave, of this run and weighed as the "
-      "paper's frames\n{}{} of {} of the paper's figures lie inside; of this run's own means "
-      "{}\n\n",
-      terminal_text(table_of(table, validation.bands)), count([](B b) { return b.is_inside(); }),
-      validation.bands.size(), count([](B b) { return b.simulated.holds(b.paper); }));
+      "{}{} of {} of the paper's figures lie inside; of this run's own means {}; median half width "
+      "{:.1f} %\n\n",
+      terminal_text(table_of(table, bands)), count([](B b) { return b.is_inside(); }), bands.size(),
+      count([](B b) { return b.simulated.holds(b.paper); }), median_half_width(bands));
 }
 
 std::vector<std::string> validation_report(const Validation& validation, int cores) {
-  return {compute_table(validation, cores) + '\n',
-          reference_table(validation) + '\n',
-          input_table(validation) + '\n',
-          distribution_table(validation),
-          normalised_table(validation, cores) + '\n',
-          path_table(validation, cores) + '\n',
-          band_table(validation, cores)};
+  const auto& second = validation.with_paper_keypoints;
+  const std::string fewer = second ? " with our default's number of keypoints" : "";
+  const std::string as_paper =
+      second
+          ? fmt::format(" with about the paper's number of keypoints ({}: {}, {})",
+                        readable(second->keypoints ? std::optional(std::round(*second->keypoints))
+                                                   : std::nullopt),
+                        kPaperKeypoints[0], kPaperKeypoints[1])
+          : "";
+  constexpr const char* kCompute =
+      "compute: the paper's averages and the simulated means over the same kind of frame";
+  constexpr const char* kBand =
+      "kcycles with the band that the platform's ranges leave, of this run and weighed as the "
+      "paper's frames";
+  const auto titled = [&](const char* title, const std::string& with, const std::string& table) {
+    return table.empty() ? table : title + with + '\n' + table;
+  };
+  return {
+      titled(kCompute, fewer, compute_table(validation.comparisons, cores)) + '\n',
+      second ? titled(kCompute, as_paper, compute_table(second->comparisons, cores)) + '\n' : "",
+      reference_table(validation) + '\n',
+      input_table(validation) + '\n',
+      distribution_table(validation),
+      normalised_table(validation, cores) + '\n',
+      path_table(validation, cores) + '\n',
+      titled(kBand, fewer, band_table(validation.bands, cores)),
+      second ? titled(kBand, as_paper, band_table(second->bands, cores)) : ""};
 }
 
 bool is_worse(const Validation& validation) {

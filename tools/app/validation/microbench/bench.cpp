@@ -71,10 +71,8 @@ const Columns<MicrobenchRow>& shown_columns() {
 }  // namespace
 
 sim::ChipConfig as_assembly(sim::ChipConfig chip, double loads_used_at_once) {
-  for (sim::CoreConfig* core : {&chip.cluster.core, &chip.controller.core}) {
-    core->instruction_overhead = 1;
+  for (sim::CoreConfig* core : {&chip.cluster.core, &chip.controller.core})
     core->load_use_fraction = loads_used_at_once;
-  }
   chip.cluster.fpu.collisions = 0;
   chip.cluster.l1.stream_conflicts = 0;
   return chip;

@@ -176,9 +176,9 @@ std::vector<MicrobenchRow> board_rows(const std::vector<KernelJob>& kernels,
 // and compared with tools/app/validation/published/pulp_dsp.csv.
 
 /// What the chip of the figures, a sibling of GAP9, has less of; none of it matters to the kernels.
-/// They were scheduled by hand: what compilers add to other code is not in them.
+/// They were scheduled by hand.
 inline constexpr std::array kLibraryChip{"cluster.l1.size=64KiB", "cluster.fpu.units=2",
-                                         "isa.instruction_overhead=1", "isa.load_use_fraction=0"};
+                                         "isa.load_use_fraction=0"};
 
 /// The kernel of every reference. @throws InputError if there is no such kernel
 std::vector<KernelJob> library_kernels(const sim::ChipConfig& chip);
