@@ -14,6 +14,13 @@ namespace {
 constexpr double kBitsPerByte = 8;
 constexpr double kAddressBits = 32;
 constexpr double kValidBit = 1;
+constexpr double kLineAddressBits = 28;
+/// Of a crosspoint of the network of L1: data both ways, address, byte enables, control.
+constexpr double kMemoryWires = 32 + 32 + 20;
+/// Cycles that a shared instruction cache takes longer than a private one: its network, and itself
+/// (FACTS.md#instruction-caches).
+constexpr double kSharedHit = 2;
+constexpr double kPortBytes = 4;
 
 double bits_of(Bytes size) { return static_cast<double>(size.count()) * kBitsPerByte; }
 
@@ -51,6 +58,13 @@ class Parts {
     add(std::move(name), domain, count, {}, sram(bits_of(each)) * count);
   }
 
+  KiloGates core(const CoreConfig& core) const {
+    return core.code == work::CompiledFor::Rv32imfcXpulp ? n_.core + n_.xpulp : n_.core;
+  }
+  /// That come per cycle at most.
+  static double bytes_of_code(const InstructionCacheConfig& cache) {
+    return std::min(cache.refill_width, static_cast<double>(cache.line.count()));
+  }
   SquareMicrometres placed(KiloGates gates) const { return n_.gate * gates.count(); }
   SquareMicrometres sram(double bits) const { return n_.sram_cut + n_.sram_bit * bits; }
   SquareMicrometres latches(double bits) const { return n_.latch_bit * bits; }
@@ -65,26 +79,35 @@ class Parts {
   void private_cache(std::string name, Domain domain, double count, Bytes size,
                      const InstructionCacheConfig& cache) {
     if (size == Bytes(0) || cache.line == Bytes(0)) return;
-    const double tags = tag_bits(size, cache);
-    const SquareMicrometres data = size <= n_.latch_limit ? latches(bits_of(size) + tags)
-                                                          : sram(bits_of(size)) + smaller(tags);
-    memory(std::move(name), domain, count, data + placed(n_.private_cache));
+    memory(std::move(name), domain, count,
+           smaller(bits_of(size)) + smaller(tag_bits(size, cache)) +
+               placed(n_.private_cache + n_.cache_way * cache.ways));
   }
   SquareMicrometres smaller(double bits) const { return std::min(sram(bits), latches(bits)); }
 
   void shared_cache(const InstructionCacheConfig& cache) {
     if (cache.shared == Bytes(0) || cache.line == Bytes(0)) return;
-    const double cuts = cache.shared_banks;
-    memory("shared instruction cache", Domain::Cluster, 1,
-           sram(bits_of(cache.shared) / cuts) * cuts + smaller(tag_bits(cache.shared, cache)) +
-               placed(n_.shared_cache));
+    const double banks = cache.shared_banks;
+    memory("shared instruction cache", Domain::Cluster, copies_of(cache),
+           sram(bits_of(cache.shared) / banks) * banks + smaller(tag_bits(cache.shared, cache)) +
+               placed(n_.shared_cache + n_.cache_way * (cache.ways * banks) +
+                      n_.refill_buffer * cache.refills));
+    const double wires = bits_of(cache.line) + kLineAddressBits;
+    logic("network of this cache", Domain::Cluster, cores_ * banks,
+          n_.memory_crosspoint * (wires / kMemoryWires));
+  }
+  /// Without a wait it is as near to each core as a private cache, so each has one of this size.
+  double copies_of(const InstructionCacheConfig& cache) const {
+    const double in_no_time = std::clamp(1 - cache.shared_hit / kSharedHit, 0.0, 1.0);
+    return 1 + (cores_ - 1) * in_no_time;
   }
 
   void cores_and_units() {
     const FpuConfig& fpu = chip_.cluster.fpu;
-    logic("core", Domain::Cores, cores_, n_.core);
+    logic("core", Domain::Cores, cores_, core(chip_.cluster.core));
     logic("floating-point unit", Domain::Fpu, fpu.units, n_.fpu);
     logic("divider", Domain::Fpu, fpu.dividers, n_.divider);
+    logic("unit for 64-bit integers", Domain::Fpu, fpu.int64_units, n_.int64_unit);
     const double choices = fpu.mapping == FpuMapping::Dynamic ? fpu.units : std::min(fpu.units, 1);
     logic("network of these units", Domain::Fpu, cores_ * (choices + fpu.dividers),
           n_.fpu_crosspoint);
@@ -99,14 +122,23 @@ class Parts {
                   cluster.icache);
     shared_cache(cluster.icache);
     banks("bank of L1", Domain::L1, banks_of_l1, Bytes(cluster.l1.size.count() / cluster.l1.banks));
-    logic("network of L1", Domain::L1, (cores_ + n_.l1_masters) * banks_of_l1,
+    // The DMA reads and writes at once.
+    const double dma_ports = 2 * std::ceil(cluster.dma.bytes_per_cycle / kPortBytes);
+    logic("network of L1", Domain::L1, (cores_ + dma_ports + n_.l1_masters) * banks_of_l1,
           n_.memory_crosspoint);
   }
 
   void rest_of_cluster() {
-    logic("DMA", Domain::Dma, 1, n_.dma);
+    const ClusterConfig& cluster = chip_.cluster;
+    const int commands = cluster.dma.commands;
+    logic("DMA", Domain::Dma, 1,
+          n_.dma + n_.dma_byte * cluster.dma.bytes_per_cycle + n_.dma_command * commands);
+    items_.back().known = commands > 0;  // else any number, of which nobody knows the size
     logic("event unit", Domain::Cluster, cores_, n_.event_unit);
-    logic("buses and control", Domain::Cluster, 1, n_.cluster_rest);
+    // Code and data take the same way to L2. No more than a line comes at once.
+    logic("buses and control", Domain::Cluster, 1,
+          n_.cluster_rest + n_.cluster_bus_byte * std::max(cluster.dma.bytes_per_cycle,
+                                                           bytes_of_code(cluster.icache)));
     if (n_.not_simulated > KiloGates(0))
       logic("accelerator not simulated", Domain::Cluster, 1, n_.not_simulated);
   }
@@ -122,7 +154,9 @@ class Parts {
 
   void controller_and_soc() {
     const double cuts = l2_cuts(chip_);
-    logic("controller", Domain::Controller, 1, n_.core + n_.fpu + n_.divider + n_.controller_rest);
+    logic("controller", Domain::Controller, 1,
+          core(chip_.controller.core) + n_.fpu + n_.divider + n_.controller_rest +
+              n_.controller_bus_byte * bytes_of_code(chip_.controller.icache));
     private_cache("instruction cache of the controller", Domain::Controller, 1,
                   chip_.controller.icache.worker, chip_.controller.icache);
     banks("block of L2", Domain::L2, cuts, n_.l2_cut);
@@ -136,15 +170,30 @@ class Parts {
   std::vector<AreaItem> items_;
 };
 
-// Numbers that may err: not those of the chip's make, where latches end and blocks.
+// Numbers that may err: not those of the chip's make, such as where blocks end.
 constexpr std::array kAreas{&AreaConfig::gate, &AreaConfig::sram_cut, &AreaConfig::sram_bit,
                             &AreaConfig::latch_bit};
-constexpr std::array kGates{
-    &AreaConfig::core,           &AreaConfig::fpu,           &AreaConfig::divider,
-    &AreaConfig::fpu_crosspoint, &AreaConfig::private_cache, &AreaConfig::memory_crosspoint,
-    &AreaConfig::shared_cache,   &AreaConfig::dma,           &AreaConfig::event_unit,
-    &AreaConfig::cluster_rest,   &AreaConfig::not_simulated, &AreaConfig::controller_rest,
-    &AreaConfig::soc_rest};
+constexpr std::array kGates{&AreaConfig::core,
+                            &AreaConfig::xpulp,
+                            &AreaConfig::fpu,
+                            &AreaConfig::divider,
+                            &AreaConfig::fpu_crosspoint,
+                            &AreaConfig::private_cache,
+                            &AreaConfig::shared_cache,
+                            &AreaConfig::cache_way,
+                            &AreaConfig::refill_buffer,
+                            &AreaConfig::int64_unit,
+                            &AreaConfig::dma_command,
+                            &AreaConfig::controller_bus_byte,
+                            &AreaConfig::dma,
+                            &AreaConfig::dma_byte,
+                            &AreaConfig::memory_crosspoint,
+                            &AreaConfig::event_unit,
+                            &AreaConfig::cluster_bus_byte,
+                            &AreaConfig::cluster_rest,
+                            &AreaConfig::not_simulated,
+                            &AreaConfig::controller_rest,
+                            &AreaConfig::soc_rest};
 constexpr std::array kPorts{&AreaConfig::l1_masters, &AreaConfig::l2_masters};
 
 /// Calls `visit` with `to` having one number of `from`, for each number that differs.

@@ -2,12 +2,14 @@
 // (sim/chip/config.h) and of what it has.
 //
 // Models: logic by gate equivalents; a memory block as a constant and so much a bit; the networks
-// of L1, L2 and the floating-point units by masters times slaves; caches with their tags. A band is
-// the root of the sum of squares over the numbers, which are independent of each other.
+// of L1, L2, the shared instruction cache and the floating-point units by masters times slaves;
+// caches with their tags and ways, of latches or a memory block, whichever is smaller; DMA and bus
+// by their widths. A shared cache that answers faster than its structure lets it comes as copies
+// for the cores. A band is the root of the sum of squares over the numbers, which are independent
+// of each other.
 //
 // Leaves out: pads, supplies, clock generators, analogue parts and non-volatile memory; that a
-// network grows faster where clocks are high, and that a larger chip has more wires; the units for
-// 64-bit integers, which belong to the cores.
+// network grows faster where clocks are high, and that a larger chip has more wires.
 #pragma once
 
 #include <array>

@@ -1,6 +1,9 @@
 // Areas of GAP9 against published clusters and chips, what its parts add, and what sections a
 // platform may have.
 #include "sim/energy/area.h"
+
+#include <fmt/format.h>
+
 #include "sim/energy/model.h"
 #include "tests/platform_models/platform_test.h"
 
@@ -21,7 +24,7 @@ double added(std::vector<std::string> overrides) {
 TEST(Area, ThePublishedClusterWithoutFloatingPointUnitsIsWithinTheBand) {
   sim::ChipConfig chip = load_platform("gap9");
   chip.cluster.workers = 7;  // and the master
-  chip.cluster.fpu.units = chip.cluster.fpu.dividers = 0;
+  chip.cluster.fpu.units = chip.cluster.fpu.dividers = chip.cluster.fpu.int64_units = 0;
   for (sim::AreaConfig* a : {&chip.area.value, &chip.area.low, &chip.area.high})
     a->not_simulated = {};  // the accelerator is published beside it
   const sim::AreaItem cluster = sim::cluster_area(chip);
@@ -49,7 +52,11 @@ TEST(Area, WhatPartsAddIsTheHandCountOfTheFacts) {
   EXPECT_NEAR(added({"cluster.workers=16", "cluster.max_workers=16"}), 166, 5);
   EXPECT_NEAR(added({"cluster.l1.banks=32"}), 87, 2);
   EXPECT_NEAR(added({"cluster.l1.size=256KiB"}), 210, 2);
-  EXPECT_NEAR(added({"cluster.icache.size=1KiB"}), 43, 8);
+  // From latches to a memory block (of which the constant is more than the bits), with more tags.
+  EXPECT_NEAR(added({"cluster.icache.size=1KiB"}),
+              8 * (5.0 + 0.2 * 8.192 - 1.1 * 4.096 + 1.1 * 0.768), 0.5);
+  EXPECT_NEAR(added({"cluster.icache.size=2KiB"}) - added({"cluster.icache.size=1KiB"}),
+              8 * (0.2 * 8.192 + 1.1 * 1.472), 0.5);
   EXPECT_NEAR(added({"cluster.fpu.dividers=4"}), 9.5, 7);  // with their network
 }
 
@@ -74,6 +81,17 @@ const std::vector<std::vector<std::string>> kMore{{"cluster.workers=16", "cluste
                                                   {"cluster.icache.master_size=8KiB"},
                                                   {"cluster.icache.shared_size=64KiB"},
                                                   {"cluster.icache.shared_banks=4"},
+                                                  {"cluster.icache.ways=8"},
+                                                  {"cluster.icache.ways=16"},
+                                                  {"cluster.icache.shared_hit=0"},
+                                                  {"cluster.icache.shared_hit=1"},
+                                                  {"cluster.icache.refill_width=16"},
+                                                  {"cluster.icache.refills=4"},
+                                                  {"cluster.fpu.int64_units=8"},
+                                                  {"cluster.dma.commands=16"},
+                                                  {"controller.icache.refill_width=16"},
+                                                  {"cluster.dma.bytes_per_cycle=16"},
+                                                  {"cluster.dma.bytes_per_cycle=64"},
                                                   {"cluster.l1.size=1MiB"},
                                                   {"cluster.l1.banks=32"},
                                                   {"controller.icache.size=8KiB"},
@@ -91,6 +109,48 @@ TEST(Area, NoHardwareIsFree) {
     EXPECT_GT(sim::total_area(after).area, sim::total_area(before).area) << more[0];
     EXPECT_GT(idle_second(after).total().value, idle_second(before).total().value) << more[0];
   }
+}
+
+/// Whatever the other sizes are, the next larger one never shrinks the chip.
+TEST(Area, ALargerResourceNeverShrinksTheChip) {
+  const auto grows = [](const char* key, const std::vector<std::string>& values,
+                        const std::vector<std::string>& beside) {
+    double before = 0;
+    for (const std::string& value : values) {
+      std::vector<std::string> overrides = beside;
+      overrides.push_back(fmt::format("{}={}", key, value));
+      const double now = sim::total_area(load_platform("gap9", overrides)).area.count();
+      EXPECT_GT(now, before) << key << '=' << value;
+      before = now;
+    }
+  };
+  const std::vector<std::string> sizes{"256B", "512B", "1KiB", "1536B", "2KiB",
+                                       "3KiB", "4KiB", "8KiB", "64KiB"};
+  for (const char* ways : {"1", "4", "16"}) {
+    const std::vector<std::string> beside{fmt::format("cluster.icache.ways={}", ways)};
+    grows("cluster.icache.size", sizes, beside);
+    grows("cluster.icache.master_size", sizes, beside);
+    grows("cluster.icache.shared_size", {"1KiB", "2KiB", "4KiB", "16KiB", "64KiB"}, beside);
+    grows("cluster.icache.shared_banks", {"1", "2", "4", "8"}, beside);
+  }
+  grows("controller.icache.size", sizes, {});
+  grows("cluster.icache.ways", {"1", "2", "4", "8", "16"}, {"cluster.icache.size=2KiB"});
+  grows("cluster.dma.bytes_per_cycle", {"2", "4", "8", "16", "32", "64"}, {});
+  grows("cluster.icache.refill_width", {"8", "12", "16"}, {});
+  grows("cluster.icache.shared_hit", {"3", "2", "1.5", "1", "0"}, {});
+}
+
+/// A core without Xpulp is smaller by it, in the cluster and as the controller.
+TEST(Area, CoresWithoutExtensionsAreSmaller) {
+  const auto gates = [](const std::vector<std::string>& overrides) {
+    const sim::GatesByDomain all = sim::gates_by_domain(load_platform("gap9", overrides));
+    return std::pair(all[sim::index(sim::Domain::Cores)].count(),
+                     all[sim::index(sim::Domain::Controller)].count());
+  };
+  const auto [cores, controller] = gates({});
+  const auto [plain_cores, plain_controller] = gates({"isa.base=rv32imfc"});
+  EXPECT_NEAR(cores - plain_cores, 9 * 10, 1e-9);
+  EXPECT_NEAR(controller - plain_controller, 10, 1e-9);
 }
 
 TEST(Area, AnAcceleratorThatNobodyKnowsTheSizeOfIsNotNothing) {
