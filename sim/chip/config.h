@@ -196,6 +196,9 @@ struct CoreConfig {
   /// Instructions executed per one that ops account for, routines left out, in code that was not
   /// measured. That of measured functions has a ratio of its own (work::CompiledWork).
   double unmeasured_instructions = 1;
+  /// Instructions that another compiler makes of measured code, per one of the compiler that it was
+  /// measured with. 1 on every chip: bands ask what other values would change.
+  double measured_instructions = 1;
   /// Share of loads whose result the next instruction uses, in code that was not measured.
   double load_use_fraction = 0;
   double load_use_stall = 0;                             ///< cycles such a load waits

@@ -92,9 +92,9 @@ OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operatio
   OperationCost result;
   // A routine was counted with its moves and spills.
   result.issue =
-      cost.issue *
-      (cost.routine ? operations.count
-                    : operations.emitted + operations.unmeasured * core.unmeasured_instructions);
+      cost.issue * (cost.routine ? operations.count
+                                 : operations.emitted * core.measured_instructions +
+                                       operations.unmeasured * core.unmeasured_instructions);
   result.stall = operations.stalled * cost.stall;
   result.stall_mechanism = stall_mechanism(info.op);
   // In measured code, the instruction behind a load waits: any one.

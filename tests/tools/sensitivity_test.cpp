@@ -144,6 +144,22 @@ TEST(Sensitivity, BandsOfASampleAreThoseOfTheSweep) {
   EXPECT_EQ(slowest.slowest.high, bands.slowest.high);
 }
 
+/// Code that was measured has the band of what other compilers make of it.
+TEST(Sensitivity, BandsOfMeasuredCodeAreThoseOfOtherCompilers) {
+  work::Segment segment;
+  segment[Op::IntAlu] = 10'000;
+  work::CompiledWork compiled{};
+  compiled[static_cast<std::size_t>(work::Compiled::Executed)] = 1'600;
+  compiled[static_cast<std::size_t>(work::Compiled::Priced)] = 1'600;
+  const platform::ResolvedPlatform chip = platform::resolve_platform("gap9");
+  work::set_compiled(segment.compiled, chip.config.cluster.core.code, compiled);
+  JobSample sample;
+  sample.add_frame(job_of("e", {work::Serial{segment}}), Cycles(10'000));
+  const TimeBands bands = time_bands(chip, 8, sample, TimeBandsOf::team_and_one_core, 1);
+  EXPECT_NEAR(bands.stages[0].parallel.low, kOtherCompilers.low, 1e-3);
+  EXPECT_NEAR(bands.stages[0].parallel.high, kOtherCompilers.high, 1e-3);
+}
+
 TEST(JobSample, HoldsTheSlowestAndSomeOfAllTheRun) {
   JobSample sample;
   for (int i = 0; i < 100; ++i)

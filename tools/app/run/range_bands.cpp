@@ -1,6 +1,7 @@
 #include "tools/app/run/range_bands.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -138,6 +139,14 @@ std::vector<Banded> range_bands(const platform::Variants& platform, const ChipFi
   };
   for (const auto& ends : at_ends(platform, parameters, base, figures, run))
     for (std::size_t k = 0; k < bands.size(); ++k) bands[k].add(ends.low[k], ends.high[k]);
+  std::array<std::vector<double>, 2> ends;
+  run(ends.size(), [&](std::size_t i) {
+    sim::ChipConfig chip = platform.config({});
+    for (sim::CoreConfig* core : {&chip.cluster.core, &chip.controller.core})
+      core->measured_instructions = i == 0 ? kOtherCompilers.low : kOtherCompilers.high;
+    ends[i] = figures(chip);
+  });
+  for (std::size_t k = 0; k < bands.size(); ++k) bands[k].add(ends[0][k], ends[1][k]);
   std::vector<Banded> result;
   for (const BandOf& band : bands) result.push_back(band.band());
   return result;

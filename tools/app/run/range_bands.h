@@ -62,6 +62,10 @@ std::vector<AtEnds<T>> at_ends(const platform::Variants& platform,
 /// was counted was measured, or has a range, isa.unmeasured_instructions.
 bool is_in_bands(const platform::Parameter& parameter, const sim::ChipConfig& chip);
 
+/// Instructions that other compilers make of measured code, for each of the compiler that it was
+/// measured with (FACTS.md#other-compilers). In bands, though no number of a platform.
+inline constexpr platform::Range kOtherCompilers{0.93, 1.18};
+
 /// The figures of one chip, always as many.
 using ChipFigures = std::function<std::vector<double>(const sim::ChipConfig&)>;
 
