@@ -137,7 +137,7 @@ TEST(Area, ALargerResourceNeverShrinksTheChip) {
   grows("cluster.icache.ways", {"1", "2", "4", "8", "16"}, {"cluster.icache.size=2KiB"});
   grows("cluster.dma.bytes_per_cycle", {"2", "4", "8", "16", "32", "64"}, {});
   grows("cluster.icache.refill_width", {"8", "12", "16"}, {});
-  grows("cluster.icache.shared_hit", {"3", "2", "1.5", "1", "0"}, {});
+  grows("cluster.icache.shared_hit", {"2", "1.5", "1", "0"}, {});
 }
 
 /// A core without Xpulp is smaller by it, in the cluster and as the controller.
