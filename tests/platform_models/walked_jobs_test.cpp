@@ -123,8 +123,8 @@ TEST(TeamMemory, KnowsWhatDoesNotDependOnANumber) {
   EXPECT_TRUE(memory.shares_as(cluster({"cluster.events.barrier", 5})));
   EXPECT_TRUE(memory.has_cores_of(cluster({"cluster.fpu.units", 8})));
   EXPECT_FALSE(memory.shares_as(cluster({"cluster.fpu.units", 8})));
-  EXPECT_FALSE(memory.has_cores_of(cluster({"isa.instruction_overhead", 1.4})));
-  EXPECT_TRUE(memory.shares_as(cluster({"isa.instruction_overhead", 1.4})));
+  EXPECT_FALSE(memory.has_cores_of(cluster({"isa.unmeasured_instructions", 1.4})));
+  EXPECT_TRUE(memory.shares_as(cluster({"isa.unmeasured_instructions", 1.4})));
 }
 
 }  // namespace
