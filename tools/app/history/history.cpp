@@ -27,7 +27,7 @@ constexpr std::size_t kDigits = 12;  ///< of a digest
 /// A run of fifty stages takes a few kB.
 constexpr JsonLimits kLineLimits{
     .bytes = std::size_t{1} << 20, .depth = 16, .values = 50'000, .members = 256};
-constexpr std::size_t kMostStages = 1000;
+constexpr std::size_t kMostStagesOfLine = 1000;
 
 /// A shared line: what it holds, under its digest.
 struct Shared {
@@ -181,9 +181,9 @@ PastRun History::run(std::size_t i) const {
       statistic.unit = string_of(names.at(k).at(1));
       if (!values.at(k).is_null()) statistic.value = values.at(k).get<double>();
     }
-    if (run.at("stages").size() > kMostStages)
+    if (run.at("stages").size() > kMostStagesOfLine)
       throw InputError(fmt::format("{}: a run of it has {} stages; expected at most {}", file_,
-                                   run.at("stages").size(), kMostStages));
+                                   run.at("stages").size(), kMostStagesOfLine));
     for (const Json& stage : run.at("stages"))
       add_baseline_stage(kept(string_of(stage)), past.record);
     return past;
