@@ -63,7 +63,7 @@ class SweepCommand : public ::testing::Test {
   static ProgramResult sweep(std::vector<std::string> more, const std::string& cache) {
     return run_program(folder_, words(std::move(more), cache));
   }
-  static std::string csv_text(const std::string& folder) {
+  static std::string csv(const std::string& folder) {
     return base::read_text_file(folder_ / folder / kSweepCsv);
   }
   static int shell(const std::string& script) {
@@ -164,7 +164,7 @@ TEST_F(SweepCommand, GoesOnAfterBeingKilledAtAnyMoment) {
     }
     const ProgramResult rest = sweep({"--out", path(name)}, name);
     ASSERT_EQ(rest.status, 1) << rest.err;
-    EXPECT_EQ(csv_text(name), csv("whole"));
+    EXPECT_EQ(csv(name), csv("whole"));
   }
 }
 

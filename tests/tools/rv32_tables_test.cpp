@@ -36,10 +36,10 @@ INSTANTIATE_TEST_SUITE_P(All, CompiledTables, ::testing::ValuesIn(work::kCompile
                          [](const auto& set) { return std::string(set.param); });
 
 std::vector<Segment> segments(std::string_view table) {
-  base::CsvReader csv_text(kSource / fmt::format("platform_models/code/{}.csv", table),
-                           base::Separator::comma,
-                           {"function", "after", "lines", "visits", "refetches", "executed",
-                            "priced", "loads", "used_at_once", "executed_loops", "priced_loops"});
+  base::CsvReader csv(kSource / fmt::format("platform_models/code/{}.csv", table),
+                      base::Separator::comma,
+                      {"function", "after", "lines", "visits", "refetches", "executed", "priced",
+                       "loads", "used_at_once", "executed_loops", "priced_loops"});
   const base::CsvRow* row = csv.next();
   EXPECT_EQ(row->text(0), "function");
   std::vector<Segment> result;

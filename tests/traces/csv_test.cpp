@@ -13,7 +13,7 @@ using testing::TempFolder;
 TEST(Csv, SkipsCommentsAndTrimsCells) {
   const TempFolder folder;
   outputs::write_file_atomically(folder / "a.csv", "# one\n 1 , +2.5e1 \r\n# two\n3,-4");
-  base::CsvReader csv_text(folder / "a.csv", base::Separator::comma, {"a", "b"});
+  base::CsvReader csv(folder / "a.csv", base::Separator::comma, {"a", "b"});
   const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->line(), 2u);
@@ -29,7 +29,7 @@ TEST(Csv, SkipsCommentsAndTrimsCells) {
 TEST(Csv, BlanksSeparateWhereAsked) {
   const TempFolder folder;
   outputs::write_file_atomically(folder / "a.txt", "  1\t2   3 \n");
-  base::CsvReader csv_text(folder / "a.txt", base::Separator::blanks, {"a", "b", "c"});
+  base::CsvReader csv(folder / "a.txt", base::Separator::blanks, {"a", "b", "c"});
   const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->text(1), "2");
@@ -39,7 +39,7 @@ TEST(Csv, BlanksSeparateWhereAsked) {
 TEST(Csv, LongCellsAreCutInMessages) {
   const TempFolder folder;
   outputs::write_file_atomically(folder / "a.csv", std::string(500, 'x'));
-  base::CsvReader csv_text(folder / "a.csv", base::Separator::comma, {"a"});
+  base::CsvReader csv(folder / "a.csv", base::Separator::comma, {"a"});
   const base::CsvRow* row = csv.next();
   ASSERT_NE(row, nullptr);
   try {

@@ -47,10 +47,10 @@ const work::CodeMap& scaled_code(double factor) {
       "executed_loops,priced_loops\n";
   for (const base::BuiltinFile& file : platform::builtin_code()) {
     if (file.name != platform::kCompiledCode) continue;
-    base::CsvReader csv_text(file.name, base::Separator::comma,
-                             {"function", "after", "lines", "visits", "refetches", "executed",
-                              "priced", "loads", "used_at_once", "executed_loops", "priced_loops"},
-                             std::string(file.text));
+    base::CsvReader csv(file.name, base::Separator::comma,
+                        {"function", "after", "lines", "visits", "refetches", "executed", "priced",
+                         "loads", "used_at_once", "executed_loops", "priced_loops"},
+                        std::string(file.text));
     csv.next();  // titles
     while (const base::CsvRow* row = csv.next())
       scaled +=
