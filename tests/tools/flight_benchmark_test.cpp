@@ -209,9 +209,10 @@ TEST_F(FlightBenchmark, TellsTheSameInAllItsForms) {
   ASSERT_EQ(json.at("pieces").size(), 8u);
   EXPECT_EQ(json.at("pieces")[7].at("set"), "fresh");
   EXPECT_EQ(json.at("pieces")[7].at("ate_m"), 0.23);
-  const std::string csv = csv_text(benchmark_runs_table(benchmark_, runs_, outcomes_, {}));
+  const Table runs = benchmark_runs_table(benchmark_, runs_, outcomes_, {});
+  const std::string csv = csv_text(runs);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 24);
-  const Json page = benchmark_page(benchmark_, all, csv);
+  const Json page = benchmark_page(benchmark_, all, runs);
   EXPECT_EQ(page.at("study").at("axes"), Json::array({"path_m", "ate_percent"}));
   EXPECT_EQ(page.at("study").at("table").at("ate_percent").size(), 24u);
   EXPECT_EQ(page.at("study").at("colour"), "set");
