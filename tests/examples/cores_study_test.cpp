@@ -72,7 +72,8 @@ Command add_cores_command(CLI::App& app, const Words& words) {
   return add_study<StudyOptions>(
       app, words,
       {"cores", "A workload on one, two, four … cores", "chip", {"leviosim cores --data flight"}},
-      add_chip_run_options, [](const StudyOptions& o) { return data_inputs(o.data); },
+      [](CLI::App& command, StudyOptions& o) { add_chip_run_options(command, o); },
+      [](const StudyOptions& o) { return data_inputs(o.data); },
       cores_answer);
 }
 
@@ -83,8 +84,8 @@ TEST(CoresStudy, IsOneFileAndLeavesCsvAndPage) {
   CLI::App app;
   const Words words{"cores"};
   const Command command = add_cores_command(app, words);
-  const std::string csv = folder.path("cores.csv");
-  const std::string page = folder.path("cores.html");
+  const std::string csv = folder / "cores.csv";
+  const std::string page = folder / "cores.html";
   app.parse(fmt::format("cores --data {} --quiet --csv {} --report {}", flight, csv, page));
   command.run();
   const Table rows = read_csv(csv, base::read_text_file(csv));

@@ -260,7 +260,7 @@ TEST(Runner, ComputesEqualKeysOnceAndCountsAllOfThem) {
   PointBatch batch{.keys = {a, b, a, c, a}, .before = 2, .keeps_failures = false};
   batch.compute = [&](std::size_t point) {
     ++computed;
-    return Outcome{point == 3 ? "too small" : "", {{"x", "", "", double(point)}}};
+    return Outcome{point == 3 ? "too small" : "", {{"x", "", double(point)}}};
   };
   batch.take = [&](std::size_t point, const Outcome& o) { taken[point] = o.figures[0].value; };
   const Tally first = run_points(batch, {.threads = 2, .cache = folder / "cache"});
@@ -294,8 +294,6 @@ TEST(RunOutcome, RefusesKeptFiguresOfAnotherKind) {
   for (Figure& figure : figures.figures) figure.value = 1e300;
   expect_input_error([&] { run_outcome_of(figures); }, {"cache", "sub_trajectories"});
 }
-
-TEST(RunsCsv, NeedsNoQuotes) { EXPECT_EQ(plain_cell("a,\"b\"\n"), "a  b  "); }
 
 }  // namespace
 }  // namespace leviosim::tools

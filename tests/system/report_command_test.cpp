@@ -10,6 +10,7 @@
 #include "tests/support/program_suite.h"
 #include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/report/json_reader.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -205,7 +206,7 @@ class InBrowser : public Report {
     std::string reported = dom.substr(begin, dom.find('"', begin) - begin);
     for (std::size_t at = 0; (at = reported.find("&quot;", at)) != std::string::npos;)
       reported.replace(at, 6, "\"");
-    return {parse_json("what the page reported", reported), base::read_text_file(path("log.txt"))};
+    return {read_json("what the page reported", reported), base::read_text_file(path("log.txt"))};
   }
 
   /// @param verdicts  on the page, or tables of them

@@ -25,20 +25,20 @@ class WhyCommand : public tests::ProgramSuite {
     return program(words);
   }
   static Json answer(std::vector<std::string> words) {
-    words.emplace_back("--json");
+    words.emplace_back("--found");
     const ProgramResult result = why(std::move(words));
     EXPECT_EQ(result.status, 0) << result.err;
     return Json::parse(result.out);
   }
-  static double number(const Json& json, const char* key) { return json.at(key).get<double>(); }
+  static double number(const Json& found, const char* key) { return found.at(key).get<double>(); }
 };
 
 TEST_F(WhyCommand, NamesTheSlowestFrameAndFitsAScreen) {
-  const Json json = answer({});
-  const int slowest = json.at("frame").at("frame").get<int>();
+  const Json found = answer({});
+  const int slowest = found.at("frame").at("frame").get<int>();
   for (int frame = 0; frame < 24; ++frame)
     EXPECT_LE(number(answer({std::to_string(frame)}).at("frame"), "latency_ms"),
-              number(json.at("frame"), "latency_ms"))
+              number(found.at("frame"), "latency_ms"))
         << frame;
   const ProgramResult result = why({});
   EXPECT_NE(result.out.find("in short: frame " + std::to_string(slowest)), std::string::npos)
@@ -50,25 +50,25 @@ TEST_F(WhyCommand, NamesTheSlowestFrameAndFitsAScreen) {
 /// a frame waited for the one before is no time of its own.
 TEST_F(WhyCommand, StagesAddUpToTheFramesOwnTime) {
   for (const char* clock : {"370MHz", "150MHz"}) {
-    const Json json = answer({"-p", std::string("cluster.clock=") + clock});
+    const Json found = answer({"-p", std::string("cluster.clock=") + clock});
     double median = 0, frame = 0;
-    for (const Json& stage : json.at("stages")) {
+    for (const Json& stage : found.at("stages")) {
       median += number(stage, "median_ms");
       frame += number(stage, "ms");
     }
     constexpr double kCalls_ms = 0.1;
-    EXPECT_NEAR(median, number(json.at("median"), "own_ms"), kCalls_ms) << clock;
-    EXPECT_NEAR(frame, number(json.at("frame"), "own_ms"), kCalls_ms) << clock;
-    EXPECT_NEAR(number(json.at("frame"), "waited_ms") + number(json.at("frame"), "own_ms"),
-                number(json.at("frame"), "latency_ms"), 1e-9);
+    EXPECT_NEAR(median, number(found.at("median"), "own_ms"), kCalls_ms) << clock;
+    EXPECT_NEAR(frame, number(found.at("frame"), "own_ms"), kCalls_ms) << clock;
+    EXPECT_NEAR(number(found.at("frame"), "waited_ms") + number(found.at("frame"), "own_ms"),
+                number(found.at("frame"), "latency_ms"), 1e-9);
   }
 }
 
 /// At a third of the clock frames are late, and wait for those before them.
 TEST_F(WhyCommand, TellsWaitingFromWork) {
-  const Json json = answer({"-p", "cluster.clock=120MHz", "-p", "controller.clock=120MHz"});
-  const std::string text = json.at("answer");
-  EXPECT_GT(number(json.at("frame"), "waited_ms"), 0);
+  const Json found = answer({"-p", "cluster.clock=120MHz", "-p", "controller.clock=120MHz"});
+  const std::string text = found.at("answer");
+  EXPECT_GT(number(found.at("frame"), "waited_ms"), 0);
   EXPECT_NE(text.find("ms late"), std::string::npos) << text;
   EXPECT_NE(text.find("waiting for the frame before"), std::string::npos) << text;
 }

@@ -41,7 +41,7 @@ std::vector<PastRun> runs_of(const std::vector<double>& cycles) {
   return runs;
 }
 
-History history_of(const std::string& text) { return {"h", Pieces(text)}; }
+History history_of(const std::string& text) { return {"h", base::Pieces(text)}; }
 
 Budget budget_of(const std::string& limit) {
   return parse_budget("b.yaml", "budgets:\n  - limits:\n      - " + limit + "\n");

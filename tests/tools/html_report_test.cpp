@@ -162,13 +162,14 @@ TEST(Page, HoldsTheLibraryAndItsLicenceAndLoadsNothing) {
 }
 
 TEST(StudyPage, LeavesOutWhatNoPointHasAndScales) {
+  Table points({{.title = "clock", .key = "clock", .unit = "MHz", .is_setup = true},
+                {.title = "missed", .key = "missed", .unit = "%", .scale = 100},
+                {.title = "error", .key = "ate", .unit = "m"}});
+  points.add({100.0, 0.25, Cell()});
+  points.add({200.0, 0.5, Cell()});
   const Json data = study_report({.title = "x",
                                   .summary = "",
-                                  .points = "clock,missed,ate\n100,0.25,\n200,0.5,\n",
-                                  .columns = {{"clock", "clock", "MHz", true},
-                                              {"missed", "missed", "%", false, false, 100},
-                                              {"ate", "error", "m"},
-                                              {"power", "power", "mW"}},
+                                  .points = points,
                                   .x = "power",
                                   .y = "missed",
                                   .colour = "power"});

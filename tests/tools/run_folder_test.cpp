@@ -100,9 +100,9 @@ TEST(FramesCsv, EveryFactOfAFrameIsAColumn) {
     }
   run.frames[3].state = static_cast<int>(vio::PoseState::Predicted);
   EXPECT_EQ(rows[3].at("state"), "located");
-  EXPECT_EQ(parse_csv(frames_csv(run))[3].at("state"), "predicted");
+  EXPECT_EQ(parse_csv(csv_text(frame_rows(run)))[3].at("state"), "predicted");
   run.frames[3].state = 17;  // of a trace that another program wrote
-  EXPECT_EQ(parse_csv(frames_csv(run))[3].at("state"), "17");
+  EXPECT_EQ(parse_csv(csv_text(frame_rows(run)))[3].at("state"), "17");
   EXPECT_EQ(rows[2].at("map_restarts"), "0");
 }
 

@@ -17,14 +17,14 @@ namespace leviosim::vio::vision_test {
 namespace {
 
 using C = work::Counting;
-constexpr int kWidth = 61, kHeight = 53;
+constexpr int kPictureWidth = 61, kPictureHeight = 53;
 
 std::vector<cv::Mat> pictures() {
-  std::vector<cv::Mat> images = {noise_image(kWidth, kHeight, 1),
-                                 rectangle_image(kWidth, kHeight, 2),
-                                 cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(255)),
-                                 cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(0))};
-  cv::Mat extremes = noise_image(kWidth, kHeight, 3);
+  std::vector<cv::Mat> images = {noise_image(kPictureWidth, kPictureHeight, 1),
+                                 rectangle_image(kPictureWidth, kPictureHeight, 2),
+                                 cv::Mat(kPictureHeight, kPictureWidth, CV_8U, cv::Scalar(255)),
+                                 cv::Mat(kPictureHeight, kPictureWidth, CV_8U, cv::Scalar(0))};
+  cv::Mat extremes = noise_image(kPictureWidth, kPictureHeight, 3);
   cv::threshold(extremes, extremes, 127, 255, cv::THRESH_BINARY);
   images.push_back(extremes);
   return images;
@@ -36,8 +36,8 @@ void for_pixels(int reach, Visit&& visit) {
   for (const cv::Mat& picture : pictures()) {
     PolicyImage<C> copy(picture);
     const ConstImageView<C> image = copy.view();
-    for (int y = reach; y < kHeight - reach; ++y)
-      for (int x = reach; x < kWidth - reach; ++x) visit(image, y * kWidth + x);
+    for (int y = reach; y < kPictureHeight - reach; ++y)
+      for (int x = reach; x < kPictureWidth - reach; ++x) visit(image, y * kPictureWidth + x);
   }
 }
 
@@ -69,13 +69,13 @@ TEST(VisionHost, ARunOfNineOnTheRingIsAnArcWhereverItBegins) {
 
 TEST(VisionHost, CornersAreThoseOfBothCountedTests) {
   work::Arena memory("L1", Bytes(4096));
-  const levio::OffsetTables<C> tables(memory, kWidth);
+  const levio::OffsetTables<C> tables(memory, kPictureWidth);
   std::vector<work::I32> ring(kRingSize);
-  fill_ring_offsets<C>(kWidth, span_of<C>(ring));
+  fill_ring_offsets<C>(kPictureWidth, span_of<C>(ring));
   int corners = 0, others = 0;
   for (const int threshold : {0, 10, 60, 254})
     for_pixels(kRingRadius, [&](ConstImageView<C> image, int centre) {
-      const bool corner = host::is_corner(image.pixels.data() + centre, kWidth, threshold);
+      const bool corner = host::is_corner(image.pixels.data() + centre, kPictureWidth, threshold);
       ASSERT_EQ(corner,
                 work::value(is_fast_corner<C>(image.pixels, centre, span_of<C>(ring), threshold)));
       ASSERT_EQ(corner, work::value(levio::is_corner<C>(image.pixels, centre, tables, threshold)));
@@ -87,13 +87,13 @@ TEST(VisionHost, CornersAreThoseOfBothCountedTests) {
 
 TEST(VisionHost, TheHarrisResponseIsThatOfBothCountedKernels) {
   work::Arena memory("L1", Bytes(4096));
-  const levio::OffsetTables<C> tables(memory, kWidth);
+  const levio::OffsetTables<C> tables(memory, kPictureWidth);
   for_pixels(kHarrisReach + 1, [&](ConstImageView<C> image, int centre) {
-    const int response = host::harris_response(image.pixels.data() + centre, kWidth);
-    ASSERT_EQ(response, work::value(harris_response<C>(image.pixels, kWidth, centre % kWidth,
-                                                       centre / kWidth)));
+    const int response = host::harris_response(image.pixels.data() + centre, kPictureWidth);
+    ASSERT_EQ(response, work::value(harris_response<C>(image.pixels, kPictureWidth, centre % kPictureWidth,
+                                                       centre / kPictureWidth)));
     ASSERT_EQ(response,
-              work::value(levio::corner_response<C>(image.pixels, kWidth, centre, tables)));
+              work::value(levio::corner_response<C>(image.pixels, kPictureWidth, centre, tables)));
   });
 }
 
@@ -104,12 +104,12 @@ TEST(VisionHost, MomentsAreThoseOfBothCountedDiscs) {
   for_pixels(kDescriptorReach, [&](ConstImageView<C> image, int centre) {
     const auto* pixel = image.pixels.data() + centre;
     const Moments<C> counted =
-        disc_moments<C>(image.pixels, kWidth, centre, span_of<C>(half_widths));
-    const Moments<work::Native> plain = host::disc_moments(kDisc, pixel, kWidth);
+        disc_moments<C>(image.pixels, kPictureWidth, centre, span_of<C>(half_widths));
+    const Moments<work::Native> plain = host::disc_moments(kDisc, pixel, kPictureWidth);
     ASSERT_EQ(plain.m10, work::value(counted.m10));
     ASSERT_EQ(plain.m01, work::value(counted.m01));
-    const Moments<C> counted_released = levio::disc_moments<C>(image.pixels, kWidth, centre);
-    const Moments<work::Native> released = host::disc_moments(kReleased, pixel, kWidth);
+    const Moments<C> counted_released = levio::disc_moments<C>(image.pixels, kPictureWidth, centre);
+    const Moments<work::Native> released = host::disc_moments(kReleased, pixel, kPictureWidth);
     ASSERT_EQ(released.m10, work::value(counted_released.m10));
     ASSERT_EQ(released.m01, work::value(counted_released.m01));
   });
@@ -126,8 +126,8 @@ void expect_the_counted_pairs(const std::array<work::U32, kPairs>& words) {
                                         static_cast<int>(256 * std::sin(angle))};
     const int word = step % kDescriptorWords;
     const work::U32 counted = compare_pairs<C, Points>(
-        image.pixels, kWidth, centre, Direction<C>{plain.cos, plain.sin}, pattern, word);
-    ASSERT_EQ(compare_pairs_on_host<Points>(image.pixels.data() + centre, kWidth, plain,
+        image.pixels, kPictureWidth, centre, Direction<C>{plain.cos, plain.sin}, pattern, word);
+    ASSERT_EQ(compare_pairs_on_host<Points>(image.pixels.data() + centre, kPictureWidth, plain,
                                             words.data() + kWordBits * word),
               work::value(counted));
   });
