@@ -60,7 +60,7 @@ TEST(RunSummary, FitsAScreen) {
 TEST(RunSummary, SaysAllThatMatters) {
   const std::string text = run_summary(kHeading, eventful_run(), 80);
   for (const char* part :
-       {"verdict: map lost: the error is 92.6 % of the path",
+       {"verdict: map lost: the error is 83.3 % of the path",
         "time fits on average: 1 of 5 frames late", "frame time: mean 31.50, p99 60.00",
         "memory: L1 64.0 of 131.1 kB in optimiser iteration", "L2 794.5 of 1638.4 kB", "energy: ",
         "mJ per frame", "trajectory: ATE 5.000 m RMSE (4.500 m without guesses), 0.470 m worst",
@@ -99,6 +99,7 @@ TEST(RunSummary, APathThatDivergedHasThreeDigits) {
   RunResult run = eventful_run();
   run.trajectory.back().T_world_body.translation().x() = 2.34165364300e20;
   run.ate->translation.rmse = run.ate->translation.max = 1.2345e19;
+  run.ate->located_rmse_m = 1.2345e19;
   run.ate->path_length_m = 5;
   const std::string screen = run_summary(kHeading, run, 80);
   for (const char* part : {"trajectory: ATE 1.23e+19 m RMSE", "1.23e+19 m worst"})

@@ -36,6 +36,14 @@ RunResult with_kept(int kept) {
   return run;
 }
 
+/// A hundred frames, so that states can change on the way.
+RunResult long_run(double error_share) {
+  RunResult run = with_kept(0);
+  run.ate->path_length_m = 10;
+  run.ate->translation.rmse = error_share * run.ate->path_length_m;
+  return run;
+}
+
 using Texts = std::vector<std::string>;
 
 Texts map_faults(const RunResult& run) { return map_verdict(figures_of(run).map).reasons; }
@@ -78,7 +86,7 @@ TEST(MapVerdict, SaysThatImagesHaveNoFeatures) {
 
 /// What comes before there is a map is no fault of the map.
 TEST(MapVerdict, GuessesAreNamedAndNotJudged) {
-  RunResult run = with_error(0.213);
+  RunResult run = long_run(0.213);
   run.ate->located_rmse_m = 0.04;
   for (std::size_t i = 0; i < 3; ++i)
     run.frames[i].state = static_cast<int>(vio::PoseState::Initialising);
@@ -93,7 +101,7 @@ TEST(MapVerdict, GuessesAreNamedAndNotJudged) {
 }
 
 TEST(MapVerdict, SaysSinceWhenAReasonHolds) {
-  RunResult run = with_error(0.05);
+  RunResult run = long_run(0.05);
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     run.frames[i].health = static_cast<int>(vio::Health::unreliable);
     run.frames[i].health_reasons =
@@ -107,7 +115,7 @@ TEST(MapVerdict, SaysSinceWhenAReasonHolds) {
 }
 
 TEST(MapVerdict, KnowsSinceWhenTheVehicleRests) {
-  RunResult run = with_error(0.05);
+  RunResult run = long_run(0.05);
   EXPECT_FALSE(figures_of(run).map.at_rest_since);
   for (std::size_t i = 12; i < run.frames.size(); ++i) run.frames[i].at_rest = 1;
   EXPECT_EQ(figures_of(run).map.at_rest_since, run.frames[12].index);
