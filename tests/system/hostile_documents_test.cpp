@@ -133,7 +133,7 @@ TEST_F(HostileDocuments, MarkdownOfOthersIsText) {
   const std::string comment =
       fs::exists(path("comment.md")) ? read_text(path("comment.md")) : std::string();
   for (const std::string& text : {compared.out, comment}) {
-    for (const char* live : {"<img", "<b>", "](", "@team", "@all", "`d`", "**e**"})
+    for (const char* live : {"<img", "<b>", "[a](", "[b](", "[x](", "@team", "@all", "`d`", "**e**"})
       EXPECT_EQ(text.find(live), std::string::npos) << live << " in\n" << text;
   }
   EXPECT_NE(compared.out.find("&lt;img"), std::string::npos) << compared.out;

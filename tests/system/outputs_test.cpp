@@ -115,7 +115,7 @@ TEST_F(Outputs, ResultsThatAreReadStay) {
   expect_kept_by_force(with({"--json", path("flown/trajectory.tum")}), {"--json"});
   expect_kept_by_force(
       with({"--report", path("flown/stats.html"), "--json", path("flown/stats.json")}),
-      {"--json", "is read"});
+      {"--json", "is a file of a run"});
   fs::copy(folder_ / "flown/trajectory.tum", folder_ / "est.tum");
   expect_kept_by_force({"eval", path("est.tum"), truth, "--json", path("est.tum")}, {"est.tum"});
 }

@@ -52,7 +52,7 @@ TEST_F(StudyCommands, SayWhatHasBecomeOfTheFittedConstant) {
   outputs::write_file_atomically(folder_ / "older.yaml",
                                  "extends: gap9\nisa:\n  instruction_overhead: 1.16\n");
   expect_refusal({"platforms", "show", path("older.yaml")},
-                 {"older.yaml", "line 3", "isa.instruction_overhead", "no such key any more"});
+                 {"older.yaml", ":3: ", "isa.instruction_overhead", "no such key any more"});
 }
 
 /// Chips that are worse than the program's own, in a unit and in a row that is known to be missed.

@@ -60,7 +60,7 @@ struct Feasibility {
 /// A chip with so many of its cores.
 struct FeasibilityPoint {
   std::string name;  ///< as asked for
-  const platform::ResolvedPlatform& platform;
+  platform::ResolvedPlatform platform;
   int cores = 0;
 };
 
