@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/base/check.h"
+#include "sim/base/error.h"
 #include "sim/events/timebase.h"
 
 namespace leviosim::sim {
@@ -20,6 +21,14 @@ double payload_cycles(const DmaConfig& dma, Bytes bytes) {
 double transfer_cycles(const DmaConfig& dma, Bytes bytes) {
   return dma.programming + std::max(dma.call, dma.first_data + payload_cycles(dma, bytes)) +
          dma.completion;
+}
+
+void Traffic::add(const Interval& data) {
+  if (data_.size() == kMostUnderWay)
+    throw InputError(
+        "the work has more transfers under way at once than the simulation can follow, 4096: it "
+        "begins too many background transfers without waiting for them");
+  data_.push_back(data);
 }
 
 void Traffic::forget(Cycles before) {

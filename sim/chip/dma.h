@@ -33,10 +33,13 @@ struct Interval {
 class Traffic {
  public:
   static constexpr Cycles kNever{std::numeric_limits<std::int64_t>::max()};
+  /// Each is looked at with every change, so that more would take for ever.
+  static constexpr std::size_t kMostUnderWay = 4096;
 
   explicit Traffic(double words_of_a_channel) : words_(words_of_a_channel) {}
 
-  void add(const Interval& data) { data_.push_back(data); }
+  /// @throws InputError if more are under way than any program needs (kMostUnderWay)
+  void add(const Interval& data);
   /// Nobody will ask for earlier instants.
   void forget(Cycles before);
   /// Words per cycle that flow from an instant on, until the next change.

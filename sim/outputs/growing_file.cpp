@@ -28,13 +28,13 @@ bool has_name(int descriptor, const fs::path& path, struct stat& now) {
 }
 
 /// Where open files have names by which they can be linked; containers may lack it.
-constexpr const char* kOpenFiles = "/proc/self/fd";
+constexpr const char* kNamesOfOpenFiles = "/proc/self/fd";
 
 /// A file beside the path that a kill leaves nothing of. @param staging  its name, where the file
 /// system knows no files without one, or where they could not be linked
 Descriptor open_unnamed(const fs::path& path, fs::path& staging) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const bool can_link = ::access(kOpenFiles, X_OK) == 0;
+  const bool can_link = ::access(kNamesOfOpenFiles, X_OK) == 0;
   Descriptor out(can_link ? ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666) : -1);
   const bool is_unknown = !can_link || errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL;
   for (int k = 0; !out && is_unknown && (k == 0 || errno == EEXIST); ++k) {
@@ -51,7 +51,7 @@ int make_whole(const fs::path& path, std::string_view text) {
   if (!out) return errno;
   int error = write_all(out.get(), text);
   if (error == 0 && staging.empty()) {
-    const std::string opened = fmt::format("{}/{}", kOpenFiles, out.get());
+    const std::string opened = fmt::format("{}/{}", kNamesOfOpenFiles, out.get());
     if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) != 0)
       error = errno;
   }

@@ -25,7 +25,7 @@ class WhyCommand : public tests::ProgramSuite {
     return program(words);
   }
   static Json answer(std::vector<std::string> words) {
-    words.emplace_back("--found");
+    words.emplace_back("--json");
     const ProgramResult result = why(std::move(words));
     EXPECT_EQ(result.status, 0) << result.err;
     return Json::parse(result.out);
