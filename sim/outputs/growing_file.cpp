@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostTrials = 100;
+constexpr int kMostAttempts = 100;
 
 /// Whether a name leads to the open file. @param now  of the file
 bool has_name(int descriptor, const fs::path& path, struct stat& now) {
@@ -79,7 +79,7 @@ int write_end(const Descriptor& file, const fs::path& path, std::uint64_t size,
 
 Descriptor open_locked(const fs::path& path, int flags, std::chrono::milliseconds patience,
                        int& error) {
-  for (int trial = 0; trial < kMostTrials; ++trial) {
+  for (int trial = 0; trial < kMostAttempts; ++trial) {
     Descriptor file(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
     error = file ? 0 : errno;
     if (!file) return file;
@@ -94,7 +94,7 @@ Descriptor open_locked(const fs::path& path, int flags, std::chrono::millisecond
 void add_lines(const fs::path& path, base::InputKind kind, std::chrono::milliseconds patience,
                const std::function<Addition(std::optional<base::OpenedFile>)>& addition) {
   int error = EAGAIN;
-  for (int trial = 0; (error == EAGAIN || error == EEXIST) && trial < kMostTrials; ++trial) {
+  for (int trial = 0; (error == EAGAIN || error == EEXIST) && trial < kMostAttempts; ++trial) {
     Descriptor file = open_locked(path, O_RDWR | O_APPEND, patience, error);
     if (!file && error == ENOENT) {
       const Addition wanted = addition(std::nullopt);

@@ -49,7 +49,9 @@ void validate(const RunOptions& given, const Words& words) {
   std::optional<outputs::OutputFolder> out;
   if (!options.out.empty()) out.emplace(out_request(options));
   request.data = data_folder(options, style);
-  auto [result, validation] = validated(request, style);
+  auto computed = validated(request, style);
+  const RunResult& result = computed.first;
+  Validation& validation = computed.second;
   if (second) {
     RunRequest other = make_chip_request(*second);
     other.data = request.data;
