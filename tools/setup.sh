@@ -3,7 +3,7 @@
 # network, where everything is there.
 #   tools/setup.sh          what the program needs
 #   tools/setup.sh tests    what its tests need, too: a browser for pages, references, benchmarks
-#   tools/setup.sh full     and other compilers, with their sanitizers
+#   tools/setup.sh full     and other compilers, with their sanitizers, and what counts instructions
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source tools/progress.sh
@@ -25,7 +25,8 @@ tests=(
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
   python3-dev pybind11-dev python3-numpy                      # the Python module (preset python)
 )
-compilers=(clang libclang-rt-14-dev clang-tools)  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh); check_counting.py
+compilers=(clang libclang-rt-14-dev clang-tools  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh); check_counting.py
+  valgrind)                                      # tools/ci/host_work.sh
 case ${1:-program} in
   program) ;;
   tests) packages+=("${tests[@]}") ;;

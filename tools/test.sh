@@ -95,6 +95,7 @@ if [[ $kind == --full ]]; then
   check other-tests tests --label-exclude unit
   check fuzz tools/fuzz.sh --seconds 15 --light
   check guard tools/ci/guard.sh
+  check host-work tools/ci/host_work.sh
   check reproducible tools/check_reproducible.sh --quick
 fi
 printf 'test: %s\n' "${summary[@]}"
