@@ -211,7 +211,8 @@ TEST(ValidationDspKernels, SampsonErrorsTakeWhatTheyDoInAnOpenSimulator) {
     };
     const double match = (fork(2 * kHypotheses) - fork(kHypotheses)) / (kHypotheses * kMatches);
     std::printf("  Sampson, %d cores: %.1f cycles a match for %.0f\n", cores, match, reference);
-    // One instruction is counted for each operation: the simulator's compiler makes more of some.
+    // A miss that is known: without a factor on instructions two and four cores are 20 and 17 % too
+    // fast.
     EXPECT_NEAR(match / reference, 1, 0.2) << match << " cycles on " << cores;
   }
 }
