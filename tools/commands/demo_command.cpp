@@ -164,8 +164,8 @@ std::string screen(const Flown& levio, const Flown& next, const std::string& wha
   text += row("error (SE3-aligned)", error(a), error(b));
   if (options.data == "synthetic" && options.frames.empty())
     text +=
-        "levio, the paper's pipeline, is late where EPnP meets the most features. Its\n"
-        "scale drifts on this flight; the released program's does, too (0.7-0.8 m).\n";
+        "The scale of levio, the paper's pipeline, drifts on this flight; that of the\n"
+        "released program does, too (0.7-0.8 m).\n";
   text += "What if: front end of a frame and energy of levio's recorded work\n" + what_ifs;
   const std::string page = std::filesystem::absolute(out).lexically_normal() / kReport;
   return text + fmt::format(
