@@ -8,10 +8,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-all=(asl_tables baseline budget cache_entry evaluation flight_plan image output_record overrides
-  platform_yaml run_folder sensor_yaml sweep_points sweep_plan work_trace work_trace_content)
-light=(asl_tables evaluation image output_record overrides platform_yaml sensor_yaml work_trace
-  work_trace_content)
+all=(asl_tables baseline budget cache_entry evaluation flight_plan history image json output_record
+  overrides platform_yaml rendered_table run_folder sensor_yaml sweep_points sweep_plan work_trace work_trace_content)
+light=(asl_tables evaluation image json output_record overrides platform_yaml rendered_table sensor_yaml
+  work_trace work_trace_content)
 seconds=60
 targets=()
 while (($# > 0)); do

@@ -33,7 +33,7 @@ function(leviosim_install_library)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/leviosim>)
   target_link_libraries(leviosim_library INTERFACE
     fmt::fmt Eigen3::Eigen nlohmann_json::nlohmann_json CLI11::CLI11 OpenSSL::Crypto
-    PNG::PNG ZLIB::ZLIB zstd::libzstd_shared yaml turbojpeg opencv_imgproc opencv_core)
+    PNG::PNG ZLIB::ZLIB zstd::libzstd_shared yaml jpeg opencv_imgproc opencv_core)
   set_target_properties(leviosim PROPERTIES EXPORT_NAME program)
 
   install(TARGETS leviosim EXPORT leviosim RUNTIME COMPONENT program)
@@ -96,7 +96,7 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libleviosim-dev)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "leviosim as a library, for workloads and kernels of your own")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
     "leviosim (= ${PROJECT_VERSION}), g++, cmake, make, python3, libeigen3-dev, libfmt-dev, \
-libpng-dev, libturbojpeg0-dev, libopencv-imgproc-dev, libyaml-dev, nlohmann-json3-dev, libcli11-dev, libssl-dev, libzstd-dev, zlib1g-dev")
+libpng-dev, libjpeg62-turbo-dev, libopencv-imgproc-dev, libyaml-dev, nlohmann-json3-dev, libcli11-dev, libssl-dev, libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS # leviosim-check-counting, leviosim-measure
     "clang-tools, gcc-riscv64-unknown-elf, picolibc-riscv64-unknown-elf, gcc-arm-none-eabi, \
 libnewlib-arm-none-eabi, libcapstone-dev, qemu-user")

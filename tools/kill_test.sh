@@ -3,7 +3,7 @@
 # lost: what stands under the name of a result is whole, foreign files are untouched, and the same
 # command given again ends with the same bytes as one that was never killed and leaves nothing else.
 #   tools/kill_test.sh [--kills N] [--seed S] [--program LEVIOSIM]
-# The commands run, sweep, tune, synth and ablate take turns. Exit status 1 with the first loss. At
+# The commands run, sweep, tune, synth, ablate and history take turns. Exit status 1 with the first loss. At
 # the end, also of a run that is interrupted, it says how many kills there were and what they left.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -24,7 +24,7 @@ while (($# > 0)); do
 done
 leviosim=$(realpath "$leviosim")
 
-names=(run sweep tune synth ablate)
+names=(run sweep tune synth ablate history)
 declare -A struck unfinished
 done_kills=0
 fifties=0
@@ -55,6 +55,10 @@ points:
       platform.cluster.fpu.units: [1, 2, 4]
       platform.cluster.l1.banks: [8, 16]
 YAML
+for n in 1 2 3; do # a history that grows
+  "$leviosim" history add recorded --file begun.jsonl --commit "c$n" --branch main --time "$n" --subject s \
+    >/dev/null
+done
 
 command_of() { # command_of NAME: the words in `words`
   case $1 in
@@ -63,10 +67,16 @@ command_of() { # command_of NAME: the words in `words`
     tune) words=(tune --data flight --size 32x24 --clock 200:370:85 --fps 20 --seed 1 --cache runs --out out) ;;
     synth) words=(synth --duration 0.1 --out out) ;;
     ablate) words=(ablate --data flight --size 32x24 --seed 1,2 --cache runs --out out) ;;
+    history) words=(history add recorded --file out --commit c4 --branch main --time 4 --subject s) ;;
   esac
 }
 
-results_of() { # results_of FOLDER: digests of what must be the same in every run
+begin_of() { # begin_of NAME: what is there before the command
+  [[ $1 != history ]] || cp begun.jsonl history/out
+}
+
+results_of() { # results_of FOLDER|FILE: digests of what must be the same in every run
+  [[ ! -f $1 ]] || { sha256sum <"$1" && return; }
   (cd "$1" && find . -type f ! -name manifest.json ! -name .leviosim-files -print0 |
     sort -z | xargs -0 sha256sum)
 }
@@ -76,6 +86,7 @@ declare -A expected duration
 for name in "${names[@]}"; do
   mkdir -p "$name"
   cp -r flight recorded plan.yaml "$name"
+  begin_of "$name"
   command_of "$name"
   begin=$(date +%s%N)
   (cd "$name" && "$leviosim" "${words[@]}" --quiet >/dev/null) || (($? == 1)) # a limit was not met
@@ -93,6 +104,10 @@ lose() { # lose NAME MESSAGE
 
 check_foreign() { # check_foreign NAME
   [[ $(cat "$1/thesis.tex") == mine && $(cat "$1/notes/a") == mine ]] || lose "$1" "a foreign file has changed"
+  if [[ $1 == history ]]; then # the runs that were there, and a part of a line at most
+    cmp -s -n "$(stat -c %s begun.jsonl)" begun.jsonl history/out || lose history "a run is gone"
+    return 0
+  fi
   [[ $1 == sweep || ! -e $1/out || $(results_of "$1/out") == "${expected[$1]}" ]] ||
     lose "$1" "a half-written result"
 }
@@ -114,6 +129,7 @@ resume() { # resume NAME: the same command again, undisturbed
 while ((done_kills < kills)); do
   name=${names[$((done_kills % ${#names[@]}))]}
   command_of "$name"
+  begin_of "$name"
   # Up to three kills in a row before the command may end.
   for ((strikes = RANDOM % 3; strikes >= 0 && done_kills < kills; strikes--)); do
     (cd "$name" && exec "$leviosim" "${words[@]}" --quiet >/dev/null 2>&1) &
@@ -134,9 +150,9 @@ while ((done_kills < kills)); do
       missed=$((missed + 1))
     fi
     check_foreign "$name"
-    [[ -e $name/out && $name != sweep ]] && break
+    [[ -e $name/out && $name != sweep && $name != history ]] && break
   done
-  [[ -e $name/out && $name != sweep ]] && rm -rf "$name/out"
+  [[ -e $name/out && $name != sweep && $name != history ]] && rm -rf "$name/out"
   resume "$name"
   if ((done_kills / 50 > fifties)); then
     fifties=$((done_kills / 50))

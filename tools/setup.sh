@@ -11,7 +11,7 @@ source tools/progress.sh
 packages=(
   g++ cmake ninja-build git                # compiler, build, revision
   libeigen3-dev libfmt-dev                 # linear algebra, text
-  libpng-dev libturbojpeg0-dev             # PNG and JPEG files
+  libpng-dev libjpeg62-turbo-dev           # PNG and JPEG files
   libopencv-imgproc-dev                    # OpenCV's core and imgproc, without codecs
   libyaml-dev nlohmann-json3-dev libcli11-dev libssl-dev  # files, command line, SHA-256
   libzstd-dev zlib1g-dev                                      # compressed work traces, CRC-32

@@ -14,6 +14,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 #include "sim/base/opened_file.h"
 
 namespace leviosim::base {
@@ -106,6 +107,8 @@ std::size_t OpenedFile::read_at(std::uint64_t begin, char* to, std::size_t most)
   constexpr std::size_t kMostAtOnce = std::size_t{1} << 26;
   std::size_t all = 0;
   while (all < most) {
+    // Small files are also read while an interrupted run removes what it staged.
+    if (all > 0) throw_if_interrupted();
     const ssize_t read = ::pread(descriptor_, to + all, std::min(most - all, kMostAtOnce),
                                  static_cast<off_t>(begin + all));
     if (read < 0 && errno == EINTR) continue;

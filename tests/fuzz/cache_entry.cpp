@@ -1,8 +1,8 @@
 // Entries of the cache of finished runs. After a first byte 'f' the input is a file under a key,
 // damage of which shows in a digest; else it is the text in one, as if the digest were right.
 #include "tests/fuzz/fuzz_target.h"
-#include "tools/app/study/engine.h"
 #include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/engine.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

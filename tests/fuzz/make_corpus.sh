@@ -9,7 +9,7 @@ folder=$(realpath "$2")
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables budget baseline cache_entry \
-  flight_plan output_record run_folder sweep_database; do
+  flight_plan json output_record rendered_table run_folder; do
   mkdir -p "$folder/$target"
 done
 "$seeds" "$folder"
@@ -120,3 +120,9 @@ triangulation,cluster,,total,,33830.000,0
 triangulation,cluster,solve,issue,int_alu,1500.000,1400
 END
 } >"$folder/run_folder/small"
+
+# Depth, members and lines of what is JSON; words that mean something where they are printed.
+printf '{"a":[{"b":1.5e3},null,true,"\\u00e9"]}' >"$folder/json/some"
+printf '{"a":%s%s}' "$(printf '[%.0s' {1..63})" "$(printf ']%.0s' {1..63})" >"$folder/json/deep"
+printf '{%s"z":0}' "$(printf '"k%d":0,' {1..600})" >"$folder/json/members"
+printf 'a | b\n=%%%%=\n<img src=x> [a](http://b) @team `c`\n=%%%%=\n\xe2\x80\xa8\x1b[2J,"\r\n' >"$folder/rendered_table/words"

@@ -1,17 +1,19 @@
 // Writes the seeds of fuzz targets that need more than text: work traces, images, trajectories,
-// data bases.
+// points of sweeps.
 //   seeds FOLDER   makes FOLDER/TARGET/* for the targets work_trace, work_trace_content, image,
-//                  evaluation and sweep_database
+//                  evaluation, asl_tables, history and sweep_points
 #include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <fstream>
 
 #include "platform_models/loader/loader.h"
+#include "tests/fuzz/checked_run.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/image_files.h"
 #include "tests/traces/trace_parts.h"
 #include "tests/traces/work_trace_example.h"
+#include "tools/app/history/history.h"
 
 namespace {
 
@@ -69,6 +71,11 @@ void write_images(const fs::path& folder) {
   write(folder / "image/small.png", tests::png_of(grey(cv::Rect(0, 0, 8, 8)).clone()));
   write(folder / "image/grey.pgm", "P5 2 2 255\n1234");
   write(folder / "image/grey.jpg", tests::jpeg_of(grey));
+  write(folder / "image/progressive.jpg", tests::jpeg_of(grey, 90, true));
+  const std::string png = tests::png_of(grey);
+  for (const char* kind : {"zTXt", "iTXt", "iCCP", "eXIf", "abCd"})
+    write(folder / "image" / (std::string(kind) + ".png"),
+          tests::with_chunk(png, kind, tests::deflated(std::string(1000, 'x'))));
 }
 
 /// A walk round a circle, in one of the formats.
@@ -115,6 +122,13 @@ void write_sweep(const fs::path& file) {
               "\n");
 }
 
+void write_history(const fs::path& folder) {
+  const fs::path empty = folder / "empty";
+  write(empty, "");
+  const tools::PastRun run{.origin = {"c1", "main", 1, "subject"}, .record = fuzz::checked_run()};
+  write(folder / "run", tools::History::read(empty.string()).lines_for(run));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -125,5 +139,6 @@ int main(int argc, char** argv) {
   write_traces(argv[1]);
   write_images(argv[1]);
   write_trajectories(argv[1]);
+  write_history(fs::path(argv[1]) / "history");
   write_sweep(fs::path(argv[1]) / "sweep_points/clean");
 }

@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 #include <spng.h>
-#include <turbojpeg.h>
+#include <zlib.h>
 
+#include <cstdio>  // for jpeglib.h
 #include <cstdlib>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
+
+#include <jpeglib.h>
 
 #include "traces/datasets/image_file.h"
 
@@ -40,18 +43,60 @@ inline std::string png_of(const cv::Mat& image) {
   return png_of(image.data, image.total() * image.elemSize(), header);
 }
 
+/// What a PNG chunk of texts or profiles holds.
+inline std::string deflated(const std::string& text) {
+  uLongf size = compressBound(text.size());
+  std::string bytes(size, '\0');
+  EXPECT_EQ(compress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                     reinterpret_cast<const Bytef*>(text.data()), text.size()),
+            Z_OK);
+  bytes.resize(size);
+  return bytes;
+}
+
+/// A PNG file with one more chunk, behind its head.
+inline std::string with_chunk(const std::string& png, const std::string& kind,
+                              const std::string& content) {
+  const auto number = [](std::size_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+    return bytes;
+  };
+  const std::string body = kind + content;
+  const auto crc =
+      crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
+  std::string bytes = png;
+  constexpr std::size_t kHead = 8 + 25;
+  return bytes.insert(kHead, number(content.size()) + body + number(crc));
+}
+
 /// A JPEG file of a picture of one or three channels of 8 bits.
 inline std::string jpeg_of(const cv::Mat& image, int quality = 90, bool progressive = false) {
   const bool grey = image.channels() == 1;
-  const std::unique_ptr<void, int (*)(tjhandle)> encoder(tjInitCompress(), tjDestroy);
+  jpeg_error_mgr errors;
+  jpeg_compress_struct encoder{};
+  encoder.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&encoder);
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
-  EXPECT_EQ(
-      tjCompress2(encoder.get(), image.data, image.cols, static_cast<int>(image.step), image.rows,
-                  grey ? TJPF_GRAY : TJPF_RGB, &bytes, &size, grey ? TJSAMP_GRAY : TJSAMP_444,
-                  quality, progressive ? TJFLAG_PROGRESSIVE : 0),
-      0);
-  const std::unique_ptr<unsigned char, void (*)(unsigned char*)> jpeg(bytes, tjFree);
+  jpeg_mem_dest(&encoder, &bytes, &size);
+  encoder.image_width = static_cast<JDIMENSION>(image.cols);
+  encoder.image_height = static_cast<JDIMENSION>(image.rows);
+  encoder.input_components = image.channels();
+  encoder.in_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
+  jpeg_set_defaults(&encoder);
+  jpeg_set_quality(&encoder, quality, TRUE);
+  for (int i = 0; i < encoder.num_components; ++i)  // colours as fine as brightness
+    encoder.comp_info[i].h_samp_factor = encoder.comp_info[i].v_samp_factor = 1;
+  if (progressive) jpeg_simple_progression(&encoder);
+  jpeg_start_compress(&encoder, TRUE);
+  for (int y = 0; y < image.rows; ++y) {
+    JSAMPROW row = const_cast<uchar*>(image.ptr(y));
+    jpeg_write_scanlines(&encoder, &row, 1);
+  }
+  jpeg_finish_compress(&encoder);
+  jpeg_destroy_compress(&encoder);
+  const std::unique_ptr<unsigned char, void (*)(void*)> jpeg(bytes, std::free);
   return {reinterpret_cast<const char*>(jpeg.get()), size};
 }
 

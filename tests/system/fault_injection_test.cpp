@@ -191,10 +191,12 @@ class FaultInjection : public tests::ProgramSuite {
     std::fflush(stdout);
   }
   /// Into a new place, and where results of before are replaced; files of others are in both.
-  static void try_all(const Words& words) {
+  /// @param there  other files of both
+  static void try_all(const Words& words, const Picture& there = {}) {
     const Scratch before;
     write_text(before / "thesis.tex", "mine");
     write_text(before / "notes/a", "mine");
+    for (const auto& [name, text] : there) write_text(before / name, text);
     const Scratch done;
     fill(done.path(), before.path());
     if (!FaultyProgram(words, done.path()).run("none", 0))
@@ -216,6 +218,21 @@ TEST_F(FaultInjection, Sweep) {
       {"sweep", path("plan.yaml"), "--jobs", "1", "--quiet", "--cache", "cache", "--out", "sweep"});
 }
 TEST_F(FaultInjection, Report) { try_all({"report", path("recorded"), "--force", "-o", "r.html"}); }
+TEST_F(FaultInjection, WhatIf) {
+  try_all({"whatif", path("recorded"), "cluster.clock=200,300", "--force", "--quiet", "--report",
+           "w.html"});
+}
+/// A history is whole or as before: begun, and grown by a run.
+TEST_F(FaultInjection, HistoryAdd) {
+  const auto words = [](const char* commit, const std::string& file) {
+    return Words{"history", "add",      path("recorded"), "--file", file, "--commit",
+                 commit,    "--branch", "main",           "--time", "1",  "--subject",
+                 "s",       "--quiet"};
+  };
+  try_all(words("c1", "history.jsonl"));
+  expect_done(words("c0", path("history.jsonl")));
+  try_all(words("c1", "history.jsonl"), {{"history.jsonl", read_text(path("history.jsonl"))}});
+}
 TEST_F(FaultInjection, Check) {
   try_all({"check", path("recorded"), "--budget", path("budgets.yaml"), "--force", "--quiet",
            "--junit", "c.xml"});

@@ -4,12 +4,15 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <random>
+#include <regex>
 #include <thread>
 
 #include "sim/base/interruption.h"
 #include "sim/base/threads.h"
 #include "tests/support/run_program.h"
+#include "tests/support/scratch.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -23,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Started {
   const char* what;
-  std::vector<std::string> words;  ///< FLIGHT, TRACE, PLAN, TABLE, OUT and CACHE stand for files
+  std::vector<std::string> words;  ///< those in capitals stand for files
   int latest_ms;                   ///< of the signal
 };
 
@@ -59,8 +62,58 @@ const std::vector<Started>& commands() {
       {"eval", {"eval", "TABLE", "TABLE"}, 500},
       {"sweep --list", {"sweep", "PLAN", "--list"}, 1000},
       {"sweep", {"sweep", "PLAN", "--cache", "CACHE", "--out", "SWEEP"}, 1000},
+      {"whatif", {"whatif", "TRACE"}, 300},
+      // Files that a stranger made so that they take long.
+      {"run of pictures of many scans",
+       {"run", "--native", "--data", "SCANS", "--size", "160x120", "--out", "OUT"},
+       500},
+      {"compare of many frames", {"compare", "LONG", "LONG"}, 200},
+      {"report of many frames", {"report", "LONG", "--out", "OUT"}, 300},
+      {"history show", {"history", "show", "--file", "HISTORY", "--json"}, 50},
+      {"history page", {"history", "page", "--file", "HISTORY", "--out", "OUT"}, 300},
+      {"compare of many points", {"compare", "POINTS", "POINTS"}, 200},
   };
   return all;
+}
+
+/// A line of a file again and again, with numbers counted up.
+template <class Line>
+void write_lines(const fs::path& file, const std::string& head, int count, const Line& line) {
+  std::string text = head;
+  for (int i = 0; i < count; ++i) text += line(i) + '\n';
+  tests::write_text(file, text);
+}
+
+/// A picture of 4096x4096 pixels in 50 kB: nearly 500 scans, each over the whole picture.
+std::string picture_of_many_scans() {
+  const auto segment = [](int kind, const std::string& content) {
+    const std::size_t size = content.size() + 2;
+    return std::string{'\xff', static_cast<char>(kind), static_cast<char>(size >> 8),
+                       static_cast<char>(size & 0xff)} +
+           content;
+  };
+  const auto huffman = [&](char kind, char symbol) {
+    return segment(0xc4, std::string{kind, 1} + std::string(15, '\0') + symbol);
+  };
+  std::string jpeg = "\xff\xd8" + segment(0xdb, '\0' + std::string(64, '\1')) +
+                     segment(0xc2, std::string("\x08\x10\0\x10\0\1\1\x11\0", 9)) + huffman(0, 0) +
+                     huffman(0x10, '\xe0') + segment(0xda, std::string("\1\1\0\0\0\0", 6)) +
+                     std::string(512 * 512 / 8, '\0');
+  // Runs of 2^15 - 1 blocks without a coefficient, which end at the picture's.
+  std::string bits;
+  for (int left = 512 * 512; left > 0; left -= 32767) bits += "0" + std::string(14, '1');
+  bits.resize((bits.size() + 7) / 8 * 8, '1');
+  std::string runs;
+  for (std::size_t i = 0; i < bits.size(); i += 8) {
+    runs += static_cast<char>(std::stoi(bits.substr(i, 8), nullptr, 2));
+    if (runs.back() == '\xff') runs += '\0';
+  }
+  const auto scan = [&](int coefficient, int high, int low) {
+    const auto k = static_cast<char>(coefficient);
+    return segment(0xda, std::string{1, 1, 0, k, k, static_cast<char>(high << 4 | low)}) + runs;
+  };
+  for (int i = 0; i < 494; ++i) jpeg += scan(1 + i % 63, i < 63 ? 0 : 14 - i / 63, 13 - i / 63);
+  return jpeg + "\xff\xd9";
 }
 
 class Interrupts : public ::testing::Test {
@@ -88,6 +141,52 @@ class Interrupts : public ::testing::Test {
     for (int i = 0; i < 300'000; ++i)
       table += fmt::format("{}.{:03} {} {} 0 0 0 0 1\n", i / 100, i % 100 * 10, i * 0.001, i % 7);
     outputs::write_file_atomically(folder_ / "TABLE", table);
+    write_slow_files();
+  }
+  static void write_slow_files() {
+    fs::copy(folder_ / "FLIGHT", folder_ / "SCANS", fs::copy_options::recursive);
+    const std::string picture = picture_of_many_scans();
+    for (const fs::directory_entry& file : fs::directory_iterator(folder_ / "SCANS/mav0/cam0/data"))
+      tests::write_text(file.path(), picture);
+    const fs::path sensor = folder_ / "SCANS/mav0/cam0/sensor.yaml";
+    tests::write_text(sensor,
+                      std::regex_replace(tests::read_text(sensor), std::regex("resolution: [^\n]*"),
+                                         "resolution: [4096, 4096]"));
+    constexpr int kFrames = 100'000;
+    fs::copy(folder_ / "recorded", folder_ / "LONG", fs::copy_options::recursive);
+    fs::remove(folder_ / "LONG/.leviosim-files");
+    auto manifest = nlohmann::json::parse(tests::read_text(folder_ / "LONG/manifest.json"));
+    manifest["data"]["frames"] = kFrames;
+    tests::write_text(folder_ / "LONG/manifest.json", manifest.dump());
+    const std::string frames = tests::read_text(folder_ / "LONG/frames.csv");
+    const std::size_t first = frames.find('\n') + 1;
+    const std::size_t stamp = frames.find(',', frames.find(',', first) + 1);
+    const std::string rest = frames.substr(stamp, frames.find('\n', stamp) - stamp);
+    write_lines(folder_ / "LONG/frames.csv", frames.substr(0, first), kFrames, [&](int i) {
+      return fmt::format("{},{}{}", i, 1'000'000'000'000 + i * 50'000'000L, rest);
+    });
+    ASSERT_EQ(run_program(folder_,
+                          {"history", "add", path("recorded"), "--file", path("HISTORY"),
+                           "--commit", "c0", "--branch", "main", "--time", "1", "--subject", "s"})
+                  .status,
+              0);
+    const std::string history = tests::read_text(folder_ / "HISTORY");
+    const std::size_t run = history.find("{\"run\":\"c0\",\"time\":1,");
+    ASSERT_NE(run, std::string::npos);
+    const std::string line = history.substr(run + 21, history.find('\n', run) - run - 21);
+    write_lines(folder_ / "HISTORY", history, 50'000, [&](int i) {
+      return fmt::format("{{\"run\":\"c{0}\",\"time\":{0}{1}", i + 1, line);
+    });
+    outputs::write_file_atomically(folder_ / "FEW",
+                                   fmt::format("base: {{ trace: {} }}\npoints: {{ grid: {{ "
+                                               "platform.cluster.clock: [200, 300] }} }}\n",
+                                               path("TRACE")));
+    ASSERT_EQ(
+        run_program(folder_, {"sweep", path("FEW"), "--quiet", "--out", path("POINTS")}).status, 0);
+    const std::string points = tests::read_text(folder_ / "POINTS/points.jsonl");
+    const std::size_t end = points.find('\n', points.find('\n') + 1) + 1;
+    const std::string point = points.substr(end, points.find('\n', end) - end);
+    write_lines(folder_ / "POINTS/points.jsonl", points, 3'000, [&](int) { return point; });
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
@@ -111,12 +210,38 @@ struct Stopped {
   bool in_time = false;  ///< the program was still at work
   int status = 0;
   double seconds = 0;  ///< from the signal to the end
+  double work_s = 0;   ///< of all processors in that time
 };
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// What programs that have ended have used of processors.
+double work_of_ended() {
+  rusage usage{};
+  ::getrusage(RUSAGE_CHILDREN, &usage);
+  return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+}
+
+/// What a running one has.
+double work_of(pid_t program) {
+  const std::string status = base::read_text_file(fmt::format("/proc/{}/stat", program));
+  std::istringstream fields(status.substr(status.rfind(')') + 1));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double user = 0;
+  double system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
 
 Stopped stop(const fs::path& folder, const std::vector<std::string>& words, int signal,
              std::chrono::milliseconds after) {
+  const double before = work_of_ended();
   Program program(folder, words);
   std::this_thread::sleep_for(after);
+  const double until_then = work_of(program.id());
   Stopped stopped;
   stopped.in_time = program.running();
   const auto begin = Clock::now();
@@ -126,6 +251,7 @@ Stopped stop(const fs::path& folder, const std::vector<std::string>& words, int 
   stopped.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   if (program.running()) program.send(SIGKILL);
   stopped.status = program.wait().status;
+  stopped.work_s = work_of_ended() - before - until_then;
   return stopped;
 }
 
@@ -148,13 +274,14 @@ TEST_F(Interrupts, EndEveryCommandSoonAndLeaveNothingBehind) {
       const bool was_over = stopped.status == 0 && stopped.seconds < 0.5;
       if (!stopped.in_time || was_over) continue;
       ++stopped_at_work;
-      longest = std::max(longest, stopped.seconds);
+      longest = std::max(longest, stopped.work_s);
       EXPECT_EQ(stopped.status, 128 + signal)
           << command.what << " after " << after.count() << " ms";
-      EXPECT_LT(stopped.seconds, 5) << command.what << " after " << after.count() << " ms";
+      // Half a second of a machine that does nothing else.
+      EXPECT_LT(stopped.work_s, 0.5) << command.what << " after " << after.count() << " ms";
     }
     EXPECT_GT(stopped_at_work, 0) << command.what;
-    RecordProperty(std::string("longest_") + command.what, fmt::format("{:.2f}", longest));
+    std::printf("[    STOPS ] %s: %d ms\n", command.what, static_cast<int>(1e3 * longest));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <opencv2/imgproc.hpp>
 
 #include "tests/support/image_files.h"
@@ -91,6 +92,43 @@ TEST(ImageFile, TheSizeIsCheckedBeforeThePixels) {
   const std::string pixels("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
   expect_refused("\x89PNG\r\n\x1a\n" + head + crc + pixels,
                  "is 65535x65535; the camera's pictures are 33x24");
+}
+
+/// Texts and profiles that would inflate to 1000 times their size, before the pixels and in number.
+/// Nothing of them is built, so the work is that of reading their bytes.
+TEST(ImageFile, WhatNoPixelNeedsIsPassedOver) {
+  const std::string png = encoded(picture());
+  const std::string bomb = tests::deflated(std::string(8'000'000, 'x'));
+  const std::string latin = std::string("Comment\0\0", 9) + bomb;
+  const std::string universal = std::string("Comment\0\1\0\0\0", 12) + bomb;
+  for (const auto& [kind, content] : std::vector<std::pair<std::string, std::string>>{
+           {"zTXt", latin},
+           {"iTXt", universal},
+           {"iCCP", latin},
+           {"tEXt", std::string("Comment\0", 8) + std::string(100'000, 'x')},
+           {"eXIf", std::string(50'000, 'x')},
+           {"sPLT", std::string("p\0\x08", 3) + std::string(60'000, 'x')},
+           {"abCd", std::string(100'000, 'x')}}) {
+    std::string many = png;
+    for (int i = 0; i < (kind == "iCCP" ? 1 : 300); ++i)
+      many = tests::with_chunk(many, kind, content);
+    const std::clock_t begin = std::clock();
+    EXPECT_EQ(cv::countNonZero(decoded(many, {33, 24}) != picture()), 0) << kind;
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1) << kind;  // of work
+  }
+}
+
+/// Each scan of a progressive file may pass over the whole picture.
+TEST(ImageFile, ScansAreBounded) {
+  const std::string jpeg = jpeg_of(picture(), 90, true);
+  const std::size_t scan = jpeg.find("\xff\xda");
+  const std::size_t next = jpeg.find("\xff\xda", scan + 1);
+  std::string many = jpeg.substr(0, jpeg.size() - 2);
+  const std::size_t last = jpeg.rfind("\xff\xda");
+  for (int i = 0; i < 600; ++i) many += jpeg.substr(last, jpeg.size() - 2 - last);
+  EXPECT_LT(scan, next);
+  expect_refused(many + jpeg.substr(jpeg.size() - 2), "damaged JPEG");
+  EXPECT_EQ(decoded(jpeg, {33, 24}).size(), picture().size());
 }
 
 TEST(ImageFile, EveryCutAndFlippedByteIsRefusedOrRead) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <memory>
 
 #include "sim/base/error.h"
@@ -21,7 +20,8 @@ namespace leviosim::tools {
 namespace {
 
 constexpr const char* kFile = "history.jsonl";
-constexpr std::size_t kAllRuns = std::numeric_limits<std::size_t>::max();
+/// Of a page; each takes some 40 kB of memory.
+constexpr std::size_t kMostRuns = 2000;
 
 struct HistoryOptions : RecordOptions {
   std::string action;
@@ -150,11 +150,13 @@ void page(const CLI::App& command, const HistoryOptions& options) {
   const std::optional<Budget> budget = budget_of(options);
   std::optional<outputs::OutputFile> file =
       claimed_report(options.page, options.force, {options.file}, "--out");
-  const std::vector<PastRun> runs = newest(options, kAllRuns);
+  const std::vector<PastRun> runs = newest(options, kMostRuns);
   const RunFacts& facts = runs.back().record.facts;
-  publish_report(
-      file, history_page(fmt::format("{} on {} over commits", facts.profile, facts.platform), runs,
-                         budget ? &*budget : nullptr));
+  const std::string which =
+      runs.size() == kMostRuns ? fmt::format("the newest {} commits", kMostRuns) : "commits";
+  publish_report(file,
+                 history_page(fmt::format("{} on {} over {}", facts.profile, facts.platform, which),
+                              runs, budget ? &*budget : nullptr));
   print(history_printout(runs, budget ? &*budget : nullptr, {}));
 }
 

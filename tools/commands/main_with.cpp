@@ -169,6 +169,7 @@ int begin(const Words& typed, std::vector<Workload> workloads) {
   std::set_new_handler(end_memory);
   std::set_terminate(end_terminated);
   try {
+    provide_stack();
     add(std::move(workloads));
   } catch (const InputError& error) {
     return fail(error);

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <png.h>
-#include <turbojpeg.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -16,6 +15,8 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
+#include "traces/datasets/image_header.h"
+#include "traces/datasets/jpeg_file.h"
 
 namespace leviosim::traces {
 namespace {
@@ -89,17 +90,7 @@ constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::string_view kJpegSignature = "\xff\xd8\xff";
 constexpr std::size_t kMostChunkBytes = std::size_t{1} << 24;  ///< of what is not pixels
 
-/// What the head of a file says.
-struct Header {
-  unsigned width = 0, height = 0;
-  bool colour = false;  ///< decoded to red, green, blue
-};
-
-[[noreturn]] void refuse_damaged(const char* format, const char* reason) {
-  throw InputError(fmt::format("cannot be read as an image: damaged {}: {}", format, reason));
-}
-
-void require_size(const Header& header, ImageSize expected) {
+void require_size(const ImageHeader& header, ImageSize expected) {
   if (header.width != static_cast<unsigned>(expected.width) ||
       header.height != static_cast<unsigned>(expected.height))
     throw InputError(fmt::format("is {}x{}; the camera's pictures are {}x{}", header.width,
@@ -111,6 +102,7 @@ class Png {
   explicit Png(std::string_view bytes) : calls_(PngCalls::Kind::Read), rest_(bytes) {
     demand([&] {
       png_set_read_fn(calls_.png(), &rest_, read);
+      png_set_read_status_fn(calls_.png(), [](png_structp png, png_uint_32, int) { poll(png); });
       png_set_crc_action(calls_.png(), PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
       png_set_chunk_malloc_max(calls_.png(), kMostChunkBytes);
       // Texts, profiles and all else that no pixel needs is passed over, and never inflated.
@@ -119,7 +111,7 @@ class Png {
     });
   }
 
-  Header header() {
+  ImageHeader header() {
     return {png_get_image_width(calls_.png(), calls_.info()),
             png_get_image_height(calls_.png(), calls_.info()),
             (png_get_color_type(calls_.png(), calls_.info()) & PNG_COLOR_MASK_COLOR) != 0};
@@ -144,71 +136,33 @@ class Png {
  private:
   static void read(png_structp png, png_bytep to, std::size_t size) {
     auto& rest = *static_cast<std::string_view*>(png_get_io_ptr(png));
-    // Asked as often as some kilobytes are read; the error becomes Interrupted in demand().
+    // Asked as often as some kilobytes are read.
     constexpr std::size_t kBytesPerPoll = 1 << 14;
-    if (rest.size() / kBytesPerPoll !=
-            (rest.size() - std::min(size, rest.size())) / kBytesPerPoll &&
-        pending_interrupt() != 0)
-      png_error(png, "interrupted");
+    const std::size_t left = rest.size() - std::min(size, rest.size());
+    if (rest.size() / kBytesPerPoll != left / kBytesPerPoll) poll(png);
     if (size > rest.size()) png_error(png, "the file ends early");
     std::copy_n(rest.data(), size, to);
     rest.remove_prefix(size);
+  }
+  /// Becomes Interrupted in demand().
+  static void poll(png_structp png) {
+    if (pending_interrupt() != 0) png_error(png, "interrupted");
   }
   template <class Body>
   void demand(const Body& body) {
     if (calls_.succeed(body)) return;
     throw_if_interrupted();
-    refuse_damaged("PNG", calls_.reason().c_str());
+    refuse_damaged_image("PNG", calls_.reason());
   }
 
   PngCalls calls_;
   std::string_view rest_;
 };
 
-class Jpeg {
- public:
-  explicit Jpeg(std::string_view bytes)
-      : bytes_(reinterpret_cast<const unsigned char*>(bytes.data())),
-        size_(bytes.size()),
-        decoder_(tjInitDecompress(), tjDestroy) {
-    if (decoder_ == nullptr) throw std::bad_alloc();
-  }
-
-  Header header() {
-    int width = 0;
-    int height = 0;
-    int sampling = 0;
-    int colours = 0;
-    demand(
-        tjDecompressHeader3(decoder_.get(), bytes_, size_, &width, &height, &sampling, &colours));
-    if (width < 1 || height < 1) refuse_damaged("JPEG", "the file says no size");
-    if (colours == TJCS_CMYK || colours == TJCS_YCCK)
-      throw InputError("has the colours of print (CMYK); expected grey, or red, green and blue");
-    return {static_cast<unsigned>(width), static_cast<unsigned>(height)};  // decoded to grey
-  }
-
-  void decode(std::span<std::uint8_t> image) {
-    const Header size = header();
-    constexpr int kFlags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS;
-    demand(tjDecompress2(decoder_.get(), bytes_, size_, image.data(), static_cast<int>(size.width),
-                         static_cast<int>(size.width), static_cast<int>(size.height), TJPF_GRAY,
-                         kFlags));
-  }
-
- private:
-  void demand(int status) {
-    if (status != 0) refuse_damaged("JPEG", tjGetErrorStr2(decoder_.get()));
-  }
-
-  const unsigned char* bytes_;
-  unsigned long size_;
-  std::unique_ptr<void, int (*)(tjhandle)> decoder_;
-};
-
 template <class Format>
 std::vector<std::uint8_t> decode_as(std::string_view bytes, ImageSize expected) {
   Format file(bytes);
-  const Header header = file.header();
+  const ImageHeader header = file.header();
   require_size(header, expected);
   std::vector<std::uint8_t> image(expected.pixels() * (header.colour ? 3 : 1));
   file.decode(image);
@@ -228,7 +182,7 @@ bool begins_with(std::string_view text, std::string_view start) {
 template <class Use>
 auto with_format(std::string_view bytes, const Use& use) {
   if (begins_with(bytes, kPngSignature)) return use.template operator()<Png>();
-  if (begins_with(bytes, kJpegSignature)) return use.template operator()<Jpeg>();
+  if (begins_with(bytes, kJpegSignature)) return use.template operator()<JpegFile>();
   throw InputError("cannot be read as an image: it is neither PNG nor JPEG");
 }
 
@@ -239,7 +193,8 @@ std::vector<std::uint8_t> decode_gray(std::string_view bytes, ImageSize expected
 }
 
 ImageSize image_size(std::string_view bytes) {
-  const Header header = with_format(bytes, [&]<class Format>() { return Format(bytes).header(); });
+  const ImageHeader header =
+      with_format(bytes, [&]<class Format>() { return Format(bytes).header(); });
   return {static_cast<int>(header.width), static_cast<int>(header.height)};
 }
 

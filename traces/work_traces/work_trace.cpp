@@ -7,7 +7,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "sim/base/input_file.h"
+#include "sim/base/opened_file.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_frames.h"
@@ -208,15 +208,26 @@ void read_stamps(ByteReader& in, std::vector<std::int64_t>& stamps) {
   }
 }
 
+void take_file(MemoryBudget& budget, std::uint64_t bytes, const std::string& name) {
+  if (!budget.take(bytes))
+    throw InputError(fmt::format("{}: {}", name, budget.refusal("the file", bytes)));
+}
+
 }  // namespace
 
+std::string work_trace_bytes(const std::filesystem::path& path, Bytes memory) {
+  const base::OpenedFile file(path, base::InputKind::work_trace);
+  MemoryBudget budget(memory);
+  take_file(budget, file.size(), path.string());
+  return file.read_all();
+}
+
 WorkTrace::WorkTrace(const std::filesystem::path& file, Bytes memory)
-    : WorkTrace(file.string(), base::read_file(file, base::InputKind::work_trace), memory) {}
+    : WorkTrace(file.string(), work_trace_bytes(file, memory), memory) {}
 
 WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
     : name_(std::move(name)), bytes_(std::move(bytes)), budget_(memory) {
-  if (!budget_.take(bytes_.size()))
-    throw InputError(fmt::format("{}: {}", name_, budget_.refusal("the file", bytes_.size())));
+  take_file(budget_, bytes_.size(), name_);
   const std::vector<Section> sections = sections_of(kWorkTraceFile, name_, bytes_);
   if (sections.empty())
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",

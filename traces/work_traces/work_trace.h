@@ -84,6 +84,10 @@ struct WorkTraceInfo {
   std::vector<std::int64_t> stamps_ns;                      ///< of the camera, a frame each
 };
 
+/// The bytes of a file, for WorkTrace. Nothing is read of one that is larger than the memory.
+/// @throws InputError
+std::string work_trace_bytes(const std::filesystem::path& file, Bytes memory);
+
 class WorkTrace {
  public:
   /// Reads the file and compares all checksums.

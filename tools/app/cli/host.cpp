@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <pthread.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -104,6 +106,22 @@ fs::path users_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+void provide_stack() {
+  constexpr rlim_t kNeeded = rlim_t{1} << 20;  // the deepest calls take a fifth of it
+  rlimit limit;
+  if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= kNeeded) return;
+  const rlim_t found = limit.rlim_cur;
+  limit = {kNeeded, std::max(limit.rlim_max, kNeeded)};
+  pthread_attr_t attributes;
+  if (::setrlimit(RLIMIT_STACK, &limit) != 0 || pthread_attr_init(&attributes) != 0)
+    throw InputError(
+        fmt::format("the stack may have {} KiB; expected a limit of at least {} KiB: ulimit -s",
+                    found >> 10, kNeeded >> 10));
+  pthread_attr_setstacksize(&attributes, kNeeded);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
 
 DeferredInterrupts::DeferredInterrupts() {
   sigset_t held;

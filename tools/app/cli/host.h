@@ -1,5 +1,5 @@
-// What commands need of the host: interrupts that are held back, other programs, the folder of
-// caches.
+// What commands need of the host: interrupts that are held back, a stack, other programs, the
+// folder of caches.
 //
 // Ctrl-C and termination requests are handled between two steps of work instead of in the middle of
 // one, so that staged output is removed on the way out (sim/base/interruption.h).
@@ -28,6 +28,10 @@ class DeferredInterrupts {
  private:
   sigset_t before_;
 };
+
+/// Raises the limit of the stack to what work needs, for this thread and for those to come.
+/// @throws InputError if the system does not allow it (ulimit -s 64)
+void provide_stack();
 
 // Other programs that a command runs: builds of leviosim, git, what the user names.
 

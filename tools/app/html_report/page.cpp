@@ -68,9 +68,15 @@ std::string html_page(const Json& data) {
 }
 
 std::string script_json(const Json& json) {
+  const std::string plain = json_text(json);
   std::string text;
-  for (const char c : json_text(json))
-    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  text.reserve(plain.size());
+  for (std::size_t from = 0; from < plain.size();) {
+    const std::size_t at = std::min(plain.find('<', from), plain.size());
+    text.append(plain, from, at - from);
+    if (at < plain.size()) text += "\\u003c";
+    from = at + 1;
+  }
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 
 namespace leviosim::tools {
 namespace {
@@ -129,6 +130,7 @@ Table read_csv(const std::string& where, const std::string& text) {
   const std::size_t width = heads.size();
   Table table(std::move(heads));
   for (std::size_t row = 2; at < text.size(); ++row) {
+    throw_if_interrupted();
     const std::vector<std::string> words = next_row(text, at);
     if (words.size() != width)
       throw InputError(fmt::format("{}: row {} has {} cells; expected {}, as its titles", where,
@@ -154,6 +156,7 @@ Json rows_json(const Table& table) {
 Json columns_json(const Table& table, const std::function<bool(const std::string&)>& wanted) {
   Json json = Json::object();
   for (const FileColumn& column : file_columns(table)) {
+    throw_if_interrupted();
     if (wanted && !wanted(column.key)) continue;
     Json& cells = json[column.key] = Json::array();
     for (const std::vector<Cell>& row : table.rows())

@@ -319,7 +319,7 @@ SweepInputs::Trace& SweepInputs::trace(const std::string& name, const platform::
     std::filesystem::path file = beside(name);
     if (base::is_folder(file)) file /= kWorkTraceFile;
     // Called as in the plan: what a point says must not depend on where the plan lies.
-    return keep_trace(name, base::read_file(file, base::InputKind::work_trace));
+    return keep_trace(name, traces::work_trace_bytes(file, memory_));
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 #include "sim/base/text.h"
 #include "sim/energy/model.h"
 #include "tools/app/run/run_session.h"
@@ -292,6 +293,7 @@ RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& sett
   if (variation.gyro_bias != 0)
     request.disturbance =
         traces::parse_disturbance(fmt::format("gyro-bias={}", variation.gyro_bias));
+  throw_if_interrupted();
   request.overrides = split_overrides(overrides_at(plan, perturbed)).chip;
   request.platform = platform::resolve_platform(plan.options.platform, request.overrides);
   return request;

@@ -1,0 +1,20 @@
+// Histories of runs: each run that is read is known as one that is there already, or is refused
+// because its commit stands there with other figures.
+#include "tools/app/history/history.h"
+
+#include "tests/fuzz/fuzz_target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace leviosim;
+  static fuzz::MemoryFile file("-history.jsonl");
+  return fuzz::only_input_errors([&] {
+    const tools::History history =
+        tools::History::read(file.holding(fuzz::text_of(data, size)).string());
+    std::vector<tools::PastRun> runs;
+    for (std::size_t i = 0; i < history.size(); ++i) runs.push_back(history.run(i));
+    tools::history_document(runs);
+    tools::history_page("title", runs, nullptr);
+    for (const tools::PastRun& run : runs)
+      if (!history.lines_for(run).empty()) std::abort();
+  });
+}
